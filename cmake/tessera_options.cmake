@@ -1,0 +1,22 @@
+# Compiler settings every target of ours shares.
+#  * warnings are errors in our code; libraries come in as SYSTEM includes
+#  * -ffp-contract=off: the golden model's doubles must not depend on the compiler fusing a multiply-add
+add_library(tessera_options INTERFACE)
+target_compile_features(tessera_options INTERFACE cxx_std_17)
+target_compile_options(tessera_options INTERFACE
+  -Wall -Wextra -Wpedantic -Werror -Wshadow -Wconversion -Wsign-conversion -Wold-style-cast -Wnon-virtual-dtor
+  -Wcast-align -ffp-contract=off)
+target_include_directories(tessera_options INTERFACE ${CMAKE_SOURCE_DIR})
+if(TESSERA_SANITIZE)
+  set(sanitize -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  # The instrumentation hides from gcc's warnings what the code makes sure of: no errors here.
+  target_compile_options(tessera_options INTERFACE ${sanitize} -Wno-error)
+  target_link_options(tessera_options INTERFACE ${sanitize})
+endif()
+
+# tessera_add_library(name SOURCES ... LIBRARIES ...): a static library with our settings.
+function(tessera_add_library name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LIBRARIES;PRIVATE_LIBRARIES" ${ARGN})
+  add_library(${name} STATIC ${arg_SOURCES})
+  target_link_libraries(${name} PUBLIC tessera_options ${arg_LIBRARIES} PRIVATE ${arg_PRIVATE_LIBRARIES})
+endfunction()

@@ -1,0 +1,121 @@
+#include "golden/golden_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace tessera::golden {
+namespace {
+
+std::int64_t address(std::int64_t texel, std::int64_t size, AddressMode mode) {
+    if (mode == AddressMode::clamp) {
+        return std::clamp<std::int64_t>(texel, 0, size - 1);
+    }
+    const std::int64_t remainder = texel % size;
+    return remainder < 0 ? remainder + size : remainder;
+}
+
+std::int64_t integer_part(double texels) {
+    return static_cast<std::int64_t>(std::floor(texels));
+}
+
+std::int64_t first_texel(double centre, std::int64_t length, std::int64_t size, AddressMode mode) {
+    const std::int64_t first = integer_part(centre) - (length >> 1);
+    return mode == AddressMode::clamp ? std::clamp<std::int64_t>(first, 0, size - length)
+                                      : address(first, size, mode);
+}
+
+// Checked before the table is built from them.
+std::vector<double> checked(int width, int height, std::vector<double> codes) {
+    if (width < 1 || height < 1 ||
+        codes.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
+        throw std::invalid_argument("golden map: size and number of codes do not agree");
+    }
+    double sum = 0;
+    for (const double code : codes) {
+        if (!(code >= 0) || code != std::floor(code)) {
+            throw std::invalid_argument("golden map: codes must be integers of at least 0");
+        }
+        sum += code;
+    }
+    if (!(sum < 0x1p52)) {
+        throw std::invalid_argument("golden map: the sum of all codes must stay below 2^52");
+    }
+    return codes;
+}
+
+}  // namespace
+
+Map::Map(int width, int height, AddressMode address_u, AddressMode address_v, std::vector<double> codes)
+    : width_(width),
+      height_(height),
+      address_u_(address_u),
+      address_v_(address_v),
+      codes_(checked(width, height, std::move(codes))),
+      normals_(codes_.size(), glm::dvec3(0, 0, 1)),
+      sums_(width, height, codes_) {}
+
+std::size_t Map::texel(const glm::dvec2& t) const {
+    const std::int64_t x = address(integer_part(t.x), width_, address_u_);
+    const std::int64_t y = address(integer_part(t.y), height_, address_v_);
+    return static_cast<std::size_t>(y * width_ + x);
+}
+
+void Map::compute_normals(double scale_per_code, const glm::dvec2& texel_size) {
+    const auto height_at = [&](std::int64_t x, std::int64_t y) {
+        return scale_per_code * codes_[static_cast<std::size_t>(y * width_ + x)];
+    };
+    // The two neighbours of `at` along an axis and how many texels apart they are.
+    const auto neighbours = [](std::int64_t at, std::int64_t size, AddressMode mode) {
+        const std::int64_t low = address(at - 1, size, mode), high = address(at + 1, size, mode);
+        const std::int64_t distance = mode == AddressMode::repeat ? 2 : std::max<std::int64_t>(high - low, 1);
+        return std::array<std::int64_t, 3>{low, high, distance};
+    };
+    for (std::int64_t y = 0; y < height_; ++y) {
+        const auto [below, above, distance_v] = neighbours(y, height_, address_v_);
+        for (std::int64_t x = 0; x < width_; ++x) {
+            const auto [left, right, distance_u] = neighbours(x, width_, address_u_);
+            const double slope_u =
+                (height_at(right, y) - height_at(left, y)) / (static_cast<double>(distance_u) * texel_size.x);
+            const double slope_v = (height_at(x, above) - height_at(x, below)) /
+                                   (static_cast<double>(distance_v) * texel_size.y);
+            const glm::dvec3 n(-slope_u, -slope_v, 1);
+            normals_[static_cast<std::size_t>(y * width_ + x)] = n / glm::length(n);
+        }
+    }
+}
+
+void Map::set_normals(std::vector<glm::dvec3> normals) {
+    if (normals.size() != codes_.size()) {
+        throw std::invalid_argument("golden map: normal map and displacement map differ in size");
+    }
+    normals_ = std::move(normals);
+}
+
+Rectangle Map::rectangle_size(const glm::dvec2& t_i, const glm::dvec2& t_j) const {
+    const auto whole = [](double texels, std::int64_t size) {
+        return std::clamp<std::int64_t>(integer_part(texels), 1, size);
+    };
+    return {0, 0, whole(std::abs(t_i.x - t_j.x) / 2, width_), whole(std::abs(t_i.y - t_j.y) / 4, height_)};
+}
+
+Rectangle Map::rectangle_about(const glm::dvec2& t, const Rectangle& size) const {
+    return {first_texel(t.x, size.width, width_, address_u_),
+            first_texel(t.y, size.height, height_, address_v_), size.width, size.height};
+}
+
+std::uint64_t Map::brute_force_sum(const Rectangle& r) const {
+    std::uint64_t sum = 0;
+    for (std::int64_t y = r.y; y < r.y + r.height; ++y) {
+        for (std::int64_t x = r.x; x < r.x + r.width; ++x) {
+            const std::int64_t row = address(y, height_, AddressMode::repeat);
+            const std::int64_t column = address(x, width_, AddressMode::repeat);
+            sum += static_cast<std::uint64_t>(codes_[static_cast<std::size_t>(row * width_ + column)]);
+        }
+    }
+    return sum;
+}
+
+}  // namespace tessera::golden

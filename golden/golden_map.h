@@ -1,0 +1,64 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "golden/summed_area_table.h"
+
+namespace tessera::golden {
+
+/// How one axis is read outside the map: `clamp` holds the border texel, `repeat` is periodic.
+enum class AddressMode { clamp, repeat };
+
+/// A displacement map with what belongs to it: summed-area table and normal map (algorithm.md 2, 3.2).
+/// Row 0 is v = 0, the bottom. Texture coordinates are in texels: texel x covers [x, x + 1).
+class Map {
+  public:
+    /// `codes` row by row from the bottom: integers >= 0, all sums below 2^52. Throws std::invalid_argument
+    /// otherwise. The normal map starts flat.
+    Map(int width, int height, AddressMode address_u, AddressMode address_v, std::vector<double> codes);
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    AddressMode address_u() const { return address_u_; }
+    AddressMode address_v() const { return address_v_; }
+
+    double code(std::size_t texel) const { return codes_[texel]; }
+    const glm::dvec3& normal(std::size_t texel) const { return normals_[texel]; }
+
+    /// Nearest texel of t: its integer part, addressed. On the last border (u = width) that is the last texel
+    /// (clamp) or the first (repeat).
+    std::size_t texel(const glm::dvec2& t) const;
+
+    /// The normal map N_d by finite differences of the displacement in world units,
+    ///     N_d = normalise(-dh/du, -dh/dv, 1),     h = scale_per_code * code,
+    /// `texel_size` the world size of a texel per axis. Central differences; a clamped border has only one
+    /// neighbour and divides by 1, an axis of one texel has slope 0. To be called again when the scale
+    /// changes.
+    void compute_normals(double scale_per_code, const glm::dvec2& texel_size);
+    /// A normal map from elsewhere, e.g. the hardware's, dequantised.
+    void set_normals(std::vector<glm::dvec3> normals);
+
+    /// Size in texels, width and height, of the three rectangles of the Summed Height Test on an edge (3.2
+    /// D):
+    ///     n_w = min(width,  max(1, int(|du| / 2)))     n_h = min(height, max(1, int(|dv| / 4)))
+    Rectangle rectangle_size(const glm::dvec2& t_i, const glm::dvec2& t_j) const;
+    /// That rectangle about t: first column int(u) - (n_w >> 1), first row int(v) - (n_h >> 1). Never cut:
+    /// shifted inside (clamp) or read periodically (repeat).
+    Rectangle rectangle_about(const glm::dvec2& t, const Rectangle& size) const;
+
+    /// S(r) by four reads of the table.
+    std::uint64_t sum(const Rectangle& r) const { return sums_.sum(r); }
+    /// S(r) texel by texel, read periodically: what the table is tested against.
+    std::uint64_t brute_force_sum(const Rectangle& r) const;
+
+  private:
+    int width_, height_;
+    AddressMode address_u_, address_v_;
+    std::vector<double> codes_;
+    std::vector<glm::dvec3> normals_;
+    SummedAreaTable sums_;
+};
+
+}  // namespace tessera::golden

@@ -1,0 +1,141 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "golden/golden_map.h"
+
+/// The algorithm of algorithm.md in double precision: what the hardware is measured against. Written from
+/// that page alone; it shares no line with the hardware model.
+namespace tessera::golden {
+
+/// Section 5: which diagonal cuts the quadrilateral that is left when two edges split.
+enum class Diagonal { shorter, first, second };
+
+/// What the mesh's author and the view supply. A test that is not enabled counts as false (normal, summed
+/// height) or as true (view, texture coordinate, generation).
+struct Parameters {
+    double scale = 0;  ///< world units per code; displacement = scale * code + bias
+    double bias = 0;   ///< world units
+
+    double normal_threshold = 0;         ///< difference of one component of two unit normals
+    double summed_height_threshold = 0;  ///< sum of codes; with the area option: one code
+    bool area = false;                   ///< the area option of section 3.2
+    double view_threshold = 0;           ///< pixels
+    int generation_limit = 12;           ///< largest generation that is still inserted
+
+    struct Enabled {
+        bool normal = true, summed_height = true, view = true, tex_coord = true, generation = true;
+    } enabled;
+
+    Diagonal diagonal = Diagonal::shorter;
+
+    /// World to screen: with p = (P', 1) and w = dot(row_w, p), screen = (dot(row_x, p), dot(row_y, p)) / w
+    /// in pixels; in front iff w > near_plane (>= 0). The default is a parallel view along z, one pixel per
+    /// world unit.
+    glm::dvec4 row_x{1, 0, 0, 0}, row_y{0, 1, 0, 0}, row_w{0, 0, 0, 1};
+    double near_plane = 0;
+};
+
+/// Section 1. The host gives the first five; the rest follows from displacement and transform.
+struct Vertex {
+    glm::dvec3 position{0};  ///< P, world, on the base surface
+    glm::dvec3 normal{0};    ///< N, unit
+    glm::dvec3 tangent{0};   ///< T, unit
+    double handedness = 1;   ///< +1 or -1; bitangent = handedness * cross(N, T)
+    glm::dvec2 texture{0};   ///< t, in texels
+
+    glm::dvec3 displaced_position{0};  ///< P', world
+    glm::dvec3 displaced_normal{0};    ///< N', world, unit
+    glm::dvec2 screen{0};              ///< pixels; zero if not in front
+    double w = 0;                      ///< the transform's w
+    bool in_front = false;
+    int generation = 0;  ///< 0: base vertex
+};
+
+/// A vector made unit, and the length it had before: the smaller, the more an input's error weighs.
+/// **D** a zero vector stays zero.
+struct Normalised {
+    glm::dvec3 direction{0};
+    double length = 0;
+};
+Normalised normalise(const glm::dvec3& v);
+
+/// Section 2: N' = normalise(N_d.x * T + N_d.y * handedness * cross(N, T) + N_d.z * N).
+Normalised bump(const glm::dvec3& normal, const glm::dvec3& tangent, double handedness,
+                const glm::dvec3& map_normal);
+
+/// A base vertex after Displace and Transform: P', N', screen position; generation 0.
+Vertex complete_base_vertex(const Vertex& base, const Map& map, const Parameters& parameters);
+
+/// Section 2: the vertex inserted on the edge (i,j), the same bits for (j,i).
+struct Insertion {
+    Vertex vertex;
+    double mean_normal_length = 0;   ///< |(N_i + N_j) / 2|
+    double mean_tangent_length = 0;  ///< |(T_i + T_j) / 2|; T_ij is not made orthogonal to N_ij again
+    double bump_length = 0;          ///< length of the sum inside bump()
+};
+Insertion insert_vertex(const Vertex& i, const Vertex& j, const Map& map, const Parameters& parameters);
+
+/// Sections 3 and 4: what the tests saw on an edge and what they said (`enabled` applied).
+struct EdgeEvaluation {
+    Insertion inserted;
+
+    double normal_difference = 0;  ///< largest of the six; NT = it > normal_threshold
+    std::int64_t rectangle_width = 1, rectangle_height = 1;  ///< texels, all three rectangles
+    double summed_height = 0;                                ///< |2 S(r_ij) - S(r_i) - S(r_j)|, exact
+    double summed_height_limit = 0;  ///< SHT = summed_height > it: 4 * threshold, or threshold * area
+    double view_length = 0;  ///< VT = it > view_threshold; Manhattan, pixels; an end not in front: +infinity,
+                             ///< both: -infinity
+
+    bool normal_test = false, summed_height_test = false, view_test = false, tex_coord_test = false,
+         generation_test = false;
+    bool split = false;  ///< (NT or SHT) and VT and TCT and GT
+};
+EdgeEvaluation evaluate_edge(const Vertex& i, const Vertex& j, const Map& map, const Parameters& parameters);
+
+/// Section 5: 1 to 4 children as indices: 0 1 2 the triangle's vertices, 3 4 5 the midpoints of edges 0-1,
+/// 1-2, 2-0.
+///
+/// Winding is kept, and an old vertex keeps its place in the children whose corner it is:
+///     none     (0 1 2)
+///     one      edge 0-1: (0 3 2) (3 1 2)     edge 1-2: (0 1 4) (0 4 2)     edge 2-0: (0 1 5) (5 1 2)
+///     two      the corner cut off, one of (0 3 5) (3 1 4) (5 4 2), then the quadrilateral q0 q1 q2 q3:
+///              walk the boundary 0 3 1 4 2 5, leaving out the unsplit edge's midpoint and the corner
+///              diagonal q0-q2: (q0 q1 q2) (q0 q2 q3)         diagonal q1-q3: (q0 q1 q3) (q1 q2 q3)
+///     three    (0 3 5) (3 1 4) (5 4 2) (3 4 5)
+/// `shorter` compares Manhattan lengths of displaced world positions; a tie takes q0-q2.
+struct Subdivision {
+    int count = 0;
+    std::array<std::array<int, 3>, 4> children{};
+};
+Subdivision subdivide(const std::array<bool, 3>& split, const std::array<Vertex, 6>& vertices,
+                      Diagonal diagonal);
+
+struct Triangle {
+    std::array<Vertex, 3> vertices;
+    std::size_t base_index = 0;
+    int generation() const;  ///< the largest of its vertices'
+};
+
+struct Tessellation {
+    std::uint64_t triangles_emitted = 0;
+    std::uint64_t edges_evaluated = 0;  ///< three per triangle, emitted or cut
+    int largest_generation = 0;
+    bool bound_hit = false;  ///< stopped early: the complete mesh has more than the bound's triangles
+};
+
+/// Sections 4 and 5 end to end: base triangles (their first five members per vertex) to finished ones, depth
+/// first in the children's order. Without the generation test this need not end: triangles emitted and
+/// waiting together, of which each leaves at least one in the mesh, are held to `bound`.
+Tessellation tessellate(const std::vector<std::array<Vertex, 3>>& base, const Map& map,
+                        const Parameters& parameters, std::uint64_t bound,
+                        const std::function<void(const Triangle&)>& emit);
+
+/// Manhattan length of a world-space vector.
+double manhattan(const glm::dvec3& v);
+
+}  // namespace tessera::golden

@@ -1,0 +1,26 @@
+#pragma once
+#include <cstdint>
+
+#include "modules/datapath/format.h"
+#include "modules/datapath/parameters.h"
+#include "modules/datapath/vertex.h"
+
+namespace tessera::datapath {
+
+/// P' = P + (S * d + bias) * N (paper equation 1 with the scale of 5.1), d = code / 2^bits.
+/// Rounding: S * d to nearest in the position's format, the product with N to nearest; so within
+/// 1/2 * (|N| + 1) LSB of the exact value. Saturates, counted.
+constexpr Position displace(const Position& p, const Direction& n, std::uint32_t code,
+                            const DisplacementParameters& parameters, const Formats& formats,
+                            Saturations& saturations) {
+    const std::int64_t height =
+        round_shift(std::int64_t{parameters.scale} * code, formats.displacement.bits) + parameters.bias;
+    const auto along = [&](std::int64_t base, std::int64_t normal) {
+        return static_cast<std::int32_t>(
+            saturate(base + round_shift(height * normal, formats.normal.fraction), formats.position,
+                     saturations.displaced_position));
+    };
+    return {along(p.x, n.x), along(p.y, n.y), along(p.z, n.z)};
+}
+
+}  // namespace tessera::datapath

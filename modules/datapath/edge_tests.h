@@ -1,0 +1,75 @@
+#pragma once
+#include <cstdint>
+
+#include "modules/datapath/map_address.h"
+#include "modules/datapath/parameters.h"
+#include "modules/datapath/rectangle.h"
+#include "modules/datapath/vertex.h"
+
+namespace tessera::datapath {
+
+/// Absolute difference of two integers of up to 62 bits.
+constexpr std::uint64_t absolute_difference(std::int64_t a, std::int64_t b) {
+    return static_cast<std::uint64_t>(a > b ? a - b : b - a);
+}
+
+/// NT (paper 2.2): some component of N'_ij differs from that of N'_i or N'_j by more than the threshold:
+/// six absolute differences, six compares, one OR.
+constexpr bool normal_test(const Direction& i, const Direction& j, const Direction& ij,
+                           const TestParameters& parameters) {
+    const std::uint64_t threshold = parameters.normal_threshold;
+    return absolute_difference(ij.x, i.x) > threshold || absolute_difference(ij.y, i.y) > threshold ||
+           absolute_difference(ij.z, i.z) > threshold || absolute_difference(ij.x, j.x) > threshold ||
+           absolute_difference(ij.y, j.y) > threshold || absolute_difference(ij.z, j.z) > threshold;
+}
+
+/// SHT (paper 2.3) on the three sums: | S_ij / 2 - (S_i + S_j) / 4 | > threshold, both sides times 4, so that the
+/// divisions cost no rounding: they are wires. With `area` the threshold is a height: times width * height.
+constexpr bool summed_height_test(std::uint64_t sum_i, std::uint64_t sum_j, std::uint64_t sum_ij,
+                                  const RectangleSize& size, const TestParameters& parameters) {
+    const std::uint64_t difference =
+        absolute_difference(static_cast<std::int64_t>(2 * sum_ij), static_cast<std::int64_t>(sum_i + sum_j));
+    const std::uint64_t limit = parameters.summed_height_unit == SummedHeightUnit::sum
+                                    ? parameters.summed_height_threshold
+                                    : parameters.summed_height_threshold * size.width * size.height;
+    return difference > limit;
+}
+
+/// VT (paper 2.4): Manhattan length in pixels. A vertex on or behind the near plane has no screen position: an edge
+/// with one such end counts as long, with two as invisible (algorithm 3.3 D).
+constexpr bool view_test(const ScreenPosition& i, const ScreenPosition& j, const TestParameters& parameters) {
+    if (i.in_front && j.in_front)
+        return absolute_difference(i.x, j.x) + absolute_difference(i.y, j.y) > parameters.view_threshold;
+    return i.in_front || j.in_front;
+}
+
+/// TCT (paper 2.5): false if t_ij lies in the same texel as t_i or as t_j: the map's resolution is reached.
+constexpr bool tex_coord_test(const TexCoord& i, const TexCoord& j, const TexCoord& ij,
+                              const Formats& formats) {
+    const std::uint32_t u = integer_part(ij.u, formats);
+    const std::uint32_t v = integer_part(ij.v, formats);
+    const bool same_as_i = u == integer_part(i.u, formats) && v == integer_part(i.v, formats);
+    const bool same_as_j = u == integer_part(j.u, formats) && v == integer_part(j.v, formats);
+    return !(same_as_i || same_as_j);
+}
+
+/// Generation of a vertex inserted on (i, j): one more than the older of the two, at most 255 (which only a run with
+/// GT switched off can reach).
+constexpr std::uint8_t inserted_generation(const Vertex& i, const Vertex& j) {
+    const std::uint8_t oldest = i.generation > j.generation ? i.generation : j.generation;
+    return oldest == 255 ? oldest : static_cast<std::uint8_t>(oldest + 1);
+}
+
+/// GT (algorithm section 4): the inserted vertex would not exceed the generation limit. Ends the recursion, and
+/// depends on the edge alone.
+constexpr bool generation_test(const Vertex& i, const Vertex& j, const TestParameters& parameters) {
+    return inserted_generation(i, j) <= parameters.generation_limit;
+}
+
+/// split(i, j) = (NT or SHT) and VT and TCT and GT (paper 2.6, plus GT), on TestBits.
+constexpr bool split_decision(std::uint8_t tests) {
+    constexpr std::uint8_t needed = view_bit | tex_coord_bit | generation_bit;
+    return (tests & (normal_bit | summed_height_bit)) != 0 && (tests & needed) == needed;
+}
+
+}  // namespace tessera::datapath

@@ -1,0 +1,82 @@
+#pragma once
+#include <cstdint>
+
+namespace tessera::datapath {
+
+/// A fixed-point format: `bits` wide, the lowest `fraction` of them behind the binary point.
+///
+/// Values travel in wider machine integers; `lowest` and `highest` are what the wires can hold. Widths are
+/// run-time configuration (architecture section 2: "how many bits do I need" is the first question asked).
+struct Format {
+    int bits = 0;
+    int fraction = 0;
+    std::int64_t lowest = 0;
+    std::int64_t highest = 0;
+
+    static constexpr Format make_signed(int bits, int fraction) {
+        return {bits, fraction, -(std::int64_t{1} << (bits - 1)), (std::int64_t{1} << (bits - 1)) - 1};
+    }
+    static constexpr Format make_unsigned(int bits, int fraction) {
+        return {bits, fraction, 0, (std::int64_t{1} << bits) - 1};
+    }
+};
+
+/// The formats of one design. Defaults: architecture section 2.
+struct Formats {
+    Format position = Format::make_signed(32, 16);  ///< P, P', scale, bias
+    /// w, the distance from the eye: as wide as a position, its point placed by the host so that the farthest vertex
+    /// fits.
+    Format view_distance = Format::make_signed(32, 16);
+    Format normal = Format::make_signed(16, 14);  ///< N, T, N', N's, normal map
+    /// t in texels. Holds 0 up to and including 2^integer: the last border of a map of 4096 texels is
+    /// u = 4096.0, so the wires are one bit wider than integer + fraction.
+    Format texture = Format::make_unsigned(12 + 12 + 1, 12);
+    Format displacement = Format::make_unsigned(16, 16);  ///< d, a fraction of full scale
+    Format summed_height = Format::make_unsigned(32, 0);  ///< SAT entry, modulo 2^bits, in displacement codes
+    Format screen = Format::make_signed(24, 8);           ///< P's in pixels
+    int generation_bits = 4;
+};
+
+/// How often a result did not fit its format and was set to the nearest value that does, per quantity.
+struct Saturations {
+    std::uint64_t displaced_position = 0;
+    std::uint64_t normal = 0;
+    std::uint64_t screen_position = 0;
+    std::uint64_t view_distance = 0;  ///< w
+    std::uint64_t screen_normal = 0;
+    std::uint64_t degenerate_normal = 0;  ///< a zero vector was to be normalised: it stays zero
+
+    constexpr Saturations& operator+=(const Saturations& other) {
+        displaced_position += other.displaced_position;
+        normal += other.normal;
+        screen_position += other.screen_position;
+        view_distance += other.view_distance;
+        screen_normal += other.screen_normal;
+        degenerate_normal += other.degenerate_normal;
+        return *this;
+    }
+    constexpr std::uint64_t total() const {
+        return displaced_position + normal + screen_position + view_distance + screen_normal +
+               degenerate_normal;
+    }
+};
+
+/// Sets a value that does not fit the format to the nearest one that does, and counts it.
+constexpr std::int64_t saturate(std::int64_t value, const Format& format, std::uint64_t& count) {
+    if (value < format.lowest) {
+        ++count;
+        return format.lowest;
+    }
+    if (value > format.highest) {
+        ++count;
+        return format.highest;
+    }
+    return value;
+}
+
+/// Arithmetic shift right, rounded to nearest, a tie upwards. shift >= 0; |value| + half must fit 64 bits.
+constexpr std::int64_t round_shift(std::int64_t value, int shift) {
+    return shift == 0 ? value : (value + (std::int64_t{1} << (shift - 1))) >> shift;
+}
+
+}  // namespace tessera::datapath

@@ -1,0 +1,29 @@
+#pragma once
+#include <cstdint>
+
+#include "modules/datapath/parameters.h"
+#include "modules/datapath/vertex.h"
+
+namespace tessera::datapath {
+
+/// Integer part of a texture coordinate: a bit slice.
+constexpr std::uint32_t integer_part(std::uint32_t coordinate, const Formats& formats) {
+    return coordinate >> formats.texture.fraction;
+}
+
+/// A texel index brought into the map: clamp reads the border texel beyond the border, repeat reads periodically.
+/// A vertex exactly on the last border (u = width) so reads the last texel or the first (algorithm section 9).
+constexpr std::uint32_t texel_index(std::uint32_t index, std::uint32_t size, AddressMode mode) {
+    if (index < size)
+        return index;
+    return mode == AddressMode::clamp ? size - 1 : index % size;
+}
+
+/// Byte address of the texel under t in a table of one entry per texel (displacement map, normal map).
+constexpr std::uint64_t texel_address(const TexCoord& t, const TableLayout& table, const MapGeometry& map,
+                                      const Formats& formats) {
+    return table.address(texel_index(integer_part(t.u, formats), map.width, map.address_u),
+                         texel_index(integer_part(t.v, formats), map.height, map.address_v));
+}
+
+}  // namespace tessera::datapath

@@ -1,0 +1,27 @@
+#pragma once
+#include <cstdint>
+
+#include "modules/datapath/vertex.h"
+
+namespace tessera::datapath {
+
+/// Add, shift by 1 (paper 3): arithmetic shift right, so rounded towards minus infinity, error -1/2..0 LSB.
+/// Commutative; lies between its operands, so it cannot overflow their format.
+constexpr std::int32_t midpoint(std::int32_t a, std::int32_t b) {
+    return static_cast<std::int32_t>((std::int64_t{a} + std::int64_t{b}) >> 1);
+}
+constexpr std::uint32_t midpoint(std::uint32_t a, std::uint32_t b) {
+    return static_cast<std::uint32_t>((std::uint64_t{a} + std::uint64_t{b}) >> 1);
+}
+constexpr Position midpoint(const Position& a, const Position& b) {
+    return {midpoint(a.x, b.x), midpoint(a.y, b.y), midpoint(a.z, b.z)};
+}
+/// The mean of two directions, not yet of unit length.
+constexpr Direction midpoint(const Direction& a, const Direction& b) {
+    return {midpoint(a.x, b.x), midpoint(a.y, b.y), midpoint(a.z, b.z)};
+}
+constexpr TexCoord midpoint(const TexCoord& a, const TexCoord& b) {
+    return {midpoint(a.u, b.u), midpoint(a.v, b.v)};
+}
+
+}  // namespace tessera::datapath

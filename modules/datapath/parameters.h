@@ -1,0 +1,91 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "modules/datapath/format.h"
+
+namespace tessera::datapath {
+
+enum class AddressMode : std::uint8_t { clamp, repeat };
+
+/// Where a table lies in memory: rows of `columns` entries, bottom row first, packed, little endian.
+struct TableLayout {
+    std::uint64_t base = 0;  ///< byte address of entry (0, 0)
+    std::uint32_t columns = 0;
+    std::uint32_t rows = 0;
+    std::uint32_t entry_bytes = 0;
+
+    constexpr std::uint64_t address(std::uint32_t column, std::uint32_t row) const {
+        return base + (std::uint64_t{row} * columns + column) * entry_bytes;
+    }
+    constexpr std::uint64_t bytes() const { return std::uint64_t{rows} * columns * entry_bytes; }
+};
+
+/// The map's size in texels and its addressing per axis.
+struct MapGeometry {
+    std::uint32_t width = 1;
+    std::uint32_t height = 1;
+    AddressMode address_u = AddressMode::clamp;
+    AddressMode address_v = AddressMode::clamp;
+};
+
+enum class SummedHeightUnit : std::uint8_t { sum, area };
+
+/// The thresholds and switches of the edge tests. They belong to the mesh's author (paper 2.2 to 2.4).
+struct TestParameters {
+    bool normal_test = true;  ///< a test switched off: NT, SHT count as false; VT, TCT, GT as true
+    bool summed_height_test = true;
+    bool view_test = true;
+    bool tex_coord_test = true;
+    bool generation_test = true;
+    std::uint32_t normal_threshold = 0;  ///< normal's format
+    /// sum: 4 * threshold in codes times texels; area: threshold in codes. Compared with |2 S_ij - S_i - S_j|.
+    std::uint64_t summed_height_threshold = 0;
+    SummedHeightUnit summed_height_unit = SummedHeightUnit::sum;
+    std::uint32_t view_threshold = 0;  ///< screen's format
+    std::uint32_t generation_limit = 12;
+};
+
+/// P' = P + (S * d + bias) * N. Both in the position's format; d = code / 2^bits.
+struct DisplacementParameters {
+    std::int32_t scale = 0;
+    std::int32_t bias = 0;
+};
+
+/// World to screen, viewport included:
+///     screen_x = 2^exponent * (row_x . P') / (row_w . P'), in pixels; screen_y likewise; w = row_w . P'.
+/// Entries 0 to 2 have `matrix_fraction` fraction bits and lie in -1..1; entry 3 has those of the position besides.
+struct TransformParameters {
+    static constexpr int matrix_fraction = 24;
+    std::array<std::int64_t, 4> row_x{};
+    std::array<std::int64_t, 4> row_y{};
+    std::array<std::int64_t, 4> row_w{};
+    int exponent = 0;
+    std::int64_t near_plane = 0;  ///< w in the format of the products: position + matrix fraction bits
+    std::array<std::array<std::int32_t, 3>, 3> normal_rows{};  ///< world to view rotation, normal's format
+};
+
+enum class Triangulation : std::uint8_t { shorter, first, second };
+
+/// Direction towards the light in screen space (normal's format), and ambient light, 0..256.
+struct LightParameters {
+    std::array<std::int32_t, 3> direction{};
+    std::int32_t ambient = 51;
+};
+
+/// Everything the host sets before a run: the machine's registers.
+struct Registers {
+    Formats formats;
+    MapGeometry map;
+    TableLayout displacement_map;
+    TableLayout normal_map;
+    TableLayout summed_height_table;
+    TestParameters tests;
+    DisplacementParameters displacement;
+    TransformParameters transform;
+    Triangulation triangulation = Triangulation::shorter;
+    bool back_face_culling = false;
+    LightParameters light;
+};
+
+}  // namespace tessera::datapath

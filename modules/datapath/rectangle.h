@@ -1,0 +1,98 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "modules/datapath/map_address.h"
+
+namespace tessera::datapath {
+
+/// Width and height, in whole texels, that the three rectangles of one edge share.
+struct RectangleSize {
+    std::uint32_t width = 1;
+    std::uint32_t height = 1;
+};
+
+/// |du| / 2 wide and |dv| / 4 high, whole texels, at least 1 and at most the map (algorithm 3.2 D a).
+/// Commutative: absolute differences.
+constexpr RectangleSize rectangle_size(const TexCoord& a, const TexCoord& b, const MapGeometry& map,
+                                       const Formats& formats) {
+    const auto side = [](std::uint32_t difference, int shift, std::uint32_t size) {
+        const std::uint32_t whole = difference >> shift;
+        return whole < 1 ? 1 : (whole > size ? size : whole);
+    };
+    const std::uint32_t du = a.u > b.u ? a.u - b.u : b.u - a.u;
+    const std::uint32_t dv = a.v > b.v ? a.v - b.v : b.v - a.v;
+    return {side(du, formats.texture.fraction + 1, map.width),
+            side(dv, formats.texture.fraction + 2, map.height)};
+}
+
+/// First texel of a rectangle of `extent` texels centred on `centre`, brought inside the map: shifted, never cut
+/// (clamp), or reduced by whole periods (repeat; first + extent may then reach past the map by less than a period).
+constexpr std::uint32_t rectangle_first(std::uint32_t centre, std::uint32_t extent, std::uint32_t size,
+                                        AddressMode mode) {
+    const std::int64_t first = std::int64_t{centre} - (extent >> 1);
+    if (mode == AddressMode::clamp) {
+        const std::int64_t last = std::int64_t{size} - extent;
+        return static_cast<std::uint32_t>(first < 0 ? 0 : (first > last ? last : first));
+    }
+    if (first >= 0)
+        return first < size ? static_cast<std::uint32_t>(first) : static_cast<std::uint32_t>(first) % size;
+    return static_cast<std::uint32_t>(first + size);
+}
+
+/// A rectangle of texels: columns [first_column, last_column), rows [first_row, last_row).
+struct Rectangle {
+    std::uint32_t first_column = 0, last_column = 0;
+    std::uint32_t first_row = 0, last_row = 0;
+};
+
+constexpr Rectangle centred_rectangle(const TexCoord& t, const RectangleSize& size, const MapGeometry& map,
+                                      const Formats& formats) {
+    Rectangle r;
+    r.first_column = rectangle_first(integer_part(t.u, formats), size.width, map.width, map.address_u);
+    r.first_row = rectangle_first(integer_part(t.v, formats), size.height, map.height, map.address_v);
+    r.last_column = r.first_column + size.width;
+    r.last_row = r.first_row + size.height;
+    return r;
+}
+
+/// S(r) = SAT(tr) - SAT(tl) - SAT(br) + SAT(bl) modulo 2^bits (paper equation 2).
+///
+/// The table has (width + 1) x (height + 1) entries; entry (x, y) is the sum of texels [0, x) x [0, y) modulo
+/// 2^bits, so row 0 and column 0 are zero. Subtraction wraps correctly as long as S(r) itself fits.
+/// Past the map (repeat) the table reads periodically: SAT(x + W, y) = SAT(x, y) + SAT(W, y), one more read and
+/// one more add per corner and axis.
+/// `read(address)` gives the entry at a byte address. Returns S(r); four reads, or up to nine when r wraps.
+template <class Read>
+constexpr std::uint64_t rectangle_sum(const Rectangle& r, const MapGeometry& map, const TableLayout& table,
+                                      const Formats& formats, Read&& read) {
+    std::uint64_t sum = 0;
+    if (r.last_column <= map.width && r.last_row <= map.height) {
+        sum = read(table.address(r.last_column, r.last_row)) -
+              read(table.address(r.first_column, r.last_row)) -
+              read(table.address(r.last_column, r.first_row)) +
+              read(table.address(r.first_column, r.first_row));
+    } else {
+        const auto row_entry = [&](std::uint32_t x, std::uint32_t y) {
+            std::uint64_t entry = 0;
+            if (x > map.width) {
+                entry = read(table.address(map.width, y));
+                x -= map.width;
+            }
+            return entry + read(table.address(x, y));
+        };
+        const auto entry = [&](std::uint32_t x, std::uint32_t y) {
+            std::uint64_t value = 0;
+            if (y > map.height) {
+                value = row_entry(x, map.height);
+                y -= map.height;
+            }
+            return value + row_entry(x, y);
+        };
+        sum = entry(r.last_column, r.last_row) - entry(r.first_column, r.last_row) -
+              entry(r.last_column, r.first_row) + entry(r.first_column, r.first_row);
+    }
+    return sum & static_cast<std::uint64_t>(formats.summed_height.highest);
+}
+
+}  // namespace tessera::datapath

@@ -1,0 +1,43 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "modules/datapath/triangle_pass.h"
+#include "modules/datapath/triangulate.h"
+
+namespace tessera::datapath {
+
+/// The children of a pass whose edges are decided, complete with all that is known of their vertices.
+/// Calls child(triangle) for each; returns how many.
+template <class Child>
+int tessellate(const TrianglePass& pass, Triangulation choice, Child&& child) {
+    std::array<Vertex, 3> inserted;
+    std::array<const Vertex*, 6> vertices;
+    std::uint8_t split_by = 0;
+    for (int k = 0; k < 3; ++k) {
+        vertices[static_cast<std::size_t>(k)] = &pass.triangle.vertices[static_cast<std::size_t>(k)];
+        vertices[static_cast<std::size_t>(3 + k)] = &inserted[static_cast<std::size_t>(k)];
+        if ((pass.split >> k & 1) == 0)
+            continue;
+        inserted[static_cast<std::size_t>(k)] = inserted_vertex(pass, k);
+        split_by = static_cast<std::uint8_t>(
+            split_by | (pass.edges[static_cast<std::size_t>(k)].tests & (normal_bit | summed_height_bit)));
+    }
+    const bool second = choose_second_diagonal(
+        pass.split, choice,
+        [&](std::uint8_t index) -> const Position& { return vertices[index]->displaced; });
+    const ChildIndices indices = triangulate(pass.split, second);
+    Triangle triangle;
+    triangle.base = pass.triangle.base;
+    triangle.finished = pass.triangle.finished;
+    triangle.stopped_by = pass.triangle.finished ? pass.triangle.stopped_by : std::uint8_t{0};
+    triangle.split_by = pass.split != 0 ? split_by : pass.triangle.split_by;
+    for (int k = 0; k < indices.count; ++k) {
+        const auto& corners = indices.children[static_cast<std::size_t>(k)];
+        triangle.vertices = {*vertices[corners[0]], *vertices[corners[1]], *vertices[corners[2]]};
+        child(triangle);
+    }
+    return indices.count;
+}
+
+}  // namespace tessera::datapath

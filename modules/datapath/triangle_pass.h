@@ -1,0 +1,67 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "modules/datapath/bump.h"
+#include "modules/datapath/edge_tests.h"
+#include "modules/datapath/vertex.h"
+
+namespace tessera::datapath {
+
+/// What the branch Calculate New P, Displace Vertex, Transform finds for the midpoint of one edge.
+struct NewVertex {
+    Position position;      ///< P_ij                             (Calculate New P)
+    Direction mean_normal;  ///< (N_i + N_j) / 2, not yet unit    (Calculate New P)
+    TexCoord texture;       ///< t_ij                             (Calculate New P)
+    Position displaced;     ///< P'_ij                            (Displace Vertex)
+    ScreenPosition screen;  ///< P's_ij                           (Transform)
+};
+
+/// What Tessellation Tests finds for one edge.
+struct EdgeTests {
+    TexCoord texture;            ///< t_ij    (Calculate New U)
+    Direction normal;            ///< N_ij    (Normal Test)
+    Direction tangent;           ///< T_ij    (Normal Test)
+    Direction displaced_normal;  ///< N'_ij   (Normal Test)
+    std::uint8_t tests = 0;      ///< TestBits
+};
+
+/// One pass of one triangle through the machine: what Get Triangle sends along both branches and Pass or Tessellate
+/// joins. It travels by reference; each unit writes only the fields its header names, so the branches never touch
+/// the same one. Edge k runs from vertex k to vertex (k + 1) mod 3.
+struct TrianglePass {
+    Triangle triangle;
+    std::uint8_t new_vertices = 0;  ///< bit k: vertex k has no P', P's, N' yet (a base triangle's first pass)
+    std::uint8_t new_normals = 0;   ///< bit k: vertex k has N' but not yet N's
+    bool tested = false;            ///< edges go through the tests on this pass
+    std::array<NewVertex, 3> new_vertex;
+    std::array<EdgeTests, 3> edges;
+    std::uint8_t split = 0;  ///< bit k: edge k is split (Pass or Tessellate)
+
+    constexpr const Vertex& edge_begin(int k) const { return triangle.vertices[static_cast<std::size_t>(k)]; }
+    constexpr const Vertex& edge_end(int k) const {
+        return triangle.vertices[static_cast<std::size_t>(k == 2 ? 0 : k + 1)];
+    }
+};
+
+/// The complete vertex inserted on edge k: both branches' findings in one. N's is calculated on its next pass.
+constexpr Vertex inserted_vertex(const TrianglePass& pass, int k) {
+    const Vertex& i = pass.edge_begin(k);
+    const Vertex& j = pass.edge_end(k);
+    const NewVertex& made = pass.new_vertex[static_cast<std::size_t>(k)];
+    const EdgeTests& tested = pass.edges[static_cast<std::size_t>(k)];
+    Vertex vertex;
+    vertex.position = made.position;
+    vertex.normal = tested.normal;
+    vertex.tangent = tested.tangent;
+    vertex.texture = made.texture;
+    vertex.handedness = inserted_handedness(i, j);
+    vertex.generation = inserted_generation(i, j);
+    vertex.displaced_known = true;
+    vertex.displaced = made.displaced;
+    vertex.displaced_normal = tested.displaced_normal;
+    vertex.screen = made.screen;
+    return vertex;
+}
+
+}  // namespace tessera::datapath

@@ -1,0 +1,76 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "modules/datapath/edge_tests.h"
+#include "modules/datapath/parameters.h"
+#include "modules/datapath/vertex.h"
+
+namespace tessera::datapath {
+
+/// Children as indices: 0 to 2 are the triangle's vertices, 3 + k is the midpoint of edge k.
+struct ChildIndices {
+    std::array<std::array<std::uint8_t, 3>, 4> children{};
+    int count = 0;
+};
+
+/// Manhattan length between two displaced positions; 34 bits.
+constexpr std::uint64_t manhattan_length(const Position& a, const Position& b) {
+    return absolute_difference(a.x, b.x) + absolute_difference(a.y, b.y) + absolute_difference(a.z, b.z);
+}
+
+/// The quadrilateral left by two split edges, in the triangle's order: of the walk v0, m01, v1, m12, v2, m20 what is
+/// left without the cut-off corner, which lies opposite the whole edge.
+constexpr std::array<std::uint8_t, 4> remaining_quadrilateral(int whole_edge) {
+    constexpr std::array<std::array<std::uint8_t, 4>, 3> by_whole_edge = {
+        {{0, 1, 4, 5}, {3, 1, 2, 5}, {0, 3, 4, 2}}};
+    return by_whole_edge[static_cast<std::size_t>(whole_edge)];
+}
+
+/// The triangulations of the paper's figure 6. Bit k of `split` says that edge k is split. With two split edges,
+/// `second_diagonal` chooses the quadrilateral's diagonal from its second vertex. Winding order is kept.
+constexpr ChildIndices triangulate(unsigned split, bool second_diagonal) {
+    switch (split) {
+        case 0:
+            return {{{{0, 1, 2}}}, 1};
+        case 1:
+            return {{{{0, 3, 2}, {3, 1, 2}}}, 2};
+        case 2:
+            return {{{{0, 1, 4}, {0, 4, 2}}}, 2};
+        case 4:
+            return {{{{0, 1, 5}, {5, 1, 2}}}, 2};
+        case 7:
+            return {{{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}}, 4};
+        default:
+            break;
+    }
+    const int whole_edge = split == 6 ? 0 : (split == 5 ? 1 : 2);
+    const auto q = remaining_quadrilateral(whole_edge);
+    ChildIndices result;
+    result.count = 3;
+    result.children[0] = whole_edge == 0   ? std::array<std::uint8_t, 3>{5, 4, 2}
+                         : whole_edge == 1 ? std::array<std::uint8_t, 3>{0, 3, 5}
+                                           : std::array<std::uint8_t, 3>{3, 1, 4};
+    if (second_diagonal) {
+        result.children[1] = {q[0], q[1], q[3]};
+        result.children[2] = {q[1], q[2], q[3]};
+    } else {
+        result.children[1] = {q[0], q[1], q[2]};
+        result.children[2] = {q[0], q[2], q[3]};
+    }
+    return result;
+}
+
+/// The shorter diagonal by Manhattan length of displaced positions; a tie goes to the first (algorithm section 5 D).
+/// corner(k) gives the displaced position of index k as above.
+template <class DisplacedPosition>
+constexpr bool choose_second_diagonal(unsigned split, Triangulation choice, DisplacedPosition&& corner) {
+    if (choice != Triangulation::shorter)
+        return choice == Triangulation::second;
+    if (split != 3 && split != 5 && split != 6)
+        return false;
+    const auto q = remaining_quadrilateral(split == 6 ? 0 : (split == 5 ? 1 : 2));
+    return manhattan_length(corner(q[1]), corner(q[3])) < manhattan_length(corner(q[0]), corner(q[2]));
+}
+
+}  // namespace tessera::datapath

@@ -1,0 +1,76 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+namespace tessera::datapath {
+
+/// A point in world space, in the position's format.
+struct Position {
+    std::int32_t x = 0, y = 0, z = 0;
+    friend constexpr bool operator==(const Position& a, const Position& b) {
+        return a.x == b.x && a.y == b.y && a.z == b.z;
+    }
+};
+
+/// A normal or tangent, in the normal's format. Unit length but for rounding, or the mean of two such.
+struct Direction {
+    std::int32_t x = 0, y = 0, z = 0;
+    friend constexpr bool operator==(const Direction& a, const Direction& b) {
+        return a.x == b.x && a.y == b.y && a.z == b.z;
+    }
+};
+
+/// A texture coordinate in texels, in the texture's format; v = 0 is the map's bottom row.
+struct TexCoord {
+    std::uint32_t u = 0, v = 0;
+    friend constexpr bool operator==(const TexCoord& a, const TexCoord& b) {
+        return a.u == b.u && a.v == b.v;
+    }
+};
+
+/// P's: pixels in the screen's format, and the distance w from the eye along the view direction in the
+/// view distance's format (what a w-buffer needs). A vertex on or behind the near plane has no screen position.
+struct ScreenPosition {
+    std::int32_t x = 0, y = 0, w = 0;
+    bool in_front = false;
+    friend constexpr bool operator==(const ScreenPosition& a, const ScreenPosition& b) {
+        return a.x == b.x && a.y == b.y && a.w == b.w && a.in_front == b.in_front;
+    }
+};
+
+/// All a vertex carries through the machine (paper 3.1.5, algorithm section 1).
+struct Vertex {
+    Position position;           ///< P, on the base surface
+    Direction normal;            ///< N, of the base surface
+    Direction tangent;           ///< T, of the base surface: dp/du
+    TexCoord texture;            ///< t
+    std::int8_t handedness = 1;  ///< bitangent = handedness * (N x T)
+    std::uint8_t generation = 0;
+    bool displaced_known = false;      ///< P', P's and N' have been calculated
+    bool screen_normal_known = false;  ///< N's has been calculated
+    Position displaced;                ///< P'
+    Direction displaced_normal;        ///< N', of the displaced surface, world space
+    ScreenPosition screen;             ///< P's
+    Direction screen_normal;           ///< N's
+};
+
+/// The tests of one edge, as bits. Also used as a set of tests ("which tests split it").
+enum TestBits : std::uint8_t {
+    normal_bit = 1,
+    summed_height_bit = 2,
+    view_bit = 4,
+    tex_coord_bit = 8,
+    generation_bit = 16,
+};
+
+/// A triangle as it waits in the Triangle Queue. Edge k runs from vertex k to vertex (k + 1) mod 3.
+struct Triangle {
+    std::array<Vertex, 3> vertices;
+    std::uint32_t base = 0;     ///< index of the base triangle it descends from: a tag, not decided upon
+    std::uint8_t split_by = 0;  ///< NT and SHT bits of the parent's split edges; 0: a base triangle
+    std::uint8_t stopped_by =
+        0;                  ///< VT, TCT, GT bits: tests that kept an edge whole which NT or SHT would split
+    bool finished = false;  ///< no edge splits; goes round once more for its normals in screen space
+};
+
+}  // namespace tessera::datapath

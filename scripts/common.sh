@@ -1,0 +1,36 @@
+# shellcheck shell=bash
+# Sourced by the scripts beside it: where the project lies, and one way to configure and build a preset.
+
+root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.." && pwd)
+cores=$(nproc)
+
+# configured PRESET [-DNAME=VALUE...]: whether its build folder is complete, of this place, and has these values.
+configured() {
+    local folder="$root/build/$1" setting name
+    [[ -f "$folder/build.ninja" ]] || return 1
+    # A build folder that was moved or copied with the project still points to the old place.
+    grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$folder/CMakeCache.txt" || return 1
+    for setting in "${@:2}"; do
+        name=${setting#-D}
+        grep -qx "${name%%=*}:[A-Z]*=${name#*=}" "$folder/CMakeCache.txt" || return 1
+    done
+}
+
+# configure PRESET [-DNAME=VALUE...]
+configure() {
+    configured "$@" && return 0
+    local fresh=()
+    configured "$1" || fresh=(--fresh)
+    (cd "$root" && cmake --preset "$1" "${fresh[@]}" "${@:2}")
+}
+
+# build PRESET [TARGET...]: everything, or the targets. Ninja reconfigures by itself where a CMake file changed.
+build() {
+    local folder="$root/build/$1" targets=()
+    (($# > 1)) && targets=(--target "${@:2}")
+    # Two builds in one folder at a time would overwrite each other's objects.
+    (
+        flock 9
+        cmake --build "$folder" --parallel "$cores" "${targets[@]}"
+    ) 9>"$folder/lock"
+}

@@ -1,0 +1,37 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "modules/datapath/parameters.h"
+#include "testbench/host/emitted_mesh.h"
+#include "testbench/host/setup.h"
+
+namespace tessera {
+
+/// The datapath without SystemC: the same functions on the same tables, called from one loop over a work list. What a
+/// simulation of the machine cannot be faster than; its mesh is the pipeline's, bit for bit (tested).
+class BareRecursion {
+  public:
+    /// `setup` must outlive it.
+    explicit BareRecursion(const Setup& setup);
+
+    /// Tessellates every base triangle; returns the edges evaluated. `mesh` is cleared first, its memory kept.
+    std::uint64_t run(EmittedMesh& mesh);
+
+  private:
+    void complete_base(datapath::Triangle& triangle);
+    void evaluate_edge(datapath::TrianglePass& pass, int k);
+    std::uint64_t sum_around(const datapath::TexCoord& t, const datapath::RectangleSize& size) const;
+    datapath::Direction map_normal_at(const datapath::TexCoord& t) const;
+    std::uint32_t code_at(const datapath::TexCoord& t) const;
+
+    const Setup& setup_;
+    std::vector<std::uint16_t> codes_;
+    std::vector<std::uint64_t> normals_;  // packed as the normal map's entries
+    std::vector<std::uint32_t> sums_;     // narrow tables; else wide_sums_
+    std::vector<std::uint64_t> wide_sums_;
+    std::vector<datapath::Triangle> work_;
+    datapath::Saturations saturations_;
+};
+
+}  // namespace tessera

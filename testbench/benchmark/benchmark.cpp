@@ -1,0 +1,94 @@
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <systemc>
+#include <vector>
+
+#include "golden/golden_model.h"
+#include "testbench/benchmark/bare_recursion.h"
+#include "testbench/check/golden_inputs.h"
+#include "testbench/host/simulation.h"
+#include "testbench/maps/built_in_maps.h"
+#include "testbench/meshes/make_base_mesh.h"
+
+// One process, one job: half donut 1024 x 1024 on the plane of 18 triangles, about 0.2 million triangles out. Times the
+// golden model, the bare datapath and functional mode side by side, in edges evaluated per second.
+
+namespace tessera {
+namespace {
+
+Job benchmark_job() {
+    Job job;
+    job.map.width = job.map.height = 1024;
+    job.tests.normal_threshold = 0.02;
+    job.tests.summed_height_threshold = 1;
+    job.tests.view_threshold = 0.5;
+    return job;
+}
+
+Setup benchmark_setup() {
+    const Job job = benchmark_job();
+    return make_setup(job, make_base_mesh(job.mesh, {}), half_donut_map(job.map.width, job.map.height));
+}
+
+void report(benchmark::State& state, std::uint64_t edges, std::size_t triangles) {
+    state.counters["edges_per_second"] =
+        benchmark::Counter(static_cast<double>(edges), benchmark::Counter::kIsRate);
+    state.counters["triangles"] = static_cast<double>(triangles);
+}
+
+void golden_model(benchmark::State& state, const Setup& setup) {
+    const GoldenInputs inputs(setup);
+    const std::vector<std::array<golden::Vertex, 3>> base = golden_base_triangles(setup);
+    std::uint64_t edges = 0;
+    std::size_t triangles = 0;
+    for (auto _ : state) {
+        triangles = 0;
+        edges += golden::tessellate(base, inputs.map, inputs.parameters, std::uint64_t{1} << 40,
+                                    [&](const golden::Triangle&) { ++triangles; })
+                     .edges_evaluated;
+    }
+    report(state, edges, triangles);
+}
+
+void bare_datapath(benchmark::State& state, BareRecursion& bare) {
+    EmittedMesh mesh;
+    std::uint64_t edges = 0;
+    for (auto _ : state)
+        edges += bare.run(mesh);
+    report(state, edges, mesh.triangles.size());
+}
+
+void functional_mode(benchmark::State& state, Simulation& simulation) {
+    const auto edges_so_far = [&] { return simulation.pipeline.tessellation_tests.edges_tested(); };
+    const std::uint64_t before = edges_so_far();
+    for (auto _ : state) {
+        simulation.monitor.mesh.triangles.clear();
+        simulation.host.send_again();
+        if (!simulation.run().empty())
+            state.SkipWithError("the simulation did not drain");
+    }
+    report(state, edges_so_far() - before, simulation.monitor.mesh.triangles.size());
+}
+
+}  // namespace
+}  // namespace tessera
+
+int sc_main(int argc, char** argv) {
+    benchmark::Initialize(&argc, argv);
+    const tessera::Setup setup = tessera::benchmark_setup();
+    tessera::BareRecursion bare(setup);
+    tessera::Simulation simulation(setup, std::uint64_t{1} << 40);
+    simulation.run();
+    benchmark::RegisterBenchmark("golden_model", [&](benchmark::State& state) {
+        tessera::golden_model(state, setup);
+    })->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark("bare_datapath", [&](benchmark::State& state) {
+        tessera::bare_datapath(state, bare);
+    })->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark("functional_mode", [&](benchmark::State& state) {
+        tessera::functional_mode(state, simulation);
+    })->Unit(benchmark::kMillisecond);
+    benchmark::RunSpecifiedBenchmarks();
+    return 0;
+}

@@ -1,0 +1,50 @@
+#include "testbench/check/end_to_end.h"
+
+#include <cmath>
+
+#include "testbench/check/surface_distance.h"
+
+namespace tessera {
+
+EndToEndResult compare_end_to_end(const Setup& setup, const GoldenInputs& inputs,
+                                  const EmittedMesh& hardware) {
+    EndToEndResult result;
+    result.hardware_triangles = hardware.triangles.size();
+    result.bound = 4 * result.hardware_triangles + 1000;
+
+    TriangleSoup golden_soup;
+    const golden::Tessellation run =
+        golden::tessellate(golden_base_triangles(setup), inputs.map, inputs.parameters, result.bound,
+                           [&](const golden::Triangle& t) {
+                               const auto& v = t.vertices;
+                               golden_soup.push_back({v[0].displaced_position, v[1].displaced_position,
+                                                      v[2].displaced_position});
+                           });
+    result.golden_triangles = run.triangles_emitted;
+    result.golden_edges = run.edges_evaluated;
+    result.golden_largest_generation = run.largest_generation;
+    result.bound_hit = run.bound_hit;
+    if (run.bound_hit)
+        return result;
+
+    const Dequantise dequantise(setup.registers.formats);
+    TriangleSoup hardware_soup;
+    hardware_soup.reserve(hardware.triangles.size());
+    for (const EmittedTriangle& t : hardware.triangles)
+        hardware_soup.push_back({dequantise.position(t.corners[0].displaced),
+                                 dequantise.position(t.corners[1].displaced),
+                                 dequantise.position(t.corners[2].displaced)});
+
+    const auto measure = [&](const TriangleSoup& from, const TriangleSoup& to) {
+        const SurfaceDistance d = distance_between(from, to);
+        const double lsb = std::ldexp(1.0, setup.registers.formats.position.fraction);
+        const double model = 1 / setup.model_scale.scale;
+        return EndToEndResult::Distance{d.points,    d.max,         d.rms,        d.max * lsb,
+                                        d.rms * lsb, d.max * model, d.rms * model};
+    };
+    result.hardware_to_golden = measure(hardware_soup, golden_soup);
+    result.golden_to_hardware = measure(golden_soup, hardware_soup);
+    return result;
+}
+
+}  // namespace tessera

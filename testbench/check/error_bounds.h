@@ -1,0 +1,171 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <limits>
+
+#include "golden/golden_model.h"
+#include "modules/datapath/format.h"
+
+namespace tessera {
+
+/// How far the hardware may lie from the golden model, both starting from the same (dequantised) operands.
+/// Derived from the formats and from the rounding that each operation under modules/datapath states, never
+/// from what was seen.
+///
+/// In golden's units: world, texels, pixels, components of unit vectors. One LSB of a format is written u
+/// below. A dvec3 bounds the absolute error per component. |.| is taken per component unless it is a length.
+/// First order in the errors only where a vector is normalised; what lies beyond is bounded there too.
+///
+/// Rounding to nearest is monotone: where golden's value v is known and what the hardware rounds is off by at
+/// most e, the result lies in round(v - e) .. round(v + e), which is often one value. The final error is
+/// bounded by the farther end, at most e + u/2 and often much less.
+class ErrorBounds {
+  public:
+    /// Where hardware minus golden must lie.
+    struct Interval {
+        double low = 0, high = 0;
+        static Interval within(double bound) { return {-bound, bound}; }
+    };
+
+    explicit ErrorBounds(const datapath::Formats& formats)
+        : position_lsb_(std::ldexp(1.0, -formats.position.fraction)),
+          normal_lsb_(std::ldexp(1.0, -formats.normal.fraction)),
+          texture_lsb_(std::ldexp(1.0, -formats.texture.fraction)),
+          screen_lsb_(std::ldexp(1.0, -formats.screen.fraction)),
+          view_distance_lsb_(std::ldexp(1.0, -formats.view_distance.fraction)) {}
+
+    /// P_ij, (N_i + N_j) / 2, t_ij. midpoint.h: (a + b) >> 1 rounds down, so the error is 0 or -u/2.
+    Interval position_midpoint() const { return {-position_lsb_ / 2, 0}; }
+    Interval direction_midpoint() const { return {-normal_lsb_ / 2, 0}; }
+    Interval texture_midpoint() const { return {-texture_lsb_ / 2, 0}; }
+
+    /// N_ij, T_ij: the mean is rounded down, by u/2 where the sum is odd, then normalised. `mean`,
+    /// `direction`, `length`: golden's mean, its direction and its length.
+    glm::dvec3 inserted_direction(const glm::dvec3& mean, const glm::dvec3& direction, double length) const {
+        return normalised(direction, length, left_by_rounding_down(mean, normal_lsb_));
+    }
+
+    /// N' = bump(N, T, N_d); `n_error`, `t_error` bound the errors of N and T (zero for a base vertex's).
+    /// `bumped`, `length`: golden's result and the length it had before normalising.
+    glm::dvec3 displaced_normal(const glm::dvec3& n, const glm::dvec3& n_error, const glm::dvec3& t,
+                                const glm::dvec3& t_error, const glm::dvec3& map_normal,
+                                const glm::dvec3& bumped, double length) const {
+        // B = N x T, rounded: with N + e, T + f what is rounded is off by N x f + e x T + e x f.
+        const glm::dvec3 b_error =
+            after_rounding(glm::cross(n, t),
+                           cross_bound(glm::abs(n), t_error) + cross_bound(n_error, glm::abs(t)) +
+                               cross_bound(n_error, t_error),
+                           normal_lsb_);
+        // The sum is linear in T, B and N; N_d is the same on both sides.
+        const glm::dvec3 sum_error = std::abs(map_normal.x) * t_error + std::abs(map_normal.y) * b_error +
+                                     std::abs(map_normal.z) * n_error;
+        // No error so far and the sum is zero: zero on both sides.
+        if (length == 0 && sum_error == glm::dvec3(0))
+            return glm::dvec3(0);
+        // bump.h: the sum is rounded with two more fraction bits, u/8.
+        return normalised(bumped, length, sum_error + normal_lsb_ / 8);
+    }
+
+    /// P' = P + h N, h = S d + bias; `p`, `height`: golden's P and h. displace.h: P was rounded down (not for
+    /// a base vertex: then there is nothing to round), h to nearest, the product to nearest. Before that last
+    /// rounding:
+    ///     P + a + (h + b)(N + f) - (P + h N) = a + h f + b (N + f).
+    glm::dvec3 displaced_position(const glm::dvec3& p, double height, const glm::dvec3& n,
+                                  const glm::dvec3& n_error, const glm::dvec3& displaced) const {
+        const double height_error = after_rounding(height, 0, position_lsb_);
+        const glm::dvec3 before = left_by_rounding_down(p, position_lsb_) + std::abs(height) * n_error +
+                                  height_error * (glm::abs(n) + n_error) +
+                                  double_rounding * (glm::abs(p) + std::abs(height) * glm::abs(n));
+        return after_rounding(displaced, before, position_lsb_);
+    }
+
+    /// P's: pixels and w.
+    struct Screen {
+        double x = 0, y = 0, w = 0;
+        double near_plane =
+            0;  ///< of w as compared with the near plane: not yet rounded to the position's format
+    };
+
+    /// Transform of P', which is off by up to `p_error`. `w`, `pixels`: golden's.
+    ///     W = row_w . P' is exact but for P': off by dW = sum |row_w| p_error; w is W rounded to nearest.
+    ///     x = X / W: (X + dX) / (W + dW) - x = (dX - x dW) / (W + dW), without neglect, so before the
+    ///     division's own error at most sum |row_x - x row_w| p_error / W_min, W_min the least W of a vertex
+    ///     in front. transform.h: the division adds |x| 2^-28, then x is rounded to nearest.
+    /// x and y mean something only where golden is in front.
+    Screen screen(const golden::Parameters& parameters, const glm::dvec3& p, const glm::dvec3& p_error,
+                  double w, const glm::dvec2& pixels) const {
+        const auto sum = [](const glm::dvec4& row, const glm::dvec3& v) {
+            return std::abs(row.x) * v.x + std::abs(row.y) * v.y + std::abs(row.z) * v.z;
+        };
+        const auto row_rounding = [&](const glm::dvec4& row) {
+            return double_rounding * (sum(row, glm::abs(p)) + std::abs(row.w));
+        };
+        const double w_rounding = row_rounding(parameters.row_w);
+        Screen result;
+        result.near_plane = sum(parameters.row_w, p_error) + w_rounding;
+        result.w = after_rounding(w, result.near_plane, view_distance_lsb_);
+        const double least_w = std::max(w - result.near_plane, parameters.near_plane * (1 - double_rounding));
+        const auto divided = [&](const glm::dvec4& row, double x) {
+            if (!(least_w > 0))
+                return std::numeric_limits<double>::infinity();
+            const double input =
+                (sum(row - x * parameters.row_w, p_error) + row_rounding(row) + std::abs(x) * w_rounding) /
+                least_w;
+            return after_rounding(x, input + (std::abs(x) + input) * 0x1p-28, screen_lsb_);
+        };
+        result.x = divided(parameters.row_x, pixels.x);
+        result.y = divided(parameters.row_y, pixels.y);
+        return result;
+    }
+
+  private:
+    /// Golden's own: relative error of a few double operations, against the sum of their terms' absolute
+    /// values.
+    static constexpr double double_rounding = 0x1p-50;
+
+    static double after_rounding(double value, double error, double lsb) {
+        const double v = value / lsb, e = error / lsb;
+        return std::max(std::abs(std::floor(v + e + 0.5) - v), std::abs(std::floor(v - e + 0.5) - v)) * lsb;
+    }
+    static glm::dvec3 after_rounding(const glm::dvec3& value, const glm::dvec3& error, double lsb) {
+        return {after_rounding(value.x, error.x, lsb), after_rounding(value.y, error.y, lsb),
+                after_rounding(value.z, error.z, lsb)};
+    }
+    /// Of a mean of two integers: 0 or u/2.
+    static glm::dvec3 left_by_rounding_down(const glm::dvec3& mean, double lsb) {
+        const glm::dvec3 v = mean / lsb;
+        return (v - glm::floor(v)) * lsb;
+    }
+    /// |a x b| where a and b may have any sign.
+    static glm::dvec3 cross_bound(const glm::dvec3& a, const glm::dvec3& b) {
+        return {a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x};
+    }
+
+    /// normalise(m + e) - n, n = m / |m|, |e| <= `error` per component, rho = |e| / |m| as lengths.
+    ///     First order: (e - n (n . e)) / |m|, so sum_k |delta_ck - n_c n_k| error_k / |m|.
+    ///     Beyond: at most 0.6 rho^2 / (1 - rho) (0.577, found by sampling rho in 0..1 and every angle).
+    ///     Without expansion: the turn is at most asin(rho), a chord of at most sqrt(2) rho; from rho = 1 on
+    ///     any unit vector, or zero, may come out: 1 + |n_c|. Nothing can come of a zero vector but zero.
+    /// normalise.h: the reciprocal root is off by 2^-28 of itself, then the component is rounded to nearest.
+    glm::dvec3 normalised(const glm::dvec3& n, double length, const glm::dvec3& error) const {
+        const glm::dvec3 size = glm::abs(n);
+        const double error_length = glm::length(error);
+        if (length == 0 && error_length == 0)
+            return glm::dvec3(0);
+        glm::dvec3 before = 1.0 + size;
+        const double rho = error_length / length;
+        if (rho < 1) {
+            const double along = glm::dot(size, error);
+            // sum_k |delta_ck - n_c n_k| e_k = (1 - n_c^2) e_c + |n_c| (along - |n_c| e_c)
+            const glm::dvec3 first = (error + size * (along - 2.0 * size * error)) / length;
+            const glm::dvec3 expanded = first + 0.6 * rho * rho / (1 - rho);
+            before = glm::min(glm::min(expanded, glm::dvec3(rho * 1.41421356237309515)), before);
+        }
+        return after_rounding(n, before + 0x1p-28 * (size + before), normal_lsb_);
+    }
+
+    double position_lsb_, normal_lsb_, texture_lsb_, screen_lsb_, view_distance_lsb_;
+};
+
+}  // namespace tessera

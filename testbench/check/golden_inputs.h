@@ -1,0 +1,70 @@
+#pragma once
+#include <array>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "golden/golden_model.h"
+#include "modules/datapath/format.h"
+#include "modules/datapath/vertex.h"
+#include "testbench/host/setup.h"
+
+namespace tessera {
+
+/// From the hardware's integers to the golden model's doubles. Exact: every format fits a double.
+class Dequantise {
+  public:
+    explicit Dequantise(const datapath::Formats& formats)
+        : position_lsb_(std::ldexp(1.0, -formats.position.fraction)),
+          normal_lsb_(std::ldexp(1.0, -formats.normal.fraction)),
+          texture_lsb_(std::ldexp(1.0, -formats.texture.fraction)),
+          screen_lsb_(std::ldexp(1.0, -formats.screen.fraction)),
+          view_distance_lsb_(std::ldexp(1.0, -formats.view_distance.fraction)) {}
+
+    glm::dvec3 position(const datapath::Position& p) const {
+        return glm::dvec3(p.x, p.y, p.z) * position_lsb_;
+    }
+    glm::dvec3 direction(const datapath::Direction& d) const {
+        return glm::dvec3(d.x, d.y, d.z) * normal_lsb_;
+    }
+    glm::dvec2 texture(const datapath::TexCoord& t) const { return glm::dvec2(t.u, t.v) * texture_lsb_; }
+
+    /// Everything but N's, which the golden model does not have. P', N' and P's mean something only where the
+    /// hardware has calculated them.
+    golden::Vertex vertex(const datapath::Vertex& v) const {
+        golden::Vertex g;
+        g.position = position(v.position);
+        g.normal = direction(v.normal);
+        g.tangent = direction(v.tangent);
+        g.handedness = v.handedness;
+        g.texture = texture(v.texture);
+        g.displaced_position = position(v.displaced);
+        g.displaced_normal = direction(v.displaced_normal);
+        g.screen = glm::dvec2(v.screen.x, v.screen.y) * screen_lsb_;
+        g.w = v.screen.w * view_distance_lsb_;
+        g.in_front = v.screen.in_front;
+        g.generation = v.generation;
+        return g;
+    }
+
+  private:
+    double position_lsb_, normal_lsb_, texture_lsb_, screen_lsb_, view_distance_lsb_;
+};
+
+/// The registers as the golden model's parameters. Exact but for the transform's fourth column and the near
+/// plane, 64 bit integers that a double rounds at the 53rd bit.
+golden::Parameters golden_parameters(const datapath::Registers& registers);
+
+/// What the golden model works on: map and registers as the hardware holds them, dequantised. Nothing is
+/// derived from the job again, so that the two can differ in arithmetic only. Memory: 40 bytes per texel.
+struct GoldenInputs {
+    golden::Map map;
+    golden::Parameters parameters;
+
+    explicit GoldenInputs(const Setup& setup);
+};
+
+/// The quantised base triangles, dequantised: the first five members of each vertex.
+std::vector<std::array<golden::Vertex, 3>> golden_base_triangles(const Setup& setup);
+
+}  // namespace tessera

@@ -1,0 +1,45 @@
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace tessera {
+
+/// A file that appears under its name complete, or not at all: written under another name in the same folder
+/// (".tessera-<process>-<number>.part"), and renamed by commit() once every byte is on the disk. An older
+/// file of the name stays as it was until then.
+///
+/// Destroyed without commit(), or after an error, it leaves nothing. Only a process that is killed can leave
+/// the unfinished file: a program that wants to live with `ulimit -f` must ignore SIGXFSZ. A link to a file
+/// is followed; what is neither file nor absent (a folder, a device) is refused. Errors, with file and the
+/// system's reason: ResourceError if disk, quota, file size or memory ran out or the disk failed, else
+/// InputError (no such folder, not writable).
+class AtomicFile {
+  public:
+    explicit AtomicFile(const std::filesystem::path& path);
+    ~AtomicFile();
+    AtomicFile(const AtomicFile&) = delete;
+    AtomicFile& operator=(const AtomicFile&) = delete;
+
+    void write(std::string_view bytes);
+
+    /// To be called once, when all is written.
+    void commit();
+
+  private:
+    void flush();
+    [[noreturn]] void fail(const char* what, int error);
+    void discard() noexcept;
+
+    std::filesystem::path path_;    // as the user knows it, for messages
+    std::filesystem::path target_;  // where it leads
+    std::filesystem::path unfinished_;
+    int file_ = -1;
+    std::string buffer_;
+};
+
+/// A whole file at once.
+void write_file(const std::filesystem::path& path, std::string_view content);
+
+}  // namespace tessera

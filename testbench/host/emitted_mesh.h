@@ -1,0 +1,60 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <tuple>
+#include <vector>
+
+#include "modules/datapath/vertex.h"
+
+namespace tessera {
+
+/// What is kept of a finished triangle, in the hardware's formats.
+struct EmittedTriangle {
+    struct Corner {
+        datapath::Position position;           ///< P
+        datapath::Position displaced;          ///< P'
+        datapath::Direction displaced_normal;  ///< N'
+        datapath::TexCoord texture;            ///< t
+        std::uint8_t generation = 0;
+    };
+    std::array<Corner, 3> corners;
+    std::uint32_t base = 0;
+    std::uint8_t split_by = 0;    ///< NT, SHT bits of the split that made it; 0: a base triangle
+    std::uint8_t stopped_by = 0;  ///< VT, TCT, GT bits
+    bool culled = false;          ///< faces away and did not go to Lighting
+
+    static EmittedTriangle from(const datapath::Triangle& triangle, bool culled) {
+        EmittedTriangle result;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const datapath::Vertex& v = triangle.vertices[k];
+            result.corners[k] = {v.position, v.displaced, v.displaced_normal, v.texture, v.generation};
+        }
+        result.base = triangle.base;
+        result.split_by = triangle.split_by;
+        result.stopped_by = triangle.stopped_by;
+        result.culled = culled;
+        return result;
+    }
+};
+
+/// Every finished triangle of a run, culled ones too.
+struct EmittedMesh {
+    std::vector<EmittedTriangle> triangles;
+
+    /// An order that does not depend on when a triangle was finished: by base triangle, then texture coordinates, then
+    /// displaced positions. Two runs that emit the same set of triangles so leave identical files.
+    void sort() {
+        const auto key = [](const EmittedTriangle& t) {
+            const auto& c = t.corners;
+            return std::make_tuple(t.base, c[0].texture.u, c[0].texture.v, c[1].texture.u, c[1].texture.v,
+                                   c[2].texture.u, c[2].texture.v, c[0].displaced.x, c[0].displaced.y,
+                                   c[0].displaced.z, c[1].displaced.x, c[1].displaced.y, c[1].displaced.z,
+                                   c[2].displaced.x, c[2].displaced.y, c[2].displaced.z);
+        };
+        std::sort(triangles.begin(), triangles.end(),
+                  [&](const EmittedTriangle& a, const EmittedTriangle& b) { return key(a) < key(b); });
+    }
+};
+
+}  // namespace tessera

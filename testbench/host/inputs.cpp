@@ -1,0 +1,37 @@
+#include "testbench/host/inputs.h"
+
+#include "testbench/common/error.h"
+#include "testbench/job/job_paths.h"
+#include "testbench/maps/built_in_maps.h"
+#include "testbench/maps/read_height_map.h"
+#include "testbench/meshes/make_base_mesh.h"
+
+namespace tessera {
+
+BaseMesh load_mesh(const Job& job, const std::filesystem::path& data_folder) {
+    std::string file;
+    if (job.mesh.source == MeshSource::file)
+        file = resolve_path(job.mesh.file, job.folder, data_folder).string();
+    return make_base_mesh(job.mesh, file);
+}
+
+HeightMap load_map(const Job& job, const std::filesystem::path& data_folder) {
+    const Job::Map& map = job.map;
+    switch (map.source) {
+        case MapSource::half_donut:
+            return half_donut_map(map.width, map.height);
+        case MapSource::text:
+            return text_map(map.width, map.height, map.text);
+        case MapSource::noise:
+            return noise_map(map.width, map.height, map.seed);
+        case MapSource::constant:
+            return constant_map(map.width, map.height, map.value);
+        case MapSource::ramp:
+            return ramp_map(map.width, map.height);
+        case MapSource::file:
+            break;
+    }
+    return read_height_map(resolve_path(map.file, job.folder, data_folder), map.channel);
+}
+
+}  // namespace tessera

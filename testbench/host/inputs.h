@@ -1,0 +1,15 @@
+#pragma once
+#include <filesystem>
+
+#include "testbench/job/job.h"
+#include "testbench/maps/height_map.h"
+#include "testbench/meshes/base_mesh.h"
+
+namespace tessera {
+
+/// Mesh and map of a job, built or read. data_folder: what `data:` paths begin at.
+/// Throws InputError, ResourceError as the readers do.
+BaseMesh load_mesh(const Job& job, const std::filesystem::path& data_folder);
+HeightMap load_map(const Job& job, const std::filesystem::path& data_folder);
+
+}  // namespace tessera

@@ -1,0 +1,400 @@
+#include "testbench/host/setup.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "modules/datapath/map_entry.h"
+#include "modules/datapath/rectangle.h"
+#include "testbench/common/error.h"
+
+namespace tessera {
+
+namespace {
+
+using datapath::Format;
+
+constexpr double pi = 3.14159265358979323846;
+
+std::int64_t to_fixed(double value, int fraction) {
+    return static_cast<std::int64_t>(std::nearbyint(std::ldexp(value, fraction)));
+}
+
+std::int32_t to_format(double value, const Format& format) {
+    const double scaled = std::nearbyint(std::ldexp(value, format.fraction));
+    return static_cast<std::int32_t>(
+        std::clamp(scaled, static_cast<double>(format.lowest), static_cast<double>(format.highest)));
+}
+
+datapath::Direction to_direction(const glm::dvec3& v, const Format& format) {
+    return {to_format(v.x, format), to_format(v.y, format), to_format(v.z, format)};
+}
+
+datapath::Formats make_formats(const Job::Formats& job) {
+    const auto bits = [](std::int64_t value) { return static_cast<int>(value); };
+    datapath::Formats formats;
+    formats.position = Format::make_signed(bits(job.position_bits), bits(job.position_fraction));
+    formats.view_distance = formats.position;
+    formats.normal = Format::make_signed(bits(job.normal_bits), bits(job.normal_fraction));
+    formats.texture = Format::make_unsigned(bits(job.texture_integer + job.texture_fraction) + 1,
+                                            bits(job.texture_fraction));
+    formats.displacement = Format::make_unsigned(bits(job.displacement_bits), bits(job.displacement_bits));
+    formats.summed_height =
+        Format::make_unsigned(bits(job.summed_height_bits == 0 ? 32 : job.summed_height_bits), 0);
+    formats.screen = Format::make_signed(bits(job.screen_bits), bits(job.screen_fraction));
+    formats.generation_bits = bits(job.generation_bits);
+    return formats;
+}
+
+datapath::AddressMode address_mode(Addressing mode) {
+    return mode == Addressing::repeat ? datapath::AddressMode::repeat : datapath::AddressMode::clamp;
+}
+
+/// The displacement in model units that the machine's d = 0 and the full range of d stand for.
+struct Heights {
+    double bias;   // at code 0
+    double range;  // from code 0 to the highest code
+};
+
+Heights model_heights(const Job& job, const HeightMap& map) {
+    return {job.displacement.bias + job.displacement.scale * map.range_low,
+            job.displacement.scale * (map.range_high - map.range_low)};
+}
+
+/// Centre and scale that put the displaced model into half of the position's range: nothing saturates, and the eye
+/// of a usual camera has room.
+ModelScale fit(const Job& job, const BaseMesh& mesh, const Heights& heights, const Format& position) {
+    glm::dvec3 low(mesh.vertices.front().position), high(low);
+    for (const BaseVertex& vertex : mesh.vertices) {
+        low = glm::min(low, vertex.position);
+        high = glm::max(high, vertex.position);
+    }
+    ModelScale result;
+    result.centre = (low + high) / 2.0;
+    const glm::dvec3 half = (high - low) / 2.0;
+    const double reach = std::max({half.x, half.y, half.z}) +
+                         std::max(std::abs(heights.bias), std::abs(heights.bias + heights.range));
+    // S and bias are registers of the same format; S is up to twice the range (bits = 1, see make_displacement)
+    const double registers = std::max(2 * std::abs(heights.range), std::abs(heights.bias)) / 2;
+    const double limit = std::ldexp(1.0, position.bits - position.fraction - 2);
+    if (reach > 0)
+        result.scale =
+            std::ldexp(1.0, static_cast<int>(std::floor(std::log2(limit / std::max(reach, registers)))));
+    // fewer steps than this across the whole mesh, and the surface is rounding
+    constexpr double fewest_steps = 16;
+    const double steps = std::ldexp(std::max({half.x, half.y, half.z}) * result.scale, position.fraction);
+    if (steps < fewest_steps)
+        throw InputError(fmt::format(
+            "{}: the displacement, {:.3g} to {:.3g} model units, is so large against the mesh, half of which "
+            "is {:.3g}, "
+            "that the mesh spans {:.3g} steps of its position format (at least {} are needed): lower "
+            "displacement.scale "
+            "or displacement.bias, check the map's values, or raise formats.position_bits",
+            job.map.source == MapSource::file ? job.map.file : "map", heights.bias,
+            heights.bias + heights.range, std::max({half.x, half.y, half.z}), steps, fewest_steps));
+    return result;
+}
+
+std::uint32_t to_texture(double coordinate, std::uint32_t size, datapath::AddressMode mode,
+                         const Format& format, bool& clamped) {
+    double texels = coordinate * size;
+    if (mode == datapath::AddressMode::clamp && (texels < 0 || texels > size)) {
+        clamped = true;
+        texels = std::clamp(texels, 0.0, static_cast<double>(size));
+    }
+    const double fixed = std::nearbyint(std::ldexp(texels, format.fraction));
+    // the border bit holds 2^integer itself and nothing beyond
+    if (fixed < 0 || fixed > std::ldexp(1.0, format.bits - 1))
+        throw InputError(fmt::format(
+            "texture coordinate {} is {} texels of a map of {}, beyond the 0..{} that the texture "
+            "coordinate's "
+            "format holds: use fewer repetitions, a smaller map, or a larger formats.texture_integer",
+            coordinate, texels, size, 1 << (format.bits - 1 - format.fraction)));
+    return static_cast<std::uint32_t>(fixed);
+}
+
+/// Whole periods to add so that no coordinate of a repeated axis is negative.
+double whole_periods(const BaseMesh& mesh, int axis, datapath::AddressMode mode) {
+    if (mode != datapath::AddressMode::repeat)
+        return 0;
+    double low = 0;
+    for (const BaseVertex& vertex : mesh.vertices)
+        low = std::min(low, vertex.texture[axis]);
+    return std::ceil(-low);
+}
+
+void make_base_triangles(const BaseMesh& mesh, Setup& setup) {
+    const datapath::Formats& formats = setup.registers.formats;
+    const datapath::MapGeometry& map = setup.registers.map;
+    const double shift_u = whole_periods(mesh, 0, map.address_u);
+    const double shift_v = whole_periods(mesh, 1, map.address_v);
+    std::vector<datapath::Vertex> vertices;
+    vertices.reserve(mesh.vertices.size());
+    for (const BaseVertex& base : mesh.vertices) {
+        const glm::dvec3 world = setup.model_scale.to_world(base.position);
+        bool clamped = false;
+        datapath::Vertex vertex;
+        vertex.position = {to_format(world.x, formats.position), to_format(world.y, formats.position),
+                           to_format(world.z, formats.position)};
+        vertex.normal = to_direction(base.normal, formats.normal);
+        vertex.tangent = to_direction(base.tangent, formats.normal);
+        vertex.handedness = base.handedness < 0 ? std::int8_t{-1} : std::int8_t{1};
+        vertex.texture = {
+            to_texture(base.texture.x + shift_u, map.width, map.address_u, formats.texture, clamped),
+            to_texture(base.texture.y + shift_v, map.height, map.address_v, formats.texture, clamped)};
+        setup.texture_clamped += clamped ? 1 : 0;
+        vertices.push_back(vertex);
+    }
+    const auto same = [](const datapath::Vertex& a, const datapath::Vertex& b) {
+        return a.position == b.position && a.texture == b.texture;
+    };
+    for (const auto& corners : mesh.triangles) {
+        datapath::Triangle triangle;
+        triangle.vertices = {vertices[corners[0]], vertices[corners[1]], vertices[corners[2]]};
+        const auto& v = triangle.vertices;
+        if (same(v[0], v[1]) || same(v[1], v[2]) || same(v[2], v[0])) {
+            ++setup.base_dropped;
+            continue;
+        }
+        triangle.base = static_cast<std::uint32_t>(setup.base_triangles.size());
+        setup.base_triangles.push_back(triangle);
+    }
+    if (setup.base_triangles.empty())
+        throw InputError(
+            "every base triangle collapses when rounded to the position's and texture coordinate's formats: "
+            "use "
+            "wider formats (formats.position_bits, formats.texture_fraction)");
+    if (setup.base_dropped > 0)
+        setup.remarks.push_back(
+            fmt::format("{} base triangles collapsed when rounded to the hardware's formats and were dropped",
+                        setup.base_dropped));
+    if (setup.texture_clamped > 0)
+        setup.remarks.push_back(
+            fmt::format("{} base vertices have texture coordinates outside 0..1 on an axis that clamps; they "
+                        "were set to the border",
+                        setup.texture_clamped));
+}
+
+/// The largest sum any edge's rectangle can have. An inserted vertex's texture coordinate lies between those of its
+/// edge's ends, so |du| and |dv| of no edge of a child exceed the largest of the parent's three, and the base
+/// triangles bound all their descendants.
+std::uint64_t bound_rectangle_sum(const Setup& setup) {
+    std::uint64_t largest = 0;
+    for (const datapath::Triangle& triangle : setup.base_triangles) {
+        std::uint64_t width = 1, height = 1;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto size =
+                datapath::rectangle_size(triangle.vertices[k].texture, triangle.vertices[(k + 1) % 3].texture,
+                                         setup.registers.map, setup.registers.formats);
+            width = std::max<std::uint64_t>(width, size.width);
+            height = std::max<std::uint64_t>(height, size.height);
+        }
+        largest = std::max(largest, width * height);
+    }
+    return largest * setup.map.highest_code();
+}
+
+void choose_summed_height_bits(const Job& job, Setup& setup) {
+    setup.largest_rectangle_sum = bound_rectangle_sum(setup);
+    const auto holds = [&](int bits) { return setup.largest_rectangle_sum >> bits == 0; };
+    int bits = static_cast<int>(job.formats.summed_height_bits);
+    if (bits == 0) {
+        setup.summed_height_bits_chosen = true;
+        bits = holds(32) ? 32 : (holds(40) ? 40 : 48);
+    }
+    if (!holds(bits))
+        throw InputError(fmt::format(
+            "formats.summed_height_bits = {}: this mesh's largest rectangle sums up to {}, which needs {} "
+            "bits; use "
+            "that, or 0 to choose automatically",
+            bits, setup.largest_rectangle_sum, 64 - datapath::leading_zeros(setup.largest_rectangle_sum)));
+    setup.registers.formats.summed_height = Format::make_unsigned(bits, 0);
+}
+
+void lay_out_tables(Setup& setup) {
+    constexpr std::uint64_t page = 4096;
+    datapath::Registers& registers = setup.registers;
+    const auto entry = [](int bits) { return datapath::entry_bytes(bits); };
+    const auto after = [](const datapath::TableLayout& table) {
+        return (table.base + table.bytes() + page - 1) / page * page;
+    };
+    registers.displacement_map = {page, registers.map.width, registers.map.height,
+                                  entry(registers.formats.displacement.bits)};
+    registers.normal_map = {after(registers.displacement_map), registers.map.width, registers.map.height,
+                            entry(3 * registers.formats.normal.bits)};
+    registers.summed_height_table = {after(registers.normal_map), registers.map.width + 1,
+                                     registers.map.height + 1, entry(registers.formats.summed_height.bits)};
+}
+
+datapath::TestParameters make_tests(const Job& job, const Setup& setup) {
+    const datapath::Formats& formats = setup.registers.formats;
+    const auto threshold = [](const char* key, double value, double scale, double limit) {
+        const double fixed = std::floor(value * scale);
+        if (fixed > limit)
+            throw InputError(fmt::format("{} = {} does not fit its register; the largest is {}", key, value,
+                                         limit / scale));
+        return static_cast<std::uint64_t>(fixed);
+    };
+    const auto& tests = job.tests;
+    datapath::TestParameters result;
+    result.normal_test = tests.normal;
+    result.summed_height_test = tests.summed_height;
+    result.view_test = tests.view;
+    result.tex_coord_test = tests.tex_coord;
+    result.generation_test = tests.generation;
+    result.normal_threshold = static_cast<std::uint32_t>(
+        threshold("tests.normal_threshold", tests.normal_threshold, std::ldexp(1.0, formats.normal.fraction),
+                  static_cast<double>(2 * formats.normal.highest + 1)));
+    const bool area = tests.summed_height_unit == SummedHeightUnit::area;
+    const double highest_code = static_cast<double>(formats.displacement.highest);
+    result.summed_height_unit = area ? datapath::SummedHeightUnit::area : datapath::SummedHeightUnit::sum;
+    // sum: compared with |2 S_ij - S_i - S_j|, four times the paper's difference
+    result.summed_height_threshold =
+        threshold("tests.summed_height_threshold", tests.summed_height_threshold,
+                  highest_code * (area ? 1 : 4), area ? std::ldexp(1.0, 18) : std::ldexp(1.0, 50));
+    result.view_threshold = static_cast<std::uint32_t>(threshold("tests.view_threshold", tests.view_threshold,
+                                                                 std::ldexp(1.0, formats.screen.fraction),
+                                                                 std::ldexp(1.0, formats.screen.bits)));
+    result.generation_limit = static_cast<std::uint32_t>(tests.generation_limit);
+    return result;
+}
+
+/// View space: x right, y up, z towards the viewer. Pixels: x right, y up, (0, 0) the viewport's lower left corner.
+struct View {
+    glm::dvec3 right, up, backward;
+};
+
+View make_view(const Job::Camera& camera) {
+    const auto vector = [](const std::array<double, 3>& a) { return glm::dvec3(a[0], a[1], a[2]); };
+    View view;
+    view.backward = glm::normalize(vector(camera.eye) - vector(camera.target));
+    view.right = glm::normalize(glm::cross(vector(camera.up), view.backward));
+    view.up = glm::cross(view.backward, view.right);
+    return view;
+}
+
+datapath::TransformParameters make_transform(const Job& job, const Setup& setup) {
+    const Job::Camera& camera = job.camera;
+    const View view = make_view(camera);
+    const glm::dvec3 eye =
+        setup.model_scale.to_world(glm::dvec3(camera.eye[0], camera.eye[1], camera.eye[2]));
+    const double width = static_cast<double>(camera.viewport_width);
+    const double height = static_cast<double>(camera.viewport_height);
+    const double focal = height / 2 / std::tan(camera.field_of_view * pi / 360);  // pixels
+    const glm::dvec3 forward = -view.backward;
+    const glm::dvec3 x = focal * view.right + width / 2 * forward;
+    const glm::dvec3 y = focal * view.up + height / 2 * forward;
+    const auto largest = [](const glm::dvec3& v) {
+        return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    };
+
+    datapath::TransformParameters result;
+    constexpr int fraction = datapath::TransformParameters::matrix_fraction;
+    result.exponent = std::max(0, static_cast<int>(std::ceil(std::log2(std::max(largest(x), largest(y))))));
+    const int position_fraction = setup.registers.formats.position.fraction;
+    const auto row = [&](const glm::dvec3& direction, double scale) {
+        const double offset = std::ldexp(-glm::dot(direction, eye) * scale, fraction + position_fraction);
+        if (std::abs(offset) > std::ldexp(1.0, 61))
+            throw InputError(fmt::format(
+                "camera.eye is {:.3g} model units from the mesh's centre ({:.4g}, {:.4g}, {:.4g}); "
+                "Transform's sums hold eyes up to about {:.3g} away: set camera.eye and camera.target "
+                "nearer to the mesh, or lower formats.position_fraction",
+                glm::length(eye) / setup.model_scale.scale, setup.model_scale.centre.x,
+                setup.model_scale.centre.y, setup.model_scale.centre.z,
+                std::ldexp(1.0, 61 - fraction - position_fraction) / setup.model_scale.scale));
+        return std::array<std::int64_t, 4>{
+            to_fixed(direction.x * scale, fraction), to_fixed(direction.y * scale, fraction),
+            to_fixed(direction.z * scale, fraction), static_cast<std::int64_t>(std::nearbyint(offset))};
+    };
+    result.row_x = row(x, std::ldexp(1.0, -result.exponent));
+    result.row_y = row(y, std::ldexp(1.0, -result.exponent));
+    result.row_w = row(forward, 1);
+    result.near_plane = static_cast<std::int64_t>(
+        std::min(std::ldexp(camera.near_plane * setup.model_scale.scale, fraction + position_fraction),
+                 std::ldexp(1.0, 61)));
+    const Format& normal = setup.registers.formats.normal;
+    const auto rotation = [&](const glm::dvec3& axis) {
+        const datapath::Direction d = to_direction(axis, normal);
+        return std::array<std::int32_t, 3>{d.x, d.y, d.z};
+    };
+    result.normal_rows = {rotation(view.right), rotation(view.up), rotation(view.backward)};
+    return result;
+}
+
+/// As wide as a position; the point moved up until the distance of the farthest corner of the position's range fits.
+Format view_distance_format(const datapath::TransformParameters& transform, const Format& position) {
+    const auto size = [](std::int64_t entry) { return std::abs(static_cast<double>(entry)); };
+    const auto& row = transform.row_w;
+    const double half_range = -static_cast<double>(position.lowest);
+    const double farthest =
+        std::ldexp((size(row[0]) + size(row[1]) + size(row[2])) * half_range + size(row[3]),
+                   -datapath::TransformParameters::matrix_fraction);
+    int shift = 0;
+    while (std::ldexp(farthest, -shift) > static_cast<double>(position.highest))
+        ++shift;
+    return Format::make_signed(position.bits, position.fraction - shift);
+}
+
+datapath::LightParameters make_light(const Job& job, const Setup& setup) {
+    const View view = make_view(job.camera);
+    const auto& light = job.hardware.light;
+    const glm::dvec3 world = glm::normalize(glm::dvec3(light[0], light[1], light[2]));
+    const glm::dvec3 seen(glm::dot(view.right, world), glm::dot(view.up, world),
+                          glm::dot(view.backward, world));
+    const datapath::Direction d = to_direction(seen, setup.registers.formats.normal);
+    datapath::LightParameters result;
+    result.direction = {d.x, d.y, d.z};
+    result.ambient = static_cast<std::int32_t>(std::lround(job.hardware.ambient * 256));
+    return result;
+}
+
+datapath::DisplacementParameters make_displacement(const Heights& heights, const Setup& setup) {
+    // d = code / 2^bits reaches 1 - 2^-bits only; S makes up for it
+    const double codes = static_cast<double>(setup.map.highest_code());
+    const double full = heights.range * (codes + 1) / codes * setup.model_scale.scale;
+    const Format& position = setup.registers.formats.position;
+    return {to_format(full, position), to_format(heights.bias * setup.model_scale.scale, position)};
+}
+
+}  // namespace
+
+Setup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& map) {
+    Setup setup;
+    datapath::Registers& registers = setup.registers;
+    registers.formats = make_formats(job.formats);
+    setup.map = quantise_map(map, registers.formats.displacement.bits, address_mode(job.map.address_u),
+                             address_mode(job.map.address_v));
+    registers.map = setup.map.geometry;
+
+    const Heights heights = model_heights(job, map);
+    setup.model_scale = fit(job, mesh, heights, registers.formats.position);
+    registers.displacement = make_displacement(heights, setup);
+    setup.height_per_code = std::ldexp(static_cast<double>(registers.displacement.scale),
+                                       -registers.formats.position.fraction - setup.map.bits);
+    setup.texel_size = glm::dvec2(mesh.texture_scale.mean_u / registers.map.width,
+                                  mesh.texture_scale.mean_v / registers.map.height) *
+                       setup.model_scale.scale;
+
+    make_base_triangles(mesh, setup);
+    choose_summed_height_bits(job, setup);
+    lay_out_tables(setup);
+    registers.tests = make_tests(job, setup);
+    registers.transform = make_transform(job, setup);
+    registers.formats.view_distance = view_distance_format(registers.transform, registers.formats.position);
+    registers.light = make_light(job, setup);
+    registers.triangulation =
+        job.hardware.triangulation == Triangulation::first    ? datapath::Triangulation::first
+        : job.hardware.triangulation == Triangulation::second ? datapath::Triangulation::second
+                                                              : datapath::Triangulation::shorter;
+    registers.back_face_culling = job.hardware.culling == Culling::back;
+
+    setup.design.queue_order =
+        job.hardware.queue_order == QueueOrder::lifo ? TriangleOrder::lifo : TriangleOrder::fifo;
+    setup.design.queue_watermark = static_cast<std::size_t>(job.hardware.queue_watermark);
+    setup.design.direct_memory = job.hardware.direct_memory;
+    return setup;
+}
+
+}  // namespace tessera

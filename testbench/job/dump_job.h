@@ -1,0 +1,16 @@
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "testbench/job/job.h"
+
+namespace tessera {
+
+/// Every key of the job as TOML, with description, unit, range and default as comments. Reads back to the
+/// same settings, and dumping those gives the same bytes. Paths stay relative to Job::folder.
+std::string dump_job(const Job& job);
+
+/// The same to be written into `run_folder`: relative paths are rewritten to hold from there (job_paths.h).
+std::string dump_job(const Job& job, const std::filesystem::path& run_folder);
+
+}  // namespace tessera

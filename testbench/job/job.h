@@ -1,0 +1,116 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+
+namespace tessera {
+
+enum class MeshSource { plane, cylinder, sphere, file };
+enum class MapSource { half_donut, text, noise, constant, ramp, file };
+enum class Addressing { clamp, repeat };
+enum class Triangulation { shorter, first, second };
+enum class QueueOrder { fifo, lifo };
+enum class Culling { none, back };
+enum class SummedHeightUnit { sum, area };
+enum class Mode { functional };
+
+/// One run of tessera: what a job file says. Every key's unit, default, range and description are declared
+/// once, in job_keys.cpp; the defaults are the initialisers below and make the default job (the half donut on
+/// the plane of 18 triangles).
+struct Job {
+    struct Mesh {
+        MeshSource source = MeshSource::plane;
+        std::string file;          // OBJ, with source = "file"
+        std::int64_t columns = 0;  // quads along u; 0: the source's own (job_keys.cpp)
+        std::int64_t rows = 0;     // quads along v; 0: likewise
+        double width = 2;          // plane: size along x
+        double depth = 2;          // plane: size along y
+        double radius = 1;         // cylinder, sphere
+        double height = 2;         // cylinder
+    } mesh;
+
+    struct Map {
+        MapSource source = MapSource::half_donut;
+        std::string file;          // EXR, PNG or PGM, with source = "file"
+        std::string channel;       // EXR channel; empty: Y, else R, else the only one
+        std::int64_t width = 256;  // built-in maps, texels
+        std::int64_t height = 256;
+        double value = 0.5;            // constant map, 0..1
+        std::int64_t seed = 1;         // noise map
+        std::string text = "tessera";  // text map
+        Addressing address_u = Addressing::clamp;
+        Addressing address_v = Addressing::clamp;
+    } map;
+
+    struct Displacement {
+        double scale = 0.25;  // model units for one unit of map value
+        double bias = 0;      // model units
+    } displacement;
+
+    struct Camera {
+        std::array<double, 3> eye{1.05, -2.9, 2.45};
+        std::array<double, 3> target{0, 0, 0.05};
+        std::array<double, 3> up{0, 0, 1};
+        double field_of_view = 36;  // vertical, degrees
+        double near_plane = 0.01;   // model units
+        std::int64_t viewport_width = 1024;
+        std::int64_t viewport_height = 768;
+    } camera;
+
+    struct Tests {
+        bool normal = true;
+        double normal_threshold = 0.12;  // difference of one component of two unit normals
+        bool summed_height = true;
+        double summed_height_threshold = 2.0;  // full-scale texels (sum) or full scale (area)
+        SummedHeightUnit summed_height_unit = SummedHeightUnit::sum;
+        bool view = true;
+        double view_threshold = 4;  // pixels, Manhattan
+        bool tex_coord = true;
+        bool generation = true;
+        std::int64_t generation_limit = 12;
+    } tests;
+
+    struct Formats {
+        std::int64_t position_bits = 32, position_fraction = 16;
+        std::int64_t normal_bits = 16, normal_fraction = 14;
+        std::int64_t texture_integer = 12, texture_fraction = 12;
+        std::int64_t displacement_bits = 16;
+        std::int64_t summed_height_bits = 0;  // 0 = auto: the narrowest of 32, 40, 48 the mesh needs
+        std::int64_t screen_bits = 24, screen_fraction = 8;
+        std::int64_t generation_bits = 4;
+    } formats;
+
+    struct Hardware {
+        Triangulation triangulation = Triangulation::shorter;
+        Culling culling = Culling::none;
+        QueueOrder queue_order = QueueOrder::fifo;
+        std::int64_t queue_watermark = 1;  // host triangles are taken while fewer than this many wait
+        bool direct_memory = true;         // functional mode reads memories through DMI
+        std::array<double, 3> light{0.3, -0.4, 0.866};  // direction towards the light, world space
+        double ambient = 0.2;
+    } hardware;
+
+    struct Check {
+        bool golden = true;      // scoreboard: every edge against the golden model
+        bool end_to_end = true;  // golden run of the whole mesh
+        bool invariants = true;
+        double allowed_flips = 0.5;  // percent of edges; more fails the run
+    } check;
+
+    struct Limits {
+        std::int64_t triangles = 20000000;  // emitted; more ends the run with exit code 4
+    } limits;
+
+    struct Output {
+        std::string folder = "runs/half_donut";
+        bool ply = true;
+        bool obj = true;
+        bool picture = true;
+    } output;
+
+    Mode mode = Mode::functional;
+
+    std::string folder;  // not a key: where the job file lies; empty: the current directory
+};
+
+}  // namespace tessera

@@ -1,0 +1,114 @@
+#pragma once
+#include <string_view>
+#include <vector>
+
+#include "testbench/job/job.h"
+
+namespace tessera {
+
+// The names a job file uses for the enumerators of job.h. One switch per enumeration, so that the compiler
+// refuses an enumerator without a name.
+
+constexpr std::string_view name_of(MeshSource value) {
+    switch (value) {
+        case MeshSource::plane:
+            return "plane";
+        case MeshSource::cylinder:
+            return "cylinder";
+        case MeshSource::sphere:
+            return "sphere";
+        case MeshSource::file:
+            return "file";
+    }
+    return {};
+}
+
+constexpr std::string_view name_of(MapSource value) {
+    switch (value) {
+        case MapSource::half_donut:
+            return "half_donut";
+        case MapSource::text:
+            return "text";
+        case MapSource::noise:
+            return "noise";
+        case MapSource::constant:
+            return "constant";
+        case MapSource::ramp:
+            return "ramp";
+        case MapSource::file:
+            return "file";
+    }
+    return {};
+}
+
+constexpr std::string_view name_of(Addressing value) {
+    switch (value) {
+        case Addressing::clamp:
+            return "clamp";
+        case Addressing::repeat:
+            return "repeat";
+    }
+    return {};
+}
+
+constexpr std::string_view name_of(Triangulation value) {
+    switch (value) {
+        case Triangulation::shorter:
+            return "shorter";
+        case Triangulation::first:
+            return "first";
+        case Triangulation::second:
+            return "second";
+    }
+    return {};
+}
+
+constexpr std::string_view name_of(QueueOrder value) {
+    switch (value) {
+        case QueueOrder::fifo:
+            return "fifo";
+        case QueueOrder::lifo:
+            return "lifo";
+    }
+    return {};
+}
+
+constexpr std::string_view name_of(Culling value) {
+    switch (value) {
+        case Culling::none:
+            return "none";
+        case Culling::back:
+            return "back";
+    }
+    return {};
+}
+
+constexpr std::string_view name_of(SummedHeightUnit value) {
+    switch (value) {
+        case SummedHeightUnit::sum:
+            return "sum";
+        case SummedHeightUnit::area:
+            return "area";
+    }
+    return {};
+}
+
+constexpr std::string_view name_of(Mode value) {
+    switch (value) {
+        case Mode::functional:
+            return "functional";
+    }
+    return {};
+}
+
+/// All names of an enumeration, in the enumerators' order; enumerators count from 0 without gaps.
+template <typename Enum>
+std::vector<std::string_view> names_of() {
+    std::vector<std::string_view> names;
+    for (int i = 0; !name_of(static_cast<Enum>(i)).empty(); ++i) {
+        names.push_back(name_of(static_cast<Enum>(i)));
+    }
+    return names;
+}
+
+}  // namespace tessera

@@ -1,0 +1,421 @@
+#include "testbench/job/job_keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+
+#include "testbench/common/error.h"
+#include "testbench/job/job_choices.h"
+#include "testbench/job/nearest_name.h"
+#include "testbench/job/toml_text.h"
+
+namespace tessera {
+
+namespace {
+
+constexpr double any_length = 1e6;     // model units; keeps products of lengths far from overflow
+constexpr double least_length = 1e-6;  // and quotients far from infinity
+constexpr double any_count = 2147483647;
+constexpr std::size_t longest_text = 4096;  // bytes; what paths may have on Linux
+
+constexpr KeyRange length_range{least_length, any_length};
+constexpr KeyRange coordinate_range{-any_length, any_length};
+
+KeyRange between(double low, double high) {
+    return {low, high, false};
+}
+KeyRange zero_or_between(double low, double high) {
+    return {low, high, true};
+}
+
+/// Fills one table; `Group` is the struct of Job whose members the keys set.
+template <typename Group, typename Select>
+class TableWriter {
+  public:
+    TableWriter(KeyTable& table, Select select) : table_(table), select_(select) {}
+
+    void add(const char* leaf, bool Group::*member, const char* description) const {
+        add_plain(leaf, member, KeyKind::flag, "-", {}, description);
+    }
+    void add(const char* leaf, std::int64_t Group::*member, const char* unit, KeyRange range,
+             const char* description) const {
+        add_plain(leaf, member, KeyKind::integer, unit, range, description);
+    }
+    void add(const char* leaf, double Group::*member, const char* unit, KeyRange range,
+             const char* description) const {
+        add_plain(leaf, member, KeyKind::number, unit, range, description);
+    }
+    void add(const char* leaf, std::array<double, 3> Group::*member, const char* unit, KeyRange range,
+             const char* description) const {
+        add_plain(leaf, member, KeyKind::vector, unit, range, description);
+    }
+    void add(const char* leaf, std::string Group::*member, KeyKind kind, const char* description) const {
+        add_plain(leaf, member, kind, "-", {}, description);
+    }
+    template <typename Enum, typename = std::enable_if_t<std::is_enum_v<Enum>>>
+    void add(const char* leaf, Enum Group::*member, const char* description) const {
+        Key& key = push(leaf, KeyKind::choice, "-", description);
+        key.choices = names_of<Enum>();
+        key.get = [select = select_, member](const Job& job) {
+            return std::string(name_of(select(job).*member));
+        };
+        key.set = [select = select_, member](Job& job, const JobValue& value) {
+            const std::vector<std::string_view> names = names_of<Enum>();
+            const auto found = std::find(names.begin(), names.end(), std::get<std::string>(value));
+            select(job).*member = static_cast<Enum>(found - names.begin());
+        };
+    }
+
+  private:
+    template <typename T>
+    void add_plain(const char* leaf, T Group::*member, KeyKind kind, const char* unit, KeyRange range,
+                   const char* description) const {
+        Key& key = push(leaf, kind, unit, description);
+        key.range = range;
+        key.get = [select = select_, member](const Job& job) { return select(job).*member; };
+        key.set = [select = select_, member](Job& job, const JobValue& value) {
+            select(job).*member = std::get<T>(value);
+        };
+    }
+
+    Key& push(const char* leaf, KeyKind kind, const char* unit, const char* description) const {
+        Key key;
+        key.name = table_.name.empty() ? leaf : table_.name + '.' + leaf;
+        key.kind = kind;
+        key.unit = unit;
+        key.description = description;
+        table_.keys.push_back(std::move(key));
+        return table_.keys.back();
+    }
+
+    KeyTable& table_;
+    Select select_;
+};
+
+class TableList {
+  public:
+    /// Declares the table of one member of Job: its name, its description, then its keys, one line each.
+    template <typename Group, typename Declare>
+    void table(const char* name, Group Job::*group, const char* description, Declare declare) {
+        const auto select = [group](auto& job) -> auto& {
+            return job.*group;
+        };
+        declare_table<Group>(name, description, select, declare);
+    }
+
+    template <typename Declare>
+    void top_level(const char* description, Declare declare) {
+        const auto select = [](auto& job) -> auto& {
+            return job;
+        };
+        declare_table<Job>("", description, select, declare);
+    }
+
+    std::vector<KeyTable> take() { return std::move(tables_); }
+
+  private:
+    template <typename Group, typename Select, typename Declare>
+    void declare_table(const char* name, const char* description, Select select, Declare declare) {
+        tables_.push_back({name, description, {}});
+        declare(TableWriter<Group, Select>(tables_.back(), select));
+    }
+
+    std::vector<KeyTable> tables_;
+};
+
+// The declaration of every key. The default is the member's initialiser in job.h.
+std::vector<KeyTable> declare_keys() {
+    TableList list;
+    // clang-format off
+    list.top_level("How the model runs.", [](const auto& key) {
+        key.add("mode", &Job::mode, "How the hardware model keeps time; functional: loosely timed, the fastest");
+    });
+    list.table("mesh", &Job::mesh, "The base mesh.", [](const auto& key) {
+        using Mesh = Job::Mesh;
+        key.add("source", &Mesh::source, "Built-in shape, or file for the mesh in mesh.file");
+        key.add("file", &Mesh::file, KeyKind::file, "OBJ file, with mesh.source = \"file\"");
+        key.add("columns", &Mesh::columns, "quads", between(0, 2048), "Quads along u; 0: 3 for the plane, 30 for cylinder and sphere, which need 3 or more");
+        key.add("rows", &Mesh::rows, "quads", between(0, 2048), "Quads along v; 0: 3 for the plane, 30 for cylinder and sphere; a sphere needs 2 or more");
+        key.add("width", &Mesh::width, "model units", length_range, "Size of the plane along x");
+        key.add("depth", &Mesh::depth, "model units", length_range, "Size of the plane along y");
+        key.add("radius", &Mesh::radius, "model units", length_range, "Radius of the cylinder or sphere");
+        key.add("height", &Mesh::height, "model units", length_range, "Height of the cylinder");
+    });
+    list.table("map", &Job::map, "The displacement map.", [](const auto& key) {
+        using Map = Job::Map;
+        key.add("source", &Map::source, "Built-in map, or file for the image in map.file");
+        key.add("file", &Map::file, KeyKind::file, "EXR, PNG or PGM file, with map.source = \"file\"");
+        key.add("channel", &Map::channel, KeyKind::text, "Channel of an EXR file; empty: Y, else R, else the only one");
+        key.add("width", &Map::width, "texels", between(1, 4096), "Width of a built-in map");
+        key.add("height", &Map::height, "texels", between(1, 4096), "Height of a built-in map");
+        key.add("value", &Map::value, "full scale", between(0, 1), "Value of the constant map");
+        key.add("seed", &Map::seed, "-", between(0, 4294967295.0), "Seed of the noise map");
+        key.add("text", &Map::text, KeyKind::text, "What the text map says");
+        key.add("address_u", &Map::address_u, "Beyond the map's left and right border; repeat closes a cylinder's seam");
+        key.add("address_v", &Map::address_v, "Beyond the map's lower and upper border");
+    });
+    list.table("displacement", &Job::displacement, "From map value d to height: scale * d + bias along the normal.", [](const auto& key) {
+        using Displacement = Job::Displacement;
+        key.add("scale", &Displacement::scale, "model units", coordinate_range, "Height of a full-scale map value");
+        key.add("bias", &Displacement::bias, "model units", coordinate_range, "Height of a map value of 0");
+    });
+    list.table("camera", &Job::camera, "The view, on which the View Test depends.", [](const auto& key) {
+        using Camera = Job::Camera;
+        key.add("eye", &Camera::eye, "model units", coordinate_range, "Where the camera stands");
+        key.add("target", &Camera::target, "model units", coordinate_range, "What it looks at");
+        key.add("up", &Camera::up, "-", coordinate_range, "Direction that is up in the picture, of any length");
+        key.add("field_of_view", &Camera::field_of_view, "degrees", between(0.1, 179), "Vertical opening angle");
+        key.add("near_plane", &Camera::near_plane, "model units", length_range, "Distance of the near plane; vertices on or behind it have no screen position");
+        key.add("viewport_width", &Camera::viewport_width, "pixels", between(1, 16384), "Width of the picture");
+        key.add("viewport_height", &Camera::viewport_height, "pixels", between(1, 16384), "Height of the picture");
+    });
+    list.table("tests", &Job::tests, "The edge tests: split = (normal or summed_height) and view and tex_coord and generation.", [](const auto& key) {
+        using Tests = Job::Tests;
+        key.add("normal", &Tests::normal, "Normal Test; off: never asks for a split");
+        key.add("normal_threshold", &Tests::normal_threshold, "unit normal component", between(0, 2), "Normal Test: a component of two normals that differs by more splits the edge");
+        key.add("summed_height", &Tests::summed_height, "Summed Height Test; off: never asks for a split");
+        key.add("summed_height_threshold", &Tests::summed_height_threshold, "full-scale texels (sum), full scale (area)", between(0, 1e9), "Summed Height Test: an edge splits where S_ij / 2 and (S_i + S_j) / 4 differ by more (sum), or 2 S_ij and S_i + S_j by more than it times the rectangle's area (area)");
+        key.add("summed_height_unit", &Tests::summed_height_unit, "What the threshold compares: sums over rectangles, or the second difference of their mean heights (area)");
+        key.add("view", &Tests::view, "View Test; off: allows every split");
+        key.add("view_threshold", &Tests::view_threshold, "pixels", between(0, 1e6), "View Test: only a longer edge (Manhattan length on screen) is split");
+        key.add("tex_coord", &Tests::tex_coord, "Tex Coord Test, ends at the map's resolution; off: allows every split");
+        key.add("generation", &Tests::generation, "Generation Test; off: allows every split, and a run may not end");
+        key.add("generation_limit", &Tests::generation_limit, "generations", between(0, 15), "Generation Test: the highest generation a new vertex may have");
+    });
+    list.table("formats", &Job::formats, "Fixed-point formats of the hardware; bits count the sign where there is one.", [](const auto& key) {
+        using Formats = Job::Formats;
+        key.add("position_bits", &Formats::position_bits, "bits", between(8, 32), "Positions, signed");
+        key.add("position_fraction", &Formats::position_fraction, "bits", between(0, 31), "Positions: fraction bits, fewer than position_bits");
+        key.add("normal_bits", &Formats::normal_bits, "bits", between(6, 18), "Components of normals and tangents, signed");
+        key.add("normal_fraction", &Formats::normal_fraction, "bits", between(0, 16), "Normals: fraction bits, at least 2 fewer than normal_bits");
+        key.add("texture_integer", &Formats::texture_integer, "bits", between(1, 12), "Texture coordinates, unsigned, in texels: integer bits");
+        key.add("texture_fraction", &Formats::texture_fraction, "bits", between(0, 12), "Texture coordinates: fraction bits");
+        key.add("displacement_bits", &Formats::displacement_bits, "bits", between(1, 16), "Displacement map, unsigned");
+        key.add("summed_height_bits", &Formats::summed_height_bits, "bits", zero_or_between(8, 48), "Summed Height Table, unsigned; 0: the narrowest of 32, 40, 48 the mesh needs");
+        key.add("screen_bits", &Formats::screen_bits, "bits", between(8, 31), "Screen positions, signed, in pixels");
+        key.add("screen_fraction", &Formats::screen_fraction, "bits", between(0, 30), "Screen positions: fraction bits, fewer than screen_bits");
+        key.add("generation_bits", &Formats::generation_bits, "bits", between(1, 4), "Generation of a vertex, unsigned");
+    });
+    list.table("hardware", &Job::hardware, "The units' options.", [](const auto& key) {
+        using Hardware = Job::Hardware;
+        key.add("triangulation", &Hardware::triangulation, "Diagonal when two edges split: the shorter one, or always the first or second");
+        key.add("culling", &Hardware::culling, "Back-face culling of finished triangles");
+        key.add("queue_order", &Hardware::queue_order, "Triangle Queue: which waiting triangle goes next, the oldest or the newest");
+        key.add("queue_watermark", &Hardware::queue_watermark, "triangles", between(1, any_count), "Host triangles are taken while fewer than this many wait");
+        key.add("direct_memory", &Hardware::direct_memory, "Functional mode reads the memories through DMI");
+        key.add("light", &Hardware::light, "-", coordinate_range, "Direction towards the light, world space, of any length");
+        key.add("ambient", &Hardware::ambient, "full scale", between(0, 1), "Light that falls on every surface");
+    });
+    list.table("check", &Job::check, "Conformance to the golden model.", [](const auto& key) {
+        using Check = Job::Check;
+        key.add("golden", &Check::golden, "Scoreboard: every edge's decision against the golden model");
+        key.add("end_to_end", &Check::end_to_end, "Golden run of the whole mesh, compared with the hardware's");
+        key.add("invariants", &Check::invariants, "The emitted mesh is closed, without T-vertices, and covers the texture");
+        key.add("allowed_flips", &Check::allowed_flips, "percent of edges", between(0, 100), "Decisions that differ within the formats' error bound; more fail the run");
+    });
+    list.table("limits", &Job::limits, "Where a run gives up.", [](const auto& key) {
+        using Limits = Job::Limits;
+        key.add("triangles", &Limits::triangles, "triangles", between(1, any_count), "Emitted triangles; more end the run with exit code 4");
+    });
+    list.table("output", &Job::output, "What a run leaves behind.", [](const auto& key) {
+        using Output = Job::Output;
+        key.add("folder", &Output::folder, KeyKind::folder, "Folder of the run");
+        key.add("ply", &Output::ply, "Write the mesh as binary PLY");
+        key.add("obj", &Output::obj, "Write the mesh as OBJ");
+        key.add("picture", &Output::picture, "Write a picture");
+    });
+    // clang-format on
+    return list.take();
+}
+
+std::string range_numbers(const Key& key) {
+    const std::string range = fmt::format("{} .. {}", key.range.low, key.range.high);
+    return key.range.or_zero ? "0 or " + range : range;
+}
+
+std::string joined(const std::vector<std::string_view>& names) {
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+bool in_range(const KeyRange& range, double value) {
+    return (value >= range.low && value <= range.high) || (range.or_zero && value == 0);
+}
+
+struct WithUnit {
+    const Key& key;
+    std::string operator()(const std::string& range) const {
+        return key.unit == "-" ? range : range + " " + key.unit;
+    }
+};
+
+// Each returns what is wrong, as the end of the sentence "`key` = value ...".
+struct Fault {
+    const Key& key;
+
+    std::string number(double value) const {
+        if (!std::isfinite(value)) {
+            return "is not a finite number; the range is " + WithUnit{key}(range_numbers(key));
+        }
+        return in_range(key.range, value)
+                   ? ""
+                   : "is out of range; the range is " + WithUnit{key}(range_numbers(key));
+    }
+
+    std::string text(const std::string& value) const {
+        if (key.kind == KeyKind::choice) {
+            return choice(value);
+        }
+        if (value.size() > longest_text) {
+            return fmt::format("has {} bytes; the limit is {}", value.size(), longest_text);
+        }
+        if (value.find('\0') != std::string::npos || !is_utf8(value)) {
+            return "is not UTF-8 text without NUL";
+        }
+        if (key.kind == KeyKind::folder && value.empty()) {
+            return "is empty; name a folder";
+        }
+        return "";
+    }
+
+    std::string choice(const std::string& value) const {
+        if (std::find(key.choices.begin(), key.choices.end(), value) != key.choices.end()) {
+            return "";
+        }
+        const std::string near = nearest_name(value, {key.choices.begin(), key.choices.end()});
+        return "is not a choice; the choices are " + joined(key.choices) +
+               (near.empty() ? "" : "; did you mean \"" + near + "\"?");
+    }
+
+    std::string operator()(bool) const { return key.kind == KeyKind::flag ? "" : wrong_kind(); }
+    std::string operator()(std::int64_t value) const {
+        return key.kind == KeyKind::integer ? number(static_cast<double>(value)) : wrong_kind();
+    }
+    std::string operator()(double value) const {
+        return key.kind == KeyKind::number ? number(value) : wrong_kind();
+    }
+    std::string operator()(const std::array<double, 3>& value) const {
+        if (key.kind != KeyKind::vector) {
+            return wrong_kind();
+        }
+        for (const double component : value) {
+            if (std::string fault = number(component); !fault.empty()) {
+                return fault;
+            }
+        }
+        return "";
+    }
+    std::string operator()(const std::string& value) const {
+        const bool textual = key.kind == KeyKind::choice || key.kind == KeyKind::text ||
+                             key.kind == KeyKind::file || key.kind == KeyKind::folder;
+        return textual ? text(value) : wrong_kind();
+    }
+
+    std::string wrong_kind() const { return "is of the wrong type; wanted is " + wanted_text(key); }
+};
+
+}  // namespace
+
+std::string_view Key::leaf() const {
+    const std::string_view whole = name;
+    return whole.substr(whole.rfind('.') + 1);
+}
+
+const std::vector<KeyTable>& job_tables() {
+    static const std::vector<KeyTable> tables = declare_keys();
+    return tables;
+}
+
+const Key* find_key(std::string_view name) {
+    for (const KeyTable& table : job_tables()) {
+        for (const Key& key : table.keys) {
+            if (key.name == name) {
+                return &key;
+            }
+        }
+    }
+    return nullptr;
+}
+
+const KeyTable* find_table(std::string_view name) {
+    for (const KeyTable& table : job_tables()) {
+        if (table.name == name) {
+            return &table;
+        }
+    }
+    return nullptr;
+}
+
+JobValue default_of(const Key& key) {
+    return key.get(Job{});
+}
+
+std::string range_text(const Key& key) {
+    switch (key.kind) {
+        case KeyKind::flag:
+            return "true, false";
+        case KeyKind::integer:
+        case KeyKind::number:
+            return range_numbers(key);
+        case KeyKind::vector:
+            return "[x, y, z], each " + range_numbers(key);
+        case KeyKind::choice:
+            return joined(key.choices);
+        case KeyKind::text:
+            return "text";
+        case KeyKind::file:
+            return "path from the job's folder, or data:path";
+        case KeyKind::folder:
+            return "path from the current directory";
+    }
+    return "";
+}
+
+std::string wanted_text(const Key& key) {
+    switch (key.kind) {
+        case KeyKind::flag:
+            return "true or false";
+        case KeyKind::integer:
+            return "an integer, " + WithUnit{key}(range_numbers(key));
+        case KeyKind::number:
+            return "a number, " + WithUnit{key}(range_numbers(key));
+        case KeyKind::vector:
+            return "three numbers, " + WithUnit{key}(range_text(key));
+        case KeyKind::choice:
+            return "one of " + joined(key.choices);
+        case KeyKind::text:
+        case KeyKind::file:
+        case KeyKind::folder:
+            return "a string: " + range_text(key);
+    }
+    return "";
+}
+
+std::string complaint(const Key& key, const JobValue& value) {
+    const std::string fault = std::visit(Fault{key}, value);
+    return fault.empty() ? "" : fmt::format("`{}` = {} {}", key.name, printable(toml_value(value)), fault);
+}
+
+void set_value(Job& job, const Key& key, const JobValue& value) {
+    if (const std::string fault = complaint(key, value); !fault.empty()) {
+        throw InputError(fault);
+    }
+    key.set(job, value);
+}
+
+bool same_settings(const Job& a, const Job& b) {
+    for (const KeyTable& table : job_tables()) {
+        for (const Key& key : table.keys) {
+            // As text, so that -0.0 differs from 0.0.
+            if (toml_value(key.get(a)) != toml_value(key.get(b))) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+}  // namespace tessera

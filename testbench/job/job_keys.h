@@ -1,0 +1,80 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "testbench/job/job.h"
+
+namespace tessera {
+
+/// A key's value as a job file writes it; a choice is its name.
+using JobValue = std::variant<bool, std::int64_t, double, std::array<double, 3>, std::string>;
+
+enum class KeyKind {
+    flag,
+    integer,
+    number,
+    vector,  ///< three numbers
+    choice,
+    text,
+    file,    ///< a path read by the rules of job_paths.h
+    folder,  ///< a path relative to the current directory
+};
+
+/// What a number, or each component of a vector, may be: low .. high, both included.
+struct KeyRange {
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+    bool or_zero = false;  ///< 0 is allowed besides
+};
+
+struct Key {
+    std::string name;  ///< dotted: mesh.columns
+    KeyKind kind;
+    std::string unit;  ///< "-": has none
+    KeyRange range;
+    std::vector<std::string_view> choices;
+    std::string description;
+    std::function<JobValue(const Job&)> get;
+    std::function<void(Job&, const JobValue&)> set;  ///< for values without complaint(); see set_value
+
+    std::string_view leaf() const;  ///< name without its table
+};
+
+/// A table of a job file; the one without a name holds the top-level keys.
+struct KeyTable {
+    std::string name;
+    std::string description;
+    std::vector<Key> keys;
+};
+
+/// Every key, declared once, in job_keys.cpp. Reading, --set, dumping and the key reference follow from it.
+const std::vector<KeyTable>& job_tables();
+
+/// nullptr if there is none of that name.
+const Key* find_key(std::string_view name);
+const KeyTable* find_table(std::string_view name);
+
+JobValue default_of(const Key& key);
+
+/// "1 .. 2048", "fifo, lifo", "true, false", ...
+std::string range_text(const Key& key);
+
+/// What a value of the key's kind must be: "an integer, 1 .. 2048 quads".
+std::string wanted_text(const Key& key);
+
+/// Why the key cannot have this value, in words; empty if it can.
+std::string complaint(const Key& key, const JobValue& value);
+
+/// Throws InputError with the complaint.
+void set_value(Job& job, const Key& key, const JobValue& value);
+
+/// Equal in every key; doubles bit for bit.
+bool same_settings(const Job& a, const Job& b);
+
+}  // namespace tessera

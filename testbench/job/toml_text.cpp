@@ -1,0 +1,111 @@
+#include "testbench/job/toml_text.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstddef>
+
+namespace tessera {
+
+namespace {
+
+std::string escaped(std::string_view text, bool quotes) {
+    std::string out;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (c == '\n') {
+            out += "\\n";
+        } else if (c == '\t') {
+            out += "\\t";
+        } else if (c == '\r') {
+            out += "\\r";
+        } else if (quotes && (c == '"' || c == '\\')) {
+            out += '\\';
+            out += c;
+        } else if (byte < 0x20 || byte == 0x7f) {
+            out += fmt::format("\\u{:04X}", byte);
+        } else {
+            out += c;
+        }
+    }
+    return out;
+}
+
+struct ToToml {
+    std::string operator()(bool value) const { return value ? "true" : "false"; }
+    std::string operator()(std::int64_t value) const { return std::to_string(value); }
+    std::string operator()(double value) const { return toml_number(value); }
+    std::string operator()(const std::array<double, 3>& v) const {
+        return fmt::format("[{}, {}, {}]", toml_number(v[0]), toml_number(v[1]), toml_number(v[2]));
+    }
+    std::string operator()(const std::string& value) const { return toml_string(value); }
+};
+
+}  // namespace
+
+std::string toml_number(double value) {
+    if (std::isnan(value)) {
+        return "nan";
+    }
+    if (std::isinf(value)) {
+        return value < 0 ? "-inf" : "inf";
+    }
+    std::string text = fmt::format("{}", value);
+    // Without a point TOML would read an integer, and -0 would lose its sign.
+    if (text.find_first_of(".e") == std::string::npos) {
+        text += ".0";
+    }
+    return text;
+}
+
+std::string toml_string(std::string_view text) {
+    return '"' + escaped(text, true) + '"';
+}
+
+std::string toml_value(const JobValue& value) {
+    return std::visit(ToToml{}, value);
+}
+
+std::string printable(std::string_view text) {
+    constexpr std::size_t limit = 60;
+    if (text.size() <= limit) {
+        return escaped(text, false);
+    }
+    std::size_t cut = limit;
+    while (cut > limit - 4 && (static_cast<unsigned char>(text[cut]) & 0xc0) == 0x80) {
+        --cut;  // not inside a UTF-8 sequence
+    }
+    return escaped(text.substr(0, cut), false) + "...";
+}
+
+bool is_utf8(std::string_view text) {
+    std::size_t i = 0;
+    while (i < text.size()) {
+        const auto lead = static_cast<unsigned char>(text[i]);
+        const std::size_t length = lead < 0x80   ? 1
+                                   : lead < 0xc2 ? 0
+                                   : lead < 0xe0 ? 2
+                                   : lead < 0xf0 ? 3
+                                   : lead < 0xf5 ? 4
+                                                 : 0;
+        if (length == 0 || text.size() - i < length) {
+            return false;
+        }
+        char32_t code = length == 1 ? lead : lead & (0xffu >> (length + 1));
+        for (std::size_t k = 1; k < length; ++k) {
+            const auto byte = static_cast<unsigned char>(text[i + k]);
+            if ((byte & 0xc0) != 0x80) {
+                return false;
+            }
+            code = (code << 6) | (byte & 0x3fu);
+        }
+        const bool overlong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
+        if (overlong || code > 0x10ffff || (code >= 0xd800 && code < 0xe000)) {
+            return false;
+        }
+        i += length;
+    }
+    return true;
+}
+
+}  // namespace tessera

@@ -1,0 +1,184 @@
+#include "testbench/job/validate_job.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "testbench/common/error.h"
+#include "testbench/job/job_choices.h"
+#include "testbench/job/job_keys.h"
+#include "testbench/job/toml_text.h"
+
+namespace tessera {
+
+namespace {
+
+using Vector = std::array<double, 3>;
+
+Vector difference(const Vector& a, const Vector& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+Vector cross(const Vector& a, const Vector& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+double length(const Vector& v) {
+    return std::hypot(v[0], v[1], v[2]);
+}
+
+std::string text_of(const Vector& v) {
+    return toml_value(v);
+}
+
+class Faults {
+  public:
+    template <typename... Args>
+    void unless(bool fine, fmt::format_string<Args...> format, Args&&... args) {
+        if (!fine) {
+            text_ += (text_.empty() ? "" : "\n") + fmt::format(format, std::forward<Args>(args)...);
+        }
+    }
+
+    void raise() const {
+        if (!text_.empty()) {
+            throw InputError(text_);
+        }
+    }
+
+  private:
+    std::string text_;
+};
+
+void check_ranges(const Job& job, Faults& faults) {
+    for (const KeyTable& table : job_tables()) {
+        for (const Key& key : table.keys) {
+            const std::string fault = complaint(key, key.get(job));
+            faults.unless(fault.empty(), "{}", fault);
+        }
+    }
+}
+
+void check_file(const std::string& table, bool wanted, const std::string& file, std::string_view source,
+                Faults& faults) {
+    faults.unless(!wanted || !file.empty(),
+                  "`{0}.file` is empty, but `{0}.source` = \"file\": name the file, or choose "
+                  "a built-in source",
+                  table);
+    faults.unless(wanted || file.empty(),
+                  "`{0}.file` = {1}, but `{0}.source` = \"{2}\" reads no file: set "
+                  "{0}.source = \"file\", or {0}.file = \"\"",
+                  table, printable(toml_string(file)), source);
+}
+
+void check_mesh(const Job::Mesh& mesh, Faults& faults) {
+    check_file("mesh", mesh.source == MeshSource::file, mesh.file, name_of(mesh.source), faults);
+    const bool round = mesh.source == MeshSource::cylinder || mesh.source == MeshSource::sphere;
+    faults.unless(
+        !round || mesh.columns == 0 || mesh.columns >= 3,
+        "`mesh.columns` = {}, but a {} closes around itself only with 3 or more: raise mesh.columns",
+        mesh.columns, name_of(mesh.source));
+    faults.unless(mesh.source != MeshSource::sphere || mesh.rows != 1,
+                  "`mesh.rows` = {}, but a sphere has 2 or more: raise mesh.rows", mesh.rows);
+}
+
+void check_map(const Job& job, Faults& faults) {
+    const Job::Map& map = job.map;
+    check_file("map", map.source == MapSource::file, map.file, name_of(map.source), faults);
+    faults.unless(map.source != MapSource::text || !map.text.empty(),
+                  "`map.text` is empty, but `map.source` = \"text\": give it a text");
+    if (map.source != MapSource::file) {
+        const std::int64_t most = std::int64_t{1} << job.formats.texture_integer;
+        faults.unless(
+            map.width <= most && map.height <= most,
+            "`map.width` = {} by `map.height` = {}, but `formats.texture_integer` = {} addresses at most {} "
+            "texels a side: make the map smaller or texture_integer larger",
+            map.width, map.height, job.formats.texture_integer, most);
+    }
+}
+
+void check_camera(const Job& job, Faults& faults) {
+    const Job::Camera& camera = job.camera;
+    const Vector view = difference(camera.target, camera.eye);
+    const double size = std::max(length(camera.eye), length(camera.target));
+    const bool apart = length(view) > 1e-9 * size;
+    faults.unless(apart, "`camera.eye` = {} and `camera.target` = {} are the same point: move one of them",
+                  text_of(camera.eye), text_of(camera.target));
+    const double up = length(camera.up);
+    faults.unless(up > 0, "`camera.up` = {} has no direction: give it one, such as [0, 0, 1]",
+                  text_of(camera.up));
+    // Below a sine of 1e-6 the picture's roll would be rounding error.
+    const bool parallel = apart && up > 0 && length(cross(view, camera.up)) <= 1e-6 * length(view) * up;
+    faults.unless(
+        !parallel,
+        "`camera.up` = {} is parallel to the view direction {} (camera.target - camera.eye): turn up by "
+        "a right angle",
+        text_of(camera.up), text_of(view));
+    const Job::Formats& formats = job.formats;
+    const std::int64_t integer_bits = formats.screen_bits - formats.screen_fraction - 1;
+    if (integer_bits >= 0) {
+        const std::int64_t most = std::int64_t{1} << integer_bits;
+        faults.unless(
+            camera.viewport_width <= most && camera.viewport_height <= most,
+            "`camera.viewport_width` = {} by `camera.viewport_height` = {}, but `formats.screen_bits` = {} "
+            "with "
+            "`formats.screen_fraction` = {} reaches only {} pixels: make the viewport smaller, or the format "
+            "wider",
+            camera.viewport_width, camera.viewport_height, formats.screen_bits, formats.screen_fraction,
+            most);
+    }
+}
+
+void check_formats(const Job& job, Faults& faults) {
+    const Job::Formats& formats = job.formats;
+    faults.unless(
+        formats.position_fraction < formats.position_bits,
+        "`formats.position_fraction` = {} must be less than `formats.position_bits` = {}: lower it, or raise "
+        "position_bits",
+        formats.position_fraction, formats.position_bits);
+    faults.unless(
+        formats.screen_fraction < formats.screen_bits,
+        "`formats.screen_fraction` = {} must be less than `formats.screen_bits` = {}: lower it, or raise "
+        "screen_bits",
+        formats.screen_fraction, formats.screen_bits);
+    faults.unless(formats.normal_bits - formats.normal_fraction >= 2,
+                  "`formats.normal_fraction` = {} leaves {} of `formats.normal_bits` = {} for sign and "
+                  "integer, and 1.0 "
+                  "needs 2: lower it, or raise normal_bits",
+                  formats.normal_fraction, formats.normal_bits - formats.normal_fraction,
+                  formats.normal_bits);
+    const std::int64_t generations = std::int64_t{1} << formats.generation_bits;
+    faults.unless(
+        job.tests.generation_limit < generations,
+        "`tests.generation_limit` = {}, but `formats.generation_bits` = {} counts to {}: lower the limit, or "
+        "raise generation_bits",
+        job.tests.generation_limit, formats.generation_bits, generations - 1);
+}
+
+void check_light(const Job::Hardware& hardware, Faults& faults) {
+    faults.unless(length(hardware.light) > 0,
+                  "`hardware.light` = {} has no direction: give it one, such as [0, 0, 1]",
+                  text_of(hardware.light));
+}
+
+}  // namespace
+
+void validate(const Job& job) {
+    Faults ranges;
+    check_ranges(job, ranges);
+    ranges.raise();  // the checks below rely on them
+
+    Faults faults;
+    check_mesh(job.mesh, faults);
+    check_map(job, faults);
+    check_camera(job, faults);
+    check_formats(job, faults);
+    check_light(job.hardware, faults);
+    faults.raise();
+}
+
+}  // namespace tessera

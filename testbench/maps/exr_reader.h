@@ -1,0 +1,23 @@
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "testbench/maps/height_map.h"
+
+namespace tessera {
+
+/// Reads one channel of an OpenEXR file (versions up to 2, single part, scan lines or tiles, every
+/// compression of libOpenEXR 3.1) through libOpenEXR, single-threaded.
+///
+/// The map is the data window, wherever it lies; the display window is of no interest. Of several levels
+/// (mip or rip map) the finest is read.
+/// Channel: the named one, else "Y", else "R", else the only one. It may be half, float or uint and keeps its
+/// values; uint is rounded to float (exact up to 2^24). Range: lowest to highest finite value, see
+/// repair_non_finite.h for the others; equal for a constant map. Subnormal numbers are kept and counted.
+///
+/// Refused: deep data, several parts, a subsampled channel, missing channel, pixels missing or undecodable,
+/// no finite value, a claim the file cannot hold (exr_header.h). EXR has no checksum: a changed byte in
+/// uncompressed pixels goes unnoticed, here as everywhere.
+HeightMap read_exr(const std::filesystem::path& path, const std::string& channel);
+
+}  // namespace tessera

@@ -1,0 +1,42 @@
+#pragma once
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace tessera {
+
+/// A displacement map as its source holds it, before quantising.
+///
+/// Texel (x, y) is values[y * width + x]; y = 0 is the BOTTOM row (v = 0): readers turn the image
+/// (algorithm.md section 2: texture origin is bottom left, the host turns the image, the hardware never
+/// does).
+struct HeightMap {
+    int width = 0;
+    int height = 0;
+    std::vector<float> values;
+
+    /// The values that the lowest and the highest displacement code stand for. Integer sources (PGM, PNG)
+    /// hold sample / maxval and have range 0..1; floating-point and uint EXR sources hold their own values
+    /// and are quantised over the range of their finite values. A constant map of the latter kind has
+    /// range_low == range_high: whoever divides by the difference must look first.
+    double range_low = 0;
+    double range_high = 1;
+
+    /// Repairs made and oddities met while reading, one sentence each without the file's name, for the report
+    /// ("3 NaN texels set to ..."). Empty for a file about which there is nothing to say.
+    std::vector<std::string> repairs;
+
+    float& at(int x, int y) {
+        return values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                      static_cast<std::size_t>(x)];
+    }
+    float at(int x, int y) const {
+        return values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                      static_cast<std::size_t>(x)];
+    }
+};
+
+/// Largest map side in texels (12 integer bits of the texture coordinate).
+inline constexpr int largest_map_side = 4096;
+
+}  // namespace tessera

@@ -1,0 +1,37 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+namespace tessera {
+
+/// One vertex of the base mesh as the host holds it, in model units.
+struct BaseVertex {
+    glm::dvec3 position{0};
+    glm::dvec3 normal{0};   ///< unit length
+    glm::dvec3 tangent{0};  ///< unit length, dp/du made orthogonal to the normal
+    double handedness = 1;  ///< +1 or -1: bitangent = handedness * cross(normal, tangent)
+    glm::dvec2 texture{0};  ///< u, v as in the file: 0..1 spans the map once; v = 0 is the bottom row
+};
+
+/// The base triangle mesh p(u,v), triangulated, with normals and tangent frames complete.
+struct BaseMesh {
+    std::vector<BaseVertex> vertices;
+    std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
+
+    /// Area-weighted mean of |dp/du| and |dp/dv|: world length of one unit of u and of v, and their spread.
+    struct TextureScale {
+        double mean_u = 1, mean_v = 1;
+        double smallest_u = 1, largest_u = 1, smallest_v = 1, largest_v = 1;
+    } texture_scale;
+
+    std::size_t dropped_degenerate =
+        0;  ///< triangles of zero area or that name one vertex twice, dropped at loading
+    std::size_t dropped_duplicate = 0;  ///< triangles on three positions an earlier triangle lies on, dropped
+    std::vector<std::string>
+        repairs;  ///< one sentence each, for the report: what was mended, or found and left
+};
+
+}  // namespace tessera

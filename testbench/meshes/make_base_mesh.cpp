@@ -1,0 +1,41 @@
+#include "testbench/meshes/make_base_mesh.h"
+
+#include <cstdint>
+
+#include "testbench/common/error.h"
+#include "testbench/meshes/built_in.h"
+#include "testbench/meshes/obj_reader.h"
+
+namespace tessera {
+
+namespace {
+
+/// 0 in a job: the paper's plane of 18 triangles; round surfaces of the 1800 triangles of its cylinder.
+std::int64_t quads(std::int64_t wanted, MeshSource source) {
+    if (wanted != 0)
+        return wanted;
+    return source == MeshSource::plane ? 3 : 30;
+}
+
+}  // namespace
+
+BaseMesh make_base_mesh(Job::Mesh const& job, std::string const& file) {
+    const std::int64_t columns = quads(job.columns, job.source);
+    const std::int64_t rows = quads(job.rows, job.source);
+    switch (job.source) {
+        case MeshSource::plane:
+            return make_plane(columns, rows, job.width, job.depth);
+        case MeshSource::cylinder:
+            return make_cylinder(columns, rows, job.radius, job.height);
+        case MeshSource::sphere:
+            return make_sphere(columns, rows, job.radius);
+        case MeshSource::file:
+            if (file.empty()) {
+                throw InputError("mesh.file is empty: with mesh.source = \"file\" it must name an OBJ file");
+            }
+            return read_obj(file);
+    }
+    throw InputError("mesh.source is none of plane, cylinder, sphere, file");
+}
+
+}  // namespace tessera

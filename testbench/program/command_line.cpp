@@ -1,0 +1,65 @@
+#include "testbench/program/command_line.h"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+
+#include "testbench/common/error.h"
+
+namespace tessera {
+
+namespace {
+
+std::filesystem::path default_data_folder() {
+    const char* const from_environment = std::getenv("TESSERA_DATA");
+    return from_environment != nullptr ? std::filesystem::path(from_environment)
+                                       : std::filesystem::path(TESSERA_SOURCE_DIR) / ".." / "shared" / "data";
+}
+
+}  // namespace
+
+std::optional<Command> read_command_line(int argc, const char* const* argv) {
+    Command command;
+    std::string data = default_data_folder().lexically_normal().string();
+
+    CLI::App app{
+        "tessera: a SystemC model of hardware that renders displacement maps by adaptive tessellation"};
+    app.set_version_flag("--version", TESSERA_VERSION);
+    app.require_subcommand(0, 1);  // none is told apart below, from one that does not exist
+    app.footer(
+        "exit codes: 0 fine, 1 conformance or an invariant violated, 2 bad input or usage, 3 deadlock,\n"
+        "            4 a stated resource limit");
+
+    CLI::App* const run =
+        app.add_subcommand("run", "run a job: tessellate, check against the golden model, report");
+    CLI::Option* const job = run->add_option(
+        "JOB", command.job_file, "job file (TOML); without one, the half donut on the plane of 18 triangles");
+    run->add_option("--set", command.settings, "set one key of the job, as in --set tests.view_threshold=2")
+        ->take_all()
+        ->allow_extra_args(false);
+    run->add_option("--data", data, "folder that `data:` paths of a job begin at; $TESSERA_DATA likewise");
+    run->add_flag("--dump-config", command.dump_config,
+                  "print the effective job, every key documented, and stop");
+
+    CLI::App* const keys =
+        app.add_subcommand("keys", "print every key of a job file: unit, default, range, meaning");
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& success) {
+        app.exit(success);
+        return std::nullopt;
+    } catch (const CLI::ParseError& error) {
+        throw InputError(fmt::format("{}; see `tessera --help` and `tessera run --help`", error.what()));
+    }
+    if (!run->parsed() && !keys->parsed())
+        throw InputError("say what to do: `tessera run` or `tessera keys`; see `tessera --help`");
+    if (job->count() > 0 && command.job_file.empty())
+        throw InputError("JOB is empty: name a job file, or leave it out for the default job");
+    command.verb = keys->parsed() ? Command::Verb::keys : Command::Verb::run;
+    command.data_folder = data;
+    return command;
+}
+
+}  // namespace tessera

@@ -1,0 +1,38 @@
+#include "testbench/program/progress.h"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace tessera {
+
+Progress::Progress() : terminal_(isatty(STDERR_FILENO) != 0), next_(std::chrono::steady_clock::now()) {}
+
+Progress::~Progress() {
+    clear();
+}
+
+void Progress::show(const std::string& what, double part) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!terminal_ || now < next_)
+        return;
+    next_ = now + std::chrono::milliseconds(100);
+    constexpr int width = 30;
+    const int full = static_cast<int>(std::clamp(part, 0.0, 1.0) * width);
+    fmt::print(stderr, "\r\x1b[K[{:=<{}}{: <{}}] {:3.0f} %  {}", "", full, "", width - full, 100 * part,
+               what);
+    std::fflush(stderr);
+    shown_ = true;
+}
+
+void Progress::clear() {
+    if (!shown_)
+        return;
+    fmt::print(stderr, "\r\x1b[K");
+    std::fflush(stderr);
+    shown_ = false;
+}
+
+}  // namespace tessera

@@ -1,0 +1,25 @@
+#pragma once
+#include <chrono>
+#include <string>
+
+namespace tessera {
+
+/// One line on a terminal that is overwritten as work goes on; silent where standard error is not a terminal.
+class Progress {
+  public:
+    Progress();
+    ~Progress();
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+
+    /// part: 0..1 of the work done. Shown at most ten times a second.
+    void show(const std::string& what, double part);
+    void clear();
+
+  private:
+    bool terminal_;
+    bool shown_ = false;
+    std::chrono::steady_clock::time_point next_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,124 @@
+#include "testbench/program/summary.h"
+
+#include <fmt/core.h>
+
+#include "modules/datapath/widths.h"
+
+namespace tessera {
+
+namespace {
+
+std::string row(const char* name, const std::string& value) {
+    return fmt::format("  {:<26}{}\n", name, value);
+}
+
+/// 1234567 as 1,234,567.
+std::string count(std::uint64_t value) {
+    std::string text = std::to_string(value);
+    for (std::size_t place = text.size(); place > 3; place -= 3)
+        text.insert(place - 3, ",");
+    return text;
+}
+
+double percent(std::uint64_t part, std::uint64_t whole) {
+    return whole == 0 ? 0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
+}
+
+std::string saturations_text(const datapath::Saturations& saturations) {
+    std::string text;
+    const auto add = [&](const char* name, std::uint64_t value) {
+        if (value > 0)
+            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, count(value));
+    };
+    add("displaced position", saturations.displaced_position);
+    add("normal", saturations.normal);
+    add("screen position", saturations.screen_position);
+    add("view distance", saturations.view_distance);
+    add("screen normal", saturations.screen_normal);
+    add("zero vectors", saturations.degenerate_normal);
+    return text.empty() ? "none" : text;
+}
+
+std::string checks_rows(const Checks& checks) {
+    std::string text;
+    if (checks.conformance) {
+        const ConformanceResult& c = *checks.conformance;
+        std::string verdict;
+        if (c.flips_percent() > checks.allowed_flips)
+            verdict =
+                fmt::format(", more than the {} % that check.allowed_flips allows", checks.allowed_flips);
+        text +=
+            row("golden model",
+                fmt::format("{} edges compared, {} mismatches, {} allowed flips ({:.3f} %){}", count(c.edges),
+                            count(c.mismatches), count(c.flipped_edges), c.flips_percent(), verdict));
+    }
+    if (checks.end_to_end) {
+        const EndToEndResult& e = *checks.end_to_end;
+        text += row(
+            "golden mesh",
+            fmt::format("{} triangles ({:+.2f} %); surfaces at most {:.3g} model units apart, RMS {:.3g}",
+                        count(e.golden_triangles),
+                        e.hardware_triangles == 0 ? 0.0
+                                                  : 100.0 * (static_cast<double>(e.golden_triangles) /
+                                                                 static_cast<double>(e.hardware_triangles) -
+                                                             1),
+                        std::max(e.hardware_to_golden.max_model, e.golden_to_hardware.max_model),
+                        std::max(e.hardware_to_golden.rms_model, e.golden_to_hardware.rms_model)));
+    }
+    if (checks.invariants) {
+        const InvariantResult& i = *checks.invariants;
+        text += row("invariants", fmt::format("{} cracks, {} T-vertices, {} collapsed, {} turned over",
+                                              i.cracks, i.t_vertices, i.collapsed, i.turned_over));
+        if (i.open_texture_seam_edges > 0)
+            text += row(
+                "texture seams",
+                fmt::format("{} edges open: the map is not continuous across a seam of this mesh's texture "
+                            "coordinates",
+                            count(i.open_texture_seam_edges)));
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string summary(const Setup& setup, const Simulation& simulation, const Checks& checks, double seconds) {
+    const Pipeline& p = simulation.pipeline;
+    const auto& counts = p.pass_or_tessellate.counts();
+    const std::uint64_t edges = p.tessellation_tests.edges_tested();
+    const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
+    const MemoryPort& sat = p.tessellation_tests.summed_height_test.summed_height_table;
+
+    std::string text;
+    text += row(
+        "triangles",
+        fmt::format("{} base -> {} finished{}", count(setup.base_triangles.size()), count(counts.finished),
+                    counts.culled > 0 ? fmt::format(", {} culled", count(counts.culled)) : ""));
+    text += row("edges", fmt::format("{} tested, {} split ({:.1f} %)", count(edges),
+                                     count(counts.edges_split), percent(counts.edges_split, edges)));
+    text +=
+        row("  split by", fmt::format("normal {}, summed height {}, both {}", count(counts.split_by_normal),
+                                      count(counts.split_by_summed_height), count(counts.split_by_both)));
+    text += row(
+        "  wanted, but stopped by",
+        fmt::format("view {}, tex coord {}, generation {} (may be several)", count(counts.stopped_by_view),
+                    count(counts.stopped_by_tex_coord), count(counts.stopped_by_generation)));
+    text += row("triangle queue", fmt::format("at most {} triangles waiting, {} bits each",
+                                              count(p.triangle_queue.high_water_mark()), widths.triangle));
+    text +=
+        row("summed height table",
+            fmt::format("{} bytes, {} bit entries{}; {} reads, {:.1f} an edge",
+                        count(setup.registers.summed_height_table.bytes()),
+                        setup.registers.formats.summed_height.bits,
+                        setup.summed_height_bits_chosen ? " (chosen)" : "", count(sat.reads()),
+                        edges == 0 ? 0.0 : static_cast<double>(sat.reads()) / static_cast<double>(edges)));
+    const datapath::Saturations saturations = p.saturations();
+    text += row("saturations", saturations_text(saturations));
+    text += checks_rows(checks);
+    text += row("functional mode", fmt::format("{:.2f} s, {:.2f} million edges a second, checking included",
+                                               seconds, static_cast<double>(edges) / seconds / 1e6));
+    for (const std::string& remark : setup.remarks)
+        text += fmt::format("  note: {}\n", remark);
+    return text;
+}
+
+}  // namespace tessera

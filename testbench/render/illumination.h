@@ -1,0 +1,48 @@
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "testbench/render/ray_scene.h"
+#include "testbench/render/shading_point.h"
+#include "testbench/render/style.h"
+#include "testbench/render/view.h"
+
+namespace tessera {
+
+/// Sub-pixel samples; each sees its own share of the lights, all of them together see all.
+inline constexpr std::size_t samples_per_pixel = 16;
+
+/// What arrives at a point in linear light: a white surface squarely in full light has about 1.
+struct Light {
+    glm::dvec3 diffuse{0};
+    double highlight = 0;
+};
+
+/// A key light with a soft edge, a weak fill light without shadow, and a sky that is brightest overhead. The
+/// directions are fixed and the same at every pixel: no noise, no dependence on order.
+class Illumination {
+  public:
+    Illumination(const View& view, const Style& style, const RayScene& scene);
+
+    /// The light at points that share a sub-pixel position; quick if they are neighbours.
+    void light(std::size_t sample, const std::vector<ShadingPoint>& points, std::vector<Light>& lights);
+
+  private:
+    struct Lamp {
+        glm::dvec3 direction;   ///< towards it
+        glm::dvec3 diffuse{0};  ///< times the cosine
+        double highlight = 0;
+    };
+
+    void add(const Lamp& lamp, const std::vector<ShadingPoint>& points, std::vector<Light>& lights);
+
+    const RayScene& scene_;
+    glm::dvec3 eye_;  ///< direction towards the viewer, good enough for highlights
+    glm::dvec3 fill_;
+    std::vector<Lamp> lamps_[samples_per_pixel];
+    std::vector<Ray> rays_;
+    std::vector<std::size_t> of_ray_;
+    std::vector<std::uint8_t> occluded_;
+};
+
+}  // namespace tessera

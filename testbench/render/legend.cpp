@@ -1,0 +1,100 @@
+#include "testbench/render/legend.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "testbench/render/draw_text.h"
+#include "testbench/render/palette.h"
+
+namespace tessera {
+namespace {
+
+struct Entry {
+    Colour colour;
+    std::string name;
+};
+
+struct Legend {
+    std::string title;
+    std::vector<Entry> entries;
+};
+
+constexpr double box_width = 22;
+constexpr double gap = 6;         // between box and name
+constexpr double entry_gap = 14;  // between entries
+constexpr double title_gap = 18;
+
+Legend make_legend(const RenderMesh& mesh, ColourBy colour_by) {
+    Legend legend;
+    if (colour_by == ColourBy::generation) {
+        unsigned last = 0;
+        for (const RenderMesh::Triangle& triangle : mesh.triangles)
+            last = std::max<unsigned>(last, triangle.generation);
+        legend.title = "generation";
+        for (unsigned g = 0; g <= last; ++g)
+            legend.entries.push_back({generation_colour(g), std::to_string(g)});
+    } else if (colour_by == ColourBy::deciding_test) {
+        legend.title = "split by";
+        legend.entries = {{deciding_test_colour(DecidingTest::normal), "normal"},
+                          {deciding_test_colour(DecidingTest::summed_height), "summed height"},
+                          {deciding_test_colour(DecidingTest::both), "both"},
+                          {deciding_test_colour(DecidingTest::base), "none: base"}};
+    }
+    return legend;
+}
+
+/// Calls place(entry, x) with each entry's left border; returns the right border of the last.
+template <typename Place>
+double lay_out(const Legend& legend, ColourBy colour_by, double x, const Place& place) {
+    x += text_width(legend_letter, legend.title) + title_gap;
+    double right = x;
+    for (const Entry& entry : legend.entries) {
+        place(entry, x);
+        if (colour_by == ColourBy::generation) {
+            right = x + box_width;  // numbers stand below their boxes, which touch
+            x = right;
+        } else {
+            right = x + box_width + gap + text_width(legend_letter, entry.name);
+            x = right + entry_gap;
+        }
+    }
+    return right;
+}
+
+void draw_box(Image& image, double x, double y, const Colour& colour) {
+    const int left = std::max(0, static_cast<int>(std::lround(x)));
+    const int right = std::min(image.width, static_cast<int>(std::lround(x + box_width)));
+    const int bottom = std::min(image.height, static_cast<int>(std::lround(y)));
+    const int top = std::max(0, bottom - static_cast<int>(legend_letter));
+    for (int row = top; row < bottom; ++row)
+        for (int column = left; column < right; ++column)
+            image.set(column, row, colour);
+}
+
+}  // namespace
+
+void draw_legend(Image& image, double x, double y, const RenderMesh& mesh, ColourBy colour_by) {
+    const Legend legend = make_legend(mesh, colour_by);
+    if (legend.entries.empty())
+        return;
+    const bool numbers_below = colour_by == ColourBy::generation;
+    const double number = legend_letter * 0.8;
+    draw_text(image, x, y, legend_letter, legend.title, legend_ink);
+    lay_out(legend, colour_by, x, [&](const Entry& entry, double left) {
+        draw_box(image, left, y, entry.colour);
+        if (numbers_below)
+            draw_text(image, left + (box_width - text_width(number, entry.name)) / 2, y + gap + number,
+                      number, entry.name, legend_ink);
+        else
+            draw_text(image, left + box_width + gap, y, legend_letter, entry.name, legend_ink);
+    });
+}
+
+double legend_width(const RenderMesh& mesh, ColourBy colour_by) {
+    const Legend legend = make_legend(mesh, colour_by);
+    return legend.entries.empty() ? 0 : lay_out(legend, colour_by, 0, [](const Entry&, double) {});
+}
+
+}  // namespace tessera

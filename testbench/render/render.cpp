@@ -1,0 +1,238 @@
+#include "testbench/render/render.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "testbench/render/illumination.h"
+#include "testbench/render/legend.h"
+#include "testbench/render/palette.h"
+#include "testbench/render/ray_scene.h"
+#include "testbench/render/wireframe.h"
+
+namespace tessera {
+namespace {
+
+constexpr int tile_side = 8;
+constexpr double line_shade = 0.16;  // of the surface's colour
+
+/// 4 x 4 strata; no two samples share a row or a column of 16, so edges along the axes are smooth too.
+glm::dvec2 sample_position(std::size_t sample) {
+    const std::size_t place = sample % 4;
+    const std::size_t line = sample / 4;
+    const auto column = static_cast<double>(place);
+    const auto row = static_cast<double>(line);
+    return {(column + (row + 0.5) / 4) / 4, (row + (column + 0.5) / 4) / 4};
+}
+
+/// A style with its colours in linear light.
+class Paint {
+  public:
+    Paint(const Style& style, const RenderMesh& mesh)
+        : style_(style),
+          mesh_(mesh),
+          background_(to_linear(style.background)),
+          surface_(to_linear(style.surface)) {
+        for (unsigned g = 0; g < generations_.size(); ++g)
+            generations_[g] = to_linear(generation_colour(g));
+        for (unsigned t = 0; t < tests_.size(); ++t)
+            tests_[t] = to_linear(deciding_test_colour(static_cast<DecidingTest>(t)));
+    }
+
+    bool has_lines() const { return style_.wireframe; }
+    const glm::dvec3& background() const { return background_; }
+
+    glm::dvec3 colour(std::uint32_t triangle, const Light& light, const Wireframe* lines,
+                      const glm::dvec2& at) const {
+        const glm::dvec3& paint = paint_of(mesh_.triangles[triangle]);
+        const glm::dvec3 lit = paint * light.diffuse + light.highlight;
+        if (!lines)
+            return lit;
+        return glm::mix(lit, paint * line_shade * (0.4 + 0.6 * light.diffuse),
+                        lines->coverage(at.x, at.y, style_.line_width));
+    }
+
+  private:
+    const glm::dvec3& paint_of(const RenderMesh::Triangle& triangle) const {
+        switch (style_.colour_by) {
+            case ColourBy::generation:
+                return generations_[std::min<std::size_t>(triangle.generation, generations_.size() - 1)];
+            case ColourBy::deciding_test:
+                return tests_[static_cast<std::size_t>(triangle.deciding_test)];
+            case ColourBy::none:
+                break;
+        }
+        return surface_;
+    }
+
+    const Style& style_;
+    const RenderMesh& mesh_;
+    glm::dvec3 background_, surface_;
+    std::array<glm::dvec3, 16> generations_;
+    std::array<glm::dvec3, 4> tests_;
+};
+
+class Renderer {
+  public:
+    Renderer(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles)
+        : mesh_(mesh), view_(view), scene_(mesh), illumination_(view, styles.front(), scene_) {
+        for (const Style& style : styles) {
+            paints_.emplace_back(style, mesh);
+            images_.emplace_back(view.width, view.height, style.background);
+            any_lines_ = any_lines_ || style.wireframe;
+        }
+        glm::dvec3 low(0), high(0);
+        for (const glm::vec3& p : mesh.positions) {
+            low = glm::min(low, glm::dvec3(p));
+            high = glm::max(high, glm::dvec3(p));
+        }
+        clearance_ = 3e-6 * glm::length(high - low);
+    }
+
+    std::vector<Image> run() {
+        for (int y = 0; y < view_.height; y += tile_side)
+            for (int x = 0; x < view_.width; x += tile_side)
+                render_tile(x, y, std::min(x + tile_side, view_.width),
+                            std::min(y + tile_side, view_.height));
+        return std::move(images_);
+    }
+
+  private:
+    void render_tile(int left, int top, int right, int bottom) {
+        const std::size_t pixels = static_cast<std::size_t>((right - left) * (bottom - top));
+        sums_.assign(pixels * paints_.size(), glm::dvec3(0));
+        bool anything = false;
+        for (std::size_t sample = 0; sample < samples_per_pixel; ++sample)
+            anything = add_sample(sample, left, top, right, bottom) || anything;
+        if (!anything)
+            return;
+        for (std::size_t s = 0; s < paints_.size(); ++s) {
+            const glm::dvec3* sum = &sums_[s * pixels];
+            for (int y = top; y < bottom; ++y)
+                for (int x = left; x < right; ++x)
+                    images_[s].set(x, y, to_srgb(*sum++ / static_cast<double>(samples_per_pixel)));
+        }
+    }
+
+    /// Adds one sample of every pixel in the tile to the sums; false if none met the mesh.
+    bool add_sample(std::size_t sample, int left, int top, int right, int bottom) {
+        const glm::dvec2 offset = sample_position(sample);
+        rays_.clear();
+        at_.clear();
+        for (int y = top; y < bottom; ++y)
+            for (int x = left; x < right; ++x) {
+                at_.push_back({x + offset.x, y + offset.y});
+                rays_.push_back(
+                    {view_.eye - mesh_.origin, view_.ray(at_.back().x, at_.back().y), view_.near_plane});
+            }
+        scene_.first_hits(rays_, hits_);
+        points_.clear();
+        for (std::size_t i = 0; i < rays_.size(); ++i)
+            if (hits_[i] != RayScene::nothing)
+                points_.push_back(shading_point(rays_[i], hits_[i]));
+        illumination_.light(sample, points_, lights_);
+
+        std::size_t point = 0;
+        for (std::size_t i = 0; i < rays_.size(); ++i) {
+            if (hits_[i] == RayScene::nothing) {
+                for (std::size_t s = 0; s < paints_.size(); ++s)
+                    sums_[s * rays_.size() + i] += paints_[s].background();
+                continue;
+            }
+            const Wireframe lines = any_lines_ ? wireframe_of(hits_[i]) : Wireframe();
+            for (std::size_t s = 0; s < paints_.size(); ++s)
+                sums_[s * rays_.size() + i] += paints_[s].colour(
+                    hits_[i], lights_[point], paints_[s].has_lines() ? &lines : nullptr, at_[i]);
+            ++point;
+        }
+        return !points_.empty();
+    }
+
+    ShadingPoint shading_point(const Ray& ray, std::uint32_t index) const {
+        std::array<glm::dvec3, 3> p, n;
+        for (std::size_t k = 0; k < 3; ++k) {
+            p[k] = mesh_.positions[mesh_.triangles[index].vertices[k]];
+            n[k] = mesh_.normals[mesh_.triangles[index].vertices[k]];
+        }
+        const glm::dvec3 across = glm::cross(p[1] - p[0], p[2] - p[0]);
+        const double facing = -glm::dot(across, ray.direction);
+        const glm::dvec3 flat = glm::normalize(facing < 0 ? -across : across);
+
+        // Möller and Trumbore's barycentric coordinates, kept inside: Embree's own rounding may be a little
+        // out.
+        const glm::dvec3 from = ray.origin - p[0];
+        const glm::dvec3 turned = glm::cross(from, ray.direction);
+        const double scale = facing == 0 ? 0 : 1 / facing;  // edge-on to the last bit: any corner will do
+        double b1 = std::clamp(glm::dot(p[2] - p[0], turned) * scale, 0.0, 1.0);
+        double b2 = std::clamp(-glm::dot(p[1] - p[0], turned) * scale, 0.0, 1.0);
+        if (b1 + b2 > 1) {
+            const double sum = b1 + b2;
+            b1 /= sum;
+            b2 /= sum;
+        }
+        const std::array<double, 3> b{1 - b1 - b2, b1, b2};
+
+        ShadingPoint result;
+        result.triangle = index;
+        glm::dvec3 normal(0);
+        for (std::size_t k = 0; k < 3; ++k) {
+            result.position += b[k] * p[k];
+            normal += b[k] * n[k];
+        }
+        const double side = glm::dot(normal, flat) < 0 ? -1 : 1;
+        const double length = glm::length(normal);
+        result.normal = length > 0.01 ? normal * (side / length) : flat;
+
+        // Hanika, Hacking the Shadow Terminator (Ray Tracing Gems II, 4).
+        glm::dvec3 lifted = result.position;
+        for (std::size_t k = 0; k < 3; ++k)
+            lifted -= b[k] * std::min(0.0, glm::dot(result.position - p[k], side * n[k])) * side * n[k];
+        result.ray_origin = lifted + clearance_ * flat;
+        return result;
+    }
+
+    Wireframe wireframe_of(std::uint32_t triangle) const {
+        std::array<glm::dvec3, 3> corners;
+        for (std::size_t k = 0; k < 3; ++k)
+            corners[k] = view_.project(mesh_.origin +
+                                       glm::dvec3(mesh_.positions[mesh_.triangles[triangle].vertices[k]]));
+        return Wireframe(corners);
+    }
+
+    const RenderMesh& mesh_;
+    const View& view_;
+    RayScene scene_;
+    Illumination illumination_;
+    std::vector<Paint> paints_;
+    std::vector<Image> images_;
+    bool any_lines_ = false;
+    double clearance_ =
+        0;  // of the rays to the lights above the surface, against single precision's rounding
+
+    // of the tile in work, kept for their memory
+    std::vector<Ray> rays_;
+    std::vector<glm::dvec2> at_;
+    std::vector<std::uint32_t> hits_;
+    std::vector<ShadingPoint> points_;
+    std::vector<Light> lights_;
+    std::vector<glm::dvec3> sums_;  // linear light, one plane per style
+};
+
+}  // namespace
+
+std::vector<Image> render_styles(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles) {
+    if (styles.empty())
+        return {};
+    std::vector<Image> images = Renderer(mesh, view, styles).run();
+    for (std::size_t s = 0; s < styles.size(); ++s)
+        if (styles[s].legend)
+            draw_legend(images[s], 16, view.height - 16 - legend_descent, mesh, styles[s].colour_by);
+    return images;
+}
+
+Image render(const RenderMesh& mesh, const View& view, const Style& style) {
+    return render_styles(mesh, view, {style}).front();
+}
+
+}  // namespace tessera

@@ -1,0 +1,19 @@
+#pragma once
+#include <vector>
+
+#include "testbench/render/image.h"
+#include "testbench/render/render_mesh.h"
+#include "testbench/render/style.h"
+#include "testbench/render/view.h"
+
+namespace tessera {
+
+/// A picture of the mesh: displaced normals interpolated, soft shadows and sky light by rays, 4 x 4 samples a
+/// pixel. The same input gives the same bytes, whatever the machine's load. Nothing in sight: the background.
+/// Memory beside the mesh: about 100 bytes a triangle. Throws ResourceError when it runs out.
+Image render(const RenderMesh& mesh, const View& view, const Style& style);
+
+/// The same view in several styles for little more than the price of one; the first one's lights serve all.
+std::vector<Image> render_styles(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles);
+
+}  // namespace tessera

@@ -1,0 +1,31 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "testbench/check/conformance_result.h"
+#include "testbench/check/end_to_end.h"
+#include "testbench/check/invariants.h"
+
+namespace tessera {
+
+/// What was checked of a run and how it came out; a part that the job switched off is absent.
+struct Checks {
+    std::optional<ConformanceResult> conformance;
+    std::optional<EndToEndResult> end_to_end;
+    std::optional<InvariantResult> invariants;
+    double allowed_flips = 0.5;        ///< percent of edges
+    std::vector<std::string> remarks;  ///< what was mended or is odd in mesh and map; one sentence each
+
+    bool passed() const {
+        return (!conformance || conformance->passed(allowed_flips)) && (!invariants || invariants->passed());
+    }
+};
+
+/// The conformance report of a run, to be read.
+std::string conformance_text(const Checks& checks);
+
+/// The same for programs.
+std::string conformance_json(const Checks& checks);
+
+}  // namespace tessera

@@ -1,0 +1,273 @@
+#include "testbench/report/statistics.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "modules/datapath/reciprocal.h"
+#include "modules/datapath/widths.h"
+
+namespace tessera {
+
+namespace {
+
+class Collector {
+  public:
+    explicit Collector(std::string group) : group_(std::move(group)) {}
+
+    template <class Value>
+    Collector& add(const char* name, Value value, const char* unit, const char* description) {
+        Figure figure{group_, name, {}, unit, description};
+        if constexpr (std::is_floating_point_v<Value>)
+            figure.value = static_cast<double>(value);
+        else if constexpr (std::is_arithmetic_v<Value>)
+            figure.value = static_cast<std::uint64_t>(value);
+        else
+            figure.value = std::string(value);
+        figures.push_back(std::move(figure));
+        return *this;
+    }
+
+    std::vector<Figure> figures;
+
+  private:
+    std::string group_;
+};
+
+double ratio(double part, double whole) {
+    return whole > 0 ? part / whole : 0;
+}
+
+Collector format_figures(const Setup& setup) {
+    const datapath::Formats& formats = setup.registers.formats;
+    const datapath::Widths widths = datapath::stream_widths(formats);
+    Collector c("formats");
+    c.add("position_bits", formats.position.bits, "bit", "P, P', one component");
+    c.add("position_fraction", formats.position.fraction, "bit", "of which behind the point");
+    c.add("model_scale", setup.model_scale.scale, "world/model",
+          "world unit of the machine per unit of the model");
+    c.add("normal_bits", formats.normal.bits, "bit", "N, T, N', N's, normal map, one component");
+    c.add("texture_bits", formats.texture.bits, "bit", "u or v, the border bit included");
+    c.add("displacement_bits", formats.displacement.bits, "bit", "d");
+    c.add("summed_height_bits", formats.summed_height.bits, "bit",
+          setup.summed_height_bits_chosen ? "SAT entry, chosen for this mesh" : "SAT entry, as configured");
+    c.add("largest_rectangle_sum", setup.largest_rectangle_sum, "code",
+          "bound on any rectangle's sum over this mesh: what the SAT entry must hold");
+    c.add("summed_height_bits_needed",
+          setup.largest_rectangle_sum == 0 ? 1 : 64 - datapath::leading_zeros(setup.largest_rectangle_sum),
+          "bit", "narrowest SAT entry that holds that sum");
+    c.add("view_distance_fraction", formats.view_distance.fraction, "bit", "of w, as wide as a position");
+    c.add("screen_bits", formats.screen.bits, "bit", "P's, x or y");
+    c.add("queue_entry", widths.triangle, "bit", "one triangle in the Triangle Queue");
+    c.add("lighting_vertex", widths.emitted_vertex, "bit", "one vertex to Lighting");
+    return c;
+}
+
+Collector memory_figures(const char* name, const datapath::TableLayout& table, const MemoryPort& port,
+                         double edges) {
+    Collector c(name);
+    c.add("size", table.bytes(), "byte", "the whole table");
+    c.add("entry", table.entry_bytes, "byte", "one entry");
+    c.add("reads", port.reads(), "entry", "entries read");
+    c.add("bytes_read", port.bytes_read(), "byte", "bytes read");
+    c.add("reads_per_edge", ratio(static_cast<double>(port.reads()), edges), "entry/edge",
+          "entries read per edge tested");
+    return c;
+}
+
+/// Vertices of the mesh, those that triangles share counted once: by a 64 bit hash of t and P', so that a million
+/// triangles cost 24 MB; two of a million vertices collide in one of 10^7 meshes.
+std::uint64_t distinct_vertices(const EmittedMesh& mesh) {
+    std::vector<std::uint64_t> hashes;
+    hashes.reserve(3 * mesh.triangles.size());
+    for (const EmittedTriangle& triangle : mesh.triangles) {
+        for (const EmittedTriangle::Corner& c : triangle.corners) {
+            std::uint64_t hash = 0;
+            for (const std::uint32_t part :
+                 {c.texture.u, c.texture.v, static_cast<std::uint32_t>(c.displaced.x),
+                  static_cast<std::uint32_t>(c.displaced.y), static_cast<std::uint32_t>(c.displaced.z)}) {
+                hash = (hash ^ part) * 0x9e3779b97f4a7c15u;
+                hash ^= hash >> 29;
+            }
+            hashes.push_back(hash);
+        }
+    }
+    std::sort(hashes.begin(), hashes.end());
+    return static_cast<std::uint64_t>(std::unique(hashes.begin(), hashes.end()) - hashes.begin());
+}
+
+Collector host_figures(const Setup& setup, const EmittedMesh& mesh) {
+    const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
+    const auto bytes = [](std::uint64_t bits) { return (bits + 7) / 8; };
+    const std::uint64_t finished = mesh.triangles.size();
+    const std::uint64_t base = bytes(setup.base_triangles.size() * 3 * widths.base_vertex);
+    const std::uint64_t tables = setup.registers.displacement_map.bytes() +
+                                 setup.registers.normal_map.bytes() +
+                                 setup.registers.summed_height_table.bytes();
+    const std::uint64_t whole = bytes(finished * 3 * widths.finished_vertex);
+    const std::uint64_t vertices = distinct_vertices(mesh);
+    const std::uint64_t indexed = bytes(vertices * widths.finished_vertex) + finished * 3 * 4;
+    Collector c("host");
+    c.add("base_triangles", setup.base_triangles.size(), "triangle", "sent to Get Triangle");
+    c.add("base_triangles_dropped", setup.base_dropped, "triangle", "collapsed when rounded to the formats");
+    c.add("mesh_bytes", base, "byte", "base mesh: three vertices of P, N, T, t per triangle; every frame");
+    c.add("table_bytes", tables, "byte",
+          "displacement map, normal map, Summed Height Table; once, the normal map again when the scale "
+          "changes");
+    c.add("tessellated_vertices", vertices, "vertex", "distinct vertices of the finished mesh");
+    c.add("tessellated_mesh_bytes", indexed, "byte",
+          "the same mesh sent whole and indexed: distinct vertices of P', N', t, three 32 bit indices per "
+          "triangle; every frame");
+    c.add("tessellated_mesh_bytes_unindexed", whole, "byte",
+          "likewise, three vertices per triangle as the base mesh is sent");
+    c.add("bandwidth_saving", ratio(static_cast<double>(indexed), static_cast<double>(base)), "times",
+          "tessellated mesh, indexed, over base mesh, per frame; tables left out");
+    c.add("frames_to_pay_for_tables",
+          indexed > base ? ratio(static_cast<double>(tables), static_cast<double>(indexed - base)) : 0.0,
+          "frame", "after so many frames the tables' bytes are saved; 0: never");
+    return c;
+}
+
+Collector mesh_figures(const EmittedMesh& mesh) {
+    std::array<std::uint64_t, 256> by_generation{};
+    std::size_t last = 0;
+    for (const EmittedTriangle& triangle : mesh.triangles) {
+        const auto& v = triangle.corners;
+        const std::size_t generation = std::max({v[0].generation, v[1].generation, v[2].generation});
+        ++by_generation[generation];
+        last = std::max(last, generation);
+    }
+    Collector c("mesh");
+    c.add("triangles", mesh.triangles.size(), "triangle", "finished, culled ones included");
+    for (std::size_t generation = 0; generation <= last; ++generation)
+        c.add(fmt::format("generation_{}", generation).c_str(), by_generation[generation], "triangle",
+              "finished triangles whose youngest vertex is of this generation");
+    return c;
+}
+
+}  // namespace
+
+std::vector<Figure> collect_statistics(const Setup& setup, const Simulation& simulation) {
+    const Pipeline& p = simulation.pipeline;
+    const PassOrTessellate::Counts& counts = p.pass_or_tessellate.counts();
+    const std::uint64_t edges = p.tessellation_tests.edges_tested();
+    const auto edges_real = static_cast<double>(edges);
+    std::vector<Figure> all;
+    const auto take = [&](Collector c) {
+        all.insert(all.end(), std::make_move_iterator(c.figures.begin()),
+                   std::make_move_iterator(c.figures.end()));
+    };
+
+    Collector run("run");
+    run.add("mode", "functional", "", "functional: blocking transport, not timed; no cycles are claimed");
+    run.add("edges_tested", edges, "edge", "edges that went through Tessellation Tests");
+    run.add("edges_split", counts.edges_split, "edge", "of which split");
+    run.add("triangles_finished", counts.finished, "triangle", "left the machine, culled ones included");
+    run.add("edges_per_triangle", ratio(edges_real, static_cast<double>(counts.finished)), "edge/triangle",
+            "edges tested per finished triangle");
+    take(std::move(run));
+    take(format_figures(setup));
+    take(host_figures(setup, simulation.monitor.mesh));
+
+    Collector get("get_triangle");
+    get.add("host_triangles", p.get_triangle.host_triangles(), "triangle", "taken from the host");
+    get.add("queue_triangles", p.get_triangle.queue_triangles(), "triangle", "taken from the Triangle Queue");
+    take(std::move(get));
+
+    Collector transform("transform");
+    transform.add("positions", p.transform.positions(), "vertex", "positions transformed");
+    transform.add("positions_discarded",
+                  p.transform.positions() - 3 * setup.base_triangles.size() - counts.edges_split, "vertex",
+                  "of these: midpoints, transformed while their edge was tested, that were not inserted");
+    transform.add("normals", p.transform.normals(), "normal", "normals transformed");
+    take(std::move(transform));
+
+    Collector decide("pass_or_tessellate");
+    decide.add("passes", counts.passes, "triangle", "triangles that went through the tests");
+    decide.add("normal_passes", counts.normal_passes, "triangle",
+               "went round once more for normals on the screen");
+    decide.add("split_by_normal", counts.split_by_normal, "edge", "split by the Normal Test alone");
+    decide.add("split_by_summed_height", counts.split_by_summed_height, "edge",
+               "split by the Summed Height Test alone");
+    decide.add("split_by_both", counts.split_by_both, "edge", "split by both");
+    decide.add("stopped_by_view", counts.stopped_by_view, "edge",
+               "kept whole by the View Test (perhaps among others)");
+    decide.add("stopped_by_tex_coord", counts.stopped_by_tex_coord, "edge", "likewise the Tex Coord Test");
+    decide.add("stopped_by_generation", counts.stopped_by_generation, "edge", "likewise the Generation Test");
+    decide.add("culled", counts.culled, "triangle", "finished triangles that face away");
+    take(std::move(decide));
+
+    Collector tessellation("tessellation");
+    const auto& made = p.tessellation.made_into();
+    tessellation.add("made_into_2", made[2], "triangle", "one edge split");
+    tessellation.add("made_into_3", made[3], "triangle", "two edges split");
+    tessellation.add("made_into_4", made[4], "triangle", "three edges split");
+    tessellation.add("passed_unchanged", made[1], "triangle",
+                     "finished base triangles on their way to fetch normals");
+    take(std::move(tessellation));
+
+    Collector queue("triangle_queue");
+    queue.add("taken", p.triangle_queue.taken(), "triangle", "triangles put in");
+    queue.add("high_water_mark", p.triangle_queue.high_water_mark(), "triangle", "most that ever waited");
+    queue.add(
+        "high_water_bytes",
+        (p.triangle_queue.high_water_mark() * datapath::stream_widths(setup.registers.formats).triangle + 7) /
+            8,
+        "byte", "memory that takes");
+    take(std::move(queue));
+
+    Collector lighting("lighting");
+    lighting.add("triangles", simulation.rasteriser.triangles(), "triangle",
+                 "lit and sent to the rasteriser");
+    take(std::move(lighting));
+
+    take(memory_figures("displacement_map", setup.registers.displacement_map,
+                        p.displace_vertex.displacement_map, edges_real));
+    take(memory_figures("normal_map", setup.registers.normal_map, p.tessellation_tests.normal_test.normal_map,
+                        edges_real));
+    take(memory_figures("summed_height_table", setup.registers.summed_height_table,
+                        p.tessellation_tests.summed_height_test.summed_height_table, edges_real));
+
+    const datapath::Saturations saturations = p.saturations();
+    Collector saturated("saturations");
+    saturated.add("displaced_position", saturations.displaced_position, "value",
+                  "P' beyond the position's format");
+    saturated.add("normal", saturations.normal, "value", "N, T or N' beyond the normal's format");
+    saturated.add("screen_position", saturations.screen_position, "value", "P's beyond the screen's format");
+    saturated.add("view_distance", saturations.view_distance, "value",
+                  "w beyond the position's format: the eye is far");
+    saturated.add("screen_normal", saturations.screen_normal, "value", "N's beyond the normal's format");
+    saturated.add("degenerate_normal", saturations.degenerate_normal, "value",
+                  "zero vectors that stayed zero");
+    take(std::move(saturated));
+
+    take(mesh_figures(simulation.monitor.mesh));
+    return all;
+}
+
+std::string statistics_json(const std::vector<Figure>& figures) {
+    nlohmann::ordered_json json;
+    for (const Figure& figure : figures) {
+        nlohmann::ordered_json entry;
+        std::visit([&](const auto& value) { entry["value"] = value; }, figure.value);
+        entry["unit"] = figure.unit;
+        entry["description"] = figure.description;
+        json[figure.group][figure.name] = std::move(entry);
+    }
+    return json.dump(2) + "\n";
+}
+
+std::string statistics_csv(const std::vector<Figure>& figures) {
+    std::string heading, values;
+    for (const Figure& figure : figures) {
+        const char* comma = heading.empty() ? "" : ",";
+        heading += fmt::format("{}{}.{}", comma, figure.group, figure.name);
+        values +=
+            std::visit([&](const auto& value) { return fmt::format("{}{}", comma, value); }, figure.value);
+    }
+    return heading + "\n" + values + "\n";
+}
+
+}  // namespace tessera

@@ -1,0 +1,148 @@
+#pragma once
+#include <rapidcheck.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "testbench/common/error.h"
+#include "testbench/job/job_keys.h"
+#include "testbench/job/read_job.h"
+
+/// Job files, values for their keys, and the messages they end in, for the job's tests.
+namespace tessera::testing {
+
+template <typename Action>
+std::string error_of(Action action) {
+    try {
+        action();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+inline std::string parse_error_of(const std::string& text) {
+    return error_of([&] { parse_job(text, "job.toml"); });
+}
+
+inline std::vector<Key> all_keys() {
+    std::vector<Key> keys;
+    for (const KeyTable& table : job_tables()) {
+        keys.insert(keys.end(), table.keys.begin(), table.keys.end());
+    }
+    return keys;
+}
+
+/// A job file of one key.
+inline std::string one_key(const Key& key, const std::string& value) {
+    const std::size_t dot = key.name.find('.');
+    const std::string table = dot == std::string::npos ? "" : "[" + key.name.substr(0, dot) + "]\n";
+    return table + std::string(key.leaf()) + " = " + value + "\n";
+}
+
+inline double bits_to_double(std::uint64_t bits) {
+    double value = 0;
+    std::memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+inline double random_number(const KeyRange& range) {
+    const double any = bits_to_double(*rc::gen::arbitrary<std::uint64_t>());
+    if (any >= range.low && any <= range.high) {
+        return any;
+    }
+    const double part = static_cast<double>(*rc::gen::inRange<std::int64_t>(0, 1000001)) / 1000000.0;
+    return std::min(range.high, range.low + part * (range.high - range.low));
+}
+
+inline std::string random_text() {
+    const std::vector<std::string> pieces{"a",
+                                          "Z",
+                                          "0",
+                                          "\"",
+                                          "\\",
+                                          "'",
+                                          "#",
+                                          "=",
+                                          "\n",
+                                          "\r",
+                                          "\t",
+                                          " ",
+                                          ".",
+                                          "\x01",
+                                          "\x7f",
+                                          "\xc3\xa4",
+                                          "]",
+                                          "{",
+                                          "\\u0",
+                                          ",",
+                                          "/",
+                                          "\xe2\x82\xac",
+                                          "\xf0\x9f\x98\x80",
+                                          "data:"};
+    std::string text;
+    for (const std::size_t i :
+         *rc::gen::container<std::vector<std::size_t>>(rc::gen::inRange<std::size_t>(0, pieces.size()))) {
+        text += pieces[i];
+    }
+    return text;
+}
+
+inline JobValue random_value(const Key& key) {
+    switch (key.kind) {
+        case KeyKind::flag:
+            return *rc::gen::arbitrary<bool>();
+        case KeyKind::integer:
+            return *rc::gen::inRange(static_cast<std::int64_t>(key.range.low),
+                                     static_cast<std::int64_t>(key.range.high) + 1);
+        case KeyKind::number:
+            return random_number(key.range);
+        case KeyKind::vector:
+            return std::array<double, 3>{random_number(key.range), random_number(key.range),
+                                         random_number(key.range)};
+        case KeyKind::choice:
+            return std::string(*rc::gen::elementOf(key.choices));
+        case KeyKind::text:
+        case KeyKind::file:
+            return random_text();
+        case KeyKind::folder:
+            return "f" + random_text();
+    }
+    return false;
+}
+
+class TemporaryFolder {
+  public:
+    TemporaryFolder() {
+        std::string name = (std::filesystem::temp_directory_path() / "tessera-job-XXXXXX").string();
+        path_ = mkdtemp(name.data());
+    }
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+    std::filesystem::path write(const std::filesystem::path& name, const std::string& text) const {
+        const std::filesystem::path file = path_ / name;
+        std::filesystem::create_directories(file.parent_path());
+        std::ofstream(file, std::ios::binary) << text;
+        return file;
+    }
+    const std::filesystem::path& path() const { return path_; }
+
+  private:
+    std::filesystem::path path_;
+};
+
+}  // namespace tessera::testing

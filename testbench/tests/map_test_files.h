@@ -1,0 +1,64 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tessera::map_test {
+
+/// A folder of this process's own, removed when the object goes.
+class TemporaryFolder {
+  public:
+    TemporaryFolder();
+    ~TemporaryFolder();
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    std::filesystem::path operator/(std::string_view name) const { return path_ / name; }
+
+  private:
+    std::filesystem::path path_;
+};
+
+void write_bytes(const std::filesystem::path& path, std::string_view bytes);
+std::string read_bytes(const std::filesystem::path& path);
+
+/// PNG through libpng. colour_type: PNG_COLOR_TYPE_*; rows are top first, raw PNG samples (16 bit big-endian,
+/// small depths packed); palette: RGB triples.
+struct PngImage {
+    std::uint32_t width, height;
+    int depth;
+    int colour_type;
+    std::vector<std::uint8_t> bytes;
+    std::vector<std::uint8_t> palette;
+    bool interlaced = false;
+};
+void write_png(const std::filesystem::path& path, const PngImage& image);
+
+enum class Pixels { uint, half, float_ };
+
+/// EXR through libOpenEXR. values: row by row from the top (smallest y of the data window first).
+struct ExrImage {
+    int width, height;
+    std::vector<float> values;
+    Pixels pixels = Pixels::float_;
+    int compression = 3;  // Imf::ZIP_COMPRESSION
+    bool tiled = false;
+    bool mip_map = false;
+    int left = 0, top = 0;
+    std::vector<std::string> channels{"Y"};  // channel number i holds values + i
+};
+void write_exr(const std::filesystem::path& path, const ExrImage& image);
+
+/// <source>/../shared/data/<name>, or an empty path, with a WARN that the case is skipped, where it is
+/// absent.
+std::filesystem::path shared_data(std::string_view name);
+
+/// What read_height_map() makes of a file.
+struct Outcome {
+    enum class Kind { loaded, loaded_with_remark, refused, wrong_exception } kind;
+    std::string message;
+};
+Outcome outcome_of(const std::filesystem::path& path);
+
+}  // namespace tessera::map_test

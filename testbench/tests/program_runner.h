@@ -1,0 +1,71 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tessera {
+
+/// A folder that goes away with the test.
+class TestFolder {
+  public:
+    TestFolder();
+    ~TestFolder();
+    TestFolder(const TestFolder&) = delete;
+    TestFolder& operator=(const TestFolder&) = delete;
+
+    const std::filesystem::path& path() const { return path_; }
+    /// Names in the folder, sorted; those of hidden files too.
+    std::vector<std::string> names() const;
+
+  private:
+    std::filesystem::path path_;
+};
+
+/// How a program that was run came to its end.
+struct ProgramEnd {
+    int exit_code = -1;  ///< -1: a signal ended it
+    int signal = 0;
+    bool timed_out = false;
+    std::string out, err;
+    double peak_mib = 0;  ///< resident memory
+
+    std::string text() const;  ///< all of it, for a failed check's message
+};
+
+struct ProgramLimits {
+    unsigned cpu_seconds = 300;         ///< SIGXCPU beyond: busy machines slow the clock, not this
+    unsigned wall_seconds = 550;        ///< killed beyond, with all its children
+    unsigned long long file_bytes = 0;  ///< largest file, as by `ulimit -f`; 0: any
+};
+
+using Environment = std::vector<std::pair<std::string, std::string>>;
+
+/// Runs a program in `folder`, as a user would, with nothing on standard input; neither output is a terminal.
+/// `environment` is set on top of the test's own.
+ProgramEnd run_program(const std::vector<std::string>& command, const std::filesystem::path& folder,
+                       const ProgramLimits& limits = {}, const Environment& environment = {});
+
+/// The same for `tessera` with these arguments.
+ProgramEnd run_tessera(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                       const ProgramLimits& limits = {});
+
+std::string read_all(const std::filesystem::path& file);
+void write_all(const std::filesystem::path& file, const std::string& content);
+std::vector<std::string> lines_of(const std::string& text);
+
+/// The folder the project's sources lie in, and the data beside it.
+std::filesystem::path source_folder();
+std::filesystem::path shared_data();
+/// Whether the shared data is there; says that the test is skipped where it is not.
+bool shared_data_is_there();
+
+/// Memory of a program under a sanitizer says nothing, and its time little.
+constexpr bool sanitized =
+#ifdef __SANITIZE_ADDRESS__
+    true;
+#else
+    false;
+#endif
+
+}  // namespace tessera

@@ -1,0 +1,46 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace tessera {
+
+/// The header of a PLY file, and what its faces say of themselves.
+struct PlyFacts {
+    std::uint64_t vertices = 0, faces = 0;
+    std::map<int, std::uint64_t> by_generation;
+};
+
+/// What a run left behind, read back; requires each part to be well-formed.
+class RunFolder {
+  public:
+    explicit RunFolder(std::filesystem::path folder);
+
+    std::uint64_t count(const std::string& group, const std::string& name) const;
+    std::uint64_t invariant(const std::string& name) const;
+    /// The statistics' group "mesh", by generation.
+    std::map<int, std::uint64_t> by_generation() const;
+    PlyFacts read_ply() const;
+    std::uint64_t obj_faces() const;
+    /// Heading and value of each column.
+    std::vector<std::pair<std::string, std::string>> read_csv() const;
+    /// Name to content of every file.
+    std::map<std::string, std::string> files() const;
+
+    nlohmann::ordered_json statistics, conformance;
+
+  private:
+    std::filesystem::path folder_;
+};
+
+/// What must hold of every run that ended with exit code 0, whatever its job: files, and figures that agree.
+void require_consistent(const RunFolder& run);
+
+/// The same names and the same bytes; says which files differ.
+void require_same_files(const std::map<std::string, std::string>& a,
+                        const std::map<std::string, std::string>& b);
+
+}  // namespace tessera

@@ -1,0 +1,46 @@
+#include <catch2/catch.hpp>
+
+#include "testbench/check/scoreboard.h"
+#include "testbench/host/inputs.h"
+#include "testbench/host/simulation.h"
+#include "testbench/tests/count_allocations.h"
+
+// No allocation per edge once running: a second frame of the same job finds every buffer as large as it needs.
+
+using namespace tessera;
+
+namespace {
+
+void expect_no_allocation(const Setup& setup, Simulation& simulation) {
+    REQUIRE(simulation.run().empty());
+    const std::uint64_t edges = simulation.pipeline.tessellation_tests.edges_tested();
+    REQUIRE(edges > 50'000);
+    simulation.monitor.mesh.triangles.clear();
+    const std::uint64_t before = allocations_so_far();
+    simulation.host.send_again();
+    REQUIRE(simulation.run().empty());
+    const std::uint64_t used = allocations_so_far() - before;
+    CAPTURE(used, setup.base_triangles.size());
+    CHECK(simulation.pipeline.tessellation_tests.edges_tested() == 2 * edges);
+    // the kernel's own, for a wait of a thread now and then: far fewer than one a thousand edges
+    CHECK(used < edges / 1000);
+}
+
+}  // namespace
+
+TEST_CASE("functional mode allocates nothing per edge") {
+    const Job job;
+    const Setup setup = make_setup(job, load_mesh(job, {}), load_map(job, {}));
+    Simulation simulation(setup, 1'000'000);
+    expect_no_allocation(setup, simulation);
+}
+
+TEST_CASE("functional mode with the scoreboard allocates nothing per edge") {
+    const Job job;
+    const Setup setup = make_setup(job, load_mesh(job, {}), load_map(job, {}));
+    Simulation simulation(setup, 1'000'000);
+    const GoldenInputs golden(setup);
+    Scoreboard scoreboard(setup.registers, golden);
+    simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
+    expect_no_allocation(setup, simulation);
+}

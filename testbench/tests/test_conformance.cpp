@@ -1,0 +1,122 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <string>
+
+#include "testbench/check/end_to_end.h"
+#include "testbench/check/scoreboard.h"
+#include "testbench/host/simulation.h"
+#include "testbench/maps/built_in_maps.h"
+#include "testbench/maps/read_height_map.h"
+#include "testbench/meshes/make_base_mesh.h"
+
+using namespace tessera;
+
+// The whole machine against the golden model, on the paper's inputs. One elaboration per process: run one case at a
+// time, as ctest does.
+namespace {
+
+const std::filesystem::path data = TESSERA_SOURCE_DIR "/../shared/data";
+
+bool present(const std::string& file) {
+    if (std::filesystem::exists(data / file))
+        return true;
+    WARN("skipped: " << file << " is not there");
+    return false;
+}
+
+void expect_conformance(const Job& job, const HeightMap& map, const std::string& mesh_file = {}) {
+    const Setup setup =
+        make_setup(job, make_base_mesh(job.mesh, mesh_file.empty() ? "" : (data / mesh_file).string()), map);
+    const GoldenInputs inputs(setup);
+    Scoreboard scoreboard(setup.registers, inputs);
+    Simulation simulation(setup, 1000000);
+    simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
+    REQUIRE(simulation.run().empty());
+
+    const ConformanceResult result = scoreboard.result();
+    INFO(result.first_mismatch);
+    CHECK(result.mismatches == 0);
+    CHECK(result.edges == 3 * simulation.pipeline.pass_or_tessellate.counts().passes);
+    CHECK(result.base_vertices == 3 * setup.base_triangles.size());
+    CHECK(result.passed(Job::Check{}.allowed_flips));
+
+    const EndToEndResult meshes = compare_end_to_end(setup, inputs, simulation.monitor.mesh);
+    CHECK_FALSE(meshes.bound_hit);
+    // The half donut's base texture coordinates are thirds, and rounding midpoints down moves some into the next
+    // texel: by up to a tenth more or fewer triangles.
+    CHECK(meshes.golden_triangles == Approx(meshes.hardware_triangles).epsilon(0.1));
+}
+
+Job crater_lake(std::int64_t columns, std::int64_t rows) {
+    Job job;
+    job.mesh.columns = columns;
+    job.mesh.rows = rows;
+    job.mesh.depth = 2 * 459 / 336.0;
+    job.displacement.scale = 2478 / 30.0 / 168;
+    job.displacement.bias = -1533 / 30.0 / 168;
+    return job;
+}
+
+}  // namespace
+
+TEST_CASE("half donut, 256 texels") {
+    expect_conformance(Job{}, half_donut_map(256, 256));
+}
+TEST_CASE("half donut, 1024 texels") {
+    expect_conformance(Job{}, half_donut_map(1024, 1024));
+}
+
+TEST_CASE("noise, eye among the heights") {
+    Job job;
+    job.camera.eye = {0, -0.3, 0.3};
+    job.camera.target = {0, 1, 0.2};
+    job.tests.generation_limit = 8;
+    expect_conformance(job, noise_map(128, 128, 1));
+}
+
+TEST_CASE("sphere with repeated map and narrow normals") {
+    Job job;
+    job.mesh.source = MeshSource::sphere;
+    job.mesh.columns = 24;
+    job.mesh.rows = 12;
+    job.map.address_u = Addressing::repeat;
+    job.formats.normal_bits = 12;
+    job.formats.normal_fraction = 10;
+    job.tests.summed_height_unit = SummedHeightUnit::area;
+    job.tests.summed_height_threshold = 0.05;
+    expect_conformance(job, half_donut_map(128, 128));
+}
+
+TEST_CASE("Crater Lake on 24 triangles") {
+    const std::string file = "maps/crater_lake_west_336x459.pgm";
+    if (present(file))
+        expect_conformance(crater_lake(3, 4), read_height_map(data / file));
+}
+TEST_CASE("Crater Lake on 704 triangles") {
+    const std::string file = "maps/crater_lake_west_336x459.pgm";
+    if (present(file))
+        expect_conformance(crater_lake(16, 22), read_height_map(data / file));
+}
+
+TEST_CASE("the head on its cylinder, repeated in u") {
+    const std::string map = "maps/head_lps_512.pgm", mesh = "meshes/cylinder_1800_lps.obj";
+    if (!present(map) || !present(mesh))
+        return;
+    Job job;
+    job.mesh.source = MeshSource::file;
+    job.map.address_u = Addressing::repeat;
+    job.displacement.scale = 1.891544222831726;
+    job.camera.eye = {0, -6, 0};
+    expect_conformance(job, read_height_map(data / map), mesh);
+}
+
+TEST_CASE("half donut on the teapot") {
+    const std::string mesh = "meshes/teapot_n4.obj";
+    if (!present(mesh))
+        return;
+    Job job;
+    job.mesh.source = MeshSource::file;
+    job.displacement.scale = 0.1;
+    job.camera.eye = {0, -9, 5};
+    expect_conformance(job, half_donut_map(256, 256), mesh);
+}

@@ -1,0 +1,123 @@
+#include <array>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <vector>
+
+#include "testbench/tests/datapath_edge.h"
+#include "testbench/tests/datapath_random.h"
+
+using namespace tessera::datapath;
+using namespace tessera::testing;
+
+namespace {
+
+Position any_position(Random& random) {
+    return {random.integer32(-1000, 1000), random.integer32(-1000, 1000), random.integer32(-1000, 1000)};
+}
+Direction any_direction(Random& random) {
+    return {random.integer32(-1000, 1000), random.integer32(-1000, 1000), random.integer32(-1000, 1000)};
+}
+ScreenPosition any_screen(Random& random) {
+    return {random.integer32(-1000, 1000), random.integer32(-1000, 1000), random.integer32(-1000, 1000),
+            random.coin()};
+}
+TexCoord any_texture(Random& random) {
+    return {random.natural(0, 1000), random.natural(0, 1000)};
+}
+
+/// Every field different from every other vertex's.
+Vertex any_vertex(Random& random) {
+    Vertex v;
+    v.position = any_position(random);
+    v.normal = any_direction(random);
+    v.tangent = any_direction(random);
+    v.texture = any_texture(random);
+    v.handedness = random.coin() ? std::int8_t{1} : std::int8_t{-1};
+    v.generation = static_cast<std::uint8_t>(random.integer(0, 11));
+    v.displaced_known = true;
+    v.screen_normal_known = random.coin();
+    v.displaced = any_position(random);
+    v.displaced_normal = any_direction(random);
+    v.screen = any_screen(random);
+    v.screen_normal = any_direction(random);
+    return v;
+}
+
+TrianglePass any_pass(Random& random) {
+    TrianglePass pass;
+    for (std::size_t k = 0; k < 3; ++k) {
+        pass.triangle.vertices[k] = any_vertex(random);
+        pass.new_vertex[k] = {any_position(random), any_direction(random), any_texture(random),
+                              any_position(random), any_screen(random)};
+        pass.edges[k] = {any_texture(random), any_direction(random), any_direction(random),
+                         any_direction(random), static_cast<std::uint8_t>(random.integer(0, 31))};
+    }
+    pass.triangle.base = random.natural(0, 1000);
+    pass.triangle.split_by = static_cast<std::uint8_t>(random.integer(1, 3));
+    pass.triangle.stopped_by = static_cast<std::uint8_t>(random.integer(0, 7) << 2);
+    pass.split = static_cast<std::uint8_t>(random.integer(0, 7));
+    pass.triangle.finished = pass.split == 0;
+    return pass;
+}
+
+}  // namespace
+
+TEST_CASE("tessellate: children carry complete vertices and the parent's tags") {
+    Random random(26);
+    for (int k = 0; k < 20'000; ++k) {
+        const TrianglePass pass = any_pass(random);
+        const auto choice = static_cast<Triangulation>(random.integer(0, 2));
+
+        std::array<Vertex, 6> expected;
+        int split_by = 0;
+        for (std::size_t e = 0; e < 3; ++e) {
+            const Vertex &i = pass.triangle.vertices[e], &j = pass.triangle.vertices[(e + 1) % 3];
+            expected[e] = i;
+            Vertex& v = expected[3 + e];
+            v.position = pass.new_vertex[e].position;
+            v.normal = pass.edges[e].normal;
+            v.tangent = pass.edges[e].tangent;
+            v.texture = pass.new_vertex[e].texture;
+            v.handedness = i.handedness == 1 && j.handedness == 1 ? std::int8_t{1} : std::int8_t{-1};
+            v.generation = static_cast<std::uint8_t>(std::max(i.generation, j.generation) + 1);
+            v.displaced_known = true;
+            v.screen_normal_known = false;
+            v.displaced = pass.new_vertex[e].displaced;
+            v.displaced_normal = pass.edges[e].displaced_normal;
+            v.screen = pass.new_vertex[e].screen;
+            if ((pass.split >> e & 1) != 0)
+                split_by |= pass.edges[e].tests & 3;
+        }
+        const ChildIndices indices = triangulate(
+            pass.split, choose_second_diagonal(pass.split, choice, [&](std::uint8_t at) -> const Position& {
+                return expected[at].displaced;
+            }));
+
+        std::vector<Triangle> children;
+        CHECK(tessellate(pass, choice, [&](const Triangle& child) { children.push_back(child); }) ==
+              indices.count);
+        if (children.size() != static_cast<std::size_t>(indices.count))
+            FAIL(children.size() << " children, said to be " << indices.count);
+        for (std::size_t c = 0; c < children.size(); ++c) {
+            const Triangle& child = children[c];
+            for (std::size_t v = 0; v < 3; ++v)
+                if (!same_bits(child.vertices[v], expected[indices.children[c][v]]))
+                    FAIL("split " << int{pass.split} << ", child " << c << ", vertex " << v);
+            const bool whole = pass.split == 0;
+            if (child.base != pass.triangle.base || child.finished != whole ||
+                child.split_by != (whole ? int{pass.triangle.split_by} : split_by) ||
+                child.stopped_by != (whole ? pass.triangle.stopped_by : 0))
+                FAIL("split " << int{pass.split} << ", tags of child " << c);
+        }
+    }
+}
+
+TEST_CASE("tessellate: edge k runs from vertex k to the next") {
+    TrianglePass pass;
+    for (std::size_t k = 0; k < 3; ++k)
+        pass.triangle.vertices[k].position.x = static_cast<std::int32_t>(k);
+    for (int k = 0; k < 3; ++k) {
+        CHECK(pass.edge_begin(k).position.x == k);
+        CHECK(pass.edge_end(k).position.x == (k + 1) % 3);
+    }
+}

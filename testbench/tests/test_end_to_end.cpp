@@ -1,0 +1,158 @@
+#include <algorithm>
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "testbench/check/end_to_end.h"
+#include "testbench/check/surface_distance.h"
+#include "testbench/maps/built_in_maps.h"
+#include "testbench/meshes/built_in.h"
+#include "testbench/tests/scoreboard_cases.h"
+
+using namespace tessera;
+using namespace tessera::testing;
+
+namespace {
+
+std::array<glm::dvec3, 3> random_triangle(Random& random, double size) {
+    const glm::dvec3 at(real(random, -10, 10), real(random, -10, 10), real(random, -10, 10));
+    return {at, at + size * unit_vector(random), at + size * unit_vector(random)};
+}
+
+EmittedMesh hardware_mesh(Case& c) {
+    EmittedMesh mesh;
+    WorkList work(c.machine, c.setup.base_triangles);
+    work.run(1000000,
+             [&](const datapath::Triangle& t) { mesh.triangles.push_back(EmittedTriangle::from(t, false)); });
+    return mesh;
+}
+
+Case donut(const Job& job, int texels) {
+    const Setup setup = make_setup(job, make_plane(3, 3, 2, 2), half_donut_map(texels, texels));
+    return Case(setup, Manner::tame);
+}
+
+}  // namespace
+
+TEST_CASE("the closest point of a triangle, by region") {
+    const std::array<glm::dvec3, 3> t = {glm::dvec3(0, 0, 0), glm::dvec3(4, 0, 0), glm::dvec3(0, 4, 0)};
+    const auto same = [](const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b) < 1e-12; };
+    CHECK(same(closest_point(t, {1, 1, 3}), {1, 1, 0}));
+    CHECK(same(closest_point(t, {-1, -2, 3}), {0, 0, 0}));
+    CHECK(same(closest_point(t, {9, -1, 3}), {4, 0, 0}));
+    CHECK(same(closest_point(t, {-1, 9, 3}), {0, 4, 0}));
+    CHECK(same(closest_point(t, {2, -5, 3}), {2, 0, 0}));
+    CHECK(same(closest_point(t, {-5, 3, 3}), {0, 3, 0}));
+    CHECK(same(closest_point(t, {4, 4, 1}), {2, 2, 0}));
+    // Collapsed to a segment, in each way, and to a point.
+    const glm::dvec3 a(0, 0, 0), b(2, 0, 0);
+    for (const auto& segment :
+         {std::array<glm::dvec3, 3>{a, b, b}, {a, a, b}, {a, b, a}, {a, glm::dvec3(1, 0, 0), b}})
+        CHECK(same(closest_point(segment, {1.5, 1, 0}), {1.5, 0, 0}));
+    CHECK(same(closest_point({b, b, b}, {5, 5, 5}), b));
+}
+
+TEST_CASE("distances through Embree are those of a search through all triangles") {
+    Random random(21);
+    // A large offset leaves single precision little; the distances must not notice.
+    for (const double offset : {0.0, 1e4, 1e6}) {
+        TriangleSoup from, to;
+        for (int k = 0; k < 200; ++k) {
+            from.push_back(random_triangle(random, 0.5));
+            to.push_back(random_triangle(random, k % 10 == 0 ? 0.0 : 1.0));
+        }
+        for (TriangleSoup* soup : {&from, &to})
+            for (auto& t : *soup)
+                for (glm::dvec3& p : t)
+                    p += offset;
+        double largest = 0, squares = 0;
+        const auto search = [&](const glm::dvec3& p) {
+            double nearest = 1e300;
+            for (const auto& t : to)
+                nearest = std::min(nearest, glm::length(closest_point(t, p) - p));
+            largest = std::max(largest, nearest);
+            squares += nearest * nearest;
+        };
+        for (const auto& t : from) {
+            for (const glm::dvec3& p : t)
+                search(p);
+            search((t[0] + t[1] + t[2]) / 3.0);
+        }
+        const SurfaceDistance found = distance_between(from, to);
+        CHECK(found.points == 800);
+        CHECK(found.max == Approx(largest).epsilon(1e-12));
+        CHECK(found.rms == Approx(std::sqrt(squares / 800)).epsilon(1e-12));
+        CHECK(distance_between(from, from).max == Approx(0).margin(1e-9));
+    }
+    CHECK(distance_between({}, {}).points == 0);
+    CHECK(std::isinf(distance_between({random_triangle(random, 1)}, {}).max));
+}
+
+TEST_CASE("a surface shifted by a known distance is measured as that") {
+    Case c = donut(Job{}, 64);
+    const EmittedMesh mesh = hardware_mesh(c);
+    TriangleSoup one, other;
+    const Dequantise dequantise(c.setup.registers.formats);
+    for (const EmittedTriangle& t : mesh.triangles) {
+        one.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k) {
+            one.back()[k] = dequantise.position(t.corners[k].displaced);
+            one.back()[k].z = 0;
+        }
+        other.push_back(one.back());
+        for (glm::dvec3& p : other.back())
+            p.z = std::ldexp(5.0, -16);  // far below single precision's resolution at this size
+    }
+    const SurfaceDistance d = distance_between(one, other);
+    CHECK(std::ldexp(d.max, 16) == Approx(5));
+    CHECK(std::ldexp(d.rms, 16) == Approx(5));
+}
+
+TEST_CASE("hardware and golden run to nearly the same surface") {
+    Job job;
+    job.tests.normal_threshold = 0.2;
+    // 96 texels in three columns: base texture coordinates are whole, so midpoints are exact in both for
+    // twelve generations and the two meshes differ in rounding of positions only, but for flips of NT.
+    Case c = donut(job, 96);
+    const EmittedMesh mesh = hardware_mesh(c);
+    const EndToEndResult result = compare_end_to_end(c.setup, c.inputs, mesh);
+    CHECK(result.hardware_triangles == mesh.triangles.size());
+    CHECK(result.hardware_triangles > 500);
+    CHECK_FALSE(result.bound_hit);
+    CHECK(std::abs(static_cast<double>(result.golden_triangles) /
+                       static_cast<double>(result.hardware_triangles) -
+                   1) < 0.01);
+    CHECK(result.golden_largest_generation <= 12);
+    for (const auto& d : {result.hardware_to_golden, result.golden_to_hardware}) {
+        CHECK(d.points > result.hardware_triangles);
+        CHECK(d.rms_model < 1e-3);
+        CHECK(d.max_model == Approx(d.max_world / c.setup.model_scale.scale));
+        CHECK(d.max_position_lsb == Approx(std::ldexp(d.max_world, 16)));
+    }
+    const EndToEndResult again = compare_end_to_end(c.setup, c.inputs, mesh);
+    CHECK(again.hardware_to_golden.rms_world == result.hardware_to_golden.rms_world);
+    CHECK(again.golden_to_hardware.rms_world == result.golden_to_hardware.rms_world);
+}
+
+TEST_CASE("a displacement off by one part in a thousand shows in the distance") {
+    Job job;
+    Case c = donut(job, 96);
+    const EmittedMesh right = hardware_mesh(c);
+    Case wrong = c;
+    wrong.machine.registers.displacement.scale += wrong.machine.registers.displacement.scale / 1000;
+    const auto off = compare_end_to_end(c.setup, c.inputs, hardware_mesh(wrong));
+    const auto fine = compare_end_to_end(c.setup, c.inputs, right);
+    CHECK(off.hardware_to_golden.rms_world > 4 * fine.hardware_to_golden.rms_world);
+}
+
+TEST_CASE("a golden run that grows far beyond the hardware's is given up") {
+    Case c = donut(Job{}, 96);
+    EmittedMesh mesh = hardware_mesh(c);
+    mesh.triangles.resize(10);
+    const EndToEndResult result = compare_end_to_end(c.setup, c.inputs, mesh);
+    CHECK(result.bound == 1040);
+    CHECK(result.bound_hit);
+    CHECK(result.hardware_to_golden.points == 0);
+}

@@ -1,0 +1,175 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "testbench/common/error.h"
+#include "testbench/maps/read_height_map.h"
+#include "testbench/tests/map_test_files.h"
+
+using namespace tessera;
+using namespace tessera::map_test;
+using Catch::Contains;
+
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
+
+// 19 x 21, so that tiles of 8 and blocks of 16 lines end in part; exact in half.
+ExrImage steps() {
+    ExrImage image{19, 21, std::vector<float>(std::size_t{19} * 21)};
+    std::iota(image.values.begin(), image.values.end(), 3.F);
+    return image;
+}
+
+}  // namespace
+
+TEST_CASE("an EXR map keeps its values, whatever its pixel type, compression, tiling and origin") {
+    const TemporaryFolder folder;
+    const auto pixels = GENERATE(Pixels::uint, Pixels::half, Pixels::float_);
+    const auto compression = GENERATE(0, 1, 2, 3, 4, 5);
+    const auto tiled = GENERATE(false, true);
+    const auto origin = GENERATE(0, 30, -7);
+    ExrImage image = steps();
+    image.pixels = pixels;
+    image.compression = compression;
+    image.tiled = tiled;
+    image.left = origin;
+    image.top = 2 * origin;
+    write_exr(folder / "a.exr", image);
+    const HeightMap map = read_height_map(folder / "a.exr");
+    REQUIRE(map.width == 19);
+    REQUIRE(map.height == 21);
+    CHECK(map.at(0, 20) == 3);
+    CHECK(map.at(18, 20) == 21);
+    CHECK(map.at(0, 0) == 3 + 20 * 19);
+    CHECK(map.at(18, 0) == 2 + 21 * 19);
+    CHECK(std::accumulate(map.values.begin(), map.values.end(), 0.0) == 399 * (3 + 401) / 2.0);
+    CHECK(map.range_low == 3);
+    CHECK(map.range_high == 401);
+    CHECK(map.repairs.size() == (pixels == Pixels::uint ? 1 : 0));
+}
+
+TEST_CASE("of a mip map the finest level is read") {
+    const TemporaryFolder folder;
+    ExrImage image = steps();
+    image.tiled = true;
+    image.mip_map = true;
+    write_exr(folder / "a.exr", image);
+    const HeightMap map = read_height_map(folder / "a.exr");
+    CHECK(map.width == 19);
+    CHECK(map.at(18, 0) == 401);
+}
+
+TEST_CASE("an EXR channel is chosen by name, else Y, else R, else the only one") {
+    const TemporaryFolder folder;
+    ExrImage image{1, 1, {0}};
+    const auto first_value = [&](std::vector<std::string> channels, const std::string& wanted) {
+        image.channels = std::move(channels);
+        write_exr(folder / "a.exr", image);
+        return read_height_map(folder / "a.exr", wanted).at(0, 0);
+    };
+    CHECK(first_value({"A", "R", "Y"}, "") == 2);
+    CHECK(first_value({"A", "R", "Z"}, "") == 1);
+    CHECK(first_value({"depth.Z"}, "") == 0);
+    CHECK(first_value({"A", "R", "Y"}, "A") == 0);
+    CHECK_THROWS_WITH(first_value({"A", "B"}, ""), Contains("more than one: A, B. Set map.channel"));
+    CHECK_THROWS_WITH(first_value({"A", "B"}, "Y"), Contains("no channel \"Y\"; it has: A, B"));
+}
+
+TEST_CASE("values that are not finite are repaired and counted, a map of nothing else is refused") {
+    const TemporaryFolder folder;
+    for (const auto pixels : {Pixels::half, Pixels::float_}) {
+        write_exr(folder / "a.exr", {3, 2, {not_a_number, infinity, -infinity, 2, 5, not_a_number}, pixels});
+        const HeightMap map = read_height_map(folder / "a.exr");
+        CHECK(map.values == std::vector<float>{2, 5, 2, 2, 5, 2});
+        CHECK(map.range_low == 2);
+        CHECK(map.range_high == 5);
+        REQUIRE(map.repairs.size() == 3);
+        CHECK_THAT(map.repairs[0], Contains("2 NaN texels set to the lowest finite value, 2"));
+        CHECK_THAT(map.repairs[1], Contains("1 +infinity texel set to the highest finite value, 5"));
+        CHECK_THAT(map.repairs[2], Contains("1 -infinity texel set to the lowest finite value, 2"));
+
+        write_exr(folder / "b.exr", {2, 1, {not_a_number, infinity}, pixels});
+        CHECK_THROWS_WITH(read_height_map(folder / "b.exr"),
+                          Contains("all 2 texels") && Contains("finite heights"));
+    }
+}
+
+TEST_CASE("a constant EXR map has an empty range, subnormal numbers are kept and said") {
+    const TemporaryFolder folder;
+    write_exr(folder / "a.exr", {2, 2, {7, 7, 7, 7}});
+    const HeightMap constant = read_height_map(folder / "a.exr");
+    CHECK(constant.range_low == 7);
+    CHECK(constant.range_high == 7);
+    write_exr(folder / "b.exr", {2, 1, {0x1p-24F, 1}, Pixels::half});
+    const HeightMap small = read_height_map(folder / "b.exr");
+    CHECK(small.at(0, 0) == 0x1p-24F);
+    CHECK_THAT(small.repairs.at(0), Contains("1 texel holds subnormal"));
+}
+
+TEST_CASE("sides over the limit are refused from the header") {
+    const TemporaryFolder folder;
+    write_exr(folder / "limit.exr", {4096, 1, std::vector<float>(4096)});
+    CHECK(read_height_map(folder / "limit.exr").width == 4096);
+    write_exr(folder / "wide.exr", {4097, 1, std::vector<float>(4097)});
+    CHECK_THROWS_WITH(read_height_map(folder / "wide.exr"),
+                      Contains("4097 x 1 texels; each side must be 1 to 4096"));
+    write_exr(folder / "high.exr", {1, 4097, std::vector<float>(4097)});
+    CHECK_THROWS_WITH(read_height_map(folder / "high.exr"), Contains("1 x 4097 texels"));
+}
+
+TEST_CASE("the face in every EXR variant is the same map") {
+    const auto folder = shared_data("exr");
+    if (folder.empty()) {
+        return;
+    }
+    const HeightMap reference = read_height_map(folder / "face97x81_float_none_scan.exr");
+    const HeightMap half_reference = read_height_map(folder / "face97x81_half_none_scan.exr");
+    int count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        const std::string name = entry.path().filename().string();
+        if (name.rfind("face97x81_", 0) != 0) {
+            continue;
+        }
+        ++count;
+        INFO(name);
+        const HeightMap map = read_height_map(entry.path());
+        REQUIRE(map.width == 97);
+        REQUIRE(map.height == 81);
+        const bool half = name.find("_half_") != std::string::npos;
+        const double loss = name.find("half_b44") != std::string::npos      ? 4.6e-3
+                            : name.find("float_pxr24") != std::string::npos ? 3e-5
+                                                                            : 0;
+        const std::vector<float>& expected = half ? half_reference.values : reference.values;
+        double worst = 0;
+        double sum = 0;
+        for (std::size_t i = 0; i < map.values.size(); ++i) {
+            worst = std::max(worst, static_cast<double>(std::fabs(map.values[i] - expected[i])));
+            sum += static_cast<double>(map.values[i]);
+        }
+        CHECK(worst <= loss * 1.05);  // the README's two digits
+        CHECK(sum == Approx(15278.5).epsilon(0).margin(half ? 1.0 : 0.1));
+    }
+    CHECK(count == 22);
+}
+
+TEST_CASE("the OpenEXR project's own test images are read") {
+    const auto folder = shared_data("exr");
+    if (folder.empty()) {
+        return;
+    }
+    for (const char* const name : {"oexr_AllHalfValues.exr", "oexr_BrightRingsNanInf.exr"}) {
+        const HeightMap map = read_height_map(folder / name);
+        CHECK_FALSE(map.repairs.empty());
+        for (const float value : map.values) {
+            REQUIRE(std::isfinite(value));
+        }
+    }
+    // The same picture; only its windows differ.
+    const HeightMap t02 = read_height_map(folder / "oexr_t02.exr");
+    CHECK(t02.values == read_height_map(folder / "oexr_t05.exr").values);
+    CHECK(t02.values == read_height_map(folder / "oexr_t08.exr").values);
+}

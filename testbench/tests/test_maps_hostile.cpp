@@ -1,0 +1,275 @@
+// Files that lie, break off, or were damaged: every one is refused with InputError or read, never anything
+// else, and none makes the process grow by more than 256 MiB.
+#include <png.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <string>
+
+#include "testbench/tests/map_test_files.h"
+
+using namespace tessera;
+using namespace tessera::map_test;
+
+namespace {
+
+constexpr long allowed_growth = 256L << 20;
+
+bool address_sanitizer() {
+#if defined(__SANITIZE_ADDRESS__)
+    return true;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+    return true;
+#else
+    return false;
+#endif
+#else
+    return false;
+#endif
+}
+
+long address_space() {
+    long pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    return pages * sysconf(_SC_PAGESIZE);
+}
+
+long resident_peak() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss * 1024;
+}
+
+// Reads the file in a process whose address space may grow by allowed_growth. True: it ended by itself,
+// neither it nor a library met the limit, and its resident memory grew less. (AddressSanitizer reserves
+// address space by the terabyte: there the limit must go.)
+bool reads_in_little_memory(const std::filesystem::path& path) {
+    const pid_t child = fork();
+    REQUIRE(child >= 0);
+    if (child == 0) {
+        if (!address_sanitizer()) {
+            const auto limit = static_cast<rlim_t>(address_space() + allowed_growth);
+            const rlimit limits{limit, limit};
+            setrlimit(RLIMIT_AS, &limits);
+        }
+        const long before = resident_peak();
+        const Outcome outcome = outcome_of(path);
+        const bool short_of_memory = outcome.message.find("memory") != std::string::npos;
+        const bool grew = resident_peak() - before > allowed_growth;
+        _exit(outcome.kind == Outcome::Kind::wrong_exception || short_of_memory || grew ? 1 : 0);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+// Also a check of the message: one line that names the file.
+void check_refusal(const Outcome& outcome, const std::filesystem::path& path) {
+    INFO(outcome.message);
+    CHECK(outcome.message.rfind(path.string() + ": ", 0) == 0);
+    CHECK(outcome.message.find('\n') == std::string::npos);
+    CHECK(outcome.message.back() == '.');
+}
+
+void check_folder(const std::filesystem::path& folder, std::size_t least) {
+    std::size_t count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        ++count;
+        const std::string name = entry.path().filename().string();
+        INFO(name);
+        REQUIRE(reads_in_little_memory(entry.path()));
+        const Outcome outcome = outcome_of(entry.path());
+        INFO(outcome.message);
+        if (name.rfind("ok_", 0) == 0) {
+            CHECK(
+                (outcome.kind == Outcome::Kind::loaded || outcome.kind == Outcome::Kind::loaded_with_remark));
+        } else {
+            CHECK((outcome.kind == Outcome::Kind::refused ||
+                   outcome.kind == Outcome::Kind::loaded_with_remark));
+        }
+        if (outcome.kind == Outcome::Kind::refused) {
+            check_refusal(outcome, entry.path());
+        }
+    }
+    CHECK(count >= least);
+}
+
+// Every length, every byte inverted, every byte with its lowest bit flipped.
+struct Damage {
+    int refused = 0;
+    int remarked = 0;
+    int loaded = 0;
+};
+
+void count(const std::filesystem::path& path, Damage& damage) {
+    const Outcome outcome = outcome_of(path);
+    REQUIRE(outcome.kind != Outcome::Kind::wrong_exception);
+    damage.refused += outcome.kind == Outcome::Kind::refused ? 1 : 0;
+    damage.remarked += outcome.kind == Outcome::Kind::loaded_with_remark ? 1 : 0;
+    damage.loaded += outcome.kind == Outcome::Kind::loaded ? 1 : 0;
+}
+
+Damage truncate_everywhere(const TemporaryFolder& folder, const std::string& good) {
+    Damage damage;
+    const auto path = folder / "cut";
+    for (std::size_t length = 0; length < good.size(); ++length) {
+        INFO("length " << length);
+        write_bytes(path, good.substr(0, length));
+        count(path, damage);
+    }
+    return damage;
+}
+
+Damage flip_everywhere(const TemporaryFolder& folder, const std::string& good) {
+    Damage damage;
+    const auto path = folder / "flipped";
+    for (std::size_t at = 0; at < good.size(); ++at) {
+        for (const int mask : {0xff, 0x01, 0x40, 0x80}) {
+            INFO("byte " << at << " mask " << mask);
+            std::string bad = good;
+            bad[at] = static_cast<char>(bad[at] ^ mask);
+            write_bytes(path, bad);
+            count(path, damage);
+        }
+    }
+    return damage;
+}
+
+}  // namespace
+
+TEST_CASE("hostile EXR files") {
+    const auto folder = shared_data("hostile/exr_crafted");
+    if (!folder.empty()) {
+        check_folder(folder, 37);
+    }
+}
+
+TEST_CASE("hostile PNG files") {
+    const auto folder = shared_data("hostile/png");
+    if (!folder.empty()) {
+        check_folder(folder, 21);
+    }
+}
+
+TEST_CASE("hostile PGM files") {
+    const auto folder = shared_data("hostile/pgm");
+    if (!folder.empty()) {
+        check_folder(folder, 22);
+    }
+}
+
+TEST_CASE("EXR files cut off or with a byte changed") {
+    const TemporaryFolder folder;
+    const auto tiled = GENERATE(false, true);
+    const auto compression = GENERATE(0, 1, 3, 4, 5, 6, 8);
+    ExrImage image{11, 9, std::vector<float>(99)};
+    for (std::size_t i = 0; i < image.values.size(); ++i) {
+        image.values[i] = static_cast<float>((i * 7) % 13);
+    }
+    image.pixels = Pixels::half;
+    image.tiled = tiled;
+    image.compression = compression;
+    write_exr(folder / "good.exr", image);
+    const std::string good = read_bytes(folder / "good.exr");
+    const Damage cut = truncate_everywhere(folder, good);
+    CHECK(cut.loaded == 0);
+    CHECK(cut.refused + cut.remarked == static_cast<int>(good.size()));
+    CHECK(flip_everywhere(folder, good).refused > 0);
+}
+
+TEST_CASE("PNG files cut off or with a byte changed") {
+    const TemporaryFolder folder;
+    const auto interlaced = GENERATE(false, true);
+    const auto type = GENERATE(PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_PALETTE);
+    PngImage image{5, 4, 8, type, std::vector<std::uint8_t>(20, 1), {}, interlaced};
+    if (type == PNG_COLOR_TYPE_PALETTE) {
+        image.palette = {1, 2, 3, 4, 5, 6};
+    }
+    write_png(folder / "good.png", image);
+    const std::string good = read_bytes(folder / "good.png");
+    CHECK(truncate_everywhere(folder, good).refused == static_cast<int>(good.size()));
+    // Nothing escapes the checksums.
+    CHECK(flip_everywhere(folder, good).refused == static_cast<int>(good.size()) * 4);
+}
+
+TEST_CASE("PGM files cut off or with a byte changed") {
+    const TemporaryFolder folder;
+    const std::string binary = "P5\n# comment\n3 3\n65535\n0123456789abcdefgh";
+    const std::string text = "P2\n3 2 # comment\n100\n10 20 30\n40 50 60\n";
+    CHECK(truncate_everywhere(folder, binary).refused == static_cast<int>(binary.size()));
+    const Damage cut = truncate_everywhere(folder, text);
+    CHECK(cut.loaded == 0);
+    CHECK(cut.remarked == 2);  // "... 6" and "... 60": no telling, but it is said
+    flip_everywhere(folder, binary);
+    flip_everywhere(folder, text);
+}
+
+namespace {
+
+void set_word(std::string& bytes, std::size_t at, std::uint32_t value) {
+    for (std::size_t i = 0; i < 4; ++i) {
+        bytes.at(at + i) = static_cast<char>(value >> (8 * i));
+    }
+}
+
+void set_far_corner(std::string& bytes, std::uint32_t x, std::uint32_t y) {
+    const auto type = bytes.find("dataWindow");
+    REQUIRE(type != std::string::npos);
+    const std::size_t value = type + std::string_view("dataWindow?box2i?size").size();
+    set_word(bytes, value + 8, x);
+    set_word(bytes, value + 12, y);
+}
+
+// Padded, so that an offset table for a large claim fits and the claim gets as far as it can.
+constexpr std::size_t padding_for_tables = 2100000;
+
+}  // namespace
+
+TEST_CASE("EXR headers that claim much cost little") {
+    const TemporaryFolder folder;
+    const auto compression = GENERATE(0, 1, 3, 4, 5, 7, 9);
+    const auto tiled = GENERATE(false, true);
+    ExrImage image{16, 16, std::vector<float>(256)};
+    image.compression = compression;
+    image.tiled = tiled;
+    write_exr(folder / "good.exr", image);
+    const std::string good = read_bytes(folder / "good.exr");
+    for (const std::uint32_t side : {4096U, 0x7fffffffU}) {
+        for (const std::size_t padding : {std::size_t{0}, padding_for_tables}) {
+            std::string bad = good + std::string(padding, '\0');
+            set_far_corner(bad, side - 1, side - 1);
+            write_bytes(folder / "bad.exr", bad);
+            CHECK(reads_in_little_memory(folder / "bad.exr"));
+            CHECK(outcome_of(folder / "bad.exr").kind == Outcome::Kind::refused);
+            if (tiled) {
+                bad = good + std::string(padding, '\0');
+                const std::size_t tiles = good.find("tiledesc") + std::string_view("tiledesc?size").size();
+                set_word(bad, tiles, side);
+                set_word(bad, tiles + 4, 2048);
+                write_bytes(folder / "bad.exr", bad);
+                CHECK(reads_in_little_memory(folder / "bad.exr"));
+            }
+        }
+    }
+}
+
+TEST_CASE("an EXR file with more channels than can be decoded in reasonable time is refused") {
+    const TemporaryFolder folder;
+    ExrImage image{16, 16, std::vector<float>(256)};
+    image.compression = 2;
+    image.channels.clear();
+    for (int i = 0; i < 270; ++i) {
+        image.channels.push_back("C" + std::to_string(i));
+    }
+    write_exr(folder / "a.exr", image);
+    std::string bad = read_bytes(folder / "a.exr") + std::string(padding_for_tables, '\0');
+    set_far_corner(bad, 999, 999);
+    write_bytes(folder / "bad.exr", bad);
+    const Outcome outcome = outcome_of(folder / "bad.exr");
+    CHECK(outcome.kind == Outcome::Kind::refused);
+    CHECK_THAT(outcome.message, Catch::Contains("270 channels have 1080000000 bytes"));
+}

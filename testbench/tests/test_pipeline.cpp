@@ -1,0 +1,297 @@
+#include <catch2/catch.hpp>
+#include <set>
+#include <tuple>
+
+#include "testbench/benchmark/bare_recursion.h"
+#include "testbench/check/invariants.h"
+#include "testbench/check/scoreboard.h"
+#include "testbench/common/error.h"
+#include "testbench/host/inputs.h"
+#include "testbench/host/simulation.h"
+
+// The whole machine, from the host's triangles to the rasteriser. SystemC elaborates once a process, so each case runs
+// one simulation.
+
+using namespace tessera;
+
+namespace {
+
+Setup setup_of(const Job& job) {
+    return make_setup(job, load_mesh(job, {}), load_map(job, {}));
+}
+
+/// Everything of a triangle that must not depend on how the machine got there.
+using Key = std::array<std::int64_t, 36>;
+
+std::multiset<Key> keys(const EmittedMesh& mesh) {
+    std::multiset<Key> result;
+    for (const EmittedTriangle& triangle : mesh.triangles) {
+        Key key{};
+        std::size_t place = 0;
+        for (const auto& c : triangle.corners)
+            for (const std::int64_t value :
+                 {std::int64_t{c.texture.u}, std::int64_t{c.texture.v}, std::int64_t{c.displaced.x},
+                  std::int64_t{c.displaced.y}, std::int64_t{c.displaced.z},
+                  std::int64_t{c.displaced_normal.x}, std::int64_t{c.displaced_normal.y},
+                  std::int64_t{c.displaced_normal.z}, std::int64_t{c.position.x}, std::int64_t{c.position.y},
+                  std::int64_t{c.generation}})
+                key[place++] = value;
+        key[place++] = triangle.base;
+        key[place++] = triangle.split_by;
+        key[place] = triangle.stopped_by;
+        result.insert(key);
+    }
+    return result;
+}
+
+void check_run(const Setup& setup, Simulation& simulation) {
+    GoldenInputs golden(setup);
+    Scoreboard scoreboard(setup.registers, golden);
+    simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
+    REQUIRE(simulation.run().empty());
+
+    const auto& counts = simulation.pipeline.pass_or_tessellate.counts();
+    const EmittedMesh& mesh = simulation.monitor.mesh;
+    CHECK(counts.finished == mesh.triangles.size());
+    CHECK(simulation.rasteriser.triangles() + counts.culled == counts.finished);
+    // conservation: every split adds one triangle
+    CHECK(counts.finished == setup.base_triangles.size() + counts.edges_split);
+    const auto& made = simulation.pipeline.tessellation.made_into();
+    CHECK(simulation.pipeline.triangle_queue.taken() == made[1] + 2 * made[2] + 3 * made[3] + 4 * made[4]);
+    CHECK(simulation.pipeline.get_triangle.queue_triangles() == simulation.pipeline.triangle_queue.taken());
+    CHECK(simulation.pipeline.saturations().total() == 0);
+
+    const ConformanceResult result = scoreboard.result();
+    INFO(result.first_mismatch);
+    CHECK(result.mismatches == 0);
+    CHECK(result.passed(0.5));
+    CHECK(result.edges == simulation.pipeline.tessellation_tests.edges_tested());
+    const InvariantResult invariants = check_invariants(mesh, setup.base_triangles, setup.registers);
+    INFO(invariants.first_violation);
+    CHECK(invariants.passed());
+    CHECK(invariants.collapsed == 0);
+    CHECK(invariants.turned_over == 0);
+    CHECK(invariants.open_texture_seam_edges == 0);
+}
+
+void expect_bare_mesh(const Job& job) {
+    const Setup setup = setup_of(job);
+    Simulation simulation(setup, 1'000'000);
+    check_run(setup, simulation);
+    BareRecursion bare(setup);
+    EmittedMesh mesh;
+    CHECK(bare.run(mesh) == simulation.pipeline.tessellation_tests.edges_tested());
+    CHECK(mesh.triangles.size() > setup.base_triangles.size());
+    CHECK(keys(mesh) == keys(simulation.monitor.mesh));
+}
+
+/// A constant map must leave every triangle of the mesh whole.
+void expect_whole(Job job, double value) {
+    job.map.source = MapSource::constant;
+    job.map.value = value;
+    job.map.width = 97;
+    job.map.height = 61;
+    job.tests.summed_height_threshold = 0;
+    job.tests.view_threshold = 0;
+    const Setup setup = setup_of(job);
+    Simulation simulation(setup, 1'000'000);
+    REQUIRE(simulation.run().empty());
+    CHECK(simulation.monitor.mesh.triangles.size() == setup.base_triangles.size());
+    CHECK(simulation.pipeline.pass_or_tessellate.counts().edges_split == 0);
+    CHECK(simulation.rasteriser.triangles() == setup.base_triangles.size());
+}
+
+Job cylinder_job() {
+    Job job;
+    job.mesh.source = MeshSource::cylinder;
+    return job;
+}
+
+Job sphere_job() {
+    Job job;
+    job.mesh.source = MeshSource::sphere;
+    return job;
+}
+
+}  // namespace
+
+TEST_CASE("half donut: the pipeline's mesh is the bare datapath's, bit for bit") {
+    expect_bare_mesh(Job{});
+}
+
+TEST_CASE("half donut, last in first out: the same mesh") {
+    Job job;
+    job.hardware.queue_order = QueueOrder::lifo;
+    expect_bare_mesh(job);
+}
+
+TEST_CASE("half donut, many host triangles at a time: the same mesh") {
+    Job job;
+    job.hardware.queue_watermark = 1000;
+    expect_bare_mesh(job);
+}
+
+TEST_CASE("half donut, memories read by transactions: the same mesh, reads and time") {
+    Job job;
+    job.hardware.direct_memory = false;
+    expect_bare_mesh(job);
+}
+
+TEST_CASE("reads through DMI and by transactions are counted alike") {
+    Job job;
+    job.hardware.direct_memory = false;
+    const Setup setup = setup_of(job);
+    Simulation simulation(setup, 1'000'000);
+    REQUIRE(simulation.run().empty());
+    const Pipeline& p = simulation.pipeline;
+    CHECK(p.displace_vertex.displacement_map.reads() == p.displacement_map.transactions());
+    CHECK(p.tessellation_tests.normal_test.normal_map.reads() == p.normal_map.transactions());
+    CHECK(p.tessellation_tests.summed_height_test.summed_height_table.reads() ==
+          p.summed_height_table.transactions());
+    CHECK(p.summed_height_table.transactions() == 12 * p.tessellation_tests.edges_tested());
+    CHECK(p.displacement_map.transactions() ==
+          p.tessellation_tests.edges_tested() + 3 * setup.base_triangles.size());
+}
+
+TEST_CASE("half donut, always the first diagonal") {
+    Job job;
+    job.hardware.triangulation = Triangulation::first;
+    expect_bare_mesh(job);
+}
+
+TEST_CASE("half donut, always the second diagonal") {
+    Job job;
+    job.hardware.triangulation = Triangulation::second;
+    expect_bare_mesh(job);
+}
+
+TEST_CASE("half donut, culling: Lighting gets fewer, the mesh stays whole") {
+    Job job;
+    job.hardware.culling = Culling::back;
+    job.camera.eye = {0, -4, 0.6};
+    const Setup setup = setup_of(job);
+    Simulation simulation(setup, 1'000'000);
+    check_run(setup, simulation);
+    CHECK(simulation.pipeline.pass_or_tessellate.counts().culled > 0);
+    CHECK(simulation.rasteriser.triangles() > 0);
+}
+
+TEST_CASE("narrow formats: wide SAT entries, few fraction bits") {
+    Job job;
+    job.formats.summed_height_bits = 44;
+    job.formats.normal_bits = 12;
+    job.formats.normal_fraction = 10;
+    job.formats.position_bits = 24;
+    job.formats.position_fraction = 12;
+    job.formats.texture_fraction = 10;
+    job.formats.displacement_bits = 10;
+    expect_bare_mesh(job);
+}
+
+TEST_CASE("cylinder in repeat: the seam stays closed") {
+    Job job = cylinder_job();
+    job.map.source = MapSource::noise;
+    job.map.width = 64;
+    job.map.height = 33;
+    job.map.address_u = Addressing::repeat;
+    job.displacement.scale = 0.1;
+    job.tests.view_threshold = 8;
+    const Setup setup = setup_of(job);
+    Simulation simulation(setup, 1'000'000);
+    check_run(setup, simulation);
+    CHECK(simulation.monitor.mesh.triangles.size() > 1000);
+}
+
+TEST_CASE("constant map splits nothing: plane, clamp") {
+    expect_whole(Job{}, 0);
+}
+TEST_CASE("constant map splits nothing: plane, repeat") {
+    Job job;
+    job.map.address_u = job.map.address_v = Addressing::repeat;
+    expect_whole(job, 1);
+}
+TEST_CASE("constant map splits nothing: cylinder, clamp") {
+    expect_whole(cylinder_job(), 0.37);
+}
+TEST_CASE("constant map splits nothing: cylinder, repeat") {
+    Job job = cylinder_job();
+    job.map.address_u = Addressing::repeat;
+    expect_whole(job, 1);
+}
+TEST_CASE("constant map splits nothing: sphere, clamp") {
+    expect_whole(sphere_job(), 0.5);
+}
+TEST_CASE("constant map splits nothing: sphere, repeat") {
+    Job job = sphere_job();
+    job.map.address_u = Addressing::repeat;
+    expect_whole(job, 0.001);
+}
+
+TEST_CASE("the triangle limit ends a run with a message that names its key") {
+    Job job;
+    const Setup setup = setup_of(job);
+    Simulation simulation(setup, 500);
+    CHECK_THROWS_AS(simulation.run(), ResourceError);
+    CHECK(simulation.monitor.mesh.triangles.size() == 500);
+}
+
+TEST_CASE("a read outside a table is an error that names the reader") {
+    Job job;
+    job.hardware.direct_memory = false;
+    Setup setup = setup_of(job);
+    Simulation simulation(setup, 1'000'000);
+    setup.registers.map.height *= 2;  // the units now take the map to be larger than its memory
+    try {
+        simulation.run();
+        FAIL("no error");
+    } catch (const sc_core::sc_report& report) {
+        CHECK_THAT(report.what(),
+                   Catch::Contains("tessera.displace_vertex") && Catch::Contains("TLM_ADDRESS_ERROR"));
+    }
+}
+
+TEST_CASE("a base triangle's View Test waits for its corners' screen positions") {
+    Job job;
+    job.mesh.columns = job.mesh.rows = 1;
+    job.map.source = MapSource::constant;
+    Setup setup = setup_of(job);
+    setup.base_triangles.resize(1);
+    setup.design.timing.transform.latency = 500;  // far more than the tests take
+    Simulation simulation(setup, 1'000'000);
+    REQUIRE(simulation.run().empty());
+    // The host's time, one base triangle's first pass: Get Triangle 1, Calculate New P 1, Displace Vertex 6 and six
+    // reads of the map, Transform, the View Test 1, Pass or Tessellate 1, Tessellation 1, Triangle Queue 1. The
+    // second pass, for the normals, is shorter and starts with the first.
+    const std::uint64_t expected = 1 + 1 + 6 + 6 + 500 + 1 + 1 + 1 + 1;
+    CHECK(sc_core::sc_time_stamp() / setup.design.timing.cycle == static_cast<double>(expected));
+}
+
+TEST_CASE("time joins at the later branch, also for what follows the join") {
+    Job job;
+    job.mesh.columns = job.mesh.rows = 1;
+    job.map.source = MapSource::noise;
+    job.tests.normal_threshold = 0;
+    job.tests.view_threshold = 0;
+    job.tests.generation_limit = 1;
+    Setup setup = setup_of(job);
+    setup.base_triangles.resize(1);
+    setup.design.timing.transform.latency = 500;
+    Simulation simulation(setup, 1'000'000);
+    REQUIRE(simulation.run().empty());
+    REQUIRE(simulation.monitor.mesh.triangles.size() == 4);
+    // Four children, one after another; for them the tests do not wait for Transform: Get Triangle 1, Calculate New P
+    // 1, Displace Vertex 6 and three reads of the map, Transform, Pass or Tessellate 1, Lighting 4.
+    const std::uint64_t expected = 4 * (1 + 1 + 6 + 3 + 500 + 1 + 4);
+    CHECK(sc_core::sc_time_stamp() / setup.design.timing.cycle == static_cast<double>(expected));
+}
+
+TEST_CASE("a second frame gives the same triangles again") {
+    const Setup setup = setup_of(Job{});
+    Simulation simulation(setup, 1'000'000);
+    REQUIRE(simulation.run().empty());
+    const auto first = keys(simulation.monitor.mesh);
+    simulation.monitor.mesh.triangles.clear();
+    simulation.host.send_again();
+    REQUIRE(simulation.run().empty());
+    CHECK(keys(simulation.monitor.mesh) == first);
+}

@@ -1,0 +1,119 @@
+#include <catch2/catch.hpp>
+
+#include "testbench/tests/program_runner.h"
+#include "testbench/tests/run_folder.h"
+
+using namespace tessera;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+ProgramEnd run_well(const std::vector<std::string>& arguments, const fs::path& folder) {
+    ProgramEnd end = run_tessera(arguments, folder);
+    INFO(end.text());
+    REQUIRE(end.exit_code == 0);
+    REQUIRE(end.err.empty());
+    return end;
+}
+
+}  // namespace
+
+TEST_CASE("the default job leaves a complete run folder whose figures agree") {
+    const TestFolder here;
+    const ProgramEnd end = run_well({"run"}, here.path());
+    CHECK(here.names() == std::vector<std::string>{"runs"});
+
+    const fs::path folder = here.path() / "runs/half_donut";
+    const RunFolder run(folder);
+    require_consistent(run);
+    CHECK(run.count("host", "base_triangles") == 18);
+    CHECK(run.count("pass_or_tessellate", "culled") == 0);
+    CHECK(run.count("summed_height_table", "reads") == 12 * run.count("run", "edges_tested"));
+    CHECK(run.conformance["remarks"].empty());
+
+    CHECK_THAT(end.out, Contains("all checks passed\n"));
+    CHECK_THAT(end.out, Contains("18 base -> "));
+    CHECK_THAT(end.out, Contains("0 mismatches"));
+    CHECK_THAT(end.out, Contains("results in " + folder.string() + "\n"));
+    CHECK_THAT(end.out, !Contains("note:"));
+    CHECK_THAT(end.out, !Contains("\x1b"));
+    CHECK_THAT(end.out, !Contains("SystemC"));
+}
+
+TEST_CASE("two runs leave identical bytes, and so do the jobs they write down") {
+    const TestFolder here;
+    // The folder's name is part of the job: the runs keep it and change the folder they start from.
+    const auto run_in = [&](const std::string& name, std::vector<std::string> arguments) {
+        fs::create_directory(here.path() / name);
+        arguments.insert(arguments.begin(), "run");
+        run_well(arguments, here.path() / name);
+        return RunFolder(here.path() / name / "runs/half_donut").files();
+    };
+    const auto first = run_in("first", {});
+    require_same_files(first, run_in("second", {}));
+
+    const std::string dump = run_well({"run", "--dump-config"}, here.path()).out;
+    write_all(here.path() / "dump.toml", dump);
+    CHECK(first.at("job.toml") == dump);
+    require_same_files(first, run_in("dumped", {(here.path() / "dump.toml").string()}));
+    require_same_files(first, run_in("own", {(here.path() / "first/runs/half_donut/job.toml").string()}));
+    // This one states some defaults in other words.
+    auto stated = run_in("file", {(source_folder() / "testbench/jobs/half_donut.toml").string()});
+    stated["job.toml"] = first.at("job.toml");
+    require_same_files(first, stated);
+    CHECK(run_well({"run", (here.path() / "dump.toml").string(), "--dump-config"}, here.path()).out == dump);
+}
+
+TEST_CASE("a job that reads files runs again from its run folder") {
+    const TestFolder here;
+    fs::create_directories(here.path() / "inputs");
+    write_all(here.path() / "inputs/square.obj",
+              "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n");
+    write_all(here.path() / "inputs/bump.pgm", "P2 3 3 4\n0 1 0\n1 4 1\n0 1 0\n");
+    write_all(here.path() / "inputs/job.toml",
+              "[mesh]\nsource = \"file\"\nfile = \"square.obj\"\n"
+              "[map]\nsource = \"file\"\nfile = \"bump.pgm\"\n"
+              "[tests]\ngeneration_limit = 4\ntex_coord = false\n[output]\nfolder = \"out\"\n");
+    run_well({"run", "inputs/job.toml"}, here.path());
+    const auto first = RunFolder(here.path() / "out").files();
+    fs::copy(here.path() / "out", here.path() / "again");
+
+    SECTION("from anywhere") {
+        fs::create_directory(here.path() / "elsewhere");
+        run_well({"run", "../out/job.toml", "--set", "output.folder=../out"}, here.path() / "elsewhere");
+        auto second = RunFolder(here.path() / "out").files();
+        // the folder's name is what was set
+        CHECK_THAT(second.at("job.toml"), Contains("folder = \"../out\""));
+        second["job.toml"] = first.at("job.toml");
+        require_same_files(first, second);
+    }
+    SECTION("with paths set on the command line, from there") {
+        run_well({"run", "--set", "mesh.source=file", "--set", "mesh.file=inputs/square.obj", "--set",
+                  "map.source=file", "--set", "map.file=inputs/bump.pgm", "--set", "tests.generation_limit=4",
+                  "--set", "tests.tex_coord=false", "--set", "output.folder=out"},
+                 here.path());
+        require_same_files(first, RunFolder(here.path() / "out").files());
+    }
+}
+
+TEST_CASE("a run replaces what an earlier one left in its folder") {
+    const TestFolder here;
+    const std::vector<std::string> small{"--set", "output.folder=out", "--set", "tests.generation_limit=2"};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), "run");
+        more.insert(more.end(), small.begin(), small.end());
+        return more;
+    };
+    run_well(with({}), here.path());
+    write_all(here.path() / "out/notes.txt", "mine");
+    run_well(
+        with({"--set", "output.ply=false", "--set", "output.obj=false", "--set", "output.picture=false"}),
+        here.path());
+    // A mesh of another job beside this one's statistics would be believed.
+    CHECK_FALSE(fs::exists(here.path() / "out/mesh.ply"));
+    CHECK_FALSE(fs::exists(here.path() / "out/mesh.obj"));
+    CHECK_FALSE(fs::exists(here.path() / "out/picture.png"));
+    CHECK(read_all(here.path() / "out/notes.txt") == "mine");
+    CHECK(fs::exists(here.path() / "out/statistics.json"));
+}

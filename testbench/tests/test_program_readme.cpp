@@ -1,0 +1,198 @@
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <regex>
+
+#include "testbench/tests/program_runner.h"
+
+using namespace tessera;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The commands of the text's fenced `sh` blocks: one per line, lines that end in a backslash joined.
+std::vector<std::string> commands_in(const std::string& markdown) {
+    std::vector<std::string> commands;
+    bool within = false, continues = false;
+    for (std::string line : lines_of(markdown)) {
+        if (line.rfind("```", 0) == 0) {
+            within = !within && std::regex_match(line, std::regex("```(sh|bash|shell)\\s*"));
+            continue;
+        }
+        if (!within)
+            continue;
+        const std::size_t begin = line.find_first_not_of(" \t");
+        if (begin == std::string::npos || line[begin] == '#')
+            continue;
+        line.erase(0, begin);
+        if (continues)
+            commands.back() += line;
+        else
+            commands.push_back(line);
+        continues = !line.empty() && line.back() == '\\';
+        if (continues)
+            commands.back().pop_back();
+    }
+    return commands;
+}
+
+/// A checkout to run commands in: the project's own scripts, everything else by link, the program of this build where
+/// scripts/run puts it. cmake and ctest do nothing there, so that nothing is built and no test runs tests.
+class Checkout {
+  public:
+    Checkout() {
+        fs::create_directories(root() / "tools");
+        for (const char* const tool : {"cmake", "ctest"}) {
+            write_all(root() / "tools" / tool, "#!/bin/sh\nexit 0\n");
+            fs::permissions(root() / "tools" / tool, fs::perms::owner_all);
+        }
+        for (const auto& entry : fs::directory_iterator(source_folder())) {
+            const std::string name = entry.path().filename().string();
+            if (name.rfind("build", 0) != 0 && name != ".git" && name != "scripts" && name != "runs")
+                fs::create_symlink(entry.path(), root() / name);
+        }
+        // Copied: a linked script would find its way back to the original.
+        fs::copy(source_folder() / "scripts", root() / "scripts");
+        for (const char* const preset : {"release", "debug", "asan"}) {
+            fs::create_directories(root() / "build" / preset / "testbench/program");
+            fs::create_symlink(TESSERA_PROGRAM, root() / "build" / preset / "testbench/program/tessera");
+        }
+    }
+
+    fs::path root() const { return folder_.path() / "tessera"; }
+
+    ProgramEnd run(const std::string& command) const {
+        const std::string path = (root() / "tools").string() + ":" + std::getenv("PATH");
+        return run_program({"bash", "-euo", "pipefail", "-c", command}, root(), {},
+                           {{"PATH", path}, {"TESSERA_SKIP_INSTALL", "1"}});
+    }
+
+  private:
+    TestFolder folder_;
+};
+
+/// What a command is to be held to.
+enum class Trial {
+    run,    ///< run it, exit code 0
+    parse,  ///< a script that takes long or needs more tools than tests do: it is there and its syntax is right
+    build,    ///< builds and runs another program of ours: its folder has that target
+    skip,     ///< it reads data that is absent here
+    foreign,  ///< it fetches or installs
+};
+
+Trial trial_of(const std::string& command) {
+    const auto says = [&](const char* words) { return std::regex_search(command, std::regex(words)); };
+    if (says("^(git|sudo|apt|apt-get|docker|cd) "))
+        return Trial::foreign;
+    if (says("^(\\.ci/|scripts/(check_|install))"))
+        return Trial::parse;
+    if (says("^cmake .*--target "))
+        return Trial::build;
+    if (!fs::is_directory(shared_data()) && says("head|teapot|crater_lake|shared/data|data:"))
+        return Trial::skip;
+    return Trial::run;
+}
+
+void parse_script(const fs::path& script) {
+    INFO(script);
+    REQUIRE(fs::is_regular_file(script));
+    CHECK(::access(script.c_str(), X_OK) == 0);
+    const std::string first = lines_of(read_all(script)).at(0);
+    const std::vector<std::string> python{
+        "python3", "-c", "import sys; compile(open(sys.argv[1]).read(), sys.argv[1], 'exec')",
+        script.string()};
+    const std::vector<std::string> bash{"bash", "-n", script.string()};
+    const ProgramEnd end =
+        run_program(first.find("python3") != std::string::npos ? python : bash, source_folder());
+    INFO(end.text());
+    CHECK(end.exit_code == 0);
+}
+
+/// cmake --build FOLDER --target TARGET && FOLDER/path/TARGET
+void check_target(const std::string& command) {
+    std::smatch parts;
+    REQUIRE(std::regex_match(command, parts,
+                             std::regex("cmake --build (\\S+) --target (\\S+) && (\\S+)/([^/ ]+)( .*)?")));
+    CHECK(parts[2] == parts[4]);
+    const std::string build = parts[1], folder = parts[3];
+    REQUIRE(folder.rfind(build + "/", 0) == 0);
+    CHECK_THAT(read_all(source_folder() / folder.substr(build.size() + 1) / "CMakeLists.txt"),
+               Contains("add_executable(" + parts[2].str()));
+}
+
+void try_command(const std::string& command, const Checkout& checkout) {
+    INFO("$ " << command);
+    switch (trial_of(command)) {
+        case Trial::foreign:
+            return;
+        case Trial::skip:
+            WARN("not run, for ../shared/data is absent: " << command);
+            return;
+        case Trial::parse:
+            parse_script(source_folder() / command.substr(0, command.find(' ')));
+            return;
+        case Trial::build:
+            check_target(command);
+            return;
+        case Trial::run:
+            break;
+    }
+    const ProgramEnd end = checkout.run(command);
+    INFO(end.text());
+    CHECK(end.exit_code == 0);
+}
+
+}  // namespace
+
+TEST_CASE("commands are found in fenced blocks of shell") {
+    const std::string text =
+        "Text.\n```sh\n# why\nscripts/run\nscripts/run head \\\n    --set a.b=1\n\n```\n"
+        "```toml\n[tests]\n```\n`scripts/none`\n```bash\n  ls\n```\n```\noutput\n```\n";
+    CHECK(commands_in(text) == std::vector<std::string>{"scripts/run", "scripts/run head --set a.b=1", "ls"});
+}
+
+TEST_CASE("every command of README.md works") {
+    REQUIRE(fs::is_regular_file(source_folder() / "README.md"));
+    const std::vector<std::string> commands = commands_in(read_all(source_folder() / "README.md"));
+    REQUIRE_FALSE(commands.empty());
+    const Checkout checkout;
+    for (const std::string& command : commands)
+        try_command(command, checkout);
+}
+
+TEST_CASE("every script parses") {
+    for (const char* const folder : {"scripts", ".ci"}) {
+        for (const auto& entry : fs::directory_iterator(source_folder() / folder)) {
+            if (entry.is_regular_file() && entry.path().filename() != "common.sh")
+                parse_script(entry.path());
+        }
+    }
+}
+
+TEST_CASE("scripts/run takes a job by name or by file and hands everything on") {
+    const Checkout checkout;
+    const std::string quick = " --set tests.generation_limit=1 --set output.folder=out";
+    const auto works = [&](const std::string& command) {
+        const ProgramEnd end = checkout.run(command);
+        INFO(command);
+        INFO(end.text());
+        CHECK(end.exit_code == 0);
+        CHECK_THAT(end.out, Contains("results in " + (checkout.root() / "out").string()));
+    };
+    works("scripts/run" + quick);
+    works("scripts/run half_donut" + quick);
+    works("scripts/run testbench/jobs/half_donut.toml" + quick);
+    works(
+        "mkdir elsewhere && cd elsewhere && ../scripts/run half_donut --set tests.generation_limit=1"
+        " --set output.folder=../out");
+
+    const ProgramEnd unknown = checkout.run("scripts/run half_donat");
+    INFO(unknown.text());
+    CHECK(unknown.exit_code == 2);
+    CHECK(unknown.out.empty());
+    for (const char* const words : {"half_donat", "half_donut", "teapot"})
+        CHECK_THAT(unknown.err, Contains(words));
+    CHECK(checkout.run("scripts/run --set nonsense=1").exit_code == 2);
+    CHECK(checkout.run("scripts/run --set limits.triangles=1").exit_code == 4);
+}
