@@ -25,7 +25,7 @@ class Random {
     double grid(double low, double high) { return std::floor(real(low, high) * 4096) / 4096; }
     glm::dvec3 unit() {
         for (;;) {
-            const glm::dvec3 v(real(-1, 1), real(-1, 1), real(-1, 1));
+            const glm::dvec3 v{real(-1, 1), real(-1, 1), real(-1, 1)};  // braces: in this order
             if (glm::length(v) > 0.1 && glm::length(v) < 1) {
                 return v / glm::length(v);
             }

@@ -50,7 +50,8 @@ inline double real(Random& random, double low, double high) {
 
 inline glm::dvec3 unit_vector(Random& random) {
     for (;;) {
-        const glm::dvec3 v(real(random, -1, 1), real(random, -1, 1), real(random, -1, 1));
+        const glm::dvec3 v{real(random, -1, 1), real(random, -1, 1),
+                           real(random, -1, 1)};  // braces: in this order
         const double length = glm::length(v);
         if (length > 0.1 && length < 1)
             return v / length;
@@ -98,7 +99,7 @@ struct Case {
         setup.height_per_code = std::ldexp(static_cast<double>(registers.displacement.scale),
                                            -formats.position.fraction - setup.map.bits);
         const double world = std::ldexp(static_cast<double>(highest), -formats.position.fraction);
-        setup.texel_size = glm::dvec2(real(random, 0.01, 2), real(random, 0.01, 2)) * world;
+        setup.texel_size = glm::dvec2{real(random, 0.01, 2), real(random, 0.01, 2)} * world;
 
         datapath::TestParameters& tests = registers.tests;
         tests.normal_threshold = random.natural(0, 1u << formats.normal.fraction);

@@ -153,6 +153,7 @@ TEST_CASE("a value beyond its bound is caught in every field") {
         {"w", "w", [](Pass& p, int by) { p.triangle.vertices[2].screen.w += by; }},
     };
     Random random(3);
+    int unbounded = 0;
     for (const datapath::Formats& formats :
          {datapath::Formats{}, make_formats(24, 12, 12, 10, 8, 12, 24, 8)}) {
         Case c(random, formats, Manner::tame);
@@ -168,6 +169,11 @@ TEST_CASE("a value beyond its bound is caught in every field") {
                 const bool single = std::string(field.quantity) == "P_ij" ||
                                     std::string(field.quantity) == "t_ij" ||
                                     std::string(field.quantity) == "(N_i+N_j)/2";
+                // Next to the near plane a screen position's bound may reach as far as its format: nothing lies beyond.
+                if (bound > 1e6) {
+                    ++unbounded;
+                    continue;
+                }
                 const int beyond = single ? 1 : static_cast<int>(2 * bound) + 1;
                 for (const int by : {beyond, -beyond}) {
                     INFO(field.name << " moved by " << by << ", bound " << bound);
@@ -182,6 +188,7 @@ TEST_CASE("a value beyond its bound is caught in every field") {
             }
         }
     }
+    CHECK(unbounded < 2 * 40);  // of 80 passes with some forty fields each
 }
 
 TEST_CASE("a flipped decision is caught") {
