@@ -1,45 +1,121 @@
 #include "modules/pipeline.h"
 
+#include <algorithm>
+#include <string>
+
+#include "modules/datapath/pack_triangle.h"
+
 namespace tessera {
 
 Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Registers& registers,
                    const Design& design)
     : sc_module(name),
-      get_triangle("get_triangle", design.timing),
-      calculate_new_p("calculate_new_p", design.timing),
-      displace_vertex("displace_vertex", registers, design.timing, design.direct_memory),
-      transform("transform", registers, design.timing),
-      tessellation_tests("tessellation_tests", registers, design.timing, design.direct_memory),
-      pass_or_tessellate("pass_or_tessellate", registers, design.timing),
-      tessellation("tessellation", registers, design.timing),
-      triangle_queue("triangle_queue", design.queue_order, design.queue_watermark, design.timing),
-      lighting("lighting", registers, design.timing),
-      displacement_map("displacement_map", registers.displacement_map,
-                       design.timing.cycle * design.timing.memory_read),
-      normal_map("normal_map", registers.normal_map, design.timing.cycle * design.timing.memory_read),
-      summed_height_table("summed_height_table", registers.summed_height_table,
-                          design.timing.cycle * design.timing.memory_read) {
+      clock("clock", sc_core::sc_time::from_value(design.timing.cycle_picoseconds)),
+      get_triangle("get_triangle", clock, design.timing, design.tests_units, passes),
+      calculate_new_p("calculate_new_p", clock, design.timing),
+      displace_vertex("displace_vertex", clock, registers, design.timing, design.direct_memory),
+      transform("transform", clock, registers, design.timing, design.transform_pipelines, design.tests_units),
+      tessellation_tests("tessellation_tests"),
+      pass_or_tessellate("pass_or_tessellate", clock, registers, design.timing, design.tests_units, passes),
+      tessellation("tessellation", clock, registers, design.timing, passes),
+      triangle_queue("triangle_queue", clock, registers, design.queue, design.timing),
+      lighting("lighting", clock, registers, design.timing),
+      displacement_map("displacement_map", clock, registers.displacement_map, design.timing.displacement_map,
+                       design.timing.stalls),
+      normal_map("normal_map", clock, registers.normal_map, design.timing.normal_map, design.timing.stalls),
+      summed_height_table("summed_height_table", clock, registers.summed_height_table,
+                          design.timing.summed_height_table, design.timing.stalls),
+      off_chip_memory("off_chip_memory", clock, design.timing.off_chip_memory, design.timing.stalls,
+                      design.queue.off_chip_triangles * (datapath::packed_triangle_bytes(registers.formats) +
+                                                         datapath::packed_triangle_tag_bytes),
+                      datapath::packed_triangle_tag_bytes),
+      transport_(design.transport) {
+    tessellation_tests.init(design.tests_units, [&](const char* unit_name, std::size_t number) {
+        return new TessellationTests(unit_name, clock, registers, design.timing,
+                                     static_cast<unsigned>(number), design.direct_memory);
+    });
     get_triangle.to_calculate_new_p.bind(calculate_new_p.from_get_triangle);
-    get_triangle.to_tessellation_tests.bind(tessellation_tests.from_get_triangle);
     get_triangle.queue_level.bind(triangle_queue.level);
     calculate_new_p.to_displace_vertex.bind(displace_vertex.from_calculate_new_p);
     displace_vertex.to_transform.bind(transform.from_displace_vertex);
-    displace_vertex.displacement_map.socket.bind(displacement_map.socket);
+    displace_vertex.displacement_map.bind(displacement_map);
     transform.to_pass_or_tessellate.bind(pass_or_tessellate.from_transform);
-    transform.to_view_test.bind(tessellation_tests.view_test.from_transform);
-    tessellation_tests.to_pass_or_tessellate.bind(pass_or_tessellate.from_tessellation_tests);
-    tessellation_tests.summed_height_test.summed_height_table.socket.bind(summed_height_table.socket);
-    tessellation_tests.normal_test.normal_map.socket.bind(normal_map.socket);
+    for (unsigned k = 0; k < design.tests_units; ++k) {
+        TessellationTests& tests = tessellation_tests[k];
+        get_triangle.to_tessellation_tests[k].bind(tests.calculate_new_u.input);
+        transform.to_view_test[k].bind(tests.view_test.from_transform);
+        tests.collect_tests.to_pass_or_tessellate.bind(pass_or_tessellate.from_tessellation_tests[k]);
+        tests.summed_height_test.summed_height_table.bind(summed_height_table);
+        tests.normal_test.normal_map.bind(normal_map);
+        for (TessellationTests& other : tessellation_tests) {
+            if (&other != &tests)
+                tests.normal_test.tells(other.normal_test);
+        }
+    }
     pass_or_tessellate.to_tessellation.bind(tessellation.from_pass_or_tessellate);
     pass_or_tessellate.to_lighting.bind(lighting.from_pass_or_tessellate);
     tessellation.to_triangle_queue.bind(triangle_queue.from_tessellation);
     triangle_queue.to_get_triangle.bind(get_triangle.from_triangle_queue);
+    triangle_queue.off_chip_memory.socket.bind(off_chip_memory.socket);
+    attach();
+}
+
+/// On the clock: downstream first (clock.h); in the list: as the figures are read.
+void Pipeline::attach() {
+    units_ = {&get_triangle, &calculate_new_p, &displace_vertex, &transform};
+    for (TessellationTests& tests : tessellation_tests)
+        units_.insert(units_.end(), {&tests.calculate_new_u, &tests.tex_coord_test, &tests.summed_height_test,
+                                     &tests.normal_test, &tests.view_test, &tests.collect_tests});
+    units_.insert(units_.end(), {&pass_or_tessellate, &tessellation, &triangle_queue, &lighting,
+                                 &displacement_map, &normal_map, &summed_height_table, &off_chip_memory});
+    clock.attach(off_chip_memory);
+    for (Unit* memory : {static_cast<Unit*>(&displacement_map), static_cast<Unit*>(&normal_map),
+                         static_cast<Unit*>(&summed_height_table)})
+        clock.attach(*memory);
+    clock.attach(lighting);
+    clock.attach(triangle_queue);
+    clock.attach(tessellation);
+    clock.attach(pass_or_tessellate);
+    for (TessellationTests& tests : tessellation_tests) {
+        clock.attach(tests.collect_tests);
+        clock.attach(tests.view_test);
+        clock.attach(tests.normal_test);
+        clock.attach(tests.summed_height_test);
+        clock.attach(tests.tex_coord_test);
+        clock.attach(tests.calculate_new_u);
+    }
+    clock.attach(transform);
+    clock.attach(displace_vertex);
+    clock.attach(calculate_new_p);
+    clock.attach(get_triangle);
+}
+
+bool Pipeline::idle() const {
+    if (transport_ == Transport::blocking)
+        return triangle_queue.drained() && pass_or_tessellate.joined();
+    return std::all_of(units_.begin(), units_.end(),
+                       [](const Unit* unit) { return unit->idle() && unit->holds().empty(); });
+}
+
+std::uint64_t Pipeline::normal_map_reads() const {
+    std::uint64_t reads = 0;
+    for (const TessellationTests& tests : tessellation_tests)
+        reads += tests.normal_test.normal_map.reads();
+    return reads;
+}
+
+std::uint64_t Pipeline::summed_height_table_reads() const {
+    std::uint64_t reads = 0;
+    for (const TessellationTests& tests : tessellation_tests)
+        reads += tests.summed_height_test.summed_height_table.reads();
+    return reads;
 }
 
 datapath::Saturations Pipeline::saturations() const {
     datapath::Saturations all = displace_vertex.saturations();
     all += transform.saturations();
-    all += tessellation_tests.normal_test.saturations();
+    for (const TessellationTests& tests : tessellation_tests)
+        all += tests.normal_test.saturations();
     return all;
 }
 

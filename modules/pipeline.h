@@ -1,7 +1,12 @@
 #pragma once
+#include <cstdint>
 #include <systemc>
+#include <vector>
 
+#include "modules/clock/clock.h"
+#include "modules/memory/off_chip_memory.h"
 #include "modules/memory/table_memory.h"
+#include "modules/unit/pass_pool.h"
 #include "modules/units/calculate_new_p.h"
 #include "modules/units/displace_vertex.h"
 #include "modules/units/get_triangle.h"
@@ -14,11 +19,19 @@
 
 namespace tessera {
 
+/// How the units talk to one another.
+enum class Transport {
+    blocking,      ///< blocking transport: every result, no cycles (functional mode)
+    non_blocking,  ///< non-blocking transport: the same results, to the cycle (timed mode)
+};
+
 /// What is built, as opposed to what is set before a run (datapath::Registers).
 struct Design {
+    Transport transport = Transport::blocking;
     Timing timing;
-    TriangleOrder queue_order = TriangleOrder::fifo;
-    std::size_t queue_watermark = 1;
+    QueueDesign queue;
+    unsigned tests_units = 1;  ///< Tessellation Tests units: 1 or 3
+    unsigned transform_pipelines = 1;
     bool direct_memory = true;  ///< units read memories through DMI in functional mode
 };
 
@@ -34,11 +47,13 @@ struct Design {
 /// Outside: get_triangle.from_host, lighting.to_rasteriser, and the memories' sockets for the host's preload.
 class Pipeline : public sc_core::sc_module {
   public:
+    Clock clock;
+    PassPool passes;
     GetTriangle get_triangle;
     CalculateNewP calculate_new_p;
     DisplaceVertex displace_vertex;
     Transform transform;
-    TessellationTests tessellation_tests;
+    sc_core::sc_vector<TessellationTests> tessellation_tests;
     PassOrTessellate pass_or_tessellate;
     Tessellation tessellation;
     TriangleQueue triangle_queue;
@@ -46,14 +61,28 @@ class Pipeline : public sc_core::sc_module {
     DisplacementMap displacement_map;
     NormalMap normal_map;
     SummedHeightTable summed_height_table;
+    OffChipMemory off_chip_memory;
 
     /// `registers` must outlive the pipeline.
     Pipeline(const sc_core::sc_module_name& name, const datapath::Registers& registers, const Design& design);
 
     /// Nothing is in flight.
-    bool idle() const { return triangle_queue.idle() && pass_or_tessellate.idle(); }
+    bool idle() const;
 
+    /// Every unit and memory, in the order of the figures.
+    const std::vector<Unit*>& units() const { return units_; }
+
+    std::uint64_t edges_tested() const { return 3 * pass_or_tessellate.counts().passes; }
+    std::uint64_t displacement_map_reads() const { return displace_vertex.displacement_map.reads(); }
+    std::uint64_t normal_map_reads() const;
+    std::uint64_t summed_height_table_reads() const;
     datapath::Saturations saturations() const;
+
+  private:
+    void attach();
+
+    Transport transport_;
+    std::vector<Unit*> units_;
 };
 
 }  // namespace tessera

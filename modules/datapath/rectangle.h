@@ -56,43 +56,74 @@ constexpr Rectangle centred_rectangle(const TexCoord& t, const RectangleSize& si
     return r;
 }
 
-/// S(r) = SAT(tr) - SAT(tl) - SAT(br) + SAT(bl) modulo 2^bits (paper equation 2).
+/// The table entries that make a rectangle's sum: byte addresses, and which are subtracted (bit k: entry k).
+struct RectangleReads {
+    static constexpr unsigned most = 9;
+    unsigned count = 0;
+    std::uint32_t subtracted = 0;
+    std::array<std::uint64_t, most> address{};
+
+    constexpr void add(std::uint64_t at, bool subtract) {
+        address[count] = at;
+        subtracted |= static_cast<std::uint32_t>(subtract) << count;
+        ++count;
+    }
+};
+
+/// S(r) = SAT(tr) - SAT(tl) - SAT(br) + SAT(bl) modulo 2^bits (paper equation 2), as reads; rectangle_sum adds them.
 ///
 /// The table has (width + 1) x (height + 1) entries; entry (x, y) is the sum of texels [0, x) x [0, y) modulo
 /// 2^bits, so row 0 and column 0 are zero. Subtraction wraps correctly as long as S(r) itself fits.
 /// Past the map (repeat) the table reads periodically: SAT(x + W, y) = SAT(x, y) + SAT(W, y), one more read and
-/// one more add per corner and axis.
-/// `read(address)` gives the entry at a byte address. Returns S(r); four reads, or up to nine when r wraps.
+/// one more add per corner and axis: four reads, or up to nine when r wraps.
+constexpr RectangleReads rectangle_reads(const Rectangle& r, const MapGeometry& map,
+                                         const TableLayout& table) {
+    RectangleReads reads;
+    if (r.last_column <= map.width && r.last_row <= map.height) {
+        reads.count = 4;
+        reads.subtracted = 6;
+        reads.address[0] = table.address(r.last_column, r.last_row);
+        reads.address[1] = table.address(r.first_column, r.last_row);
+        reads.address[2] = table.address(r.last_column, r.first_row);
+        reads.address[3] = table.address(r.first_column, r.first_row);
+        return reads;
+    }
+    const auto row_entry = [&](std::uint32_t x, std::uint32_t y, bool subtract) {
+        if (x > map.width) {
+            reads.add(table.address(map.width, y), subtract);
+            x -= map.width;
+        }
+        reads.add(table.address(x, y), subtract);
+    };
+    const auto entry = [&](std::uint32_t x, std::uint32_t y, bool subtract) {
+        if (y > map.height) {
+            row_entry(x, map.height, subtract);
+            y -= map.height;
+        }
+        row_entry(x, y, subtract);
+    };
+    entry(r.last_column, r.last_row, false);
+    entry(r.first_column, r.last_row, true);
+    entry(r.last_column, r.first_row, true);
+    entry(r.first_column, r.first_row, false);
+    return reads;
+}
+
+/// S(r) of the entries that were read, `entry(k)` for address k.
+template <class Entry>
+constexpr std::uint64_t rectangle_sum(const RectangleReads& reads, const Formats& formats, Entry&& entry) {
+    std::uint64_t sum = 0;
+    for (unsigned k = 0; k < reads.count; ++k)
+        sum += (reads.subtracted >> k & 1u) != 0 ? 0 - entry(k) : entry(k);
+    return sum & static_cast<std::uint64_t>(formats.summed_height.highest);
+}
+
+/// The same in one go: `read(address)` gives the entry at a byte address.
 template <class Read>
 constexpr std::uint64_t rectangle_sum(const Rectangle& r, const MapGeometry& map, const TableLayout& table,
                                       const Formats& formats, Read&& read) {
-    std::uint64_t sum = 0;
-    if (r.last_column <= map.width && r.last_row <= map.height) {
-        sum = read(table.address(r.last_column, r.last_row)) -
-              read(table.address(r.first_column, r.last_row)) -
-              read(table.address(r.last_column, r.first_row)) +
-              read(table.address(r.first_column, r.first_row));
-    } else {
-        const auto row_entry = [&](std::uint32_t x, std::uint32_t y) {
-            std::uint64_t entry = 0;
-            if (x > map.width) {
-                entry = read(table.address(map.width, y));
-                x -= map.width;
-            }
-            return entry + read(table.address(x, y));
-        };
-        const auto entry = [&](std::uint32_t x, std::uint32_t y) {
-            std::uint64_t value = 0;
-            if (y > map.height) {
-                value = row_entry(x, map.height);
-                y -= map.height;
-            }
-            return value + row_entry(x, y);
-        };
-        sum = entry(r.last_column, r.last_row) - entry(r.first_column, r.last_row) -
-              entry(r.last_column, r.first_row) + entry(r.first_column, r.first_row);
-    }
-    return sum & static_cast<std::uint64_t>(formats.summed_height.highest);
+    const RectangleReads reads = rectangle_reads(r, map, table);
+    return rectangle_sum(reads, formats, [&](unsigned k) { return read(reads.address[k]); });
 }
 
 }  // namespace tessera::datapath

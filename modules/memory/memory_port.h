@@ -2,20 +2,30 @@
 #include <tlm_utils/simple_initiator_socket.h>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <systemc>
 #include <tlm>
+#include <vector>
+
+#include "modules/clock/clock.h"
+#include "modules/memory/gather_extension.h"
 
 namespace tessera {
 
-/// A unit's read port on a table: DMI where the memory grants it and the unit may use it, else b_transport; the same
-/// values, the same added time and the same counts either way. Every response is checked: one that is not OK is an
-/// SC_ERROR that names the port, the address and the response.
-class MemoryPort {
+/// A unit's read port on a table. Every response is checked: one that is not OK is an SC_ERROR that names the port,
+/// the address and the response.
+///
+/// Functional mode: DMI where the memory grants it and the unit may use it, else b_transport; the same values, the
+/// same added time and the same counts either way.
+/// Timed mode: nb_transport, base protocol. One request on offer at a time (END_REQ withheld: the memory's buffer is
+/// full), several under way, answered in order. Breaches of the protocol are SC_ERRORs.
+class MemoryPort : public tlm::tlm_mm_interface {
   public:
     tlm_utils::simple_initiator_socket<MemoryPort> socket;
 
     /// entry_bytes: 1 to 8.
     MemoryPort(const char* name, unsigned entry_bytes, bool use_direct_memory);
+    ~MemoryPort() override;
 
     /// Several reads in a row. Through DMI they are counted and timed once, at the end; on destruction.
     class Burst {
@@ -59,14 +69,65 @@ class MemoryPort {
         return Burst(*this, delay).read(address);
     }
 
+    /// Timed mode: `unit` is called when a request that had to wait is taken and when an answer comes.
+    /// most_under_way: requests that may be unanswered at a time.
+    void clocked_by(Clock& clock, Clocked& unit, std::size_t most_under_way);
+
+    /// A request may be offered.
+    bool may_request() const { return !on_offer_ && under_way_ < slots_.size(); }
+    /// The request on offer has not been taken.
+    bool on_offer() const { return on_offer_; }
+    bool under_way() const { return under_way_ > 0; }
+
+    /// Asks for `count` entries, 1 to 9; more than one are a gather (gather_extension.h).
+    void request(const std::uint64_t* addresses, unsigned count);
+
+    /// The first unanswered request has been answered.
+    bool answered() const { return under_way_ > 0 && slots_[first_]->answered; }
+    /// Entry k of that answer, zero-extended.
+    std::uint64_t entry(unsigned k) const {
+        std::uint64_t value = 0;
+        std::memcpy(&value, &slots_[first_]->data[std::size_t{k} * entry_bytes_], entry_bytes_);
+        return value;
+    }
+    void pop_answer();
+
     std::uint64_t reads() const { return reads_; }
     std::uint64_t bytes_read() const { return reads_ * entry_bytes_; }
     unsigned entry_bytes() const { return entry_bytes_; }
 
+    /// Binds the port to a memory (with a socket of that name).
+    template <class Memory>
+    void bind(Memory& memory) {
+        socket.bind(memory.socket);
+        memory_ = &memory;
+    }
+    /// The memory: who is waited for.
+    const sc_core::sc_object* memory() const { return memory_; }
+
   private:
+    struct Slot {
+        explicit Slot(tlm::tlm_mm_interface* manager) : payload(manager) { payload.set_extension(&gather); }
+        ~Slot() { payload.clear_extension(&gather); }
+
+        tlm::tlm_generic_payload payload;
+        GatherExtension gather;
+        std::array<unsigned char, 8 * datapath::RectangleReads::most> data{};
+        bool taken = false;
+        bool answered = false;
+    };
+
     std::uint64_t read_by_transaction(std::uint64_t address, sc_core::sc_time& delay);
+    void check_response(const tlm::tlm_generic_payload& payload) const;
     void ask_for_direct_memory();
     void invalidate_direct_mem_ptr(sc_dt::uint64 start, sc_dt::uint64 end);
+    tlm::tlm_sync_enum nb_transport_bw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
+                                       sc_core::sc_time& delay);
+    void free(tlm::tlm_generic_payload*) override {}  // the slots are reused
+    Slot& last() {
+        const std::size_t sum = first_ + under_way_ - 1;
+        return *slots_[sum < slots_.size() ? sum : sum - slots_.size()];
+    }
 
     unsigned entry_bytes_;
     std::uint64_t mask_;
@@ -78,6 +139,14 @@ class MemoryPort {
     std::uint64_t direct_bytes_ = 0;
     sc_core::sc_time direct_time_;
     tlm::tlm_generic_payload payload_;
+
+    Clock* clock_ = nullptr;
+    Clocked* unit_ = nullptr;
+    std::vector<std::unique_ptr<Slot>> slots_;  // a ring of requests, oldest first
+    std::size_t first_ = 0;
+    std::size_t under_way_ = 0;
+    bool on_offer_ = false;
+    const sc_core::sc_object* memory_ = nullptr;
 };
 
 }  // namespace tessera

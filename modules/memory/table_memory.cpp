@@ -1,13 +1,26 @@
 #include "modules/memory/table_memory.h"
 
+#include <algorithm>
 #include <cstring>
+
+#include "modules/stream/stream.h"
 
 namespace tessera {
 
-TableMemory::TableMemory(const sc_core::sc_module_name& name, const datapath::TableLayout& layout,
-                         const sc_core::sc_time& read_time)
-    : sc_module(name), layout_(layout), read_time_(read_time), storage_(layout.bytes()) {
+TableMemory::TableMemory(const sc_core::sc_module_name& name, Clock& clock,
+                         const datapath::TableLayout& layout, const MemoryTiming& timing,
+                         const StallParameters& stalls)
+    : Unit(name, clock),
+      layout_(layout),
+      timing_(timing),
+      slots_per_entry_(timing.width == 0 ? 1 : (layout.entry_bytes + timing.width - 1) / timing.width),
+      storage_(layout.bytes()),
+      stalls_(stalls, this->name()),
+      queue_(timing.buffer),
+      bank_free_(timing.banks, 0),
+      answer_ring_(16) {
     socket.register_b_transport(this, &TableMemory::b_transport);
+    socket.register_nb_transport_fw(this, &TableMemory::nb_transport_fw);
     socket.register_get_direct_mem_ptr(this, &TableMemory::get_direct_mem_ptr);
     socket.register_transport_dbg(this, &TableMemory::transport_dbg);
 }
@@ -17,23 +30,148 @@ bool TableMemory::covers(std::uint64_t address, std::uint64_t length) const {
            address - layout_.base <= layout_.bytes() - length;
 }
 
-void TableMemory::b_transport(int, tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
+void TableMemory::read(tlm::tlm_generic_payload& payload) {
+    const unsigned length = payload.get_data_length();
     if (payload.get_command() != tlm::TLM_READ_COMMAND) {
         payload.set_response_status(tlm::TLM_COMMAND_ERROR_RESPONSE);
-    } else if (payload.get_byte_enable_ptr() != nullptr) {
-        payload.set_response_status(tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE);
-    } else if (payload.get_streaming_width() < payload.get_data_length()) {
-        payload.set_response_status(tlm::TLM_BURST_ERROR_RESPONSE);
-    } else if (!covers(payload.get_address(), payload.get_data_length())) {
-        payload.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE);
-    } else {
-        std::memcpy(payload.get_data_ptr(), &storage_[payload.get_address() - layout_.base],
-                    payload.get_data_length());
-        payload.set_dmi_allowed(true);
-        payload.set_response_status(tlm::TLM_OK_RESPONSE);
-        ++transactions_;
-        delay += read_time_;
+        return;
     }
+    if (payload.get_byte_enable_ptr() != nullptr) {
+        payload.set_response_status(tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE);
+        return;
+    }
+    if (payload.get_streaming_width() < length) {
+        payload.set_response_status(tlm::TLM_BURST_ERROR_RESPONSE);
+        return;
+    }
+    const GatherExtension* gather = payload.get_extension<GatherExtension>();
+    const unsigned count = gather == nullptr ? 1 : gather->count;
+    const unsigned each = length / count;
+    unsigned char* data = payload.get_data_ptr();
+    for (unsigned k = 0; k < count; ++k) {
+        const std::uint64_t address = gather == nullptr ? payload.get_address() : gather->address[k];
+        if (!covers(address, each)) {
+            payload.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE);
+            return;
+        }
+        std::memcpy(data + std::size_t{k} * each, &storage_[address - layout_.base], each);
+    }
+    transactions_ += count;
+    payload.set_dmi_allowed(true);
+    payload.set_response_status(tlm::TLM_OK_RESPONSE);
+}
+
+void TableMemory::b_transport(int, tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
+    read(payload);
+    if (payload.is_response_ok())
+        delay += clock_.period() * timing_.latency;
+}
+
+tlm::tlm_sync_enum TableMemory::nb_transport_fw(int id, tlm::tlm_generic_payload& payload,
+                                                tlm::tlm_phase& phase, sc_core::sc_time& delay) {
+    if (phase != tlm::BEGIN_REQ)
+        stream_protocol_error(socket.name(), "a phase other than BEGIN_REQ");
+    const auto door = static_cast<std::size_t>(id);
+    if (at_the_door_.size() <= door) {
+        at_the_door_.resize(door + 1);
+        door_opens_.resize(door + 1);
+    }
+    if (at_the_door_[door].payload != nullptr)
+        stream_protocol_error(socket.name(), "BEGIN_REQ before END_REQ of the request before");
+    const std::uint64_t cycle = now();
+    const std::uint64_t wait = stalls_.next() + clock_.cycles(delay);
+    activity_.item_in(cycle);
+    payload.acquire();
+    clock_.wake_at(*this, cycle + wait);
+    if (wait == 0 && queued_ < queue_.size() && waiting_at_doors_ == 0) {
+        queue_[(queue_first_ + queued_++) % queue_.size()] = {&payload, id, 0};
+        phase = tlm::END_REQ;
+        return tlm::TLM_UPDATED;
+    }
+    at_the_door_[door] = {&payload, id, 0};
+    door_opens_[door] = cycle + wait;
+    ++waiting_at_doors_;
+    return tlm::TLM_ACCEPTED;
+}
+
+void TableMemory::admit(std::uint64_t cycle) {
+    for (std::size_t tries = 0; tries < at_the_door_.size() && queued_ < queue_.size(); ++tries) {
+        const std::size_t door = door_turn_;
+        door_turn_ = door_turn_ + 1 == at_the_door_.size() ? 0 : door_turn_ + 1;
+        Request& request = at_the_door_[door];
+        if (request.payload == nullptr || door_opens_[door] > cycle)
+            continue;
+        queue_[(queue_first_ + queued_++) % queue_.size()] = request;
+        tlm::tlm_generic_payload& payload = *request.payload;
+        request.payload = nullptr;
+        --waiting_at_doors_;
+        tlm::tlm_phase phase = tlm::END_REQ;
+        sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
+        socket[static_cast<int>(door)]->nb_transport_bw(payload, phase, delay);
+    }
+}
+
+void TableMemory::serve(const Request& request, std::uint64_t cycle) {
+    tlm::tlm_generic_payload& payload = *request.payload;
+    const GatherExtension* gather = payload.get_extension<GatherExtension>();
+    const unsigned count = gather == nullptr ? 1 : gather->count;
+    std::uint64_t last_slot_cycle = cycle;
+    for (unsigned k = 0; k < count; ++k) {
+        const std::uint64_t address = gather == nullptr ? payload.get_address() : gather->address[k];
+        const std::size_t bank =
+            timing_.banks == 1 ? 0 : (address - layout_.base) / layout_.entry_bytes % timing_.banks;
+        std::uint64_t& free = bank_free_[bank];
+        free = std::max(free, cycle * timing_.ports) + slots_per_entry_;
+        last_slot_cycle = std::max(last_slot_cycle, (free - 1) / timing_.ports);
+    }
+    last_address_ = payload.get_address();
+    slots_taken_ += std::uint64_t{count} * slots_per_entry_;
+    busy_until_ = std::max(busy_until_, last_slot_cycle + 1);
+    read(payload);
+    if (answers_ == answer_ring_.size()) {
+        std::rotate(answer_ring_.begin(), answer_ring_.begin() + static_cast<std::ptrdiff_t>(answer_first_),
+                    answer_ring_.end());
+        answer_first_ = 0;
+        answer_ring_.resize(2 * answer_ring_.size());
+    }
+    Request& answer = answer_ring_[(answer_first_ + answers_++) % answer_ring_.size()];
+    answer = request;
+    answer.answer_at = last_slot_cycle + timing_.latency;
+}
+
+void TableMemory::step() {
+    const std::uint64_t cycle = now();
+    const auto may_serve = [&] {
+        return *std::min_element(bank_free_.begin(), bank_free_.end()) / timing_.ports <= cycle;
+    };
+    if (waiting_at_doors_ > 0)
+        admit(cycle);
+    while (queued_ > 0 && may_serve()) {
+        const Request request = queue_[queue_first_];
+        queue_first_ = queue_first_ + 1 == queue_.size() ? 0 : queue_first_ + 1;
+        --queued_;
+        serve(request, cycle);
+        if (waiting_at_doors_ > 0)
+            admit(cycle);
+    }
+    while (answers_ > 0 && answer_ring_[answer_first_].answer_at <= cycle) {
+        const Request answer = answer_ring_[answer_first_];
+        answer_first_ = answer_first_ + 1 == answer_ring_.size() ? 0 : answer_first_ + 1;
+        --answers_;
+        activity_.item_out(cycle);
+        tlm::tlm_phase phase = tlm::BEGIN_RESP;
+        sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
+        if (socket[answer.id]->nb_transport_bw(*answer.payload, phase, delay) != tlm::TLM_COMPLETED)
+            stream_protocol_error(socket.name(), "BEGIN_RESP was not completed at once");
+        answer.payload->release();
+    }
+    activity_.set(cycle, busy_until_ > cycle ? State::busy : State::starved);
+    if (busy_until_ > cycle)
+        wake_at(queued_ > 0 ? std::min(busy_until_, *std::min_element(bank_free_.begin(), bank_free_.end()) /
+                                                        timing_.ports)
+                            : busy_until_);
+    if (answers_ > 0)
+        wake_at(answer_ring_[answer_first_].answer_at);
 }
 
 bool TableMemory::get_direct_mem_ptr(int, tlm::tlm_generic_payload& payload, tlm::tlm_dmi& dmi) {
@@ -42,7 +180,7 @@ bool TableMemory::get_direct_mem_ptr(int, tlm::tlm_generic_payload& payload, tlm
     dmi.set_start_address(layout_.base);
     dmi.set_end_address(layout_.base + layout_.bytes() - 1);
     dmi.set_dmi_ptr(storage_.data());
-    dmi.set_read_latency(read_time_);
+    dmi.set_read_latency(clock_.period() * timing_.latency);
     dmi.allow_read();
     return true;
 }

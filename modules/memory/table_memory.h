@@ -6,38 +6,87 @@
 #include <vector>
 
 #include "modules/datapath/parameters.h"
+#include "modules/memory/gather_extension.h"
+#include "modules/stream/random_stalls.h"
+#include "modules/timing.h"
+#include "modules/unit/unit.h"
 
 namespace tessera {
 
 /// A memory that holds one table: on the base protocol, with byte addresses.
 ///
 /// Address map: [layout.base, layout.base + layout.bytes()); entry (x, y) at layout.address(x, y), little endian.
-/// Read by units (b_transport, DMI), written only by the host's debug transport before the run.
-/// b_transport: adds `read_time` per entry. Errors: a write gives TLM_COMMAND_ERROR_RESPONSE, an address outside
-/// TLM_ADDRESS_ERROR_RESPONSE, byte enables or streaming the TLM responses for those.
-/// Capacity: one port; the functional mode does not arbitrate it.
-class TableMemory : public sc_core::sc_module {
+/// Read by units, written only by the host's debug transport before the run. A read is of one entry, or gathers
+/// several (gather_extension.h).
+/// Errors: a write gives TLM_COMMAND_ERROR_RESPONSE, an address outside TLM_ADDRESS_ERROR_RESPONSE, byte enables or
+/// streaming the TLM responses for those.
+///
+/// b_transport, DMI (functional mode): one cycle an entry and the latency, not arbitrated.
+/// nb_transport (timed mode): requests are served in order of arrival; those of one cycle in the order of units. Entry k
+/// is at bank k mod banks; each bank has `ports` ports, each port takes an entry's address every
+/// ceil(entry bytes / width) cycles, and its data comes `latency` cycles later. A request is answered (BEGIN_RESP) when
+/// its last entry has come. Capacity: `buffer` requests waiting; beyond that END_REQ is withheld.
+class TableMemory : public Unit {
   public:
     tlm_utils::multi_passthrough_target_socket<TableMemory> socket{"socket"};
 
-    TableMemory(const sc_core::sc_module_name& name, const datapath::TableLayout& layout,
-                const sc_core::sc_time& read_time);
+    TableMemory(const sc_core::sc_module_name& name, Clock& clock, const datapath::TableLayout& layout,
+                const MemoryTiming& timing, const StallParameters& stalls);
 
     const datapath::TableLayout& layout() const { return layout_; }
+    const MemoryTiming& timing() const { return timing_; }
 
     /// Entries read by transactions; what DMI reads is counted by the reader.
     std::uint64_t transactions() const { return transactions_; }
+    /// Port slots taken: entries times the cycles a port needs for one.
+    std::uint64_t slots_taken() const { return slots_taken_; }
+    /// Port slots a cycle.
+    std::uint64_t slots_per_cycle() const { return std::uint64_t{timing_.ports} * timing_.banks; }
+    /// Address and count of the request served last, for traces.
+    std::uint64_t last_address() const { return last_address_; }
+
+    std::string holds() const override { return count_of(size_t{queued_} + answers_, "request"); }
+    std::uint64_t occupied_cycles() const override { return slots_taken_ / slots_per_cycle(); }
 
   private:
+    struct Request {
+        tlm::tlm_generic_payload* payload = nullptr;
+        int id = 0;
+        std::uint64_t answer_at = 0;
+    };
+
     void b_transport(int id, tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
+    tlm::tlm_sync_enum nb_transport_fw(int id, tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
+                                       sc_core::sc_time& delay);
     bool get_direct_mem_ptr(int id, tlm::tlm_generic_payload& payload, tlm::tlm_dmi& dmi);
     unsigned transport_dbg(int id, tlm::tlm_generic_payload& payload);
+    void step() override;
+    void admit(std::uint64_t cycle);
+    void serve(const Request& request, std::uint64_t cycle);
+    void read(tlm::tlm_generic_payload& payload);
     bool covers(std::uint64_t address, std::uint64_t length) const;
 
     datapath::TableLayout layout_;
-    sc_core::sc_time read_time_;
+    MemoryTiming timing_;
+    unsigned slots_per_entry_;
     std::vector<unsigned char> storage_;
     std::uint64_t transactions_ = 0;
+
+    std::vector<Request> at_the_door_;  // by initiator; its END_REQ is withheld
+    std::vector<std::uint64_t> door_opens_;
+    std::size_t door_turn_ = 0;
+    std::size_t waiting_at_doors_ = 0;
+    RandomStalls stalls_;
+    std::vector<Request> queue_;  // a ring
+    std::size_t queue_first_ = 0;
+    std::size_t queued_ = 0;
+    std::vector<std::uint64_t> bank_free_;  // per bank, in port slots: cycle * ports + port
+    std::vector<Request> answer_ring_;      // served, not yet answered, in order
+    std::size_t answer_first_ = 0;
+    std::size_t answers_ = 0;
+    std::uint64_t busy_until_ = 0;
+    std::uint64_t slots_taken_ = 0;
+    std::uint64_t last_address_ = 0;
 };
 
 /// The displacement map: one unsigned code per texel. Read by Displace Vertex.

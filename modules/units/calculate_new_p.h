@@ -1,35 +1,34 @@
 #pragma once
 #include <systemc>
 
-#include "modules/datapath/parameters.h"
-#include "modules/datapath/triangle_pass.h"
-#include "modules/stream/stream.h"
+#include "modules/stream/stream_input.h"
+#include "modules/stream/stream_output.h"
+#include "modules/stream/work.h"
 #include "modules/timing.h"
+#include "modules/unit/work_stage.h"
 
 namespace tessera {
 
 /// Calculate New P (paper figure 7): the midpoint of each edge's two positions.
 ///
-/// In:   a pass with its triangle. Out: new_vertex[k].position = (P_i + P_j) >> 1, likewise t and, not yet of unit
-///       length, N: Displace Vertex needs all three. (Decision: t_ij and the mean normal are formed here as well as
-///       in Tessellation Tests, so that the two branches need no stream between them; Pass or Tessellate checks that
-///       they agree.) A base triangle's own vertices and vertices' normals pass unchanged.
+/// In:   edges of a pass; vertices and normals of its triangle pass unchanged. Out: new_vertex[k].position =
+///       (P_i + P_j) >> 1, likewise t and, not yet of unit length, N: Displace Vertex needs all three. (Decision: t_ij
+///       and the mean normal are formed here as well as in Tessellation Tests, so that the two branches need no stream
+///       between them; Pass or Tessellate checks that they agree.)
 /// Arithmetic: add, arithmetic shift right by 1.
-/// Timing: one vertex or normal per interval; latency 1, interval 1 by default. Capacity: its pipeline.
+/// Timing: one vertex, normal or edge per interval; latency 1, interval 1 by default.
 /// Waits for nothing but its input; held back by Displace Vertex.
-class CalculateNewP : public sc_core::sc_module {
+class CalculateNewP : public WorkStage {
   public:
-    StreamTarget<CalculateNewP, datapath::TrianglePass> from_get_triangle{"from_get_triangle"};
-    StreamInitiator<CalculateNewP, datapath::TrianglePass> to_displace_vertex{"to_displace_vertex"};
+    StreamInput<Work> from_get_triangle{"from_get_triangle"};
+    StreamOutput<Work> to_displace_vertex{"to_displace_vertex"};
 
-    CalculateNewP(const sc_core::sc_module_name& name, const Timing& timing);
+    CalculateNewP(const sc_core::sc_module_name& name, Clock& clock, const Timing& timing);
 
-    static void process(datapath::TrianglePass& pass);
+    void process(const Work& work) override;
 
   private:
-    void b_transport(datapath::TrianglePass& pass, sc_core::sc_time& delay);
-
-    sc_core::sc_time latency_;
+    void b_transport(Work& work, sc_core::sc_time& delay);
 };
 
 }  // namespace tessera

@@ -2,39 +2,45 @@
 #include <systemc>
 
 #include "modules/datapath/parameters.h"
-#include "modules/datapath/triangle_pass.h"
 #include "modules/memory/memory_port.h"
-#include "modules/stream/stream.h"
+#include "modules/stream/stream_input.h"
+#include "modules/stream/stream_output.h"
+#include "modules/stream/work.h"
 #include "modules/timing.h"
+#include "modules/unit/table_stage.h"
 
 namespace tessera {
 
 /// Displace Vertex (paper figure 7): P' = P + (S * d(t) + bias) * N, the one added long-latency unit.
 ///
-/// In:   a pass with new_vertex[k].position, .mean_normal, .texture, and for a base triangle its own vertices.
-/// Out:  new_vertex[k].displaced; vertices[k].displaced where new_vertices has bit k.
-/// Memory: one read of the displacement map per vertex.
+/// In:   edges with new_vertex[k].position, .mean_normal, .texture; vertices of a base triangle; normals pass unchanged.
+/// Out:  new_vertex[k].displaced; vertices[k].displaced.
+/// Memory: one read of the displacement map per vertex or edge.
 /// Arithmetic: normalise (the pipeline's existing unit), multiply, round, multiply-accumulate, saturate (counted).
-/// Timing: one vertex per interval; latency 6 plus the map read, interval 1 by default. Capacity: its pipeline.
+/// Timing: one vertex, normal or edge per interval; latency 6 plus the map read, interval 1 by default.
 /// Waits for the displacement map; held back by Transform.
-class DisplaceVertex : public sc_core::sc_module {
+class DisplaceVertex : public TableStage<TableItem> {
   public:
-    StreamTarget<DisplaceVertex, datapath::TrianglePass> from_calculate_new_p{"from_calculate_new_p"};
-    StreamInitiator<DisplaceVertex, datapath::TrianglePass> to_transform{"to_transform"};
+    StreamInput<Work> from_calculate_new_p{"from_calculate_new_p"};
+    StreamOutput<Work> to_transform{"to_transform"};
     MemoryPort displacement_map;
 
-    DisplaceVertex(const sc_core::sc_module_name& name, const datapath::Registers& registers,
+    DisplaceVertex(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
                    const Timing& timing, bool use_direct_memory);
 
     const datapath::Saturations& saturations() const { return saturations_; }
 
   private:
-    void b_transport(datapath::TrianglePass& pass, sc_core::sc_time& delay);
-    datapath::Position displaced(const datapath::Position& p, const datapath::Direction& n,
-                                 const datapath::TexCoord& t, sc_core::sc_time& delay);
+    void b_transport(Work& work, sc_core::sc_time& delay);
+    unsigned begin(TableItem& item) override;
+    void ask(TableItem& item, unsigned k) override;
+    void receive(TableItem& item, unsigned k) override;
+
+    std::uint64_t address(const datapath::TexCoord& t) const;
+    void displace_vertex(datapath::Vertex& vertex, std::uint64_t code);
+    void displace_edge(datapath::NewVertex& made, std::uint64_t code);
 
     const datapath::Registers& registers_;
-    sc_core::sc_time latency_;
     datapath::Saturations saturations_;
 };
 

@@ -4,10 +4,21 @@
 
 namespace tessera {
 
-GetTriangle::GetTriangle(const sc_core::sc_module_name& name, const Timing& timing)
-    : sc_module(name), latency_(timing.cycle * timing.get_triangle.latency) {
-    from_host.register_b_transport(this, &GetTriangle::b_transport_from_host);
-    from_triangle_queue.register_b_transport(this, &GetTriangle::b_transport_from_triangle_queue);
+GetTriangle::GetTriangle(const sc_core::sc_module_name& name, Clock& clock, const Timing& timing,
+                         unsigned tests_units, PassPool& passes)
+    : Unit(name, clock),
+      to_tessellation_tests("to_tessellation_tests", tests_units),
+      timing_(timing.get_triangle),
+      passes_(passes) {
+    from_host.serve<&GetTriangle::b_transport_from_host>(*this);
+    from_triangle_queue.serve<&GetTriangle::b_transport_from_triangle_queue>(*this);
+    from_host.clocked_by(clock, *this, timing_.buffer, timing.stalls);
+    from_triangle_queue.clocked_by(clock, *this, timing_.buffer, timing.stalls);
+    branches_[branch_count_++].output = &to_calculate_new_p;
+    for (StreamOutput<Work>& output : to_tessellation_tests)
+        branches_[branch_count_++].output = &output;
+    for (unsigned k = 0; k < branch_count_; ++k)
+        branches_[k].output->clocked_by(clock, *this);
 }
 
 void GetTriangle::prepare(datapath::TrianglePass& pass) {
@@ -24,27 +35,120 @@ void GetTriangle::prepare(datapath::TrianglePass& pass) {
     }
 }
 
-void GetTriangle::send(datapath::TrianglePass& pass, sc_core::sc_time& delay) {
-    prepare(pass);
-    delay += latency_;
+void GetTriangle::send_whole(const datapath::Triangle& triangle, sc_core::sc_time& delay) {
+    whole_.triangle = triangle;
+    prepare(whole_);
+    delay += clock_.period() * timing_.latency;
     sc_core::sc_time geometry = delay;
     sc_core::sc_time tests = delay;
-    to_calculate_new_p->b_transport(pass, geometry);
-    if (pass.tested)
-        to_tessellation_tests->b_transport(pass, tests);
+    Work work{&whole_, parts_of(whole_)};
+    to_calculate_new_p->b_transport(work, geometry);
+    if (whole_.tested)
+        to_tessellation_tests[0]->b_transport(work, tests);
     delay = std::max(geometry, tests);
 }
 
-void GetTriangle::b_transport_from_host(datapath::TrianglePass& pass, sc_core::sc_time& delay) {
+void GetTriangle::b_transport_from_host(datapath::Triangle& triangle, sc_core::sc_time& delay) {
     while (!queue_level->takes_host_triangles())
         wait(queue_level->host_may_send());
     ++host_triangles_;
-    send(pass, delay);
+    send_whole(triangle, delay);
 }
 
-void GetTriangle::b_transport_from_triangle_queue(datapath::TrianglePass& pass, sc_core::sc_time& delay) {
+void GetTriangle::b_transport_from_triangle_queue(datapath::Triangle& triangle, sc_core::sc_time& delay) {
     ++queue_triangles_;
-    send(pass, delay);
+    send_whole(triangle, delay);
+}
+
+bool GetTriangle::begin(std::uint64_t cycle) {
+    StreamInput<datapath::Triangle>* source = nullptr;
+    if (!from_triangle_queue.empty()) {
+        source = &from_triangle_queue;
+        ++queue_triangles_;
+    } else if (!from_host.empty() && queue_level->takes_host_triangles()) {
+        source = &from_host;
+        ++host_triangles_;
+    } else {
+        return false;
+    }
+    pass_ = &passes_.take();
+    pass_->triangle = source->front();
+    source->pop();
+    prepare(*pass_);
+    activity_.item_in(cycle);
+    const Parts parts = parts_of(*pass_);
+    pass_->geometry_left = parts;
+    pass_->tests_left = static_cast<Parts>(parts & edge_parts);
+    const auto tested = static_cast<Parts>(pass_->tested ? parts & (vertex_parts | edge_parts) : 0);
+    for (unsigned k = 0; k < branch_count_; ++k) {
+        Branch& branch = branches_[k];
+        branch.left = k == 0 ? parts : tested;
+        if (k > 0 && branch_count_ > 2)
+            branch.left = static_cast<Parts>(branch.left & 0111u << (k - 1));
+        branch.next = cycle + timing_.latency;
+    }
+    return true;
+}
+
+/// True: nothing left to send, and nothing on offer.
+bool GetTriangle::send_parts(Branch& branch, std::uint64_t cycle) {
+    if (!branch.output->free())
+        return false;
+    if (branch.left == 0)
+        return true;
+    if (branch.next > cycle) {
+        wake_at(branch.next);
+        return false;
+    }
+    const auto part = static_cast<Parts>(branch.left & -branch.left);
+    branch.left = static_cast<Parts>(branch.left & ~part);
+    branch.offered = {pass_, part};
+    branch.next = cycle + timing_.interval;
+    if (&branch == branches_.data())
+        ++parts_sent_;
+    const bool taken = branch.output->send(branch.offered);
+    if (branch.left != 0)
+        wake_at(branch.next);
+    return taken && branch.left == 0;
+}
+
+void GetTriangle::step() {
+    const std::uint64_t cycle = now();
+    from_host.admit();
+    from_triangle_queue.admit();
+    for (;;) {
+        if (pass_ == nullptr && !begin(cycle))
+            break;
+        bool all = true;
+        for (unsigned k = 0; k < branch_count_; ++k)
+            all = send_parts(branches_[k], cycle) && all;
+        if (!all)
+            break;
+        pass_ = nullptr;
+        activity_.item_out(cycle);
+    }
+    const sc_core::sc_object* blocker = nullptr;
+    for (unsigned k = 0; k < branch_count_ && blocker == nullptr; ++k) {
+        if (!branches_[k].output->free())
+            blocker = branches_[k].output->consumer();
+    }
+    if (blocker != nullptr)
+        activity_.set(cycle, State::blocked, blocker);
+    else
+        activity_.set(cycle, pass_ != nullptr ? State::busy : State::starved);
+}
+
+std::string GetTriangle::holds() const {
+    std::string text;
+    if (pass_ != nullptr)
+        text = "triangle " + std::to_string(pass_->number) + ", not all of it sent";
+    if (!from_host.empty())
+        text +=
+            std::string(text.empty() ? "" : ", ") + "a host triangle" +
+            (queue_level->takes_host_triangles() ? "" : " it may not take: the queue is at its watermark");
+    if (!from_triangle_queue.empty())
+        text += std::string(text.empty() ? "" : ", ") + "a triangle from the queue";
+    return text;
 }
 
 }  // namespace tessera

@@ -1,49 +1,80 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <systemc>
 
-#include "modules/datapath/triangle_pass.h"
-#include "modules/stream/stream.h"
+#include "modules/datapath/vertex.h"
+#include "modules/stream/stream_input.h"
+#include "modules/stream/stream_output.h"
+#include "modules/stream/work.h"
 #include "modules/timing.h"
-#include "modules/units/triangle_queue.h"
+#include "modules/unit/pass_pool.h"
+#include "modules/unit/unit.h"
+#include "modules/units/triangle_queue_level.h"
 
 namespace tessera {
 
 /// Get Triangle (paper figure 7): takes a triangle from the Triangle Queue or from the host and sends it down both
-/// branches. Knows which of its vertices and normals are already in screen space and sends only the new ones on:
+/// branches, part by part. Knows which of its vertices and normals are already in screen space and sends only the new
+/// ones on:
 ///
-///   base triangle          three vertices to displace and transform, then three edges
+///   base triangle          three vertices to displace and transform (and to bump), then three edges
 ///   re-tessellated         normals that have no N's yet, then three edges
 ///   finished, without N's  its normals only: no edge is tested again
 ///
-/// In:   a pass with its triangle. Out: the same with new_vertices, new_normals, tested set.
-/// Timing: one triangle per interval; latency 1, interval 1 by default. Capacity: one triangle.
-/// Waits for the Triangle Queue or the host; takes a host triangle only while the queue is below its watermark.
-/// Held back by Calculate New P and Tessellation Tests.
-class GetTriangle : public sc_core::sc_module {
+/// In:   triangles. Out: to Calculate New P all parts, to Tessellation Tests vertices and edges; with three Tessellation
+///       Tests units vertex and edge k to unit k.
+/// Timing: one part a cycle on each output, the first a latency (1) after the triangle was taken. Capacity: one triangle;
+///       the next is taken when all parts of the last have been.
+/// Waits for the Triangle Queue or the host; takes a host triangle only while the queue is below its watermark and has
+/// nothing to send. Held back by Calculate New P and Tessellation Tests.
+class GetTriangle : public Unit {
   public:
-    StreamTarget<GetTriangle, datapath::TrianglePass> from_host{"from_host"};
-    StreamTarget<GetTriangle, datapath::TrianglePass> from_triangle_queue{"from_triangle_queue"};
-    StreamInitiator<GetTriangle, datapath::TrianglePass> to_calculate_new_p{"to_calculate_new_p"};
-    StreamInitiator<GetTriangle, datapath::TrianglePass> to_tessellation_tests{"to_tessellation_tests"};
+    StreamInput<datapath::Triangle> from_host{"from_host"};
+    StreamInput<datapath::Triangle> from_triangle_queue{"from_triangle_queue"};
+    StreamOutput<Work> to_calculate_new_p{"to_calculate_new_p"};
+    sc_core::sc_vector<StreamOutput<Work>> to_tessellation_tests;  ///< one per Tessellation Tests unit
     sc_core::sc_port<TriangleQueueLevel> queue_level{"queue_level"};
 
-    GetTriangle(const sc_core::sc_module_name& name, const Timing& timing);
+    GetTriangle(const sc_core::sc_module_name& name, Clock& clock, const Timing& timing, unsigned tests_units,
+                PassPool& passes);
 
     std::uint64_t host_triangles() const { return host_triangles_; }
     std::uint64_t queue_triangles() const { return queue_triangles_; }
+    /// Passes in which no vertex was new: P', P's of all three known from the pass before.
+    std::uint64_t parts_sent() const { return parts_sent_; }
+
+    std::string holds() const override;
+    std::uint64_t occupied_cycles() const override { return parts_sent_; }
 
     /// Sets what has to be sent on: the unit's whole decision.
     static void prepare(datapath::TrianglePass& pass);
 
   private:
-    void b_transport_from_host(datapath::TrianglePass& pass, sc_core::sc_time& delay);
-    void b_transport_from_triangle_queue(datapath::TrianglePass& pass, sc_core::sc_time& delay);
-    void send(datapath::TrianglePass& pass, sc_core::sc_time& delay);
+    /// One output's share of the pass: what is left to send, and what is on offer.
+    struct Branch {
+        StreamOutput<Work>* output = nullptr;
+        Parts left = 0;
+        Work offered;
+        std::uint64_t next = 0;
+    };
 
-    sc_core::sc_time latency_;
+    void b_transport_from_host(datapath::Triangle& triangle, sc_core::sc_time& delay);
+    void b_transport_from_triangle_queue(datapath::Triangle& triangle, sc_core::sc_time& delay);
+    void send_whole(const datapath::Triangle& triangle, sc_core::sc_time& delay);
+    void step() override;
+    bool begin(std::uint64_t cycle);
+    bool send_parts(Branch& branch, std::uint64_t cycle);
+
+    UnitTiming timing_;
+    PassPool& passes_;
+    Pass whole_;            // functional mode
+    Pass* pass_ = nullptr;  // timed mode: what is being sent
+    std::array<Branch, 4> branches_;
+    unsigned branch_count_ = 0;
     std::uint64_t host_triangles_ = 0;
     std::uint64_t queue_triangles_ = 0;
+    std::uint64_t parts_sent_ = 0;
 };
 
 }  // namespace tessera

@@ -4,13 +4,15 @@
 
 namespace tessera {
 
-Lighting::Lighting(const sc_core::sc_module_name& name, const datapath::Registers& registers,
+Lighting::Lighting(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
                    const Timing& timing)
-    : sc_module(name), registers_(registers), latency_(timing.cycle * timing.lighting.latency) {
-    from_pass_or_tessellate.register_b_transport(this, &Lighting::b_transport);
+    : Unit(name, clock), registers_(registers), timing_(timing.lighting), pipeline_(timing.lighting) {
+    from_pass_or_tessellate.serve<&Lighting::b_transport>(*this);
+    from_pass_or_tessellate.clocked_by(clock, *this, timing_.buffer, timing.stalls);
+    to_rasteriser.clocked_by(clock, *this);
 }
 
-void Lighting::b_transport(datapath::Triangle& triangle, sc_core::sc_time& delay) {
+LitTriangle Lighting::light(const datapath::Triangle& triangle) const {
     LitTriangle lit;
     for (std::size_t k = 0; k < 3; ++k) {
         const datapath::Vertex& vertex = triangle.vertices[k];
@@ -19,8 +21,44 @@ void Lighting::b_transport(datapath::Triangle& triangle, sc_core::sc_time& delay
         lit.corners[k] = {vertex.screen, vertex.texture,
                           datapath::light(vertex.screen_normal, registers_.light, registers_.formats)};
     }
-    delay += latency_;
+    return lit;
+}
+
+void Lighting::b_transport(datapath::Triangle& triangle, sc_core::sc_time& delay) {
+    LitTriangle lit = light(triangle);
+    delay += clock_.period() * timing_.latency;
     to_rasteriser->b_transport(lit, delay);
+}
+
+void Lighting::step() {
+    const std::uint64_t cycle = now();
+    from_pass_or_tessellate.admit();
+    while (pipeline_.front_finished(cycle)) {
+        if (offered_ ? !to_rasteriser.free() : !to_rasteriser.send(pipeline_.front())) {
+            offered_ = true;
+            break;
+        }
+        offered_ = false;
+        pipeline_.pop();
+        activity_.item_out(cycle);
+    }
+    while (!from_pass_or_tessellate.empty() && pipeline_.may_start(cycle)) {
+        pipeline_.start(cycle) = light(from_pass_or_tessellate.front());
+        activity_.item_in(cycle);
+        from_pass_or_tessellate.pop();
+    }
+    if (offered_)
+        activity_.set(cycle, State::blocked, to_rasteriser.consumer());
+    else
+        activity_.set(cycle,
+                      pipeline_.empty() && from_pass_or_tessellate.empty() ? State::starved : State::busy);
+    wake_at(pipeline_.next_finished(cycle));
+    if (!from_pass_or_tessellate.empty())
+        wake_at(pipeline_.next_start(cycle));
+}
+
+std::string Lighting::holds() const {
+    return count_of(pipeline_.size() + from_pass_or_tessellate.size(), "triangle");
 }
 
 }  // namespace tessera

@@ -5,8 +5,11 @@
 
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/vertex.h"
-#include "modules/stream/stream.h"
+#include "modules/stream/stream_input.h"
+#include "modules/stream/stream_output.h"
 #include "modules/timing.h"
+#include "modules/unit/elastic_pipeline.h"
+#include "modules/unit/unit.h"
 
 namespace tessera {
 
@@ -24,20 +27,28 @@ struct LitTriangle {
 ///
 /// In:   a finished triangle: P's, N's, t. Out: P's, t, intensity, to the rasteriser.
 /// Arithmetic: three multiplications and a maximum per vertex, one multiplication; truncated to 8 bits.
-/// Timing: one triangle per interval; latency 4, interval 1 by default. Capacity: its pipeline.
+/// Timing: one triangle per interval; latency 4, interval 1 by default.
 /// Waits for nothing but its input; held back by the rasteriser.
-class Lighting : public sc_core::sc_module {
+class Lighting : public Unit {
   public:
-    StreamTarget<Lighting, datapath::Triangle> from_pass_or_tessellate{"from_pass_or_tessellate"};
-    StreamInitiator<Lighting, LitTriangle> to_rasteriser{"to_rasteriser"};
+    StreamInput<datapath::Triangle> from_pass_or_tessellate{"from_pass_or_tessellate"};
+    StreamOutput<LitTriangle> to_rasteriser{"to_rasteriser"};
 
-    Lighting(const sc_core::sc_module_name& name, const datapath::Registers& registers, const Timing& timing);
+    Lighting(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
+             const Timing& timing);
+
+    std::string holds() const override;
+    std::uint64_t occupied_cycles() const override { return activity_.items_in() * timing_.interval; }
 
   private:
     void b_transport(datapath::Triangle& triangle, sc_core::sc_time& delay);
+    void step() override;
+    LitTriangle light(const datapath::Triangle& triangle) const;
 
     const datapath::Registers& registers_;
-    sc_core::sc_time latency_;
+    UnitTiming timing_;
+    ElasticPipeline<LitTriangle> pipeline_;
+    bool offered_ = false;  // the first is on offer to the rasteriser
 };
 
 }  // namespace tessera

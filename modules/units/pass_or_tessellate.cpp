@@ -1,36 +1,169 @@
 #include "modules/units/pass_or_tessellate.h"
 
 #include <algorithm>
+#include <string>
 
 #include "modules/datapath/cull.h"
 #include "modules/datapath/edge_tests.h"
 
 namespace tessera {
 
-PassOrTessellate::PassOrTessellate(const sc_core::sc_module_name& name, const datapath::Registers& registers,
-                                   const Timing& timing)
-    : sc_module(name), registers_(registers), latency_(timing.cycle * timing.pass_or_tessellate.latency) {
-    from_transform.register_b_transport(this, &PassOrTessellate::b_transport);
-    from_tessellation_tests.register_b_transport(this, &PassOrTessellate::b_transport);
+PassOrTessellate::PassOrTessellate(const sc_core::sc_module_name& name, Clock& clock,
+                                   const datapath::Registers& registers, const Timing& timing,
+                                   unsigned tests_units, PassPool& passes)
+    : Unit(name, clock),
+      from_tessellation_tests("from_tessellation_tests", tests_units),
+      registers_(registers),
+      timing_(timing.pass_or_tessellate),
+      passes_(passes),
+      incomplete_(timing.pass_or_tessellate.buffer),
+      pipeline_(timing.pass_or_tessellate) {
+    from_transform.serve<&PassOrTessellate::b_transport>(*this);
+    from_transform.clocked_by(clock, *this, 1, timing.stalls);
+    for (StreamInput<Work>& input : from_tessellation_tests) {
+        input.serve<&PassOrTessellate::b_transport>(*this);
+        input.clocked_by(clock, *this, timing_.buffer * 3 / tests_units, timing.stalls);
+    }
+    to_tessellation.clocked_by(clock, *this);
+    to_lighting.clocked_by(clock, *this);
 }
 
-void PassOrTessellate::b_transport(datapath::TrianglePass& pass, sc_core::sc_time& delay) {
-    if (!pass.tested) {
-        join(pass, delay);
-    } else if (waiting_ == nullptr) {
-        waiting_ = &pass;
-        waiting_delay_ = delay;
-    } else {
+void PassOrTessellate::end_of_elaboration() {
+    const auto producer = [](StreamInput<Work>& input) -> const sc_core::sc_object* {
+        const auto* port = dynamic_cast<const sc_core::sc_object*>(input.get_base_port().get_interface());
+        return port == nullptr ? nullptr : port->get_parent_object();
+    };
+    transform_ = producer(from_transform);
+    tests_ = producer(from_tessellation_tests[0]);
+}
+
+void PassOrTessellate::b_transport(Work& work, sc_core::sc_time& delay) {
+    Pass& pass = *work.pass;
+    if (pass.tested) {
+        if (waiting_ == nullptr) {
+            waiting_ = &pass;
+            waiting_delay_ = delay;
+            return;
+        }
         if (waiting_ != &pass)
             SC_REPORT_ERROR("tessera/pass_or_tessellate", "the two branches brought different triangles");
         waiting_ = nullptr;
         delay = std::max(delay, waiting_delay_);
-        join(pass, delay);
+    }
+    delay += clock_.period() * timing_.latency;
+    switch (join(pass)) {
+        case Way::tessellation:
+            to_tessellation->b_transport(work, delay);
+            break;
+        case Way::lighting:
+            to_lighting->b_transport(pass.triangle, delay);
+            break;
+        case Way::dropped:
+            break;
     }
 }
 
-void PassOrTessellate::join(datapath::TrianglePass& pass, sc_core::sc_time& delay) {
-    delay += latency_;
+bool PassOrTessellate::take_parts(std::uint64_t cycle) {
+    bool taken = false;
+    from_transform.admit();
+    while (!from_transform.empty()) {
+        const Work& work = from_transform.front();
+        if (!work.pass->at_the_join) {
+            if (incomplete_count_ == incomplete_.size())
+                break;
+            incomplete_[(first_incomplete_ + incomplete_count_++) % incomplete_.size()] = work.pass;
+            most_incomplete_ = std::max(most_incomplete_, incomplete_count_);
+            work.pass->at_the_join = true;
+            activity_.item_in(cycle);
+        }
+        work.pass->geometry_left = static_cast<Parts>(work.pass->geometry_left & ~work.parts);
+        from_transform.pop();
+        taken = true;
+    }
+    for (StreamInput<Work>& input : from_tessellation_tests) {
+        input.admit();
+        while (!input.empty() && input.front().pass->at_the_join) {
+            const Work& work = input.front();
+            work.pass->tests_left = static_cast<Parts>(work.pass->tests_left & ~work.parts);
+            input.pop();
+            taken = true;
+        }
+    }
+    return taken;
+}
+
+bool PassOrTessellate::deliver(Decided& next) {
+    switch (next.way) {
+        case Way::tessellation:
+            return offered_ ? to_tessellation.free() : to_tessellation.send(next.work);
+        case Way::lighting:
+            if (offered_ ? !to_lighting.free() : !to_lighting.send(next.work.pass->triangle))
+                return false;
+            break;
+        case Way::dropped:
+            break;
+    }
+    passes_.give_back(*next.work.pass);
+    return true;
+}
+
+void PassOrTessellate::step() {
+    const std::uint64_t cycle = now();
+    while (pipeline_.front_finished(cycle)) {
+        if (!deliver(pipeline_.front())) {
+            offered_ = true;
+            break;
+        }
+        offered_ = false;
+        pipeline_.pop();
+        activity_.item_out(cycle);
+    }
+    bool changed = true;
+    while (changed) {
+        changed = take_parts(cycle);
+        while (incomplete_count_ > 0 && pipeline_.may_start(cycle)) {
+            Pass& pass = *incomplete_[first_incomplete_];
+            if (pass.geometry_left != 0 || pass.tests_left != 0)
+                break;
+            first_incomplete_ = first_incomplete_ + 1 == incomplete_.size() ? 0 : first_incomplete_ + 1;
+            --incomplete_count_;
+            Decided& next = pipeline_.start(cycle);
+            next.work = {&pass, parts_of(pass)};
+            next.way = join(pass);
+            clock_.progress();
+            changed = true;
+        }
+    }
+    if (offered_)
+        activity_.set(cycle, State::blocked,
+                      to_lighting.free() ? to_tessellation.consumer() : to_lighting.consumer());
+    else if (!pipeline_.empty())
+        activity_.set(cycle, State::busy);
+    else if (incomplete_count_ > 0)
+        activity_.set(cycle, State::starved,
+                      incomplete_[first_incomplete_]->geometry_left != 0 ? transform_ : tests_);
+    else
+        activity_.set(cycle, State::starved);
+    wake_at(pipeline_.next_finished(cycle));
+    if (incomplete_count_ > 0)
+        wake_at(pipeline_.next_start(cycle));
+}
+
+std::string PassOrTessellate::holds() const {
+    std::string text;
+    if (incomplete_count_ > 0) {
+        const Pass& pass = *incomplete_[first_incomplete_];
+        text = count_of(incomplete_count_, "incomplete triangle") + ", the first (" +
+               std::to_string(pass.number) + ") lacks its parts from " +
+               (pass.geometry_left != 0 ? (pass.tests_left != 0 ? "both branches" : "Transform")
+                                        : "Tessellation Tests");
+    }
+    if (!pipeline_.empty())
+        text += (text.empty() ? "" : "; ") + count_of(pipeline_.size(), "decided triangle");
+    return text;
+}
+
+PassOrTessellate::Way PassOrTessellate::join(Pass& pass) {
     datapath::Triangle& triangle = pass.triangle;
     for (unsigned k = 0; k < 3; ++k) {
         datapath::Vertex& vertex = triangle.vertices[k];
@@ -40,19 +173,17 @@ void PassOrTessellate::join(datapath::TrianglePass& pass, sc_core::sc_time& dela
     }
     if (!pass.tested) {
         ++counts_.normal_passes;
-        finish(triangle, delay);
-        return;
+        return finish(triangle);
     }
     decide_edges(pass);
     decided.write(pass);
-    if (pass.split != 0) {
-        to_tessellation->b_transport(pass, delay);
-    } else if (pass.new_vertices != 0) {
+    if (pass.split != 0)
+        return Way::tessellation;
+    if (pass.new_vertices != 0) {
         triangle.finished = true;
-        to_tessellation->b_transport(pass, delay);
-    } else {
-        finish(triangle, delay);
+        return Way::tessellation;
     }
+    return finish(triangle);
 }
 
 void PassOrTessellate::decide_edges(datapath::TrianglePass& pass) {
@@ -84,16 +215,16 @@ void PassOrTessellate::decide_edges(datapath::TrianglePass& pass) {
     pass.triangle.stopped_by = static_cast<std::uint8_t>(stopped_by);
 }
 
-void PassOrTessellate::finish(datapath::Triangle& triangle, sc_core::sc_time& delay) {
+PassOrTessellate::Way PassOrTessellate::finish(datapath::Triangle& triangle) {
     triangle.finished = true;
     ++counts_.finished;
     finished.write(triangle);
     const auto& v = triangle.vertices;
     if (registers_.back_face_culling && datapath::faces_away(v[0].screen, v[1].screen, v[2].screen)) {
         ++counts_.culled;
-        return;
+        return Way::dropped;
     }
-    to_lighting->b_transport(triangle, delay);
+    return Way::lighting;
 }
 
 }  // namespace tessera

@@ -1,31 +1,40 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <systemc>
 #include <tlm>
+#include <vector>
 
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/triangle_pass.h"
-#include "modules/stream/stream.h"
+#include "modules/stream/stream_input.h"
+#include "modules/stream/stream_output.h"
+#include "modules/stream/work.h"
 #include "modules/timing.h"
+#include "modules/unit/elastic_pipeline.h"
+#include "modules/unit/pass_pool.h"
+#include "modules/unit/unit.h"
 
 namespace tessera {
 
 /// Pass or Tessellate (paper figures 7 and 8, 3.1.5): joins Transform and Tessellation Tests, decides per edge, and
 /// culls finished triangles that face away.
 ///
-/// In:   a pass from each branch; the second of the two to come completes it.
+/// In:   the parts of each pass from both branches; the last one to come completes it.
 /// Out:  to Tessellation, a pass with split != 0, or one that is finished but lacks N's of a vertex (it goes round
 ///       once more for its normals); to Lighting, a finished triangle.
 /// Arithmetic: logic; for culling two products of screen bits + 1 and a compare.
 /// Check: both branches' t_ij must agree, or the branches have lost step: an SC_ERROR.
-/// Timing: one triangle per interval; latency 1, interval 1 by default. Capacity: one triangle.
+/// Timing: one triangle per interval; latency 1, interval 1 by default, from the arrival of its last part. Capacity:
+///       `buffer` triangles (8) that are not complete. Transform, which brings every pass, opens a place for it; what
+///       Tessellation Tests brings before that waits at its own input, as many edges as there are places.
 /// Waits for both branches; held back by Tessellation and Lighting.
-class PassOrTessellate : public sc_core::sc_module {
+class PassOrTessellate : public Unit {
   public:
-    StreamTarget<PassOrTessellate, datapath::TrianglePass> from_transform{"from_transform"};
-    StreamTarget<PassOrTessellate, datapath::TrianglePass> from_tessellation_tests{"from_tessellation_tests"};
-    StreamInitiator<PassOrTessellate, datapath::TrianglePass> to_tessellation{"to_tessellation"};
-    StreamInitiator<PassOrTessellate, datapath::Triangle> to_lighting{"to_lighting"};
+    StreamInput<Work> from_transform{"from_transform"};
+    sc_core::sc_vector<StreamInput<Work>> from_tessellation_tests;  ///< one per Tessellation Tests unit
+    StreamOutput<Work> to_tessellation{"to_tessellation"};
+    StreamOutput<datapath::Triangle> to_lighting{"to_lighting"};
 
     /// Every pass whose edges have been decided, complete: for the scoreboard.
     tlm::tlm_analysis_port<datapath::TrianglePass> decided{"decided"};
@@ -46,22 +55,49 @@ class PassOrTessellate : public sc_core::sc_module {
         std::uint64_t culled = 0;
     };
 
-    PassOrTessellate(const sc_core::sc_module_name& name, const datapath::Registers& registers,
-                     const Timing& timing);
+    PassOrTessellate(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
+                     const Timing& timing, unsigned tests_units, PassPool& passes);
 
     const Counts& counts() const { return counts_; }
-    bool idle() const { return waiting_ == nullptr; }
+    /// Functional mode: no pass waits for its other branch.
+    bool joined() const { return waiting_ == nullptr; }
+    /// Most triangles that waited for a branch at a time.
+    std::size_t most_incomplete() const { return most_incomplete_; }
+
+    std::string holds() const override;
+    std::uint64_t occupied_cycles() const override { return activity_.items_out() * timing_.interval; }
 
   private:
-    void b_transport(datapath::TrianglePass& pass, sc_core::sc_time& delay);
-    void join(datapath::TrianglePass& pass, sc_core::sc_time& delay);
+    enum class Way : std::uint8_t { tessellation, lighting, dropped };
+    struct Decided {
+        Work work;
+        Way way = Way::dropped;
+    };
+
+    void b_transport(Work& work, sc_core::sc_time& delay);
+    void step() override;
+    bool take_parts(std::uint64_t cycle);
+    bool deliver(Decided& next);
+    void end_of_elaboration() override;
+
+    /// Completes the pass and says where it goes.
+    Way join(Pass& pass);
     void decide_edges(datapath::TrianglePass& pass);
-    void finish(datapath::Triangle& triangle, sc_core::sc_time& delay);
+    Way finish(datapath::Triangle& triangle);
 
     const datapath::Registers& registers_;
-    sc_core::sc_time latency_;
-    datapath::TrianglePass* waiting_ = nullptr;  // the pass of which one branch has come
-    sc_core::sc_time waiting_delay_;             // and when
+    UnitTiming timing_;
+    PassPool& passes_;
+    const Pass* waiting_ = nullptr;   // functional mode: the pass of which one branch has come
+    sc_core::sc_time waiting_delay_;  // and when
+    std::vector<Pass*> incomplete_;   // timed mode: a ring, in order of arrival
+    std::size_t first_incomplete_ = 0;
+    std::size_t incomplete_count_ = 0;
+    std::size_t most_incomplete_ = 0;
+    ElasticPipeline<Decided> pipeline_;
+    bool offered_ = false;  // the pipeline's first is on offer
+    const sc_core::sc_object* transform_ = nullptr;
+    const sc_core::sc_object* tests_ = nullptr;
     Counts counts_;
 };
 

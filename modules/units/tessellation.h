@@ -1,11 +1,15 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <systemc>
 
 #include "modules/datapath/parameters.h"
-#include "modules/datapath/triangle_pass.h"
-#include "modules/stream/stream.h"
+#include "modules/stream/stream_input.h"
+#include "modules/stream/stream_output.h"
+#include "modules/stream/work.h"
 #include "modules/timing.h"
+#include "modules/unit/pass_pool.h"
+#include "modules/unit/unit.h"
 
 namespace tessera {
 
@@ -15,24 +19,37 @@ namespace tessera {
 /// In:   a pass with split set, both branches complete. Out: its children, one after another; for a finished triangle
 ///       on its way to fetch normals, the triangle itself.
 /// Arithmetic: wiring; with the `shorter` diagonal two Manhattan lengths (6 subtractions, 4 adds) and a compare.
-/// Timing: one child per interval; latency 1, interval 1 by default. Capacity: one triangle.
+/// Timing: one child per interval, the first a latency after the pass was taken; latency 1, interval 1 by default.
+///       Capacity: one pass; the next is taken when its last child has been.
 /// Waits for nothing but its input; held back by the Triangle Queue.
-class Tessellation : public sc_core::sc_module {
+class Tessellation : public Unit {
   public:
-    StreamTarget<Tessellation, datapath::TrianglePass> from_pass_or_tessellate{"from_pass_or_tessellate"};
-    StreamInitiator<Tessellation, datapath::Triangle> to_triangle_queue{"to_triangle_queue"};
+    StreamInput<Work> from_pass_or_tessellate{"from_pass_or_tessellate"};
+    StreamOutput<datapath::Triangle> to_triangle_queue{"to_triangle_queue"};
 
-    Tessellation(const sc_core::sc_module_name& name, const datapath::Registers& registers,
-                 const Timing& timing);
+    Tessellation(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
+                 const Timing& timing, PassPool& passes);
 
     /// Triangles made into 2, 3, 4 children; index 1: passed unchanged.
     const std::array<std::uint64_t, 5>& made_into() const { return made_into_; }
+    std::uint64_t children() const {
+        return made_into_[1] + 2 * made_into_[2] + 3 * made_into_[3] + 4 * made_into_[4];
+    }
+
+    std::string holds() const override;
+    std::uint64_t occupied_cycles() const override { return children() * timing_.interval; }
 
   private:
-    void b_transport(datapath::TrianglePass& pass, sc_core::sc_time& delay);
+    void b_transport(Work& work, sc_core::sc_time& delay);
+    void step() override;
 
     const datapath::Registers& registers_;
-    sc_core::sc_time latency_;
+    UnitTiming timing_;
+    PassPool& passes_;
+    std::array<datapath::Triangle, 4> children_;
+    unsigned made_ = 0;  // children of the pass that is being worked on
+    unsigned sent_ = 0;  // of these, sent
+    std::uint64_t next_ = 0;
     std::array<std::uint64_t, 5> made_into_{};
 };
 

@@ -4,36 +4,51 @@
 
 namespace tessera {
 
-Transform::Transform(const sc_core::sc_module_name& name, const datapath::Registers& registers,
-                     const Timing& timing)
-    : sc_module(name), registers_(registers), latency_(timing.cycle * timing.transform.latency) {
-    from_displace_vertex.register_b_transport(this, &Transform::b_transport);
+Transform::Transform(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
+                     const Timing& timing, unsigned pipelines, unsigned tests_units)
+    : WorkStage(name, clock, timing.transform, pipelines),
+      to_view_test("to_view_test", tests_units),
+      registers_(registers),
+      pipelines_(pipelines) {
+    takes_from(from_displace_vertex, timing.stalls);
+    from_displace_vertex.serve<&Transform::b_transport>(*this);
+    delivers_to(to_pass_or_tessellate);
+    for (StreamOutput<Work>& output : to_view_test)
+        delivers_to(output);
 }
 
-void Transform::b_transport(datapath::TrianglePass& pass, sc_core::sc_time& delay) {
+void Transform::process(const Work& work) {
     const datapath::TransformParameters& parameters = registers_.transform;
     const datapath::Formats& formats = registers_.formats;
-    for (std::size_t k = 0; k < 3; ++k) {
+    Pass& pass = *work.pass;
+    for_each_of_three(work.parts, 0, [&](unsigned k) {
         datapath::Vertex& vertex = pass.triangle.vertices[k];
-        if ((pass.new_vertices >> k & 1u) != 0) {
-            vertex.screen = datapath::transform(vertex.displaced, parameters, formats, saturations_);
-            ++positions_;
-        }
-        if ((pass.new_normals >> k & 1u) != 0) {
-            vertex.screen_normal =
-                datapath::transform_normal(vertex.displaced_normal, parameters, formats, saturations_);
-            ++normals_;
-        }
-    }
-    delay += latency_;
-    if (pass.new_vertices != 0)
-        to_view_test->b_transport(pass, delay);
-    if (pass.tested) {
-        for (datapath::NewVertex& made : pass.new_vertex)
-            made.screen = datapath::transform(made.displaced, parameters, formats, saturations_);
-        positions_ += 3;
-    }
-    to_pass_or_tessellate->b_transport(pass, delay);
+        vertex.screen = datapath::transform(vertex.displaced, parameters, formats, saturations_);
+        ++positions_;
+    });
+    for_each_of_three(work.parts, first_normal_part, [&](unsigned k) {
+        datapath::Vertex& vertex = pass.triangle.vertices[k];
+        vertex.screen_normal =
+            datapath::transform_normal(vertex.displaced_normal, parameters, formats, saturations_);
+        ++normals_;
+    });
+    for_each_of_three(work.parts, first_edge_part, [&](unsigned k) {
+        datapath::NewVertex& made = pass.new_vertex[k];
+        made.screen = datapath::transform(made.displaced, parameters, formats, saturations_);
+        ++positions_;
+    });
+}
+
+unsigned Transform::targets(const Work& work) const {
+    return (work.parts & vertex_parts) != 0 ? ~0u : 1u;
+}
+
+void Transform::b_transport(Work& work, sc_core::sc_time& delay) {
+    process(work);
+    delay += clock_.period() * timing_.latency;
+    if ((work.parts & vertex_parts) != 0)
+        to_view_test[0]->b_transport(work, delay);
+    to_pass_or_tessellate->b_transport(work, delay);
 }
 
 }  // namespace tessera

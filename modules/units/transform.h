@@ -1,40 +1,51 @@
 #pragma once
+#include <cstdint>
+#include <memory>
 #include <systemc>
+#include <vector>
 
 #include "modules/datapath/parameters.h"
-#include "modules/datapath/triangle_pass.h"
-#include "modules/stream/stream.h"
+#include "modules/stream/stream_input.h"
+#include "modules/stream/stream_output.h"
+#include "modules/stream/work.h"
 #include "modules/timing.h"
+#include "modules/unit/work_stage.h"
 
 namespace tessera {
 
 /// Transform (paper figure 7): world to screen; the pipeline's existing unit, OpenGL's clipping, perspective and
 /// viewport application.
 ///
-/// In:   a pass with displaced positions of its new vertices; vertices[k].displaced_normal where new_normals has bit k.
-/// Out:  new_vertex[k].screen; vertices[k].screen where new_vertices has bit k; vertices[k].screen_normal where
-///       new_normals has bit k. A base triangle's screen positions also go to the View Test, which waits for them.
-/// Arithmetic: 9 multiplications (position or normal); for a position a reciprocal (a table and 4 multiplications) and 2 more, saturate (counted).
-/// Timing: one vertex or normal per interval; latency 20, interval 1 by default. Capacity: its pipeline.
+/// In:   edges and vertices with their displaced positions; vertices[k].displaced_normal of normals.
+/// Out:  new_vertex[k].screen; vertices[k].screen; vertices[k].screen_normal. A base triangle's screen positions also
+///       go to the View Test, which waits for them.
+/// Arithmetic: 9 multiplications (position or normal); for a position a reciprocal (a table and 4 multiplications) and
+///       2 more, saturate (counted).
+/// Timing: one vertex, normal or edge per interval and pipeline; latency 20, interval 1, one pipeline by default.
+///       Several pipelines take turns; items stay in order.
 /// Waits for nothing but its input; held back by Pass or Tessellate.
-class Transform : public sc_core::sc_module {
+class Transform : public WorkStage {
   public:
-    StreamTarget<Transform, datapath::TrianglePass> from_displace_vertex{"from_displace_vertex"};
-    StreamInitiator<Transform, datapath::TrianglePass> to_pass_or_tessellate{"to_pass_or_tessellate"};
-    StreamInitiator<Transform, datapath::TrianglePass> to_view_test{"to_view_test"};
+    StreamInput<Work> from_displace_vertex{"from_displace_vertex"};
+    StreamOutput<Work> to_pass_or_tessellate{"to_pass_or_tessellate"};
+    sc_core::sc_vector<StreamOutput<Work>> to_view_test;  ///< one per Tessellation Tests unit
 
-    Transform(const sc_core::sc_module_name& name, const datapath::Registers& registers,
-              const Timing& timing);
+    Transform(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
+              const Timing& timing, unsigned pipelines, unsigned tests_units);
 
     const datapath::Saturations& saturations() const { return saturations_; }
     std::uint64_t positions() const { return positions_; }
     std::uint64_t normals() const { return normals_; }
 
+    std::uint64_t occupied_cycles() const override { return WorkStage::occupied_cycles() / pipelines_; }
+
   private:
-    void b_transport(datapath::TrianglePass& pass, sc_core::sc_time& delay);
+    void b_transport(Work& work, sc_core::sc_time& delay);
+    void process(const Work& work) override;
+    unsigned targets(const Work& work) const override;
 
     const datapath::Registers& registers_;
-    sc_core::sc_time latency_;
+    unsigned pipelines_;
     datapath::Saturations saturations_;
     std::uint64_t positions_ = 0;
     std::uint64_t normals_ = 0;

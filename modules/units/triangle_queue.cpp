@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "modules/datapath/pack_triangle.h"
+
 namespace tessera {
 
 namespace {
@@ -9,13 +11,24 @@ namespace {
 constexpr unsigned triangles_between_waits = 1024;
 }  // namespace
 
-TriangleQueue::TriangleQueue(const sc_core::sc_module_name& name, TriangleOrder order, std::size_t watermark,
+TriangleQueue::TriangleQueue(const sc_core::sc_module_name& name, Clock& clock,
+                             const datapath::Registers& registers, const QueueDesign& design,
                              const Timing& timing)
-    : sc_module(name),
-      store_(order),
-      watermark_(std::max<std::size_t>(watermark, 1)),
-      latency_(timing.cycle * timing.triangle_queue.latency) {
-    from_tessellation.register_b_transport(this, &TriangleQueue::b_transport);
+    : Unit(name, clock),
+      off_chip_memory(
+          "off_chip_memory", clock, *this,
+          datapath::packed_triangle_bytes(registers.formats) + datapath::packed_triangle_tag_bytes,
+          timing.off_chip_memory.buffer + 4),
+      registers_(registers),
+      design_(design),
+      timing_(timing.triangle_queue),
+      record_bytes_(datapath::packed_triangle_bytes(registers.formats) + datapath::packed_triangle_tag_bytes),
+      store_(design.order),
+      leaving_(timing.triangle_queue) {
+    design_.watermark = std::max<std::size_t>(design_.watermark, 1);
+    from_tessellation.serve<&TriangleQueue::b_transport>(*this);
+    from_tessellation.clocked_by(clock, *this, timing_.buffer, timing.stalls);
+    to_get_triangle.clocked_by(clock, *this);
     level.bind(*this);
     SC_HAS_PROCESS(TriangleQueue);
     SC_THREAD(send_waiting);
@@ -25,7 +38,7 @@ void TriangleQueue::b_transport(datapath::Triangle& triangle, sc_core::sc_time& 
     store_.push(triangle);
     ++taken_;
     high_water_mark_ = std::max(high_water_mark_, store_.size());
-    delay += latency_;
+    delay += clock_.period() * timing_.latency;
     if (!sending_)
         arrival_.notify(sc_core::SC_ZERO_TIME);
 }
@@ -41,8 +54,8 @@ void TriangleQueue::send_waiting() {
                 wait(delay);
                 delay = sc_core::SC_ZERO_TIME;
             }
-            pass_.triangle = store_.pop();
-            to_get_triangle->b_transport(pass_, delay);
+            datapath::Triangle triangle = store_.pop();
+            to_get_triangle->b_transport(triangle, delay);
             if (host_waits_ && takes_host_triangles()) {
                 host_waits_ = false;
                 host_may_send_.notify();
@@ -55,6 +68,137 @@ void TriangleQueue::send_waiting() {
         wait(delay);
         host_may_send_.notify();
     }
+}
+
+void TriangleQueue::level_changed(std::uint64_t cycle) {
+    high_water_mark_ = std::max(high_water_mark_, waiting());
+    on_chip_high_water_mark_ = std::max(on_chip_high_water_mark_, store_.size());
+    history_.set(cycle, waiting());
+}
+
+void TriangleQueue::spill(const datapath::Triangle& triangle) {
+    if (off_chip_ == design_.off_chip_triangles)
+        SC_REPORT_ERROR("tessera/triangle_queue", "off-chip memory is full");
+    if (!datapath::pack_triangle(triangle, registers_.formats, off_chip_memory.record_to_write()))
+        SC_REPORT_ERROR("tessera/triangle_queue",
+                        "a spilled triangle does not fit its format (generations beyond generation_bits?)");
+    if (off_chip_ == 0)
+        off_chip_head_ = 0;
+    off_chip_memory.write(place_address(off_chip_head_ + off_chip_));
+    ++off_chip_;
+    ++spilled_;
+}
+
+/// False: no place for the triangle now.
+bool TriangleQueue::put(const datapath::Triangle& triangle) {
+    const bool fifo = design_.order == TriangleOrder::fifo;
+    if (on_chip_room() && (!fifo || (off_chip_ == 0 && refills_ == 0))) {
+        store_.push(triangle);
+        return true;
+    }
+    switch (design_.overflow) {
+        case QueueOverflow::error:
+            overflowed_ = true;
+            sc_core::sc_stop();
+            return false;
+        case QueueOverflow::stall:
+            return false;
+        case QueueOverflow::spill:
+            break;
+    }
+    if (!off_chip_memory.may_request())
+        return false;
+    if (fifo) {
+        spill(triangle);
+        return true;
+    }
+    if (refills_ > 0)
+        return false;  // what comes back is older than anything here
+    spill(store_.pop_oldest());
+    store_.push(triangle);
+    return true;
+}
+
+void TriangleQueue::take_back() {
+    while (off_chip_memory.answered()) {
+        if (off_chip_memory.answer_is_read()) {
+            const datapath::Triangle triangle =
+                datapath::unpack_triangle(off_chip_memory.answer(), registers_.formats);
+            if (design_.order == TriangleOrder::fifo)
+                store_.push(triangle);
+            else
+                store_.push_oldest(triangle);
+            --refills_;
+            ++refilled_;
+        }
+        off_chip_memory.pop_answer();
+    }
+}
+
+void TriangleQueue::refill() {
+    const bool fifo = design_.order == TriangleOrder::fifo;
+    while (off_chip_ > 0 && off_chip_memory.may_request() &&
+           (fifo ? on_chip_room() : store_.size() + refills_ <= design_.capacity / 2 && on_chip_room())) {
+        --off_chip_;
+        off_chip_memory.read(place_address(fifo ? off_chip_head_++ : off_chip_head_ + off_chip_));
+        ++refills_;
+    }
+}
+
+void TriangleQueue::step() {
+    const std::uint64_t cycle = now();
+    from_tessellation.admit();
+    take_back();
+    for (bool changed = true; changed;) {
+        changed = false;
+        while (leaving_.front_finished(cycle)) {
+            if (offered_ ? !to_get_triangle.free() : !to_get_triangle.send(leaving_.front())) {
+                offered_ = true;
+                break;
+            }
+            offered_ = false;
+            leaving_.pop();
+            activity_.item_out(cycle);
+            changed = true;
+        }
+        if (!from_tessellation.empty() && cycle >= next_in_ && put(from_tessellation.front())) {
+            from_tessellation.pop();
+            ++taken_;
+            activity_.item_in(cycle);
+            next_in_ = cycle + timing_.interval;
+            changed = true;
+        }
+        if (!store_.empty() && leaving_.may_start(cycle)) {
+            leaving_.start(cycle) = store_.pop();
+            changed = true;
+        }
+        refill();
+        if (changed)
+            level_changed(cycle);
+    }
+    if (offered_)
+        activity_.set(cycle, State::blocked, to_get_triangle.consumer());
+    else if (!leaving_.empty() || !store_.empty())
+        activity_.set(cycle, State::busy);
+    else if (off_chip_memory.under_way() > 0)
+        activity_.set(cycle, State::waiting_for_memory);
+    else
+        activity_.set(cycle, State::starved);
+    wake_at(leaving_.next_finished(cycle));
+    if (!store_.empty())
+        wake_at(leaving_.next_start(cycle));
+    if (!from_tessellation.empty() && next_in_ > cycle)
+        wake_at(next_in_);
+}
+
+std::string TriangleQueue::holds() const {
+    std::string text = count_of(waiting(), "triangle");
+    if (off_chip_ > 0)
+        text += ", " + std::to_string(off_chip_) + " of them off chip";
+    if (!from_tessellation.empty())
+        text += std::string(text.empty() ? "" : "; ") + "no place for the next" +
+                (design_.capacity == 0 ? "" : " (capacity " + std::to_string(design_.capacity) + ")");
+    return text;
 }
 
 }  // namespace tessera

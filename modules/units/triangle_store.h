@@ -34,6 +34,21 @@ class TriangleStore {
         return ring_[place];
     }
 
+    /// Beside the order: the other end of what is stored, for spilling.
+    void push_oldest(const datapath::Triangle& triangle) {
+        if (size_ == ring_.size())
+            grow();
+        first_ = (first_ - 1) & (ring_.size() - 1);
+        ring_[first_] = triangle;
+        ++size_;
+    }
+    const datapath::Triangle& pop_oldest() {
+        const std::size_t place = first_;
+        first_ = (first_ + 1) & (ring_.size() - 1);
+        --size_;
+        return ring_[place];
+    }
+
   private:
     void grow() {
         std::vector<datapath::Triangle> larger(2 * ring_.size());

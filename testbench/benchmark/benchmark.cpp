@@ -60,7 +60,7 @@ void bare_datapath(benchmark::State& state, BareRecursion& bare) {
 }
 
 void functional_mode(benchmark::State& state, Simulation& simulation) {
-    const auto edges_so_far = [&] { return simulation.pipeline.tessellation_tests.edges_tested(); };
+    const auto edges_so_far = [&] { return simulation.pipeline.edges_tested(); };
     const std::uint64_t before = edges_so_far();
     for (auto _ : state) {
         simulation.monitor.mesh.triangles.clear();

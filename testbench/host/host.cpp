@@ -40,15 +40,21 @@ class TableRow {
 
 }  // namespace
 
-Host::Host(const sc_core::sc_module_name& name, const Setup& setup) : sc_module(name), setup_(setup) {
+Host::Host(const sc_core::sc_module_name& name, const Setup& setup, Clock& clock)
+    : sc_module(name), setup_(setup), clock_(clock) {
+    clock.attach(*this);
+    to_get_triangle.clocked_by(clock, *this);
     SC_HAS_PROCESS(Host);
-    SC_THREAD(send_triangles);
+    if (setup.design.transport == Transport::blocking)
+        SC_THREAD(send_triangles);
 }
 
 void Host::start_of_simulation() {
     fill_displacement_map();
     fill_normal_map();
     fill_summed_height_table();
+    if (setup_.design.transport == Transport::non_blocking)
+        clock_.wake(*this);
 }
 
 void Host::fill_displacement_map() {
@@ -93,16 +99,25 @@ void Host::fill_summed_height_table() {
 
 void Host::send_again() {
     sent_ = 0;
-    again_.notify(sc_core::SC_ZERO_TIME);
+    if (setup_.design.transport == Transport::non_blocking)
+        clock_.wake(*this);
+    else
+        again_.notify(sc_core::SC_ZERO_TIME);
+}
+
+void Host::step() {
+    while (sent_ < setup_.base_triangles.size() && to_get_triangle.free()) {
+        offered_ = setup_.base_triangles[sent_++];
+        to_get_triangle.send(offered_);
+    }
 }
 
 void Host::send_triangles() {
-    datapath::TrianglePass pass;
     for (;;) {
         for (const datapath::Triangle& base : setup_.base_triangles) {
-            pass.triangle = base;
+            datapath::Triangle triangle = base;
             sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
-            to_get_triangle->b_transport(pass, delay);
+            to_get_triangle->b_transport(triangle, delay);
             ++sent_;
             wait(delay);
         }

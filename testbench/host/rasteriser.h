@@ -2,24 +2,35 @@
 #include <cstdint>
 #include <systemc>
 
-#include "modules/stream/stream.h"
+#include "modules/clock/clock.h"
+#include "modules/stream/stream_input.h"
 #include "modules/units/lighting.h"
 
 namespace tessera {
 
 /// Where the machine ends (paper figure 7): takes every lit triangle and counts it. Never holds back.
-class Rasteriser : public sc_core::sc_module {
+class Rasteriser : public sc_core::sc_module, public Clocked {
   public:
-    StreamTarget<Rasteriser, LitTriangle> from_lighting{"from_lighting"};
+    StreamInput<LitTriangle> from_lighting{"from_lighting"};
 
-    explicit Rasteriser(const sc_core::sc_module_name& name) : sc_module(name) {
-        from_lighting.register_b_transport(this, &Rasteriser::b_transport);
+    Rasteriser(const sc_core::sc_module_name& name, Clock& clock, const StallParameters& stalls)
+        : sc_module(name) {
+        clock.attach(*this);
+        from_lighting.serve<&Rasteriser::b_transport>(*this);
+        from_lighting.clocked_by(clock, *this, 1, stalls);
     }
 
     std::uint64_t triangles() const { return triangles_; }
 
   private:
     void b_transport(LitTriangle&, sc_core::sc_time&) { ++triangles_; }
+    void step() override {
+        from_lighting.admit();
+        while (!from_lighting.empty()) {
+            ++triangles_;
+            from_lighting.pop();
+        }
+    }
 
     std::uint64_t triangles_ = 0;
 };

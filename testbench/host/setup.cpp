@@ -358,6 +358,23 @@ datapath::DisplacementParameters make_displacement(const Heights& heights, const
     return {to_format(full, position), to_format(heights.bias * setup.model_scale.scale, position)};
 }
 
+Design make_design(const Job& job) {
+    Design design;
+    design.transport = job.mode == Mode::timed ? Transport::non_blocking : Transport::blocking;
+    design.timing = job.timing;
+    design.queue.order =
+        job.hardware.queue_order == QueueOrder::lifo ? TriangleOrder::lifo : TriangleOrder::fifo;
+    design.queue.watermark = static_cast<std::size_t>(job.hardware.queue_watermark);
+    design.queue.capacity = static_cast<std::size_t>(job.hardware.queue_capacity);
+    design.queue.overflow = job.hardware.queue_overflow == Overflow::spill   ? QueueOverflow::spill
+                            : job.hardware.queue_overflow == Overflow::stall ? QueueOverflow::stall
+                                                                             : QueueOverflow::error;
+    design.tests_units = static_cast<unsigned>(job.hardware.tests_units);
+    design.transform_pipelines = static_cast<unsigned>(job.hardware.transform_pipelines);
+    design.direct_memory = job.hardware.direct_memory;
+    return design;
+}
+
 }  // namespace
 
 Setup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& map) {
@@ -390,10 +407,7 @@ Setup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& map) {
                                                               : datapath::Triangulation::shorter;
     registers.back_face_culling = job.hardware.culling == Culling::back;
 
-    setup.design.queue_order =
-        job.hardware.queue_order == QueueOrder::lifo ? TriangleOrder::lifo : TriangleOrder::fifo;
-    setup.design.queue_watermark = static_cast<std::size_t>(job.hardware.queue_watermark);
-    setup.design.direct_memory = job.hardware.direct_memory;
+    setup.design = make_design(job);
     return setup;
 }
 

@@ -6,10 +6,12 @@
 
 namespace tessera {
 
-Simulation::Simulation(const Setup& setup, std::uint64_t triangle_limit)
-    : pipeline("tessera", setup.registers, setup.design),
-      host("host", setup),
-      rasteriser("rasteriser"),
+Simulation::Simulation(const Setup& its_setup, std::uint64_t triangle_limit,
+                       std::uint64_t cycles_without_progress)
+    : setup(its_setup),
+      pipeline("tessera", setup.registers, setup.design),
+      host("host", setup, pipeline.clock),
+      rasteriser("rasteriser", pipeline.clock, setup.design.timing.stalls),
       monitor("mesh_monitor", setup.registers.back_face_culling, triangle_limit) {
     host.to_get_triangle.bind(pipeline.get_triangle.from_host);
     host.displacement_map.bind(pipeline.displacement_map.socket);
@@ -17,16 +19,28 @@ Simulation::Simulation(const Setup& setup, std::uint64_t triangle_limit)
     host.summed_height_table.bind(pipeline.summed_height_table.socket);
     pipeline.lighting.to_rasteriser.bind(rasteriser.from_lighting);
     pipeline.pass_or_tessellate.finished.bind(monitor);
+    pipeline.clock.stop_without_progress_for(cycles_without_progress);
 }
 
 std::string Simulation::run() {
     sc_core::sc_start();
+    if (setup.design.transport == Transport::non_blocking) {
+        cycles_ = pipeline.clock.last_cycle() + 1;
+        for (Unit* unit : pipeline.units())
+            unit->activity().finish(cycles_);
+        pipeline.triangle_queue.history().finish(cycles_);
+    }
     if (monitor.limit_reached())
         throw ResourceError(
             fmt::format("limits.triangles = {}: the mesh has more triangles than that; raise the thresholds "
                         "under [tests], lower "
                         "tests.generation_limit, or raise the limit",
                         monitor.mesh.triangles.size()));
+    if (pipeline.triangle_queue.overflowed())
+        throw ResourceError(fmt::format(
+            "hardware.queue_capacity = {}: in cycle {} a triangle found the Triangle Queue full; raise the "
+            "capacity, or set hardware.queue_order = \"lifo\" or hardware.queue_overflow = \"spill\"",
+            setup.design.queue.capacity, pipeline.clock.last_cycle()));
     return drained() ? std::string{} : stuck();
 }
 
@@ -35,15 +49,30 @@ bool Simulation::drained() const {
 }
 
 std::string Simulation::stuck() const {
+    const bool timed = setup.design.transport == Transport::non_blocking;
+    const Clock& clock = pipeline.clock;
+    std::string text =
+        clock.stalled()
+            ? fmt::format("livelock: no triangle has been decided for more than {} cycles, up to cycle {}\n",
+                          clock.most_without_progress(), clock.last_cycle())
+            : fmt::format("deadlock: the simulation has nothing left to do{}, yet work is left\n",
+                          timed ? fmt::format(" after cycle {}", clock.last_cycle()) : std::string{});
     const auto& counts = pipeline.pass_or_tessellate.counts();
-    return fmt::format(
-        "host: {} of {} base triangles sent{}\n"
-        "triangle_queue: holds {} triangles{}\n"
-        "pass_or_tessellate: {} triangles finished{}\n",
-        host.sent(), host.total(), host.idle() ? "" : ", waits for get_triangle",
-        pipeline.triangle_queue.waiting(), pipeline.triangle_queue.idle() ? "" : ", waits for get_triangle",
-        counts.finished,
-        pipeline.pass_or_tessellate.idle() ? "" : ", holds a triangle, waits for its other branch");
+    text += fmt::format("  host: {} of {} base triangles sent{}\n", host.sent(), host.total(),
+                        host.idle() ? "" : ", waits for get_triangle");
+    text += fmt::format("  finished: {} triangles\n", counts.finished);
+    for (const Unit* unit : pipeline.units()) {
+        std::string line = unit->holds();
+        const Activity& activity = unit->activity();
+        const sc_core::sc_object* by = activity.by();
+        if (activity.state() == State::blocked && by != nullptr)
+            line += fmt::format("; waits for {} to take it", by->basename());
+        else if (by != nullptr)
+            line += fmt::format("; waits for {}", by->basename());
+        if (!line.empty())
+            text += fmt::format("  {}: {}\n", unit->name(), line);
+    }
+    return text;
 }
 
 }  // namespace tessera

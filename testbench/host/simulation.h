@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <string>
 
 #include "testbench/host/host.h"
@@ -9,13 +10,19 @@ namespace tessera {
 
 /// The machine with all that surrounds it: host, rasteriser, mesh monitor. One per process (SystemC elaborates once).
 struct Simulation {
-    /// `setup` must outlive the simulation. triangle_limit: see MeshMonitor.
-    Simulation(const Setup& setup, std::uint64_t triangle_limit);
+    /// `setup` must outlive the simulation. triangle_limit: see MeshMonitor. cycles_without_progress: timed mode, how
+    /// long no triangle may be decided; 0: for ever.
+    Simulation(const Setup& setup, std::uint64_t triangle_limit, std::uint64_t cycles_without_progress = 0);
 
-    /// Runs until nothing is left to do. Empty: everything drained. Else a deadlock: what each unit holds and waits
-    /// for, one line each. Throws ResourceError when the mesh reaches the triangle limit.
+    /// Runs until nothing is left to do. Empty: everything drained. Else a deadlock or livelock: what happened, and what
+    /// each unit holds and waits for, one line each. Throws ResourceError when the mesh reaches the triangle limit, or
+    /// the Triangle Queue its capacity where that is an error.
     std::string run();
 
+    /// Timed mode: cycles from the first to the end of the last in which anything happened.
+    std::uint64_t cycles() const { return cycles_; }
+
+    const Setup& setup;
     Pipeline pipeline;
     Host host;
     Rasteriser rasteriser;
@@ -24,6 +31,8 @@ struct Simulation {
   private:
     bool drained() const;
     std::string stuck() const;
+
+    std::uint64_t cycles_ = 0;
 };
 
 }  // namespace tessera

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <string>
 
+#include "modules/timing.h"
+
 namespace tessera {
 
 enum class MeshSource { plane, cylinder, sphere, file };
@@ -12,7 +14,8 @@ enum class Triangulation { shorter, first, second };
 enum class QueueOrder { fifo, lifo };
 enum class Culling { none, back };
 enum class SummedHeightUnit { sum, area };
-enum class Mode { functional };
+enum class Overflow { spill, stall, error };
+enum class Mode { functional, timed };
 
 /// One run of tessera: what a job file says. Every key's unit, default, range and description are declared
 /// once, in job_keys.cpp; the defaults are the initialisers below and make the default job (the half donut on
@@ -85,10 +88,16 @@ struct Job {
         Culling culling = Culling::none;
         QueueOrder queue_order = QueueOrder::fifo;
         std::int64_t queue_watermark = 1;  // host triangles are taken while fewer than this many wait
-        bool direct_memory = true;         // functional mode reads memories through DMI
+        std::int64_t queue_capacity = 0;   // triangles on chip; 0: unbounded
+        Overflow queue_overflow = Overflow::spill;
+        std::int64_t tests_units = 1;  // Tessellation Tests units: 1 or 3
+        std::int64_t transform_pipelines = 1;
+        bool direct_memory = true;                      // functional mode reads memories through DMI
         std::array<double, 3> light{0.3, -0.4, 0.866};  // direction towards the light, world space
         double ambient = 0.2;
     } hardware;
+
+    Timing timing;  // timed mode: every unit's and memory's, see modules/timing.h
 
     struct Check {
         bool golden = true;      // scoreboard: every edge against the golden model
@@ -98,7 +107,8 @@ struct Job {
     } check;
 
     struct Limits {
-        std::int64_t triangles = 20000000;  // emitted; more ends the run with exit code 4
+        std::int64_t cycles_without_progress = 1000000;  // timed mode; more ends the run with exit code 3
+        std::int64_t triangles = 20000000;               // emitted; more ends the run with exit code 4
     } limits;
 
     struct Output {
@@ -106,6 +116,11 @@ struct Job {
         bool ply = true;
         bool obj = true;
         bool picture = true;
+        bool vcd = false;               // timed mode: waveforms
+        bool timeline = false;          // timed mode: activity per unit in the Chrome trace format
+        std::int64_t trace_from = 0;    // first cycle of the two
+        std::int64_t trace_to = 10000;  // last cycle of the two
+        std::string trace_units;        // only units whose name contains one of these words
     } output;
 
     Mode mode = Mode::functional;

@@ -93,10 +93,24 @@ constexpr std::string_view name_of(SummedHeightUnit value) {
     return {};
 }
 
+constexpr std::string_view name_of(Overflow value) {
+    switch (value) {
+        case Overflow::spill:
+            return "spill";
+        case Overflow::stall:
+            return "stall";
+        case Overflow::error:
+            return "error";
+    }
+    return {};
+}
+
 constexpr std::string_view name_of(Mode value) {
     switch (value) {
         case Mode::functional:
             return "functional";
+        case Mode::timed:
+            return "timed";
     }
     return {};
 }

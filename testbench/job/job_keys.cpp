@@ -20,6 +20,7 @@ namespace {
 constexpr double any_length = 1e6;     // model units; keeps products of lengths far from overflow
 constexpr double least_length = 1e-6;  // and quotients far from infinity
 constexpr double any_count = 2147483647;
+constexpr double most_trace = 9e15;         // cycles; whole numbers a double holds
 constexpr std::size_t longest_text = 4096;  // bytes; what paths may have on Linux
 
 constexpr KeyRange length_range{least_length, any_length};
@@ -70,6 +71,21 @@ class TableWriter {
         };
     }
 
+    /// An unsigned or std::uint64_t number deep within the group: `member(group)` is a reference to it.
+    template <typename Member>
+    void add_deep(const std::string& leaf, Member member, const char* unit, KeyRange range,
+                  const std::string& description) const {
+        Key& key = push(leaf, KeyKind::integer, unit, description);
+        key.range = range;
+        key.get = [select = select_, member](const Job& job) {
+            return static_cast<std::int64_t>(member(select(job)));
+        };
+        key.set = [select = select_, member](Job& job, const JobValue& value) {
+            auto& it = member(select(job));
+            it = static_cast<std::remove_reference_t<decltype(it)>>(std::get<std::int64_t>(value));
+        };
+    }
+
   private:
     template <typename T>
     void add_plain(const char* leaf, T Group::*member, KeyKind kind, const char* unit, KeyRange range,
@@ -82,7 +98,7 @@ class TableWriter {
         };
     }
 
-    Key& push(const char* leaf, KeyKind kind, const char* unit, const char* description) const {
+    Key& push(const std::string& leaf, KeyKind kind, const char* unit, const std::string& description) const {
         Key key;
         key.name = table_.name.empty() ? leaf : table_.name + '.' + leaf;
         key.kind = kind;
@@ -127,12 +143,111 @@ class TableList {
     std::vector<KeyTable> tables_;
 };
 
+constexpr double most_cycles = 1000000;  // of a latency or interval
+constexpr double most_places = 65536;    // of a buffer
+
+/// The three figures of a unit. `unit(timing)` is a reference to its UnitTiming.
+template <typename Writer, typename Select>
+void add_unit(const Writer& key, const std::string& leaf, const std::string& name, Select unit) {
+    key.add_deep(
+        leaf + "_latency", [unit](auto& t) -> auto& { return unit(t).latency; }, "cycles",
+        between(1, most_cycles), name + ": from an item's start to its result, memory reads not counted");
+    key.add_deep(
+        leaf + "_interval", [unit](auto& t) -> auto& { return unit(t).interval; }, "cycles",
+        between(1, most_cycles), name + ": between the starts of two items");
+    key.add_deep(
+        leaf + "_buffer", [unit](auto& t) -> auto& { return unit(t).buffer; }, "items",
+        between(1, most_places), name + ": items that may wait at its input");
+}
+
+template <typename Writer, typename Select>
+void add_memory(const Writer& key, const std::string& leaf, const std::string& name, Select memory) {
+    key.add_deep(
+        leaf + "_ports", [memory](auto& t) -> auto& { return memory(t).ports; }, "entries a cycle",
+        between(1, 64), name + ": ports of each bank");
+    key.add_deep(
+        leaf + "_banks", [memory](auto& t) -> auto& { return memory(t).banks; }, "-", between(1, 64),
+        name + ": banks, interleaved entry by entry");
+    key.add_deep(
+        leaf + "_latency", [memory](auto& t) -> auto& { return memory(t).latency; }, "cycles",
+        between(0, most_places), name + ": from an entry's address to its data");
+    key.add_deep(
+        leaf + "_width", [memory](auto& t) -> auto& { return memory(t).width; }, "bytes a cycle",
+        between(0, 64), name + ": what a port moves; 0: a whole entry");
+    key.add_deep(
+        leaf + "_buffer", [memory](auto& t) -> auto& { return memory(t).buffer; }, "requests",
+        between(1, most_places), name + ": requests that may wait");
+}
+
+template <typename Writer>
+void add_timing(const Writer& key) {
+    key.add_deep(
+        "clock_period", [](auto& t) -> auto& { return t.cycle_picoseconds; }, "picoseconds", between(1, 1e9),
+        "The clock's period");
+    add_unit(
+        key, "get_triangle", "Get Triangle", [](auto& t) -> auto& { return t.get_triangle; });
+    add_unit(
+        key, "calculate_new_p", "Calculate New P", [](auto& t) -> auto& { return t.calculate_new_p; });
+    add_unit(
+        key, "displace_vertex", "Displace Vertex", [](auto& t) -> auto& { return t.displace_vertex; });
+    add_unit(
+        key, "transform", "Transform", [](auto& t) -> auto& { return t.transform; });
+    add_unit(
+        key, "calculate_new_u", "Calculate New U", [](auto& t) -> auto& { return t.calculate_new_u; });
+    add_unit(
+        key, "tex_coord_test", "Tex Coord Test", [](auto& t) -> auto& { return t.tex_coord_test; });
+    add_unit(
+        key, "summed_height_test", "Summed Height Test",
+        [](auto& t) -> auto& { return t.summed_height_test; });
+    add_unit(
+        key, "normal_test", "Normal Test", [](auto& t) -> auto& { return t.normal_test; });
+    add_unit(
+        key, "view_test", "View Test", [](auto& t) -> auto& { return t.view_test; });
+    key.add_deep(
+        "results_buffer", [](auto& t) -> auto& { return t.results_buffer; }, "edges", between(1, most_places),
+        "Edges decided by one test that may wait for the other three");
+    add_unit(
+        key, "pass_or_tessellate", "Pass or Tessellate",
+        [](auto& t) -> auto& { return t.pass_or_tessellate; });
+    add_unit(
+        key, "tessellation", "Tessellation", [](auto& t) -> auto& { return t.tessellation; });
+    add_unit(
+        key, "triangle_queue", "Triangle Queue", [](auto& t) -> auto& { return t.triangle_queue; });
+    add_unit(
+        key, "lighting", "Lighting", [](auto& t) -> auto& { return t.lighting; });
+    add_memory(
+        key, "displacement_map", "Displacement map", [](auto& t) -> auto& { return t.displacement_map; });
+    add_memory(
+        key, "normal_map", "Normal map", [](auto& t) -> auto& { return t.normal_map; });
+    add_memory(
+        key, "summed_height_table", "Summed Height Table",
+        [](auto& t) -> auto& { return t.summed_height_table; });
+    key.add_deep(
+        "off_chip_latency", [](auto& t) -> auto& { return t.off_chip_memory.latency; }, "cycles",
+        between(0, most_places), "Off-chip memory: from a request's last byte to its answer");
+    key.add_deep(
+        "off_chip_bandwidth", [](auto& t) -> auto& { return t.off_chip_memory.bandwidth; }, "bytes a cycle",
+        between(1, 4096), "Off-chip memory: both directions together");
+    key.add_deep(
+        "off_chip_buffer", [](auto& t) -> auto& { return t.off_chip_memory.buffer; }, "requests",
+        between(1, most_places), "Off-chip memory: requests that may wait");
+    key.add_deep(
+        "stalls_per_mille", [](auto& t) -> auto& { return t.stalls.per_mille; }, "per mille of items",
+        between(0, 1000), "For tests: on every channel, items held back at random");
+    key.add_deep(
+        "stalls_longest", [](auto& t) -> auto& { return t.stalls.longest; }, "cycles", between(1, 1000000),
+        "For tests: the longest time one is held back");
+    key.add_deep(
+        "stalls_seed", [](auto& t) -> auto& { return t.stalls.seed; }, "-", between(0, any_count),
+        "For tests: what the stalls follow from");
+}
+
 // The declaration of every key. The default is the member's initialiser in job.h.
 std::vector<KeyTable> declare_keys() {
     TableList list;
     // clang-format off
     list.top_level("How the model runs.", [](const auto& key) {
-        key.add("mode", &Job::mode, "How the hardware model keeps time; functional: loosely timed, the fastest");
+        key.add("mode", &Job::mode, "How the hardware model keeps time; functional: every result but no cycles, the fastest; timed: to the cycle");
     });
     list.table("mesh", &Job::mesh, "The base mesh.", [](const auto& key) {
         using Mesh = Job::Mesh;
@@ -206,10 +321,15 @@ std::vector<KeyTable> declare_keys() {
         key.add("culling", &Hardware::culling, "Back-face culling of finished triangles");
         key.add("queue_order", &Hardware::queue_order, "Triangle Queue: which waiting triangle goes next, the oldest or the newest");
         key.add("queue_watermark", &Hardware::queue_watermark, "triangles", between(1, any_count), "Host triangles are taken while fewer than this many wait");
+        key.add("queue_capacity", &Hardware::queue_capacity, "triangles", between(0, any_count), "Timed mode: Triangle Queue's places on chip; 0: unbounded");
+        key.add("queue_overflow", &Hardware::queue_overflow, "Timed mode: a full queue spills to off-chip memory, stalls the pipeline, or ends the run with exit code 4");
+        key.add("tests_units", &Hardware::tests_units, "-", between(1, 3), "Timed mode: Tessellation Tests units, 1 or 3 (one for each edge of a triangle)");
+        key.add("transform_pipelines", &Hardware::transform_pipelines, "-", between(1, 16), "Timed mode: Transform pipelines that take turns");
         key.add("direct_memory", &Hardware::direct_memory, "Functional mode reads the memories through DMI");
         key.add("light", &Hardware::light, "-", coordinate_range, "Direction towards the light, world space, of any length");
         key.add("ambient", &Hardware::ambient, "full scale", between(0, 1), "Light that falls on every surface");
     });
+    list.table("timing", &Job::timing, "Timed mode: the datasheet figures of every unit and memory.", [](const auto& key) { add_timing(key); });
     list.table("check", &Job::check, "Conformance to the golden model.", [](const auto& key) {
         using Check = Job::Check;
         key.add("golden", &Check::golden, "Scoreboard: every edge's decision against the golden model");
@@ -219,6 +339,7 @@ std::vector<KeyTable> declare_keys() {
     });
     list.table("limits", &Job::limits, "Where a run gives up.", [](const auto& key) {
         using Limits = Job::Limits;
+        key.add("cycles_without_progress", &Limits::cycles_without_progress, "cycles", between(1, any_count), "Timed mode: cycles in which no triangle is decided; more end the run with exit code 3");
         key.add("triangles", &Limits::triangles, "triangles", between(1, any_count), "Emitted triangles; more end the run with exit code 4");
     });
     list.table("output", &Job::output, "What a run leaves behind.", [](const auto& key) {
@@ -227,6 +348,11 @@ std::vector<KeyTable> declare_keys() {
         key.add("ply", &Output::ply, "Write the mesh as binary PLY");
         key.add("obj", &Output::obj, "Write the mesh as OBJ");
         key.add("picture", &Output::picture, "Write a picture");
+        key.add("vcd", &Output::vcd, "Timed mode: write waveforms, trace.vcd");
+        key.add("timeline", &Output::timeline, "Timed mode: write activity per unit in the Chrome trace format, timeline.json");
+        key.add("trace_from", &Output::trace_from, "cycles", between(0, most_trace), "First cycle of waveforms and timeline");
+        key.add("trace_to", &Output::trace_to, "cycles", between(0, most_trace), "Last cycle of waveforms and timeline");
+        key.add("trace_units", &Output::trace_units, KeyKind::text, "Waveforms of those units only whose name contains one of these words; empty: all");
     });
     // clang-format on
     return list.take();

@@ -132,7 +132,8 @@ ExitCode run_job(const Command& command) {
     progress.show("reading mesh and map", 0);
     const Setup setup = load_setup(job, command.data_folder);
 
-    Simulation simulation(setup, static_cast<std::uint64_t>(job.limits.triangles));
+    Simulation simulation(setup, static_cast<std::uint64_t>(job.limits.triangles),
+                          static_cast<std::uint64_t>(job.limits.cycles_without_progress));
     std::optional<GoldenInputs> golden;
     std::unique_ptr<Scoreboard> scoreboard;
     if (job.check.golden || job.check.end_to_end)
@@ -152,8 +153,7 @@ ExitCode run_job(const Command& command) {
     const double seconds = stopwatch.seconds();
     if (!stuck.empty()) {
         progress.clear();
-        fmt::print(stderr, "tessera: deadlock: the simulation has nothing left to do, yet work is left\n{}",
-                   stuck);
+        fmt::print(stderr, "tessera: {}", stuck);
         return ExitCode::deadlock;
     }
 

@@ -84,9 +84,9 @@ std::string checks_rows(const Checks& checks) {
 std::string summary(const Setup& setup, const Simulation& simulation, const Checks& checks, double seconds) {
     const Pipeline& p = simulation.pipeline;
     const auto& counts = p.pass_or_tessellate.counts();
-    const std::uint64_t edges = p.tessellation_tests.edges_tested();
+    const std::uint64_t edges = p.edges_tested();
     const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
-    const MemoryPort& sat = p.tessellation_tests.summed_height_test.summed_height_table;
+    const std::uint64_t table_reads = p.summed_height_table_reads();
 
     std::string text;
     text += row(
@@ -109,8 +109,8 @@ std::string summary(const Setup& setup, const Simulation& simulation, const Chec
             fmt::format("{} bytes, {} bit entries{}; {} reads, {:.1f} an edge",
                         count(setup.registers.summed_height_table.bytes()),
                         setup.registers.formats.summed_height.bits,
-                        setup.summed_height_bits_chosen ? " (chosen)" : "", count(sat.reads()),
-                        edges == 0 ? 0.0 : static_cast<double>(sat.reads()) / static_cast<double>(edges)));
+                        setup.summed_height_bits_chosen ? " (chosen)" : "", count(table_reads),
+                        edges == 0 ? 0.0 : static_cast<double>(table_reads) / static_cast<double>(edges)));
     const datapath::Saturations saturations = p.saturations();
     text += row("saturations", saturations_text(saturations));
     text += checks_rows(checks);

@@ -65,14 +65,14 @@ Collector format_figures(const Setup& setup) {
     return c;
 }
 
-Collector memory_figures(const char* name, const datapath::TableLayout& table, const MemoryPort& port,
+Collector memory_figures(const char* name, const datapath::TableLayout& table, std::uint64_t reads,
                          double edges) {
     Collector c(name);
     c.add("size", table.bytes(), "byte", "the whole table");
     c.add("entry", table.entry_bytes, "byte", "one entry");
-    c.add("reads", port.reads(), "entry", "entries read");
-    c.add("bytes_read", port.bytes_read(), "byte", "bytes read");
-    c.add("reads_per_edge", ratio(static_cast<double>(port.reads()), edges), "entry/edge",
+    c.add("reads", reads, "entry", "entries read");
+    c.add("bytes_read", reads * table.entry_bytes, "byte", "bytes read");
+    c.add("reads_per_edge", ratio(static_cast<double>(reads), edges), "entry/edge",
           "entries read per edge tested");
     return c;
 }
@@ -152,7 +152,7 @@ Collector mesh_figures(const EmittedMesh& mesh) {
 std::vector<Figure> collect_statistics(const Setup& setup, const Simulation& simulation) {
     const Pipeline& p = simulation.pipeline;
     const PassOrTessellate::Counts& counts = p.pass_or_tessellate.counts();
-    const std::uint64_t edges = p.tessellation_tests.edges_tested();
+    const std::uint64_t edges = p.edges_tested();
     const auto edges_real = static_cast<double>(edges);
     std::vector<Figure> all;
     const auto take = [&](Collector c) {
@@ -223,12 +223,11 @@ std::vector<Figure> collect_statistics(const Setup& setup, const Simulation& sim
                  "lit and sent to the rasteriser");
     take(std::move(lighting));
 
-    take(memory_figures("displacement_map", setup.registers.displacement_map,
-                        p.displace_vertex.displacement_map, edges_real));
-    take(memory_figures("normal_map", setup.registers.normal_map, p.tessellation_tests.normal_test.normal_map,
+    take(memory_figures("displacement_map", setup.registers.displacement_map, p.displacement_map_reads(),
                         edges_real));
+    take(memory_figures("normal_map", setup.registers.normal_map, p.normal_map_reads(), edges_real));
     take(memory_figures("summed_height_table", setup.registers.summed_height_table,
-                        p.tessellation_tests.summed_height_test.summed_height_table, edges_real));
+                        p.summed_height_table_reads(), edges_real));
 
     const datapath::Saturations saturations = p.saturations();
     Collector saturated("saturations");

@@ -13,7 +13,7 @@ namespace {
 
 void expect_no_allocation(const Setup& setup, Simulation& simulation) {
     REQUIRE(simulation.run().empty());
-    const std::uint64_t edges = simulation.pipeline.tessellation_tests.edges_tested();
+    const std::uint64_t edges = simulation.pipeline.edges_tested();
     REQUIRE(edges > 50'000);
     simulation.monitor.mesh.triangles.clear();
     const std::uint64_t before = allocations_so_far();
@@ -21,7 +21,7 @@ void expect_no_allocation(const Setup& setup, Simulation& simulation) {
     REQUIRE(simulation.run().empty());
     const std::uint64_t used = allocations_so_far() - before;
     CAPTURE(used, setup.base_triangles.size());
-    CHECK(simulation.pipeline.tessellation_tests.edges_tested() == 2 * edges);
+    CHECK(simulation.pipeline.edges_tested() == 2 * edges);
     // the kernel's own, for a wait of a thread now and then: far fewer than one a thousand edges
     CHECK(used < edges / 1000);
 }

@@ -4,16 +4,38 @@
 
 namespace tessera {
 
-CalculateNewU::CalculateNewU(const sc_core::sc_module_name& name, const Timing& timing)
-    : sc_module(name), latency_(timing.cycle * timing.calculate_new_u.latency) {
-    input.register_b_transport(this, &CalculateNewU::b_transport);
+CalculateNewU::CalculateNewU(const sc_core::sc_module_name& name, Clock& clock, const Timing& timing)
+    : WorkStage(name, clock, timing.calculate_new_u) {
+    takes_from(input, timing.stalls);
+    input.serve<&CalculateNewU::b_transport>(*this);
+    delivers_to(to_normal_test);
+    delivers_to(to_tex_coord_test);
+    delivers_to(to_summed_height_test);
+    delivers_to(to_view_test);
 }
 
-void CalculateNewU::b_transport(datapath::TrianglePass& pass, sc_core::sc_time& delay) {
-    for (int k = 0; k < 3; ++k)
-        pass.edges[static_cast<std::size_t>(k)].texture =
-            midpoint(pass.edge_begin(k).texture, pass.edge_end(k).texture);
-    delay += latency_;
+void CalculateNewU::process(const Work& work) {
+    Pass& pass = *work.pass;
+    for_each_of_three(work.parts, first_edge_part, [&](unsigned k) {
+        const int edge = static_cast<int>(k);
+        pass.edges[k].tests = 0;
+        pass.edges[k].texture = midpoint(pass.edge_begin(edge).texture, pass.edge_end(edge).texture);
+    });
+}
+
+unsigned CalculateNewU::targets(const Work& work) const {
+    return (work.parts & edge_parts) != 0 ? 15u : 1u;  // a vertex goes to the Normal Test alone
+}
+
+void CalculateNewU::b_transport(Work& work, sc_core::sc_time& delay) {
+    process(work);
+    delay += clock_.period() * timing_.latency;
+    // The four tests work side by side, from the same time on.
+    for (StreamOutput<Work>* test : {&to_normal_test, &to_tex_coord_test, &to_summed_height_test}) {
+        sc_core::sc_time its_delay = delay;
+        (*test)->b_transport(work, its_delay);
+    }
+    to_view_test->b_transport(work, delay);
 }
 
 }  // namespace tessera

@@ -9,45 +9,81 @@
 
 namespace tessera {
 
-NormalTest::NormalTest(const sc_core::sc_module_name& name, const datapath::Registers& registers,
-                       const Timing& timing, bool use_direct_memory)
-    : sc_module(name),
+NormalTest::NormalTest(const sc_core::sc_module_name& name, Clock& clock,
+                       const datapath::Registers& registers, const Timing& timing, bool use_direct_memory)
+    : TableStage(name, clock, timing.normal_test, timing.normal_map.latency),
       normal_map("normal_map", registers.normal_map.entry_bytes, use_direct_memory),
-      registers_(registers),
-      latency_(timing.cycle * timing.normal_test.latency) {
-    input.register_b_transport(this, &NormalTest::b_transport);
+      registers_(registers) {
+    takes_from(input, timing.stalls);
+    delivers_to(output);
+    reads_through(normal_map, 1);
+    input.serve<&NormalTest::b_transport>(*this);
+}
+
+std::uint64_t NormalTest::address(const datapath::TexCoord& t) const {
+    return texel_address(t, registers_.normal_map, registers_.map, registers_.formats);
 }
 
 datapath::Direction NormalTest::bumped(const datapath::Direction& n, const datapath::Direction& t,
-                                       int handedness, const datapath::TexCoord& texture,
-                                       sc_core::sc_time& delay) {
-    const std::uint64_t entry = normal_map.read(
-        texel_address(texture, registers_.normal_map, registers_.map, registers_.formats), delay);
+                                       int handedness, std::uint64_t entry) {
     return bump(n, t, handedness, datapath::unpack_normal(entry, registers_.formats.normal.bits),
                 registers_.formats, saturations_);
 }
 
-void NormalTest::b_transport(datapath::TrianglePass& pass, sc_core::sc_time& delay) {
-    for (std::size_t k = 0; k < 3; ++k) {
-        if ((pass.new_vertices >> k & 1u) == 0)
-            continue;
+void NormalTest::bump_corner(datapath::Vertex& vertex, std::uint64_t entry) {
+    vertex.displaced_normal = bumped(vertex.normal, vertex.tangent, vertex.handedness, entry);
+}
+
+void NormalTest::test_edge(Pass& pass, unsigned k, std::uint64_t entry) {
+    const datapath::Vertex& i = pass.edge_begin(static_cast<int>(k));
+    const datapath::Vertex& j = pass.edge_end(static_cast<int>(k));
+    datapath::EdgeTests& edge = pass.edges[k];
+    edge.normal = normalise(midpoint(i.normal, j.normal), registers_.formats, saturations_);
+    edge.tangent = normalise(midpoint(i.tangent, j.tangent), registers_.formats, saturations_);
+    edge.displaced_normal = bumped(edge.normal, edge.tangent, inserted_handedness(i, j), entry);
+    if (registers_.tests.normal_test &&
+        normal_test(i.displaced_normal, j.displaced_normal, edge.displaced_normal, registers_.tests))
+        edge.tests |= datapath::normal_bit;
+}
+
+void NormalTest::b_transport(Work& work, sc_core::sc_time& delay) {
+    Pass& pass = *work.pass;
+    for_each_of_three(work.parts, 0, [&](unsigned k) {
         datapath::Vertex& vertex = pass.triangle.vertices[k];
-        vertex.displaced_normal =
-            bumped(vertex.normal, vertex.tangent, vertex.handedness, vertex.texture, delay);
-    }
-    delay += latency_;
-    for (int k = 0; k < 3; ++k) {
-        const datapath::Vertex& i = pass.edge_begin(k);
-        const datapath::Vertex& j = pass.edge_end(k);
-        datapath::EdgeTests& edge = pass.edges[static_cast<std::size_t>(k)];
-        edge.normal = normalise(midpoint(i.normal, j.normal), registers_.formats, saturations_);
-        edge.tangent = normalise(midpoint(i.tangent, j.tangent), registers_.formats, saturations_);
-        edge.displaced_normal =
-            bumped(edge.normal, edge.tangent, inserted_handedness(i, j), edge.texture, delay);
-        if (registers_.tests.normal_test &&
-            normal_test(i.displaced_normal, j.displaced_normal, edge.displaced_normal, registers_.tests))
-            edge.tests |= datapath::normal_bit;
-    }
+        bump_corner(vertex, normal_map.read(address(vertex.texture), delay));
+    });
+    for_each_of_three(work.parts, first_edge_part, [&](unsigned k) {
+        test_edge(pass, k, normal_map.read(address(pass.edges[k].texture), delay));
+    });
+    delay += clock_.period() * timing_.latency;
+    output->b_transport(work, delay);
+}
+
+bool NormalTest::may_begin(const Work& work) {
+    return (work.parts & edge_parts) == 0 || work.pass->corners_bumped == work.pass->new_vertices;
+}
+
+void NormalTest::ask(TableItem& item, unsigned) {
+    const Pass& pass = *item.work.pass;
+    const auto ask_at = [&](const datapath::TexCoord& t) {
+        const std::uint64_t at = address(t);
+        normal_map.request(&at, 1);
+    };
+    for_each_of_three(item.work.parts, 0, [&](unsigned k) { ask_at(pass.triangle.vertices[k].texture); });
+    for_each_of_three(item.work.parts, first_edge_part, [&](unsigned k) { ask_at(pass.edges[k].texture); });
+}
+
+void NormalTest::receive(TableItem& item, unsigned) {
+    Pass& pass = *item.work.pass;
+    const std::uint64_t entry = normal_map.entry(0);
+    for_each_of_three(item.work.parts, 0, [&](unsigned k) {
+        bump_corner(pass.triangle.vertices[k], entry);
+        pass.corners_bumped = static_cast<std::uint8_t>(pass.corners_bumped | 1u << k);
+        for (Clocked* other : others_)
+            clock_.wake(*other);
+        clock_.wake(*this);
+    });
+    for_each_of_three(item.work.parts, first_edge_part, [&](unsigned k) { test_edge(pass, k, entry); });
 }
 
 }  // namespace tessera

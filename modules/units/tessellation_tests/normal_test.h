@@ -2,41 +2,57 @@
 #include <systemc>
 
 #include "modules/datapath/parameters.h"
-#include "modules/datapath/triangle_pass.h"
 #include "modules/memory/memory_port.h"
-#include "modules/stream/stream.h"
+#include "modules/stream/stream_input.h"
+#include "modules/stream/stream_output.h"
+#include "modules/stream/work.h"
 #include "modules/timing.h"
+#include "modules/unit/table_stage.h"
 
 namespace tessera {
 
 /// Normal Test (paper figure 8, 2.2, 3.1.4): Calculate New N, Normalise, Bump, and the comparison of the displaced
 /// normals.
 ///
-/// In:   N, T, N' of both ends; edges[k].texture. For a base triangle N, T, t of its own vertices.
+/// In:   edges, with N, T, N' of both ends and edges[k].texture; vertices of a base triangle, with N, T, t.
 /// Out:  edges[k].normal = N_ij, .tangent = T_ij, .displaced_normal = N'_ij, normal_bit of edges[k].tests;
-///       vertices[k].displaced_normal where new_vertices has bit k (a base triangle's corners are bumped first).
-/// Memory: one read of the normal map per vertex.
+///       vertices[k].displaced_normal (a base triangle's corners are bumped first, and end here).
+/// Memory: one read of the normal map per edge or vertex.
 /// Arithmetic: add, shift by 1; the pipeline's existing normalise and bump units; six absolute differences and
 ///       compares, one OR.
-/// Timing: one vertex per interval; latency 9 plus the map read, interval 1 by default. Waits for Calculate New U and
-/// the normal map.
-class NormalTest : public sc_core::sc_module {
+/// Timing: one edge or vertex per interval; latency 9 plus the map read, interval 1 by default.
+/// Waits for Calculate New U and the normal map; with three Tessellation Tests units an edge of a base triangle also
+/// for the corner that another unit bumps. Held back by the collection of the tests.
+class NormalTest : public TableStage<TableItem> {
   public:
-    StreamTarget<NormalTest, datapath::TrianglePass> input{"input"};
+    StreamInput<Work> input{"input"};
+    StreamOutput<Work> output{"output"};
     MemoryPort normal_map;
 
-    NormalTest(const sc_core::sc_module_name& name, const datapath::Registers& registers,
+    NormalTest(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
                const Timing& timing, bool use_direct_memory);
+
+    /// The Normal Tests of the other Tessellation Tests units, which wait for the corners that this one bumps.
+    void tells(Clocked& other) { others_.push_back(&other); }
 
     const datapath::Saturations& saturations() const { return saturations_; }
 
   private:
-    void b_transport(datapath::TrianglePass& pass, sc_core::sc_time& delay);
+    void b_transport(Work& work, sc_core::sc_time& delay);
+    unsigned begin(TableItem&) override { return 1; }
+    void ask(TableItem& item, unsigned k) override;
+    void receive(TableItem& item, unsigned k) override;
+    bool goes_on(const TableItem& item) const override { return (item.work.parts & edge_parts) != 0; }
+    bool may_begin(const Work& work) override;
+
+    std::uint64_t address(const datapath::TexCoord& t) const;
     datapath::Direction bumped(const datapath::Direction& n, const datapath::Direction& t, int handedness,
-                               const datapath::TexCoord& texture, sc_core::sc_time& delay);
+                               std::uint64_t entry);
+    void bump_corner(datapath::Vertex& vertex, std::uint64_t entry);
+    void test_edge(Pass& pass, unsigned edge, std::uint64_t entry);
 
     const datapath::Registers& registers_;
-    sc_core::sc_time latency_;
+    std::vector<Clocked*> others_;
     datapath::Saturations saturations_;
 };
 

@@ -1,43 +1,88 @@
 #include "modules/units/tessellation_tests/summed_height_test.h"
 
 #include "modules/datapath/edge_tests.h"
-#include "modules/datapath/rectangle.h"
 
 namespace tessera {
 
-SummedHeightTest::SummedHeightTest(const sc_core::sc_module_name& name, const datapath::Registers& registers,
-                                   const Timing& timing, bool use_direct_memory)
-    : sc_module(name),
+namespace {
+
+/// Where rectangle k of an edge is centred: t_i, t_j, t_ij.
+const datapath::TexCoord& centre(const Pass& pass, unsigned edge, unsigned k) {
+    if (k == 2)
+        return pass.edges[edge].texture;
+    return k == 0 ? pass.edge_begin(static_cast<int>(edge)).texture
+                  : pass.edge_end(static_cast<int>(edge)).texture;
+}
+
+}  // namespace
+
+SummedHeightTest::SummedHeightTest(const sc_core::sc_module_name& name, Clock& clock,
+                                   const datapath::Registers& registers, const Timing& timing,
+                                   bool use_direct_memory)
+    : TableStage(name, clock, timing.summed_height_test, timing.summed_height_table.latency),
       summed_height_table("summed_height_table", registers.summed_height_table.entry_bytes,
                           use_direct_memory),
-      registers_(registers),
-      latency_(timing.cycle * timing.summed_height_test.latency) {
-    input.register_b_transport(this, &SummedHeightTest::b_transport);
+      registers_(registers) {
+    takes_from(input, timing.stalls);
+    delivers_to(output);
+    reads_through(summed_height_table, 3);
+    input.serve<&SummedHeightTest::b_transport>(*this);
 }
 
-std::uint64_t SummedHeightTest::sum_around(const datapath::TexCoord& t, const datapath::RectangleSize& size,
-                                           MemoryPort::Burst& table) const {
-    return rectangle_sum(centred_rectangle(t, size, registers_.map, registers_.formats), registers_.map,
-                         registers_.summed_height_table, registers_.formats,
-                         [&](std::uint64_t address) { return table.read(address); });
+void SummedHeightTest::decide(Pass& pass, unsigned edge, const datapath::RectangleSize& size,
+                              const std::array<std::uint64_t, 3>& sums) const {
+    if (summed_height_test(sums[0], sums[1], sums[2], size, registers_.tests))
+        pass.edges[edge].tests |= datapath::summed_height_bit;
 }
 
-void SummedHeightTest::b_transport(datapath::TrianglePass& pass, sc_core::sc_time& delay) {
-    delay += latency_;
-    if (!registers_.tests.summed_height_test)
-        return;
-    MemoryPort::Burst table(summed_height_table, delay);
-    for (int k = 0; k < 3; ++k) {
-        const datapath::TexCoord& i = pass.edge_begin(k).texture;
-        const datapath::TexCoord& j = pass.edge_end(k).texture;
-        datapath::EdgeTests& edge = pass.edges[static_cast<std::size_t>(k)];
-        const datapath::RectangleSize size = rectangle_size(i, j, registers_.map, registers_.formats);
-        const std::uint64_t sum_i = sum_around(i, size, table);
-        const std::uint64_t sum_j = sum_around(j, size, table);
-        const std::uint64_t sum_ij = sum_around(edge.texture, size, table);
-        if (summed_height_test(sum_i, sum_j, sum_ij, size, registers_.tests))
-            edge.tests |= datapath::summed_height_bit;
+void SummedHeightTest::b_transport(Work& work, sc_core::sc_time& delay) {
+    delay += clock_.period() * timing_.latency;
+    if (registers_.tests.summed_height_test) {
+        Pass& pass = *work.pass;
+        MemoryPort::Burst table(summed_height_table, delay);
+        for_each_of_three(work.parts, first_edge_part, [&](unsigned edge) {
+            const datapath::RectangleSize size = rectangle_size(centre(pass, edge, 0), centre(pass, edge, 1),
+                                                                registers_.map, registers_.formats);
+            std::array<std::uint64_t, 3> sums{};
+            for (unsigned k = 0; k < 3; ++k)
+                sums[k] = rectangle_sum(
+                    centred_rectangle(centre(pass, edge, k), size, registers_.map, registers_.formats),
+                    registers_.map, registers_.summed_height_table, registers_.formats,
+                    [&](std::uint64_t address) { return table.read(address); });
+            decide(pass, edge, size, sums);
+        });
     }
+    output->b_transport(work, delay);
+}
+
+unsigned SummedHeightTest::begin(SummedHeightItem& item) {
+    if (!registers_.tests.summed_height_test)
+        return 0;
+    const Pass& pass = *item.work.pass;
+    for_each_of_three(item.work.parts, first_edge_part, [&](unsigned edge) { item.edge = edge; });
+    item.size = rectangle_size(centre(pass, item.edge, 0), centre(pass, item.edge, 1), registers_.map,
+                               registers_.formats);
+    return 3;
+}
+
+void SummedHeightTest::ask(SummedHeightItem& item, unsigned k) {
+    const datapath::RectangleReads reads =
+        rectangle_reads(centred_rectangle(centre(*item.work.pass, item.edge, k), item.size, registers_.map,
+                                          registers_.formats),
+                        registers_.map, registers_.summed_height_table);
+    item.subtracted[k] = reads.subtracted;
+    item.count[k] = static_cast<std::uint8_t>(reads.count);
+    summed_height_table.request(reads.address.data(), reads.count);
+}
+
+void SummedHeightTest::receive(SummedHeightItem& item, unsigned k) {
+    datapath::RectangleReads reads;
+    reads.count = item.count[k];
+    reads.subtracted = item.subtracted[k];
+    item.sums[k] = rectangle_sum(reads, registers_.formats,
+                                 [&](unsigned entry) { return summed_height_table.entry(entry); });
+    if (k == 2)
+        decide(*item.work.pass, item.edge, item.size, item.sums);
 }
 
 }  // namespace tessera

@@ -1,11 +1,11 @@
 #pragma once
+#include <cstdint>
 #include <systemc>
 
 #include "modules/datapath/parameters.h"
-#include "modules/datapath/triangle_pass.h"
-#include "modules/stream/stream.h"
 #include "modules/timing.h"
 #include "modules/units/tessellation_tests/calculate_new_u.h"
+#include "modules/units/tessellation_tests/collect_tests.h"
 #include "modules/units/tessellation_tests/normal_test.h"
 #include "modules/units/tessellation_tests/summed_height_test.h"
 #include "modules/units/tessellation_tests/tex_coord_test.h"
@@ -20,36 +20,23 @@ namespace tessera {
 ///                                ├──> Normal Test ──────────┤
 ///              P's ──────────────┴──> View Test ────────────┘
 ///
-/// In:   a pass with its triangle; for a base triangle the screen positions of its vertices, from Transform.
-/// Out:  edges[0..2]: the midpoint's t, N, T, N' and the tests' bits.
-/// Timing: the edges go one after another through one pipeline; bound by the Summed Height Test's table reads.
+/// In:   calculate_new_u.input: edges; vertices of a base triangle. view_test.from_transform: their screen positions.
+/// Out:  collect_tests.to_pass_or_tessellate: edges[k] with the midpoint's t, N, T, N' and the tests' bits.
+/// Timing: edges go one after another through one pipeline; bound by the Summed Height Test's table reads. A design has
+///       one such unit or three, one for each edge of a triangle, which share the memories.
 /// Waits for Transform (base triangles), the Summed Height Table, the normal map; held back by Pass or Tessellate.
 class TessellationTests : public sc_core::sc_module {
   public:
-    StreamTarget<TessellationTests, datapath::TrianglePass> from_get_triangle{"from_get_triangle"};
-    StreamInitiator<TessellationTests, datapath::TrianglePass> to_pass_or_tessellate{"to_pass_or_tessellate"};
-
     CalculateNewU calculate_new_u;
     TexCoordTest tex_coord_test;
     SummedHeightTest summed_height_test;
     NormalTest normal_test;
     ViewTest view_test;
+    CollectTests collect_tests;
 
-    TessellationTests(const sc_core::sc_module_name& name, const datapath::Registers& registers,
-                      const Timing& timing, bool use_direct_memory);
-
-    std::uint64_t edges_tested() const { return edges_tested_; }
-
-  private:
-    void b_transport(datapath::TrianglePass& pass, sc_core::sc_time& delay);
-
-    StreamInitiator<TessellationTests, datapath::TrianglePass> to_calculate_new_u_{"to_calculate_new_u"};
-    StreamInitiator<TessellationTests, datapath::TrianglePass> to_tex_coord_test_{"to_tex_coord_test"};
-    StreamInitiator<TessellationTests, datapath::TrianglePass> to_summed_height_test_{
-        "to_summed_height_test"};
-    StreamInitiator<TessellationTests, datapath::TrianglePass> to_normal_test_{"to_normal_test"};
-    StreamInitiator<TessellationTests, datapath::TrianglePass> to_view_test_{"to_view_test"};
-    std::uint64_t edges_tested_ = 0;
+    /// number: 0, or 0 to 2 of three.
+    TessellationTests(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
+                      const Timing& timing, unsigned number, bool use_direct_memory);
 };
 
 }  // namespace tessera

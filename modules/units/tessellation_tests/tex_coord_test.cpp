@@ -4,24 +4,32 @@
 
 namespace tessera {
 
-TexCoordTest::TexCoordTest(const sc_core::sc_module_name& name, const datapath::Registers& registers,
-                           const Timing& timing)
-    : sc_module(name), registers_(registers), latency_(timing.cycle * timing.tex_coord_test.latency) {
-    input.register_b_transport(this, &TexCoordTest::b_transport);
+TexCoordTest::TexCoordTest(const sc_core::sc_module_name& name, Clock& clock,
+                           const datapath::Registers& registers, const Timing& timing)
+    : WorkStage(name, clock, timing.tex_coord_test), registers_(registers) {
+    takes_from(input, timing.stalls);
+    delivers_to(output);
+    input.serve<&TexCoordTest::b_transport>(*this);
 }
 
-void TexCoordTest::b_transport(datapath::TrianglePass& pass, sc_core::sc_time& delay) {
+void TexCoordTest::process(const Work& work) {
     const datapath::TestParameters& tests = registers_.tests;
-    for (int k = 0; k < 3; ++k) {
-        const datapath::Vertex& i = pass.edge_begin(k);
-        const datapath::Vertex& j = pass.edge_end(k);
-        datapath::EdgeTests& edge = pass.edges[static_cast<std::size_t>(k)];
+    Pass& pass = *work.pass;
+    for_each_of_three(work.parts, first_edge_part, [&](unsigned k) {
+        const datapath::Vertex& i = pass.edge_begin(static_cast<int>(k));
+        const datapath::Vertex& j = pass.edge_end(static_cast<int>(k));
+        datapath::EdgeTests& edge = pass.edges[k];
         if (!tests.tex_coord_test || tex_coord_test(i.texture, j.texture, edge.texture, registers_.formats))
             edge.tests |= datapath::tex_coord_bit;
         if (!tests.generation_test || generation_test(i, j, tests))
             edge.tests |= datapath::generation_bit;
-    }
-    delay += latency_;
+    });
+}
+
+void TexCoordTest::b_transport(Work& work, sc_core::sc_time& delay) {
+    process(work);
+    delay += clock_.period() * timing_.latency;
+    output->b_transport(work, delay);
 }
 
 }  // namespace tessera

@@ -2,30 +2,34 @@
 #include <systemc>
 
 #include "modules/datapath/parameters.h"
-#include "modules/datapath/triangle_pass.h"
-#include "modules/stream/stream.h"
+#include "modules/stream/stream_input.h"
+#include "modules/stream/stream_output.h"
+#include "modules/stream/work.h"
 #include "modules/timing.h"
+#include "modules/unit/work_stage.h"
 
 namespace tessera {
 
-/// Tex Coord Test (paper figure 8, 2.5, 3.1.2): is the map's resolution reached? With it, on the same wires, the
-/// Generation Test (algorithm section 4), which like it bounds the recursion and needs only the two ends.
+/// Tex Coord Test (paper figure 8, 2.5, 3.1.2): has the map's resolution been reached? And, in the same place because
+/// both bound the recursion, the generation test (algorithm section 4).
 ///
-/// In:   t_i, t_j, generations; edges[k].texture. Out: tex_coord_bit and generation_bit of edges[k].tests.
-/// Arithmetic: compares of bit slices; a maximum, an increment and a compare of generation_bits.
-/// Timing: one edge per interval; latency 1, interval 1 by default. Waits for Calculate New U.
-class TexCoordTest : public sc_core::sc_module {
+/// In:   t and generation of both ends; edges[k].texture. Out: tex_coord_bit and generation_bit of edges[k].tests.
+/// Arithmetic: two compares of bit slices per axis; a maximum, an increment, a compare.
+/// Timing: one edge per interval; latency 1, interval 1 by default.
+/// Waits for Calculate New U; held back by the collection of the tests.
+class TexCoordTest : public WorkStage {
   public:
-    StreamTarget<TexCoordTest, datapath::TrianglePass> input{"input"};
+    StreamInput<Work> input{"input"};
+    StreamOutput<Work> output{"output"};
 
-    TexCoordTest(const sc_core::sc_module_name& name, const datapath::Registers& registers,
+    TexCoordTest(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
                  const Timing& timing);
 
   private:
-    void b_transport(datapath::TrianglePass& pass, sc_core::sc_time& delay);
+    void b_transport(Work& work, sc_core::sc_time& delay);
+    void process(const Work& work) override;
 
     const datapath::Registers& registers_;
-    sc_core::sc_time latency_;
 };
 
 }  // namespace tessera

@@ -6,31 +6,62 @@
 
 namespace tessera {
 
-ViewTest::ViewTest(const sc_core::sc_module_name& name, const datapath::Registers& registers,
-                   const Timing& timing)
-    : sc_module(name), registers_(registers), latency_(timing.cycle * timing.view_test.latency) {
-    input.register_b_transport(this, &ViewTest::b_transport);
-    from_transform.register_b_transport(this, &ViewTest::b_transport_from_transform);
+ViewTest::ViewTest(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
+                   const Timing& timing, unsigned number)
+    : WorkStage(name, clock, timing.view_test), registers_(registers), number_(number) {
+    takes_from(input, timing.stalls);
+    delivers_to(output);
+    from_transform.clocked_by(clock, *this, 1, timing.stalls);
+    input.serve<&ViewTest::b_transport>(*this);
+    from_transform.serve<&ViewTest::b_transport_from_transform>(*this);
 }
 
-void ViewTest::b_transport_from_transform(datapath::TrianglePass& pass, sc_core::sc_time& delay) {
-    on_screen_ = &pass;
+void ViewTest::end_of_elaboration() {
+    const auto* producer =
+        dynamic_cast<const sc_core::sc_object*>(from_transform.get_base_port().get_interface());
+    transform_ = producer == nullptr ? nullptr : producer->get_parent_object();
+}
+
+void ViewTest::process(const Work& work) {
+    Pass& pass = *work.pass;
+    for_each_of_three(work.parts, first_edge_part, [&](unsigned k) {
+        const int edge = static_cast<int>(k);
+        if (!registers_.tests.view_test ||
+            view_test(pass.edge_begin(edge).screen, pass.edge_end(edge).screen, registers_.tests))
+            pass.edges[k].tests |= datapath::view_bit;
+    });
+}
+
+void ViewTest::b_transport_from_transform(Work& work, sc_core::sc_time& delay) {
+    on_screen_ = work.pass;
     on_screen_delay_ = delay;
 }
 
-void ViewTest::b_transport(datapath::TrianglePass& pass, sc_core::sc_time& delay) {
-    if (pass.new_vertices != 0) {
-        if (on_screen_ != &pass)
+void ViewTest::b_transport(Work& work, sc_core::sc_time& delay) {
+    if ((work.parts & vertex_parts) != 0) {
+        if (on_screen_ != work.pass)
             SC_REPORT_ERROR("tessera/view_test", "a base triangle's edges came before its screen positions");
         on_screen_ = nullptr;
         delay = std::max(delay, on_screen_delay_);
     }
-    for (int k = 0; k < 3; ++k) {
-        if (!registers_.tests.view_test ||
-            view_test(pass.edge_begin(k).screen, pass.edge_end(k).screen, registers_.tests))
-            pass.edges[static_cast<std::size_t>(k)].tests |= datapath::view_bit;
+    process(work);
+    delay += clock_.period() * timing_.latency;
+    output->b_transport(work, delay);
+}
+
+bool ViewTest::may_begin(const Work& work) {
+    return work.pass->corners_on_screen[number_] == work.pass->new_vertices;
+}
+
+void ViewTest::step() {
+    from_transform.admit();
+    while (!from_transform.empty()) {
+        const Work& corner = from_transform.front();
+        std::uint8_t& come = corner.pass->corners_on_screen[number_];
+        come = static_cast<std::uint8_t>(come | (corner.parts & vertex_parts));
+        from_transform.pop();
     }
-    delay += latency_;
+    WorkStage::step();
 }
 
 }  // namespace tessera

@@ -1,0 +1,111 @@
+#include "modules/clock/clock.h"
+
+#include <algorithm>
+#include <functional>
+
+namespace tessera {
+
+Clock::Clock(const sc_core::sc_module_name& name, const sc_core::sc_time& period)
+    : sc_module(name), period_time_(period), period_(period.value()) {
+    if (period_ == 0)
+        SC_REPORT_ERROR("tessera/clock", "the clock's period is zero");
+    units_.reserve(most_units);
+    far_.reserve(most_units);
+    SC_HAS_PROCESS(Clock);
+    SC_METHOD(tick);
+    dont_initialize();
+    sensitive << tick_event_;
+}
+
+void Clock::attach(Clocked& unit) {
+    if (units_.size() == most_units)
+        SC_REPORT_ERROR("tessera/clock", "more than 64 units on one clock");
+    unit.place_ = static_cast<unsigned>(units_.size());
+    units_.push_back(&unit);
+}
+
+void Clock::wake_at(const Clocked& unit, std::uint64_t cycle) {
+    const std::uint64_t bit = std::uint64_t{1} << unit.place_;
+    if (running_ && cycle <= cycle_) {
+        due_now_ |= bit;
+        return;
+    }
+    const std::uint64_t base = running_ ? cycle_ : first_cycle_not_before_now();
+    cycle = std::max(cycle, base);
+    if (cycle - base < span) {
+        const std::uint64_t place = cycle % span;
+        due_[place] |= bit;
+        occupied_[place / 64] |= std::uint64_t{1} << place % 64;
+    } else {
+        far_.emplace_back(cycle, unit.place_);
+        std::push_heap(far_.begin(), far_.end(), std::greater<>());
+    }
+    if (!running_ && (!scheduled_ || cycle < next_tick_)) {
+        scheduled_ = true;
+        next_tick_ = cycle;
+        tick_event_.notify(sc_core::sc_time::from_value(cycle * period_) - sc_core::sc_time_stamp());
+    }
+}
+
+void Clock::take_far() {
+    while (!far_.empty() && far_.front().first - cycle_ < span) {
+        const std::uint64_t place = far_.front().first % span;
+        due_[place] |= std::uint64_t{1} << far_.front().second;
+        occupied_[place / 64] |= std::uint64_t{1} << place % 64;
+        std::pop_heap(far_.begin(), far_.end(), std::greater<>());
+        far_.pop_back();
+    }
+}
+
+bool Clock::find_next(std::uint64_t& next) const {
+    const std::uint64_t first = (cycle_ + 1) % span;
+    for (std::uint64_t step = 0; step <= span / 64; ++step) {
+        const std::uint64_t word = (first / 64 + step) % (span / 64);
+        std::uint64_t bits = occupied_[word];
+        if (step == 0)
+            bits &= ~std::uint64_t{0} << first % 64;
+        else if (step == span / 64)
+            bits &= ~(~std::uint64_t{0} << first % 64);
+        if (bits != 0) {
+            const std::uint64_t place = word * 64 + static_cast<unsigned>(__builtin_ctzll(bits));
+            next = cycle_ + 1 + (place + span - first) % span;
+            return true;
+        }
+    }
+    if (far_.empty())
+        return false;
+    next = far_.front().first;
+    return true;
+}
+
+void Clock::tick() {
+    cycle_ = next_tick_;
+    running_ = true;
+    scheduled_ = false;
+    take_far();
+    const std::uint64_t place = cycle_ % span;
+    due_now_ = due_[place];
+    due_[place] = 0;
+    occupied_[place / 64] &= ~(std::uint64_t{1} << place % 64);
+    for (unsigned calls = 0; due_now_ != 0; ++calls) {
+        if (calls == calls_in_a_cycle)
+            SC_REPORT_ERROR("tessera/clock", "a cycle does not end: units keep waking one another");
+        const auto unit = static_cast<unsigned>(__builtin_ctzll(due_now_));
+        due_now_ &= due_now_ - 1;
+        units_[unit]->step();
+    }
+    if (observer_ != nullptr)
+        observer_->end_of_cycle(cycle_);
+    running_ = false;
+    if (most_without_progress_ != 0 && cycle_ - last_progress_ > most_without_progress_) {
+        stalled_ = true;
+        sc_core::sc_stop();
+        return;
+    }
+    if (find_next(next_tick_)) {
+        scheduled_ = true;
+        tick_event_.notify(sc_core::sc_time::from_value((next_tick_ - cycle_) * period_));
+    }
+}
+
+}  // namespace tessera

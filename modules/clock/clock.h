@@ -1,0 +1,112 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <systemc>
+#include <utility>
+#include <vector>
+
+namespace tessera {
+
+class Clock;
+
+/// What the clock calls: a unit, a memory, a driver.
+class Clocked {
+  public:
+    /// Everything that can happen in the clock's present cycle. Called as often as something new may be possible, so
+    /// that a second call without cause changes nothing.
+    virtual void step() = 0;
+
+    Clocked() = default;
+    virtual ~Clocked() = default;
+    Clocked(const Clocked&) = delete;
+    Clocked& operator=(const Clocked&) = delete;
+
+  private:
+    friend class Clock;
+    unsigned place_ = 0;
+};
+
+/// Told at the end of every cycle in which something was called: tracing.
+class CycleObserver {
+  public:
+    virtual void end_of_cycle(std::uint64_t cycle) = 0;
+    virtual ~CycleObserver() = default;
+};
+
+/// The clock of timed mode: calls those that asked for a cycle, and skips the cycles nobody asked for.
+///
+/// Within a cycle the order is that of attachment, whatever the order of asking: attach downstream units first, so
+/// that a place freed in a cycle is filled in the same cycle, and the simulation is the same on every kernel. One
+/// SC_METHOD serves all: a wake-up costs a bit in a table, not an event.
+///
+/// Capacity: 64 attached. Nothing asked for means that nothing will ever happen: finished, or a deadlock.
+class Clock : public sc_core::sc_module {
+  public:
+    Clock(const sc_core::sc_module_name& name, const sc_core::sc_time& period);
+
+    /// SC_ERROR beyond the capacity.
+    void attach(Clocked& unit);
+
+    /// Calls `unit` (once more) in the present cycle; from outside a cycle, in the first that begins not before now.
+    void wake(const Clocked& unit) { wake_at(unit, cycle()); }
+
+    /// Calls `unit` in a cycle, the present one or later.
+    void wake_at(const Clocked& unit, std::uint64_t cycle);
+
+    /// The present cycle; between two cycles, the next.
+    std::uint64_t cycle() const { return running_ ? cycle_ : first_cycle_not_before_now(); }
+
+    /// The cycle in which something was last called.
+    std::uint64_t last_cycle() const { return cycle_; }
+
+    /// Cycles from now on that `delay` spans, rounded up.
+    std::uint64_t cycles(const sc_core::sc_time& delay) const {
+        return (delay.value() + period_ - 1) / period_;
+    }
+    const sc_core::sc_time& period() const { return period_time_; }
+
+    /// Nobody asked for a later cycle.
+    bool idle() const { return !running_ && !scheduled_; }
+
+    /// Told when work is completed (Pass or Tessellate: a triangle decided). Without it for `most` cycles, 0: for ever,
+    /// the clock stops the simulation.
+    void progress() { last_progress_ = cycle_; }
+    void stop_without_progress_for(std::uint64_t most) { most_without_progress_ = most; }
+    std::uint64_t most_without_progress() const { return most_without_progress_; }
+    /// The clock did that.
+    bool stalled() const { return stalled_; }
+
+    void observe(CycleObserver* observer) { observer_ = observer; }
+
+    /// SC_ERROR when one cycle takes more calls than this: a combinational loop.
+    static constexpr unsigned calls_in_a_cycle = 100'000;
+
+  private:
+    static constexpr std::uint64_t span = 1024;  // cycles ahead that the table covers
+    static constexpr unsigned most_units = 64;
+    using Far = std::pair<std::uint64_t, unsigned>;  // cycle and place, beyond the table
+
+    void tick();
+    void take_far();
+    bool find_next(std::uint64_t& next) const;
+    std::uint64_t first_cycle_not_before_now() const { return cycles(sc_core::sc_time_stamp()); }
+
+    sc_core::sc_time period_time_;
+    std::uint64_t period_;
+    sc_core::sc_event tick_event_{"tick_event"};
+    std::vector<Clocked*> units_;
+    std::array<std::uint64_t, span> due_{};            // by cycle modulo span: one bit a unit
+    std::array<std::uint64_t, span / 64> occupied_{};  // one bit a cycle: due_ is not zero
+    std::vector<Far> far_;                             // a heap, earliest first
+    std::uint64_t due_now_ = 0;
+    std::uint64_t cycle_ = 0;
+    std::uint64_t next_tick_ = 0;
+    bool running_ = false;
+    bool scheduled_ = false;
+    std::uint64_t last_progress_ = 0;
+    std::uint64_t most_without_progress_ = 0;
+    bool stalled_ = false;
+    CycleObserver* observer_ = nullptr;
+};
+
+}  // namespace tessera

@@ -1,0 +1,123 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <systemc>
+#include <tlm>
+#include <vector>
+
+#include "modules/clock/clock.h"
+#include "modules/stream/random_stalls.h"
+#include "modules/stream/stream.h"
+
+namespace tessera {
+
+/// A unit's input. Functional mode: hands b_transport to the unit. Timed mode: a buffer of `depth` items; an item that
+/// finds it full waits at the door, its END_REQ withheld. Checks the producer's phases.
+template <class Payload>
+class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
+                    public tlm::tlm_fw_transport_if<Stream<Payload>> {
+    using Socket = tlm::tlm_target_socket<32, Stream<Payload>>;
+
+  public:
+    explicit StreamInput(const char* name) : Socket(name), ring_(1) {
+        Socket::bind(static_cast<tlm::tlm_fw_transport_if<Stream<Payload>>&>(*this));
+    }
+
+    /// Functional mode: `(unit.*Method)(payload, delay)` does the work.
+    template <auto Method, class Unit>
+    void serve(Unit& unit) {
+        server_ = &unit;
+        serve_ = [](void* server, Payload& payload, sc_core::sc_time& delay) {
+            (static_cast<Unit*>(server)->*Method)(payload, delay);
+        };
+    }
+
+    /// Timed mode: `unit` is called when an item has come. depth: at least 1.
+    void clocked_by(Clock& clock, Clocked& unit, std::size_t depth, const StallParameters& stalls) {
+        clock_ = &clock;
+        unit_ = &unit;
+        ring_.assign(depth, Payload{});
+        stalls_ = RandomStalls(stalls, this->name());
+    }
+
+    bool empty() const { return size_ == 0; }
+    std::size_t size() const { return size_; }
+    std::size_t depth() const { return ring_.size(); }
+    /// An item waits at the door.
+    bool holds_back() const { return at_the_door_ != nullptr; }
+    std::uint64_t taken() const { return taken_; }
+
+    Payload& front() { return ring_[first_]; }
+    const Payload& front() const { return ring_[first_]; }
+
+    /// Removes the first item, and lets the one at the door in.
+    void pop() {
+        first_ = first_ + 1 == ring_.size() ? 0 : first_ + 1;
+        --size_;
+        admit();
+    }
+
+    /// Lets the item at the door in if its time has come and there is room. To be called at the start of each step.
+    void admit() {
+        if (at_the_door_ == nullptr || size_ == ring_.size())
+            return;
+        if (clock_->cycle() < door_opens_) {
+            clock_->wake_at(*unit_, door_opens_);
+            return;
+        }
+        Payload& payload = *at_the_door_;
+        at_the_door_ = nullptr;
+        push(payload);
+        tlm::tlm_phase phase = tlm::END_REQ;
+        sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
+        (*this)->nb_transport_bw(payload, phase, delay);
+    }
+
+  private:
+    tlm::tlm_sync_enum nb_transport_fw(Payload& payload, tlm::tlm_phase& phase,
+                                       sc_core::sc_time& delay) override {
+        if (phase != tlm::BEGIN_REQ)
+            stream_protocol_error(this->name(), "a phase other than BEGIN_REQ");
+        if (at_the_door_ != nullptr)
+            stream_protocol_error(this->name(), "BEGIN_REQ before END_REQ of the item before");
+        if (unit_ == nullptr)
+            stream_protocol_error(this->name(), "nb_transport in functional mode");
+        const std::uint64_t wait = stalls_.next() + clock_->cycles(delay);
+        const std::uint64_t now = clock_->cycle();
+        if (wait == 0 && size_ < ring_.size()) {
+            push(payload);
+            clock_->wake_at(*unit_, now);
+            phase = tlm::END_REQ;
+            return tlm::TLM_UPDATED;
+        }
+        at_the_door_ = &payload;
+        door_opens_ = now + wait;
+        clock_->wake_at(*unit_, door_opens_);
+        return tlm::TLM_ACCEPTED;
+    }
+
+    void b_transport(Payload& payload, sc_core::sc_time& delay) override { serve_(server_, payload, delay); }
+    bool get_direct_mem_ptr(Payload&, tlm::tlm_dmi&) override { return false; }
+    unsigned transport_dbg(Payload&) override { return 0; }
+
+    void push(const Payload& payload) {
+        const std::size_t place = first_ + size_;
+        ring_[place < ring_.size() ? place : place - ring_.size()] = payload;
+        ++size_;
+        ++taken_;
+    }
+
+    void* server_ = nullptr;
+    void (*serve_)(void*, Payload&, sc_core::sc_time&) = nullptr;
+    Clock* clock_ = nullptr;
+    Clocked* unit_ = nullptr;
+    std::vector<Payload> ring_;
+    std::size_t first_ = 0;
+    std::size_t size_ = 0;
+    Payload* at_the_door_ = nullptr;
+    std::uint64_t door_opens_ = 0;
+    std::uint64_t taken_ = 0;
+    RandomStalls stalls_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,68 @@
+#pragma once
+#include <systemc>
+#include <tlm>
+
+#include "modules/clock/clock.h"
+#include "modules/stream/stream.h"
+
+namespace tessera {
+
+/// A unit's output (timed mode: one item on offer at a time). Checks the consumer's phases. BUSWIDTH means nothing on
+/// a stream; widths follow from the formats.
+template <class Payload>
+class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
+                     public tlm::tlm_bw_transport_if<Stream<Payload>> {
+    using Socket = tlm::tlm_initiator_socket<32, Stream<Payload>>;
+
+  public:
+    explicit StreamOutput(const char* name) : Socket(name) {
+        Socket::bind(static_cast<tlm::tlm_bw_transport_if<Stream<Payload>>&>(*this));
+    }
+
+    /// Timed mode: `unit` is called when an item that had to wait is taken.
+    void clocked_by(Clock& clock, Clocked& unit) {
+        clock_ = &clock;
+        unit_ = &unit;
+    }
+
+    /// Nothing on offer.
+    bool free() const { return !on_offer_; }
+
+    /// Offers an item, which must stay where it is until free(). True: taken at once.
+    bool send(Payload& payload) {
+        if (on_offer_)
+            stream_protocol_error(this->name(), "BEGIN_REQ before END_REQ of the item before");
+        tlm::tlm_phase phase = tlm::BEGIN_REQ;
+        sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
+        const tlm::tlm_sync_enum status = (*this)->nb_transport_fw(payload, phase, delay);
+        if (status == tlm::TLM_UPDATED && phase == tlm::END_REQ)
+            return true;
+        if (status != tlm::TLM_ACCEPTED)
+            stream_protocol_error(this->name(), "BEGIN_REQ was answered by neither END_REQ nor TLM_ACCEPTED");
+        on_offer_ = true;
+        return false;
+    }
+
+    /// The module that takes the items: who blocks this one.
+    const sc_core::sc_object* consumer() const {
+        const auto* target = dynamic_cast<const sc_core::sc_object*>(this->get_base_port().get_interface());
+        return target == nullptr ? nullptr : target->get_parent_object();
+    }
+
+  private:
+    tlm::tlm_sync_enum nb_transport_bw(Payload&, tlm::tlm_phase& phase, sc_core::sc_time& delay) override {
+        if (!on_offer_ || phase != tlm::END_REQ)
+            stream_protocol_error(this->name(), "a phase other than the END_REQ that was due");
+        on_offer_ = false;
+        if (unit_ != nullptr)
+            clock_->wake_at(*unit_, clock_->cycle() + clock_->cycles(delay));
+        return tlm::TLM_ACCEPTED;
+    }
+    void invalidate_direct_mem_ptr(sc_dt::uint64, sc_dt::uint64) override {}
+
+    Clock* clock_ = nullptr;
+    Clocked* unit_ = nullptr;
+    bool on_offer_ = false;
+};
+
+}  // namespace tessera

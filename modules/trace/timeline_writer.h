@@ -1,0 +1,63 @@
+#pragma once
+#include <cstdint>
+#include <iosfwd>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "modules/trace/trace_window.h"
+
+namespace tessera {
+
+/// Writes what each unit did and when in the Chrome trace event format (JSON), for Perfetto and chrome://tracing.
+///
+/// Use: add_track(), interval() and counter() in any order, each counter's cycles never decreasing; finish().
+/// Window: intervals are cut to it; a counter has at its beginning the value it came in with.
+/// Time: microseconds, exact to the picosecond. Perfetto rounds to nanoseconds; with a period that is not a whole
+/// number of them it may drop an interval that then overlaps its neighbour.
+/// Colours: chrome://tracing takes ours; Perfetto ignores them and colours by name. So a state, always in the same
+/// words, is the name, and the detail an argument. The file holds nothing that differs between equal runs.
+/// Whether the stream took the bytes is the caller's to check. Misuse is a std::logic_error.
+class TimelineWriter {
+  public:
+    using Track = std::uint32_t;
+
+    TimelineWriter(std::ostream& out, std::uint64_t cycle_picoseconds, TraceWindow window = {});
+    TimelineWriter(const TimelineWriter&) = delete;
+    TimelineWriter& operator=(const TimelineWriter&) = delete;
+
+    /// Tracks are shown in the order they were added in.
+    Track add_track(const std::string& name);
+
+    /// The track is in `state` from the beginning of cycle `begin` to that of `end`. Known states have colours of their
+    /// own: "busy", "blocked", "waiting for memory", "starved". detail: "", or for instance who blocks.
+    void interval(Track track, const char* state, const char* detail, std::uint64_t begin, std::uint64_t end);
+
+    /// The series' value from `cycle` on. chrome://tracing shows a name's first series only, Perfetto each.
+    void counter(const char* name, const char* series, std::uint64_t cycle, std::uint64_t value);
+
+    void finish();
+
+  private:
+    void check_open() const;
+    void write_counter(std::string_view name, std::string_view series, std::uint64_t cycle,
+                       std::uint64_t value);
+    void begin_event(const char* phase, std::string_view name);
+    void end_event();
+    void write_string(std::string_view text);
+    void write_number(std::uint64_t number);
+    void write_microseconds(std::uint64_t cycles);
+
+    std::ostream& out_;
+    std::uint64_t cycle_picoseconds_;
+    TraceWindow window_;
+    Track tracks_ = 0;
+    // Counters' values before the window: name and series to value.
+    std::map<std::pair<std::string, std::string>, std::uint64_t> held_;
+    bool reached_ = false;  // the window
+    bool finished_ = false;
+    std::string buffer_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,151 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "modules/memory/memory_port.h"
+#include "modules/stream/stream_input.h"
+#include "modules/stream/work.h"
+#include "modules/unit/elastic_pipeline.h"
+#include "modules/unit/fork.h"
+#include "modules/unit/unit.h"
+
+namespace tessera {
+
+/// What a TableStage keeps of an item; units add their own.
+struct TableItem {
+    Work work;
+    unsigned requests = 0;  ///< reads the item takes
+    unsigned asked = 0;     ///< of these, offered to the memory
+    unsigned answered = 0;  ///< of these, come back
+};
+
+/// A unit whose items read a table, in timed mode: an item starts when the reads of the one before have been taken by
+/// the memory; it is finished a latency after its last answer. Enough register stages that the memory's own latency
+/// holds nothing up: ceil((latency + memory latency) / interval).
+template <class Item>
+class TableStage : public Unit {
+  public:
+    std::string holds() const override {
+        std::string text = count_of(pipeline_.size() + input_->size(), "item");
+        if (port_->on_offer())
+            text += ", a request its memory does not take";
+        if (input_->holds_back())
+            text += text.empty() ? "one at its door" : ", one at its door";
+        return text;
+    }
+    std::uint64_t occupied_cycles() const override { return activity_.items_in() * timing_.interval; }
+
+  protected:
+    TableStage(const sc_core::sc_module_name& name, Clock& clock, const UnitTiming& timing,
+               unsigned memory_latency)
+        : Unit(name, clock), timing_(timing), pipeline_(timing, 1, memory_latency) {}
+
+    /// To be called once in a derived unit's constructor: its input, its output, and the port it reads through.
+    void takes_from(StreamInput<Work>& input, const StallParameters& stalls) {
+        input_ = &input;
+        input.clocked_by(clock_, *this, timing_.buffer, stalls);
+    }
+    void delivers_to(StreamOutput<Work>& output) {
+        output_.add(output);
+        output.clocked_by(clock_, *this);
+    }
+    /// most_requests: of one item.
+    void reads_through(MemoryPort& port, unsigned most_requests) {
+        port_ = &port;
+        port.clocked_by(clock_, *this, pipeline_.capacity() * most_requests);
+    }
+
+    /// The unit's work on an item before its reads. Returns how many requests it makes.
+    virtual unsigned begin(Item& item) = 0;
+    /// Makes request `k` of an item.
+    virtual void ask(Item& item, unsigned k) = 0;
+    /// The answer to request `k` is there (port.entry); with the last one the item's work is completed.
+    virtual void receive(Item& item, unsigned k) = 0;
+    /// False: the item ends here.
+    virtual bool goes_on(const Item&) const { return true; }
+    /// False: the item lacks what another unit has to bring; the unit will be called when it comes.
+    virtual bool may_begin(const Work&) { return true; }
+
+    void step() override {
+        const std::uint64_t cycle = clock_.cycle();
+        input_->admit();
+        take_answers(cycle);
+        while (pipeline_.front_finished(cycle)) {
+            Item& item = pipeline_.front();
+            if (goes_on(item) && !output_.deliver(item.work))
+                break;
+            pipeline_.pop();
+            --asking_;
+            --waiting_;
+            activity_.item_out(cycle);
+        }
+        while (ask_all() && !input_->empty() && pipeline_.may_start(cycle) && may_begin(input_->front())) {
+            Item& item = pipeline_.start(cycle);
+            item = Item{};
+            item.work = input_->front();
+            activity_.item_in(cycle);
+            item.requests = begin(item);
+            if (item.requests > 0)
+                pipeline_.finish(pipeline_.size() - 1, never);
+            input_->pop();
+        }
+        skip_finished();
+        if (pipeline_.front_finished(cycle))
+            activity_.set(cycle, State::blocked, output_.blocked_by());
+        else if (port_->under_way())
+            activity_.set(cycle, State::waiting_for_memory, port_->memory());
+        else
+            activity_.set(cycle, pipeline_.empty() ? State::starved : State::busy);
+        const std::uint64_t finished = pipeline_.next_finished(cycle);
+        if (finished != never)
+            wake_at(finished);
+        if (!input_->empty())
+            wake_at(pipeline_.next_start(cycle));
+    }
+
+    const UnitTiming timing_;
+
+  private:
+    void take_answers(std::uint64_t cycle) {
+        while (port_->answered()) {
+            skip_finished();
+            Item& item = pipeline_.at(waiting_);
+            receive(item, item.answered);
+            port_->pop_answer();
+            if (++item.answered == item.requests)
+                pipeline_.finish(waiting_, cycle + pipeline_.latency());
+        }
+        skip_finished();
+    }
+
+    /// Past the items whose answers have all come.
+    void skip_finished() {
+        while (waiting_ < pipeline_.size() &&
+               pipeline_.at(waiting_).answered == pipeline_.at(waiting_).requests)
+            ++waiting_;
+    }
+
+    /// Offers the memory as many of the started items' requests as it takes. True: all.
+    bool ask_all() {
+        while (asking_ < pipeline_.size()) {
+            Item& item = pipeline_.at(asking_);
+            while (item.asked < item.requests) {
+                if (!port_->may_request())
+                    return false;
+                ask(item, item.asked++);
+            }
+            ++asking_;
+        }
+        return !port_->on_offer();
+    }
+
+    StreamInput<Work>* input_ = nullptr;
+    MemoryPort* port_ = nullptr;
+    Fork<Work> output_;
+    ElasticPipeline<Item> pipeline_;
+    std::size_t asking_ = 0;   // the first item that has not asked for all it needs
+    std::size_t waiting_ = 0;  // the first item whose answers have not all come
+};
+
+}  // namespace tessera

@@ -1,0 +1,45 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <systemc>
+
+#include "modules/clock/clock.h"
+#include "modules/timing.h"
+#include "modules/unit/activity.h"
+
+namespace tessera {
+
+/// What every box of the paper's figures 7 and 8 and every memory is: a module on the clock, with a record of what it
+/// did in each cycle.
+class Unit : public sc_core::sc_module, public Clocked {
+  public:
+    const Activity& activity() const { return activity_; }
+    Activity& activity() { return activity_; }
+
+    /// For a deadlock's report: what is in the unit and at its door, in words; empty: nothing.
+    virtual std::string holds() const = 0;
+
+    /// Share of the run's cycles in which the unit could not have taken more work than it did: items times the initiation
+    /// interval (memories: slots taken over slots there were). As a fraction: occupied cycles, times `of`.
+    virtual std::uint64_t occupied_cycles() const = 0;
+
+    bool idle() const { return activity_.level() == 0; }
+
+  protected:
+    Unit(const sc_core::sc_module_name& name, Clock& clock) : sc_module(name), clock_(clock) {}
+
+    std::uint64_t now() const { return clock_.cycle(); }
+    void wake_at(std::uint64_t cycle) {
+        if (cycle != ~std::uint64_t{0})
+            clock_.wake_at(*this, cycle);
+    }
+
+    Clock& clock_;
+    Activity activity_;
+};
+
+/// "3 edges", "1 edge", "".
+std::string count_of(std::size_t count, const char* what);
+
+}  // namespace tessera

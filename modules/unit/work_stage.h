@@ -1,0 +1,88 @@
+#pragma once
+#include <string>
+#include <systemc>
+
+#include "modules/stream/stream_input.h"
+#include "modules/stream/work.h"
+#include "modules/unit/elastic_pipeline.h"
+#include "modules/unit/fork.h"
+#include "modules/unit/unit.h"
+
+namespace tessera {
+
+/// A unit with one input, a pipeline, and one or more outputs for the same item: how most of them behave in timed mode.
+/// A derived unit says what is done to an item.
+class WorkStage : public Unit {
+  public:
+    std::string holds() const override {
+        std::string text = count_of(pipeline_.size() + input_->size(), "item");
+        if (input_->holds_back())
+            text += text.empty() ? "one at its door" : ", one at its door";
+        return text;
+    }
+    std::uint64_t occupied_cycles() const override { return activity_.items_in() * timing_.interval; }
+
+  protected:
+    /// servers: pipelines side by side.
+    WorkStage(const sc_core::sc_module_name& name, Clock& clock, const UnitTiming& timing,
+              unsigned servers = 1)
+        : Unit(name, clock), timing_(timing), pipeline_(timing, servers) {}
+
+    /// To be called once in a derived unit's constructor: its input, and each of its outputs.
+    void takes_from(StreamInput<Work>& input, const StallParameters& stalls) {
+        input_ = &input;
+        input.clocked_by(clock_, *this, timing_.buffer, stalls);
+    }
+    void delivers_to(StreamOutput<Work>& output) {
+        fork_.add(output);
+        output.clocked_by(clock_, *this);
+    }
+
+    /// The unit's work on an item, done when it starts.
+    virtual void process(const Work& work) = 0;
+    /// Which outputs get a finished item.
+    virtual unsigned targets(const Work&) const { return ~0u; }
+    /// False: the item lacks what another unit has to bring; the unit will be called when it comes.
+    virtual bool may_begin(const Work&) { return true; }
+    virtual const sc_core::sc_object* lacks() const { return nullptr; }
+
+    void step() override {
+        const std::uint64_t cycle = clock_.cycle();
+        input_->admit();
+        while (pipeline_.front_finished(cycle) &&
+               fork_.deliver(pipeline_.front(), targets(pipeline_.front()))) {
+            pipeline_.pop();
+            activity_.item_out(cycle);
+        }
+        bool lacking = false;
+        while (!input_->empty() && pipeline_.may_start(cycle)) {
+            if (!may_begin(input_->front())) {
+                lacking = true;
+                break;
+            }
+            Work& work = pipeline_.start(cycle);
+            work = input_->front();
+            activity_.item_in(cycle);
+            process(work);
+            input_->pop();
+        }
+        if (pipeline_.front_finished(cycle))
+            activity_.set(cycle, State::blocked, fork_.blocked_by());
+        else if (!pipeline_.empty() || (!lacking && !input_->empty()))
+            activity_.set(cycle, State::busy);
+        else
+            activity_.set(cycle, State::starved, lacking ? lacks() : nullptr);
+        wake_at(pipeline_.next_finished(cycle));
+        if (!input_->empty())
+            wake_at(pipeline_.next_start(cycle));
+    }
+
+    const UnitTiming timing_;
+
+  private:
+    StreamInput<Work>* input_ = nullptr;
+    Fork<Work> fork_;
+    ElasticPipeline<Work> pipeline_;
+};
+
+}  // namespace tessera

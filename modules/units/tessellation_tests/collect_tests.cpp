@@ -1,0 +1,72 @@
+#include "modules/units/tessellation_tests/collect_tests.h"
+
+#include <algorithm>
+
+namespace tessera {
+
+CollectTests::CollectTests(const sc_core::sc_module_name& name, Clock& clock, const Timing& timing)
+    : Unit(name, clock) {
+    for (StreamInput<Work>* input : inputs()) {
+        input->serve<&CollectTests::b_transport>(*this);
+        input->clocked_by(clock, *this, timing.results_buffer, timing.stalls);
+    }
+    to_pass_or_tessellate.clocked_by(clock, *this);
+}
+
+void CollectTests::b_transport(Work& work, sc_core::sc_time& delay) {
+    latest_ = come_ == 0 ? delay : std::max(latest_, delay);
+    if (++come_ < 4)
+        return;
+    come_ = 0;
+    delay = latest_;
+    to_pass_or_tessellate->b_transport(work, delay);
+}
+
+void CollectTests::step() {
+    const std::uint64_t cycle = now();
+    StreamInput<Work>* lacking = nullptr;
+    for (StreamInput<Work>* input : inputs())
+        input->admit();
+    for (;;) {
+        if (leaves_) {
+            if (!to_pass_or_tessellate.free())
+                break;
+            leaves_ = false;
+            activity_.item_out(cycle);
+        }
+        lacking = nullptr;
+        for (StreamInput<Work>* input : inputs()) {
+            if (input->empty())
+                lacking = input;
+        }
+        if (lacking != nullptr)
+            break;
+        leaving_ = from_view_test.front();
+        for (StreamInput<Work>* input : inputs()) {
+            if (input->front().pass != leaving_.pass || input->front().parts != leaving_.parts)
+                SC_REPORT_ERROR("tessera/collect_tests", "the tests decided different edges");
+            input->pop();
+        }
+        leaves_ = true;
+        activity_.item_in(cycle);
+        to_pass_or_tessellate.send(leaving_);
+    }
+    if (leaves_)
+        activity_.set(cycle, State::blocked, to_pass_or_tessellate.consumer());
+    else
+        activity_.set(cycle, State::starved);
+}
+
+std::string CollectTests::holds() const {
+    const auto count = [](const StreamInput<Work>& input, const char* test) {
+        return input.empty() ? std::string{} : std::to_string(input.size()) + " from " + test + ", ";
+    };
+    std::string text = count(from_normal_test, "normal_test") + count(from_tex_coord_test, "tex_coord_test") +
+                       count(from_summed_height_test, "summed_height_test") +
+                       count(from_view_test, "view_test");
+    if (leaves_)
+        text += "1 edge that Pass or Tessellate does not take, ";
+    return text.empty() ? text : text.substr(0, text.size() - 2);
+}
+
+}  // namespace tessera
