@@ -29,7 +29,8 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
                       design.queue.off_chip_triangles * (datapath::packed_triangle_bytes(registers.formats) +
                                                          datapath::packed_triangle_tag_bytes),
                       datapath::packed_triangle_tag_bytes),
-      transport_(design.transport) {
+      transport_(design.transport),
+      random_stalls_(design.timing.stalls.per_mille > 0) {
     tessellation_tests.init(design.tests_units, [&](const char* unit_name, std::size_t number) {
         return new TessellationTests(unit_name, clock, registers, design.timing,
                                      static_cast<unsigned>(number), design.direct_memory);

@@ -72,6 +72,9 @@ class Pipeline : public sc_core::sc_module {
     /// Every unit and memory, in the order of the figures.
     const std::vector<Unit*>& units() const { return units_; }
 
+    /// Items are held back at random.
+    bool random_stalls() const { return random_stalls_; }
+
     std::uint64_t edges_tested() const { return 3 * pass_or_tessellate.counts().passes; }
     std::uint64_t displacement_map_reads() const { return displace_vertex.displacement_map.reads(); }
     std::uint64_t normal_map_reads() const;
@@ -82,6 +85,7 @@ class Pipeline : public sc_core::sc_module {
     void attach();
 
     Transport transport_;
+    bool random_stalls_;
     std::vector<Unit*> units_;
 };
 

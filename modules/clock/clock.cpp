@@ -20,27 +20,26 @@ Clock::Clock(const sc_core::sc_module_name& name, const sc_core::sc_time& period
 void Clock::attach(Clocked& unit) {
     if (units_.size() == most_units)
         SC_REPORT_ERROR("tessera/clock", "more than 64 units on one clock");
-    unit.place_ = static_cast<unsigned>(units_.size());
+    unit.bit_ = std::uint64_t{1} << units_.size();
     units_.push_back(&unit);
 }
 
-void Clock::wake_at(const Clocked& unit, std::uint64_t cycle) {
-    const std::uint64_t bit = std::uint64_t{1} << unit.place_;
-    if (running_ && cycle <= cycle_) {
-        due_now_ |= bit;
-        return;
-    }
-    const std::uint64_t base = running_ ? cycle_ : first_cycle_not_before_now();
-    cycle = std::max(cycle, base);
-    if (cycle - base < span) {
+void Clock::wake_far(const Clocked& unit, std::uint64_t cycle) {
+    far_.emplace_back(cycle, unit.bit_);
+    std::push_heap(far_.begin(), far_.end(), std::greater<>());
+}
+
+void Clock::wake_from_outside(const Clocked& unit, std::uint64_t cycle) {
+    // The table counts from the cycle that was called last.
+    cycle = std::max(cycle, first_cycle_not_before_now());
+    if (cycle - cycle_ < span) {
         const std::uint64_t place = cycle % span;
-        due_[place] |= bit;
+        due_[place] |= unit.bit_;
         occupied_[place / 64] |= std::uint64_t{1} << place % 64;
     } else {
-        far_.emplace_back(cycle, unit.place_);
-        std::push_heap(far_.begin(), far_.end(), std::greater<>());
+        wake_far(unit, cycle);
     }
-    if (!running_ && (!scheduled_ || cycle < next_tick_)) {
+    if (!scheduled_ || cycle < next_tick_) {
         scheduled_ = true;
         next_tick_ = cycle;
         tick_event_.notify(sc_core::sc_time::from_value(cycle * period_) - sc_core::sc_time_stamp());
@@ -50,7 +49,7 @@ void Clock::wake_at(const Clocked& unit, std::uint64_t cycle) {
 void Clock::take_far() {
     while (!far_.empty() && far_.front().first - cycle_ < span) {
         const std::uint64_t place = far_.front().first % span;
-        due_[place] |= std::uint64_t{1} << far_.front().second;
+        due_[place] |= far_.front().second;
         occupied_[place / 64] |= std::uint64_t{1} << place % 64;
         std::pop_heap(far_.begin(), far_.end(), std::greater<>());
         far_.pop_back();
@@ -78,6 +77,35 @@ bool Clock::find_next(std::uint64_t& next) const {
     return true;
 }
 
+/// Those that asked for the present cycle, until none is left. Returns who was called, if observed.
+template <bool observed>
+std::uint64_t Clock::call_due() {
+    std::uint64_t called = 0;
+    for (unsigned calls = 0; due_now_ != 0; ++calls) {
+        if (calls == calls_in_a_cycle)
+            SC_REPORT_ERROR("tessera/clock", "a cycle does not end: units keep waking one another");
+        const auto unit = static_cast<unsigned>(__builtin_ctzll(due_now_));
+        if constexpr (observed)
+            called |= due_now_ & -due_now_;
+        due_now_ &= due_now_ - 1;
+        units_[unit]->step();
+    }
+    return called;
+}
+
+/// False: the present cycle is not observed.
+bool Clock::begin_observing() {
+    if (cycle_ < observed_first_)
+        return false;
+    if (!observer_began_) {
+        observer_began_ = true;
+        observer_->begin(cycle_);
+    }
+    if (cycle_ > observed_last_)
+        observer_ = nullptr;
+    return observer_ != nullptr;
+}
+
 void Clock::tick() {
     cycle_ = next_tick_;
     running_ = true;
@@ -87,15 +115,12 @@ void Clock::tick() {
     due_now_ = due_[place];
     due_[place] = 0;
     occupied_[place / 64] &= ~(std::uint64_t{1} << place % 64);
-    for (unsigned calls = 0; due_now_ != 0; ++calls) {
-        if (calls == calls_in_a_cycle)
-            SC_REPORT_ERROR("tessera/clock", "a cycle does not end: units keep waking one another");
-        const auto unit = static_cast<unsigned>(__builtin_ctzll(due_now_));
-        due_now_ &= due_now_ - 1;
-        units_[unit]->step();
+    if (observer_ != nullptr && begin_observing()) {
+        const std::uint64_t called = call_due<true>();
+        observer_->end_of_cycle(cycle_, called);
+    } else {
+        call_due<false>();
     }
-    if (observer_ != nullptr)
-        observer_->end_of_cycle(cycle_);
     running_ = false;
     if (most_without_progress_ != 0 && cycle_ - last_progress_ > most_without_progress_) {
         stalled_ = true;

@@ -23,13 +23,16 @@ class Clocked {
 
   private:
     friend class Clock;
-    unsigned place_ = 0;
+    std::uint64_t bit_ = 0;  // its place among the attached
 };
 
-/// Told at the end of every cycle in which something was called: tracing.
+/// Told of the cycles in which something was called: tracing.
 class CycleObserver {
   public:
-    virtual void end_of_cycle(std::uint64_t cycle) = 0;
+    /// Before the first observed cycle's calls: all is as the cycles before left it.
+    virtual void begin(std::uint64_t cycle) = 0;
+    /// called: the bits (Clock::bit_of) of those that were.
+    virtual void end_of_cycle(std::uint64_t cycle, std::uint64_t called) = 0;
     virtual ~CycleObserver() = default;
 };
 
@@ -48,10 +51,27 @@ class Clock : public sc_core::sc_module {
     void attach(Clocked& unit);
 
     /// Calls `unit` (once more) in the present cycle; from outside a cycle, in the first that begins not before now.
-    void wake(const Clocked& unit) { wake_at(unit, cycle()); }
+    void wake(const Clocked& unit) {
+        if (running_)
+            due_now_ |= unit.bit_;
+        else
+            wake_from_outside(unit, first_cycle_not_before_now());
+    }
 
     /// Calls `unit` in a cycle, the present one or later.
-    void wake_at(const Clocked& unit, std::uint64_t cycle);
+    void wake_at(const Clocked& unit, std::uint64_t cycle) {
+        if (!running_) {
+            wake_from_outside(unit, cycle);
+        } else if (cycle <= cycle_) {
+            due_now_ |= unit.bit_;
+        } else if (cycle - cycle_ < span) {
+            const std::uint64_t place = cycle % span;
+            due_[place] |= unit.bit_;
+            occupied_[place / 64] |= std::uint64_t{1} << place % 64;
+        } else {
+            wake_far(unit, cycle);
+        }
+    }
 
     /// The present cycle; between two cycles, the next.
     std::uint64_t cycle() const { return running_ ? cycle_ : first_cycle_not_before_now(); }
@@ -61,7 +81,7 @@ class Clock : public sc_core::sc_module {
 
     /// Cycles from now on that `delay` spans, rounded up.
     std::uint64_t cycles(const sc_core::sc_time& delay) const {
-        return (delay.value() + period_ - 1) / period_;
+        return delay.value() == 0 ? 0 : (delay.value() + period_ - 1) / period_;
     }
     const sc_core::sc_time& period() const { return period_time_; }
 
@@ -76,7 +96,15 @@ class Clock : public sc_core::sc_module {
     /// The clock did that.
     bool stalled() const { return stalled_; }
 
-    void observe(CycleObserver* observer) { observer_ = observer; }
+    /// From cycle `first` to cycle `last`; outside these an observer costs nothing.
+    void observe(CycleObserver* observer, std::uint64_t first = 0, std::uint64_t last = UINT64_MAX) {
+        observer_ = observer;
+        observed_first_ = first;
+        observed_last_ = last;
+        observer_began_ = false;
+    }
+    /// Its bit in what an observer is told.
+    static std::uint64_t bit_of(const Clocked& unit) { return unit.bit_; }
 
     /// SC_ERROR when one cycle takes more calls than this: a combinational loop.
     static constexpr unsigned calls_in_a_cycle = 100'000;
@@ -84,10 +112,15 @@ class Clock : public sc_core::sc_module {
   private:
     static constexpr std::uint64_t span = 1024;  // cycles ahead that the table covers
     static constexpr unsigned most_units = 64;
-    using Far = std::pair<std::uint64_t, unsigned>;  // cycle and place, beyond the table
+    using Far = std::pair<std::uint64_t, std::uint64_t>;  // cycle and bit, beyond the table
 
     void tick();
+    template <bool observed>
+    std::uint64_t call_due();
+    bool begin_observing();
     void take_far();
+    void wake_far(const Clocked& unit, std::uint64_t cycle);
+    void wake_from_outside(const Clocked& unit, std::uint64_t cycle);
     bool find_next(std::uint64_t& next) const;
     std::uint64_t first_cycle_not_before_now() const { return cycles(sc_core::sc_time_stamp()); }
 
@@ -107,6 +140,9 @@ class Clock : public sc_core::sc_module {
     std::uint64_t most_without_progress_ = 0;
     bool stalled_ = false;
     CycleObserver* observer_ = nullptr;
+    std::uint64_t observed_first_ = 0;
+    std::uint64_t observed_last_ = 0;
+    bool observer_began_ = false;
 };
 
 }  // namespace tessera

@@ -76,7 +76,7 @@ void MemoryPort::request(const std::uint64_t* addresses, unsigned count) {
     ++under_way_;
     reads_ += count;
     Slot& slot = last();
-    slot.taken = slot.answered = false;
+    slot.taken = false;
     slot.gather.count = count;
     std::copy_n(addresses, count, slot.gather.address.begin());
     tlm::tlm_generic_payload& payload = slot.payload;
@@ -113,23 +113,22 @@ tlm::tlm_sync_enum MemoryPort::nb_transport_bw(tlm::tlm_generic_payload& payload
     }
     if (phase != tlm::BEGIN_RESP)
         stream_protocol_error(socket.name(), "a phase that no memory may send");
-    for (std::size_t k = 0; k < under_way_; ++k) {
-        Slot& slot = *slots_[(first_ + k) % slots_.size()];
-        if (slot.answered)
-            continue;
-        if (&slot.payload != &payload || !slot.taken)
-            stream_protocol_error(socket.name(), "BEGIN_RESP out of order or before END_REQ");
-        check_response(payload);
-        slot.answered = true;
-        payload.release();
-        return tlm::TLM_COMPLETED;
-    }
-    stream_protocol_error(socket.name(), "BEGIN_RESP for a request that was not made");
+    if (answered_ == under_way_)
+        stream_protocol_error(socket.name(), "BEGIN_RESP for a request that was not made");
+    const std::size_t sum = first_ + answered_;
+    Slot& slot = *slots_[sum < slots_.size() ? sum : sum - slots_.size()];
+    if (&slot.payload != &payload || !slot.taken)
+        stream_protocol_error(socket.name(), "BEGIN_RESP out of order or before END_REQ");
+    check_response(payload);
+    ++answered_;
+    payload.release();
+    return tlm::TLM_COMPLETED;
 }
 
 void MemoryPort::pop_answer() {
     first_ = first_ + 1 == slots_.size() ? 0 : first_ + 1;
     --under_way_;
+    --answered_;
 }
 
 }  // namespace tessera

@@ -78,17 +78,21 @@ class MemoryPort : public tlm::tlm_mm_interface {
     /// The request on offer has not been taken.
     bool on_offer() const { return on_offer_; }
     bool under_way() const { return under_way_ > 0; }
+    std::size_t requests_under_way() const { return under_way_; }
+    /// Of the newest request, if any: the address of its first entry.
+    std::uint64_t last_address() const { return under_way_ == 0 ? 0 : last().payload.get_address(); }
 
     /// Asks for `count` entries, 1 to 9; more than one are a gather (gather_extension.h).
     void request(const std::uint64_t* addresses, unsigned count);
 
     /// The first unanswered request has been answered.
-    bool answered() const { return under_way_ > 0 && slots_[first_]->answered; }
+    bool answered() const { return answered_ > 0; }
     /// Entry k of that answer, zero-extended.
     std::uint64_t entry(unsigned k) const {
         std::uint64_t value = 0;
-        std::memcpy(&value, &slots_[first_]->data[std::size_t{k} * entry_bytes_], entry_bytes_);
-        return value;
+        // Eight bytes are there: the slot has as many for each entry.
+        std::memcpy(&value, &slots_[first_]->data[std::size_t{k} * entry_bytes_], sizeof value);
+        return value & mask_;
     }
     void pop_answer();
 
@@ -114,7 +118,6 @@ class MemoryPort : public tlm::tlm_mm_interface {
         GatherExtension gather;
         std::array<unsigned char, 8 * datapath::RectangleReads::most> data{};
         bool taken = false;
-        bool answered = false;
     };
 
     std::uint64_t read_by_transaction(std::uint64_t address, sc_core::sc_time& delay);
@@ -124,7 +127,7 @@ class MemoryPort : public tlm::tlm_mm_interface {
     tlm::tlm_sync_enum nb_transport_bw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
                                        sc_core::sc_time& delay);
     void free(tlm::tlm_generic_payload*) override {}  // the slots are reused
-    Slot& last() {
+    Slot& last() const {
         const std::size_t sum = first_ + under_way_ - 1;
         return *slots_[sum < slots_.size() ? sum : sum - slots_.size()];
     }
@@ -145,6 +148,7 @@ class MemoryPort : public tlm::tlm_mm_interface {
     std::vector<std::unique_ptr<Slot>> slots_;  // a ring of requests, oldest first
     std::size_t first_ = 0;
     std::size_t under_way_ = 0;
+    std::size_t answered_ = 0;  // of these, the first so many
     bool on_offer_ = false;
     const sc_core::sc_object* memory_ = nullptr;
 };

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "modules/stream/stream.h"
+#include "modules/unit/signals.h"
 
 namespace tessera {
 
@@ -121,6 +122,23 @@ void OffChipMemory::step() {
         wake_at(channel_free_);
     if (answers_ > 0)
         wake_at(answer_ring_[answer_first_].answer_at);
+}
+
+/// Shows the request served last.
+void OffChipMemory::trace(Signals& signals) const {
+    Unit::trace(signals);
+    signals.pulse("served", channel_cycles_);
+    signals.group(signals.changed(channel_cycles_) && signals.running(), [&] {
+        const Request& last =
+            answer_ring_[(answer_first_ + answers_ + answer_ring_.size() - 1) % answer_ring_.size()];
+        signals.value("address", 32, last.payload == nullptr ? 0 : last.payload->get_address());
+        signals.flag("write", last.payload != nullptr && last.payload->is_write());
+    });
+    signals.flag("stalled", at_the_door_ != nullptr);
+    signals.value("queued", 16, queued_);
+    signals.value("answers_due", 16, answers_);
+    signals.value("bytes_written", 32, bytes_written_);
+    signals.value("bytes_read", 32, bytes_read_);
 }
 
 }  // namespace tessera

@@ -4,8 +4,36 @@
 #include <cstring>
 
 #include "modules/stream/stream.h"
+#include "modules/unit/signals.h"
 
 namespace tessera {
+
+namespace {
+
+/// Index modulo a ring's size, for less than twice that.
+template <class Ring>
+std::size_t place_in(const Ring& ring, std::size_t index) {
+    return index < ring.size() ? index : index - ring.size();
+}
+
+/// memcpy of a table's entry, whose usual sizes the compiler makes single moves of.
+void copy_entry(unsigned char* to, const unsigned char* from, unsigned bytes) {
+    switch (bytes) {
+        case 2:
+            std::memcpy(to, from, 2);
+            break;
+        case 4:
+            std::memcpy(to, from, 4);
+            break;
+        case 6:
+            std::memcpy(to, from, 6);
+            break;
+        default:
+            std::memcpy(to, from, bytes);
+    }
+}
+
+}  // namespace
 
 TableMemory::TableMemory(const sc_core::sc_module_name& name, Clock& clock,
                          const datapath::TableLayout& layout, const MemoryTiming& timing,
@@ -30,7 +58,7 @@ bool TableMemory::covers(std::uint64_t address, std::uint64_t length) const {
            address - layout_.base <= layout_.bytes() - length;
 }
 
-void TableMemory::read(tlm::tlm_generic_payload& payload) {
+void TableMemory::read(tlm::tlm_generic_payload& payload, const GatherExtension* gather) {
     const unsigned length = payload.get_data_length();
     if (payload.get_command() != tlm::TLM_READ_COMMAND) {
         payload.set_response_status(tlm::TLM_COMMAND_ERROR_RESPONSE);
@@ -44,7 +72,6 @@ void TableMemory::read(tlm::tlm_generic_payload& payload) {
         payload.set_response_status(tlm::TLM_BURST_ERROR_RESPONSE);
         return;
     }
-    const GatherExtension* gather = payload.get_extension<GatherExtension>();
     const unsigned count = gather == nullptr ? 1 : gather->count;
     const unsigned each = length / count;
     unsigned char* data = payload.get_data_ptr();
@@ -54,7 +81,7 @@ void TableMemory::read(tlm::tlm_generic_payload& payload) {
             payload.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE);
             return;
         }
-        std::memcpy(data + std::size_t{k} * each, &storage_[address - layout_.base], each);
+        copy_entry(data + std::size_t{k} * each, &storage_[address - layout_.base], each);
     }
     transactions_ += count;
     payload.set_dmi_allowed(true);
@@ -62,7 +89,7 @@ void TableMemory::read(tlm::tlm_generic_payload& payload) {
 }
 
 void TableMemory::b_transport(int, tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
-    read(payload);
+    read(payload, payload.get_extension<GatherExtension>());
     if (payload.is_response_ok())
         delay += clock_.period() * timing_.latency;
 }
@@ -84,11 +111,12 @@ tlm::tlm_sync_enum TableMemory::nb_transport_fw(int id, tlm::tlm_generic_payload
     payload.acquire();
     clock_.wake_at(*this, cycle + wait);
     if (wait == 0 && queued_ < queue_.size() && waiting_at_doors_ == 0) {
-        queue_[(queue_first_ + queued_++) % queue_.size()] = {&payload, id, 0};
+        queue_[place_in(queue_, queue_first_ + queued_++)] = {
+            &payload, payload.get_extension<GatherExtension>(), id, 0};
         phase = tlm::END_REQ;
         return tlm::TLM_UPDATED;
     }
-    at_the_door_[door] = {&payload, id, 0};
+    at_the_door_[door] = {&payload, payload.get_extension<GatherExtension>(), id, 0};
     door_opens_[door] = cycle + wait;
     ++waiting_at_doors_;
     return tlm::TLM_ACCEPTED;
@@ -101,7 +129,7 @@ void TableMemory::admit(std::uint64_t cycle) {
         Request& request = at_the_door_[door];
         if (request.payload == nullptr || door_opens_[door] > cycle)
             continue;
-        queue_[(queue_first_ + queued_++) % queue_.size()] = request;
+        queue_[place_in(queue_, queue_first_ + queued_++)] = request;
         tlm::tlm_generic_payload& payload = *request.payload;
         request.payload = nullptr;
         --waiting_at_doors_;
@@ -113,7 +141,7 @@ void TableMemory::admit(std::uint64_t cycle) {
 
 void TableMemory::serve(const Request& request, std::uint64_t cycle) {
     tlm::tlm_generic_payload& payload = *request.payload;
-    const GatherExtension* gather = payload.get_extension<GatherExtension>();
+    const GatherExtension* gather = request.gather;
     const unsigned count = gather == nullptr ? 1 : gather->count;
     std::uint64_t last_slot_cycle = cycle;
     for (unsigned k = 0; k < count; ++k) {
@@ -124,29 +152,27 @@ void TableMemory::serve(const Request& request, std::uint64_t cycle) {
         free = std::max(free, cycle * timing_.ports) + slots_per_entry_;
         last_slot_cycle = std::max(last_slot_cycle, (free - 1) / timing_.ports);
     }
+    next_free_ = *std::min_element(bank_free_.begin(), bank_free_.end()) / timing_.ports;
     last_address_ = payload.get_address();
     slots_taken_ += std::uint64_t{count} * slots_per_entry_;
     busy_until_ = std::max(busy_until_, last_slot_cycle + 1);
-    read(payload);
+    read(payload, gather);
     if (answers_ == answer_ring_.size()) {
         std::rotate(answer_ring_.begin(), answer_ring_.begin() + static_cast<std::ptrdiff_t>(answer_first_),
                     answer_ring_.end());
         answer_first_ = 0;
         answer_ring_.resize(2 * answer_ring_.size());
     }
-    Request& answer = answer_ring_[(answer_first_ + answers_++) % answer_ring_.size()];
+    Request& answer = answer_ring_[place_in(answer_ring_, answer_first_ + answers_++)];
     answer = request;
     answer.answer_at = last_slot_cycle + timing_.latency;
 }
 
 void TableMemory::step() {
     const std::uint64_t cycle = now();
-    const auto may_serve = [&] {
-        return *std::min_element(bank_free_.begin(), bank_free_.end()) / timing_.ports <= cycle;
-    };
     if (waiting_at_doors_ > 0)
         admit(cycle);
-    while (queued_ > 0 && may_serve()) {
+    while (queued_ > 0 && next_free_ <= cycle) {
         const Request request = queue_[queue_first_];
         queue_first_ = queue_first_ + 1 == queue_.size() ? 0 : queue_first_ + 1;
         --queued_;
@@ -167,9 +193,7 @@ void TableMemory::step() {
     }
     activity_.set(cycle, busy_until_ > cycle ? State::busy : State::starved);
     if (busy_until_ > cycle)
-        wake_at(queued_ > 0 ? std::min(busy_until_, *std::min_element(bank_free_.begin(), bank_free_.end()) /
-                                                        timing_.ports)
-                            : busy_until_);
+        wake_at(queued_ > 0 ? std::min(busy_until_, next_free_) : busy_until_);
     if (answers_ > 0)
         wake_at(answer_ring_[answer_first_].answer_at);
 }
@@ -194,6 +218,32 @@ unsigned TableMemory::transport_dbg(int, tlm::tlm_generic_payload& payload) {
     else if (payload.get_command() == tlm::TLM_READ_COMMAND)
         std::memcpy(payload.get_data_ptr(), place, payload.get_data_length());
     return payload.get_data_length();
+}
+
+/// Shows the request served last, of which data is the first entry.
+void TableMemory::trace(Signals& signals) const {
+    Unit::trace(signals);
+    signals.pulse("served", slots_taken_);
+    signals.group(signals.changed(slots_taken_) && signals.running(), [&] {
+        // Answers leave the ring in order, so the newest stays where it is until the ring comes round.
+        const Request& last =
+            answer_ring_[(answer_first_ + answers_ + answer_ring_.size() - 1) % answer_ring_.size()];
+        std::uint64_t entries = 0;
+        std::uint64_t data = 0;
+        if (last.payload != nullptr) {
+            const GatherExtension* gather = last.payload->get_extension<GatherExtension>();
+            entries = gather == nullptr ? 1 : gather->count;
+            std::memcpy(&data, last.payload->get_data_ptr(),
+                        std::min<std::size_t>(layout_.entry_bytes, sizeof data));
+        }
+        signals.value("address", 32, last_address_);
+        signals.value("entries", 4, entries);
+        signals.value("data", 64, data);
+    });
+    signals.flag("slot_busy", activity_.state() == State::busy);
+    signals.flag("stalled", waiting_at_doors_ > 0);
+    signals.value("queued", 16, queued_);
+    signals.value("answers_due", 16, answers_);
 }
 
 }  // namespace tessera

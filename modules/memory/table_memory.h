@@ -47,10 +47,12 @@ class TableMemory : public Unit {
 
     std::string holds() const override { return count_of(size_t{queued_} + answers_, "request"); }
     std::uint64_t occupied_cycles() const override { return slots_taken_ / slots_per_cycle(); }
+    void trace(Signals& signals) const override;
 
   private:
     struct Request {
         tlm::tlm_generic_payload* payload = nullptr;
+        const GatherExtension* gather = nullptr;
         int id = 0;
         std::uint64_t answer_at = 0;
     };
@@ -63,7 +65,7 @@ class TableMemory : public Unit {
     void step() override;
     void admit(std::uint64_t cycle);
     void serve(const Request& request, std::uint64_t cycle);
-    void read(tlm::tlm_generic_payload& payload);
+    void read(tlm::tlm_generic_payload& payload, const GatherExtension* gather);
     bool covers(std::uint64_t address, std::uint64_t length) const;
 
     datapath::TableLayout layout_;
@@ -84,6 +86,7 @@ class TableMemory : public Unit {
     std::vector<Request> answer_ring_;      // served, not yet answered, in order
     std::size_t answer_first_ = 0;
     std::size_t answers_ = 0;
+    std::uint64_t next_free_ = 0;  // cycle in which some bank's port is free
     std::uint64_t busy_until_ = 0;
     std::uint64_t slots_taken_ = 0;
     std::uint64_t last_address_ = 0;

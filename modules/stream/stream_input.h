@@ -37,12 +37,13 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
         clock_ = &clock;
         unit_ = &unit;
         ring_.assign(depth, Payload{});
+        depth_ = depth;
         stalls_ = RandomStalls(stalls, this->name());
     }
 
     bool empty() const { return size_ == 0; }
     std::size_t size() const { return size_; }
-    std::size_t depth() const { return ring_.size(); }
+    std::size_t depth() const { return depth_; }
     /// An item waits at the door.
     bool holds_back() const { return at_the_door_ != nullptr; }
     std::uint64_t taken() const { return taken_; }
@@ -52,14 +53,20 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
 
     /// Removes the first item, and lets the one at the door in.
     void pop() {
-        first_ = first_ + 1 == ring_.size() ? 0 : first_ + 1;
+        first_ = first_ + 1 == depth_ ? 0 : first_ + 1;
         --size_;
         admit();
     }
 
     /// Lets the item at the door in if its time has come and there is room. To be called at the start of each step.
     void admit() {
-        if (at_the_door_ == nullptr || size_ == ring_.size())
+        if (at_the_door_ != nullptr)
+            open_the_door();
+    }
+
+  private:
+    void open_the_door() {
+        if (size_ == depth_)
             return;
         if (clock_->cycle() < door_opens_) {
             clock_->wake_at(*unit_, door_opens_);
@@ -73,7 +80,6 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
         (*this)->nb_transport_bw(payload, phase, delay);
     }
 
-  private:
     tlm::tlm_sync_enum nb_transport_fw(Payload& payload, tlm::tlm_phase& phase,
                                        sc_core::sc_time& delay) override {
         if (phase != tlm::BEGIN_REQ)
@@ -83,15 +89,14 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
         if (unit_ == nullptr)
             stream_protocol_error(this->name(), "nb_transport in functional mode");
         const std::uint64_t wait = stalls_.next() + clock_->cycles(delay);
-        const std::uint64_t now = clock_->cycle();
-        if (wait == 0 && size_ < ring_.size()) {
+        if (wait == 0 && size_ < depth_) {
             push(payload);
-            clock_->wake_at(*unit_, now);
+            clock_->wake(*unit_);
             phase = tlm::END_REQ;
             return tlm::TLM_UPDATED;
         }
         at_the_door_ = &payload;
-        door_opens_ = now + wait;
+        door_opens_ = clock_->cycle() + wait;
         clock_->wake_at(*unit_, door_opens_);
         return tlm::TLM_ACCEPTED;
     }
@@ -102,7 +107,7 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
 
     void push(const Payload& payload) {
         const std::size_t place = first_ + size_;
-        ring_[place < ring_.size() ? place : place - ring_.size()] = payload;
+        ring_[place < depth_ ? place : place - depth_] = payload;
         ++size_;
         ++taken_;
     }
@@ -112,6 +117,7 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
     Clock* clock_ = nullptr;
     Clocked* unit_ = nullptr;
     std::vector<Payload> ring_;
+    std::size_t depth_ = 1;
     std::size_t first_ = 0;
     std::size_t size_ = 0;
     Payload* at_the_door_ = nullptr;

@@ -26,11 +26,11 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
     }
 
     /// Nothing on offer.
-    bool free() const { return !on_offer_; }
+    bool free() const { return on_offer_ == nullptr; }
 
     /// Offers an item, which must stay where it is until free(). True: taken at once.
     bool send(Payload& payload) {
-        if (on_offer_)
+        if (on_offer_ != nullptr)
             stream_protocol_error(this->name(), "BEGIN_REQ before END_REQ of the item before");
         tlm::tlm_phase phase = tlm::BEGIN_REQ;
         sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
@@ -39,21 +39,26 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
             return true;
         if (status != tlm::TLM_ACCEPTED)
             stream_protocol_error(this->name(), "BEGIN_REQ was answered by neither END_REQ nor TLM_ACCEPTED");
-        on_offer_ = true;
+        on_offer_ = &payload;
         return false;
     }
 
     /// The module that takes the items: who blocks this one.
     const sc_core::sc_object* consumer() const {
-        const auto* target = dynamic_cast<const sc_core::sc_object*>(this->get_base_port().get_interface());
-        return target == nullptr ? nullptr : target->get_parent_object();
+        if (consumer_ == nullptr) {
+            const auto* target =
+                dynamic_cast<const sc_core::sc_object*>(this->get_base_port().get_interface());
+            consumer_ = target == nullptr ? nullptr : target->get_parent_object();
+        }
+        return consumer_;
     }
 
   private:
-    tlm::tlm_sync_enum nb_transport_bw(Payload&, tlm::tlm_phase& phase, sc_core::sc_time& delay) override {
-        if (!on_offer_ || phase != tlm::END_REQ)
+    tlm::tlm_sync_enum nb_transport_bw(Payload& payload, tlm::tlm_phase& phase,
+                                       sc_core::sc_time& delay) override {
+        if (on_offer_ != &payload || phase != tlm::END_REQ)
             stream_protocol_error(this->name(), "a phase other than the END_REQ that was due");
-        on_offer_ = false;
+        on_offer_ = nullptr;
         if (unit_ != nullptr)
             clock_->wake_at(*unit_, clock_->cycle() + clock_->cycles(delay));
         return tlm::TLM_ACCEPTED;
@@ -62,7 +67,8 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
 
     Clock* clock_ = nullptr;
     Clocked* unit_ = nullptr;
-    bool on_offer_ = false;
+    const Payload* on_offer_ = nullptr;
+    mutable const sc_core::sc_object* consumer_ = nullptr;  // looked up once: it is slow
 };
 
 }  // namespace tessera

@@ -45,6 +45,9 @@ class ElasticPipeline {
     Item& front() { return ring_[first_].item; }
     const Item& front() const { return ring_[first_].item; }
     Item& at(std::size_t k) { return ring_[place(k)].item; }
+    const Item& at(std::size_t k) const { return ring_[place(k)].item; }
+    /// The item started last, even if it has left since; before the first, an empty one.
+    const Item& newest() const { return ring_[(first_ + size_ + ring_.size() - 1) % ring_.size()].item; }
     bool front_finished(std::uint64_t cycle) const { return size_ > 0 && ring_[first_].finished <= cycle; }
     void finish(std::size_t k, std::uint64_t cycle) { ring_[place(k)].finished = cycle; }
     std::uint64_t latency() const { return latency_; }

@@ -21,6 +21,14 @@ class Fork {
 
     /// Offers the item to those outputs of `mask` that have not been offered it. True: all have taken it.
     bool deliver(Payload& payload, unsigned mask = ~0u) {
+        if (count_ == 1) {
+            if (offered_ != 0 ? !to_[0]->free() : !to_[0]->send(payload)) {
+                offered_ = 1;
+                return false;
+            }
+            offered_ = 0;
+            return true;
+        }
         bool all = true;
         for (std::size_t k = 0; k < count_; ++k) {
             const unsigned bit = 1u << k;

@@ -8,6 +8,7 @@
 #include "modules/stream/work.h"
 #include "modules/unit/elastic_pipeline.h"
 #include "modules/unit/fork.h"
+#include "modules/unit/signals.h"
 #include "modules/unit/unit.h"
 
 namespace tessera {
@@ -35,6 +36,27 @@ class TableStage : public Unit {
         return text;
     }
     std::uint64_t occupied_cycles() const override { return activity_.items_in() * timing_.interval; }
+
+    /// Shows the item started last, the read made last, and the item whose last read came last.
+    void trace(Signals& signals) const override {
+        Unit::trace(signals);
+        signals.input(*input_);
+        signals.group(signals.changed(activity_.items_in()) && !pipeline_.empty(), [&] {
+            signals.work(pipeline_.newest().work);
+            trace_item(signals, pipeline_.newest());
+        });
+        signals.pulse("request", port_->reads());
+        signals.flag("request_held", port_->on_offer());
+        signals.value("requests_under_way", 16, port_->requests_under_way());
+        signals.group(signals.changed(port_->reads()) && port_->under_way(),
+                      [&] { signals.value("address", 32, port_->last_address()); });
+        signals.group(signals.changed(activity_.items_out() + waiting_) && waiting_ > 0, [&] {
+            const Item& item = waiting_ > 0 ? pipeline_.at(waiting_ - 1) : pipeline_.newest();
+            signals.value("answered_triangle", 32, Signals::pass_of(item.work).number);
+            signals.value("answered_part", Signals::part_bits, Signals::part_of(item.work));
+            trace_answered(signals, item);
+        });
+    }
 
   protected:
     TableStage(const sc_core::sc_module_name& name, Clock& clock, const UnitTiming& timing,
@@ -66,6 +88,9 @@ class TableStage : public Unit {
     virtual bool goes_on(const Item&) const { return true; }
     /// False: the item lacks what another unit has to bring; the unit will be called when it comes.
     virtual bool may_begin(const Work&) { return true; }
+    /// Shows operands of an item that was started, and results of one whose reads have come, in traces.
+    virtual void trace_item(Signals&, const Item&) const {}
+    virtual void trace_answered(Signals&, const Item&) const {}
 
     void step() override {
         const std::uint64_t cycle = clock_.cycle();

@@ -1,6 +1,14 @@
 #include "modules/unit/unit.h"
 
+#include "modules/unit/signals.h"
+
 namespace tessera {
+
+void Unit::trace(Signals& signals) const {
+    signals.value("state", 2, static_cast<std::uint64_t>(activity_.state()));
+    signals.unit("blocked_by", activity_.by());
+    signals.value("occupancy", 32, activity_.level());
+}
 
 std::string count_of(std::size_t count, const char* what) {
     if (count == 0)

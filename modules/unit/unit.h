@@ -10,9 +10,11 @@
 
 namespace tessera {
 
+class Signals;
+
 /// What every box of the paper's figures 7 and 8 and every memory is: a module on the clock, with a record of what it
 /// did in each cycle.
-class Unit : public sc_core::sc_module, public Clocked {
+class Unit : public Clocked, public sc_core::sc_module {
   public:
     const Activity& activity() const { return activity_; }
     Activity& activity() { return activity_; }
@@ -25,6 +27,10 @@ class Unit : public sc_core::sc_module, public Clocked {
     virtual std::uint64_t occupied_cycles() const = 0;
 
     bool idle() const { return activity_.level() == 0; }
+
+    /// Declares the unit's signals, or shows their values at the end of a cycle (modules/unit/signals.h). Of every unit:
+    /// its state, who it is blocked by, waits for or lacks, and the items in it.
+    virtual void trace(Signals& signals) const;
 
   protected:
     Unit(const sc_core::sc_module_name& name, Clock& clock) : sc_module(name), clock_(clock) {}

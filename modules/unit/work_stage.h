@@ -6,6 +6,7 @@
 #include "modules/stream/work.h"
 #include "modules/unit/elastic_pipeline.h"
 #include "modules/unit/fork.h"
+#include "modules/unit/signals.h"
 #include "modules/unit/unit.h"
 
 namespace tessera {
@@ -21,6 +22,16 @@ class WorkStage : public Unit {
         return text;
     }
     std::uint64_t occupied_cycles() const override { return activity_.items_in() * timing_.interval; }
+
+    /// Shows the item started last.
+    void trace(Signals& signals) const override {
+        Unit::trace(signals);
+        signals.input(*input_);
+        signals.group(signals.changed(activity_.items_in()) && !pipeline_.empty(), [&] {
+            signals.work(pipeline_.newest());
+            trace_item(signals, pipeline_.newest());
+        });
+    }
 
   protected:
     /// servers: pipelines side by side.
@@ -45,6 +56,8 @@ class WorkStage : public Unit {
     /// False: the item lacks what another unit has to bring; the unit will be called when it comes.
     virtual bool may_begin(const Work&) { return true; }
     virtual const sc_core::sc_object* lacks() const { return nullptr; }
+    /// Shows operands and result of an item that was started, in traces.
+    virtual void trace_item(Signals&, const Work&) const {}
 
     void step() override {
         const std::uint64_t cycle = clock_.cycle();

@@ -1,6 +1,7 @@
 #include "modules/units/calculate_new_p.h"
 
 #include "modules/datapath/midpoint.h"
+#include "modules/unit/signals.h"
 
 namespace tessera {
 
@@ -27,6 +28,17 @@ void CalculateNewP::b_transport(Work& work, sc_core::sc_time& delay) {
     process(work);
     delay += clock_.period() * timing_.latency;
     to_displace_vertex->b_transport(work, delay);
+}
+
+void CalculateNewP::trace_item(Signals& signals, const Work& work) const {
+    const datapath::Vertex& begin = Signals::begin_of(work);
+    const datapath::Vertex& end = Signals::end_of(work);
+    signals.texture("t_i_u", "t_i_v", begin.texture);
+    signals.texture("t_j_u", "t_j_v", end.texture);
+    signals.position("p_i_x", "p_i_y", "p_i_z", begin.position);
+    signals.position("p_j_x", "p_j_y", "p_j_z", end.position);
+    signals.position("p_ij_x", "p_ij_y", "p_ij_z",
+                     Signals::pass_of(work).new_vertex[Signals::index_of(work)].position);
 }
 
 }  // namespace tessera

@@ -29,6 +29,7 @@ class CalculateNewP : public WorkStage {
 
   private:
     void b_transport(Work& work, sc_core::sc_time& delay);
+    void trace_item(Signals& signals, const Work& work) const override;
 };
 
 }  // namespace tessera

@@ -3,6 +3,7 @@
 #include "modules/datapath/displace.h"
 #include "modules/datapath/map_address.h"
 #include "modules/datapath/normalise.h"
+#include "modules/unit/signals.h"
 
 namespace tessera {
 
@@ -69,6 +70,21 @@ void DisplaceVertex::receive(TableItem& item, unsigned) {
                       [&](unsigned k) { displace_vertex(pass.triangle.vertices[k], code); });
     for_each_of_three(item.work.parts, first_edge_part,
                       [&](unsigned k) { displace_edge(pass.new_vertex[k], code); });
+}
+
+void DisplaceVertex::trace_item(Signals& signals, const TableItem& item) const {
+    const datapath::NewVertex& made = Signals::pass_of(item.work).new_vertex[Signals::index_of(item.work)];
+    const datapath::Vertex& vertex = Signals::begin_of(item.work);
+    const bool edge = Signals::is_edge(item.work);
+    signals.texture("t_u", "t_v", edge ? made.texture : vertex.texture);
+    signals.position("p_x", "p_y", "p_z", edge ? made.position : vertex.position);
+}
+
+void DisplaceVertex::trace_answered(Signals& signals, const TableItem& item) const {
+    const unsigned k = Signals::index_of(item.work);
+    signals.position("displaced_x", "displaced_y", "displaced_z",
+                     Signals::is_edge(item.work) ? Signals::pass_of(item.work).new_vertex[k].displaced
+                                                 : Signals::begin_of(item.work).displaced);
 }
 
 }  // namespace tessera

@@ -35,6 +35,8 @@ class DisplaceVertex : public TableStage<TableItem> {
     unsigned begin(TableItem& item) override;
     void ask(TableItem& item, unsigned k) override;
     void receive(TableItem& item, unsigned k) override;
+    void trace_item(Signals& signals, const TableItem& item) const override;
+    void trace_answered(Signals& signals, const TableItem& item) const override;
 
     std::uint64_t address(const datapath::TexCoord& t) const;
     void displace_vertex(datapath::Vertex& vertex, std::uint64_t code);

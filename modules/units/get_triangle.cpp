@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "modules/unit/signals.h"
+
 namespace tessera {
 
 GetTriangle::GetTriangle(const sc_core::sc_module_name& name, Clock& clock, const Timing& timing,
@@ -149,6 +151,29 @@ std::string GetTriangle::holds() const {
     if (!from_triangle_queue.empty())
         text += std::string(text.empty() ? "" : ", ") + "a triangle from the queue";
     return text;
+}
+
+void GetTriangle::trace(Signals& signals) const {
+    Unit::trace(signals);
+    signals.input(from_host, "from_host");
+    signals.input(from_triangle_queue, "from_triangle_queue");
+    signals.group(signals.changed(activity_.items_in()) && pass_ != nullptr, [&] {
+        const Pass& pass = Signals::pass_of({pass_, 0});
+        signals.value("triangle", 32, pass.number);
+        signals.value("base", 32, pass.triangle.base);
+        signals.value("new_vertices", 3, pass.new_vertices);
+        signals.value("new_normals", 3, pass.new_normals);
+        signals.flag("tested", pass.tested);
+    });
+    signals.group(signals.changed(parts_sent_),
+                  [&] { signals.value("part", Signals::part_bits, Signals::part_of(branches_[0].offered)); });
+    Parts tests_left = 0;
+    for (unsigned k = 1; k < branch_count_; ++k)
+        tests_left = static_cast<Parts>(tests_left | branches_[k].left);
+    signals.value("geometry_left", 9, branches_[0].left);
+    signals.value("tests_left", 9, tests_left);
+    signals.value("host_triangles", 32, host_triangles_);
+    signals.value("queue_triangles", 32, queue_triangles_);
 }
 
 }  // namespace tessera

@@ -46,6 +46,7 @@ class GetTriangle : public Unit {
 
     std::string holds() const override;
     std::uint64_t occupied_cycles() const override { return parts_sent_; }
+    void trace(Signals& signals) const override;
 
     /// Sets what has to be sent on: the unit's whole decision.
     static void prepare(datapath::TrianglePass& pass);

@@ -1,6 +1,7 @@
 #include "modules/units/lighting.h"
 
 #include "modules/datapath/light.h"
+#include "modules/unit/signals.h"
 
 namespace tessera {
 
@@ -59,6 +60,20 @@ void Lighting::step() {
 
 std::string Lighting::holds() const {
     return count_of(pipeline_.size() + from_pass_or_tessellate.size(), "triangle");
+}
+
+void Lighting::trace(Signals& signals) const {
+    Unit::trace(signals);
+    signals.input(from_pass_or_tessellate);
+    signals.group(signals.changed(activity_.items_in()), [&] {
+        const LitTriangle& lit = pipeline_.newest();
+        signals.screen("screen_0_x", "screen_0_y", lit.corners[0].screen);
+        signals.screen("screen_1_x", "screen_1_y", lit.corners[1].screen);
+        signals.screen("screen_2_x", "screen_2_y", lit.corners[2].screen);
+        signals.value("intensity_0", 8, lit.corners[0].intensity);
+        signals.value("intensity_1", 8, lit.corners[1].intensity);
+        signals.value("intensity_2", 8, lit.corners[2].intensity);
+    });
 }
 
 }  // namespace tessera

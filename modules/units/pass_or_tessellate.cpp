@@ -5,6 +5,7 @@
 
 #include "modules/datapath/cull.h"
 #include "modules/datapath/edge_tests.h"
+#include "modules/unit/signals.h"
 
 namespace tessera {
 
@@ -225,6 +226,29 @@ PassOrTessellate::Way PassOrTessellate::finish(datapath::Triangle& triangle) {
         return Way::dropped;
     }
     return Way::lighting;
+}
+
+/// Shows the triangle decided last; of one that only fetched normals, tests and split as it brought them.
+void PassOrTessellate::trace(Signals& signals) const {
+    Unit::trace(signals);
+    signals.input(from_transform, "from_transform");
+    for (const StreamInput<Work>& input : from_tessellation_tests)
+        signals.input(input, input.basename());
+    signals.value("incomplete", 16, incomplete_count_);
+    const std::uint64_t decided_so_far = counts_.passes + counts_.normal_passes;
+    signals.pulse("decided", decided_so_far);
+    signals.group(signals.changed(decided_so_far) && !pipeline_.empty(), [&] {
+        const Decided& last = pipeline_.newest();
+        const Pass& pass = Signals::pass_of(last.work);
+        signals.value("triangle", 32, pass.number);
+        signals.value("base", 32, pass.triangle.base);
+        signals.value("tests_0", 5, pass.edges[0].tests);
+        signals.value("tests_1", 5, pass.edges[1].tests);
+        signals.value("tests_2", 5, pass.edges[2].tests);
+        signals.value("split", 3, pass.split);
+        signals.value("way", 2, static_cast<std::uint64_t>(last.way));
+    });
+    signals.value("finished", 32, counts_.finished);
 }
 
 }  // namespace tessera

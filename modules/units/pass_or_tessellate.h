@@ -66,6 +66,7 @@ class PassOrTessellate : public Unit {
 
     std::string holds() const override;
     std::uint64_t occupied_cycles() const override { return activity_.items_out() * timing_.interval; }
+    void trace(Signals& signals) const override;
 
   private:
     enum class Way : std::uint8_t { tessellation, lighting, dropped };

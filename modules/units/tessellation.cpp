@@ -1,6 +1,7 @@
 #include "modules/units/tessellation.h"
 
 #include "modules/datapath/tessellate.h"
+#include "modules/unit/signals.h"
 
 namespace tessera {
 
@@ -61,6 +62,15 @@ std::string Tessellation::holds() const {
     if (!from_pass_or_tessellate.empty())
         text += std::string(text.empty() ? "" : ", ") + "a triangle that waits";
     return text;
+}
+
+void Tessellation::trace(Signals& signals) const {
+    Unit::trace(signals);
+    signals.input(from_pass_or_tessellate);
+    signals.group(signals.changed(activity_.items_in()),
+                  [&] { signals.value("base", 32, children_[0].base); });
+    signals.value("children", 3, made_);
+    signals.value("children_left", 3, made_ - sent_);
 }
 
 }  // namespace tessera

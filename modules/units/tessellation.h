@@ -38,6 +38,7 @@ class Tessellation : public Unit {
 
     std::string holds() const override;
     std::uint64_t occupied_cycles() const override { return children() * timing_.interval; }
+    void trace(Signals& signals) const override;
 
   private:
     void b_transport(Work& work, sc_core::sc_time& delay);

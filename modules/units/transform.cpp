@@ -1,6 +1,7 @@
 #include "modules/units/transform.h"
 
 #include "modules/datapath/transform.h"
+#include "modules/unit/signals.h"
 
 namespace tessera {
 
@@ -49,6 +50,15 @@ void Transform::b_transport(Work& work, sc_core::sc_time& delay) {
     if ((work.parts & vertex_parts) != 0)
         to_view_test[0]->b_transport(work, delay);
     to_pass_or_tessellate->b_transport(work, delay);
+}
+
+void Transform::trace_item(Signals& signals, const Work& work) const {
+    const datapath::NewVertex& made = Signals::pass_of(work).new_vertex[Signals::index_of(work)];
+    const datapath::Vertex& vertex = Signals::begin_of(work);
+    const bool edge = Signals::is_edge(work);
+    signals.position("displaced_x", "displaced_y", "displaced_z", edge ? made.displaced : vertex.displaced);
+    signals.screen("screen_x", "screen_y", edge ? made.screen : vertex.screen);
+    signals.value("w", 32, static_cast<std::uint64_t>((edge ? made.screen : vertex.screen).w));
 }
 
 }  // namespace tessera

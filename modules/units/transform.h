@@ -43,6 +43,7 @@ class Transform : public WorkStage {
     void b_transport(Work& work, sc_core::sc_time& delay);
     void process(const Work& work) override;
     unsigned targets(const Work& work) const override;
+    void trace_item(Signals& signals, const Work& work) const override;
 
     const datapath::Registers& registers_;
     unsigned pipelines_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "modules/datapath/pack_triangle.h"
+#include "modules/unit/signals.h"
 
 namespace tessera {
 
@@ -199,6 +200,26 @@ std::string TriangleQueue::holds() const {
         text += std::string(text.empty() ? "" : "; ") + "no place for the next" +
                 (design_.capacity == 0 ? "" : " (capacity " + std::to_string(design_.capacity) + ")");
     return text;
+}
+
+/// Shows the levels, what goes off chip and comes back, and the triangle that was read from the store last.
+void TriangleQueue::trace(Signals& signals) const {
+    Unit::trace(signals);
+    signals.input(from_tessellation);
+    signals.value("level", 32, waiting());
+    signals.value("on_chip", 32, store_.size());
+    signals.value("off_chip", 32, off_chip_);
+    signals.value("coming_back", 16, refills_);
+    signals.flag("takes_host_triangles", takes_host_triangles());
+    signals.group(signals.changed(activity_.items_out() + leaving_.size()), [&] {
+        const datapath::Triangle& triangle = leaving_.newest();
+        signals.value("base", 32, triangle.base);
+        signals.flag("finished", triangle.finished);
+    });
+    signals.pulse("spill", spilled_);
+    signals.pulse("refill", refilled_);
+    signals.flag("request_held", off_chip_memory.on_offer());
+    signals.value("requests_under_way", 16, off_chip_memory.under_way());
 }
 
 }  // namespace tessera

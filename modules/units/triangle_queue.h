@@ -74,6 +74,7 @@ class TriangleQueue : public Unit, public TriangleQueueLevel {
 
     std::string holds() const override;
     std::uint64_t occupied_cycles() const override { return taken_ * timing_.interval; }
+    void trace(Signals& signals) const override;
 
   private:
     void b_transport(datapath::Triangle& triangle, sc_core::sc_time& delay);

@@ -123,7 +123,7 @@ struct Job {
         std::string trace_units;        // only units whose name contains one of these words
     } output;
 
-    Mode mode = Mode::functional;
+    Mode mode = Mode::timed;
 
     std::string folder;  // not a key: where the job file lies; empty: the current directory
 };

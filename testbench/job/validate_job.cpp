@@ -165,6 +165,23 @@ void check_light(const Job::Hardware& hardware, Faults& faults) {
                   text_of(hardware.light));
 }
 
+void check_hardware(const Job::Hardware& hardware, Faults& faults) {
+    faults.unless(
+        hardware.tests_units != 2,
+        "`hardware.tests_units` = 2: a design has 1 Tessellation Tests unit, or 3, one for each edge");
+}
+
+void check_traces(const Job& job, Faults& faults) {
+    const Job::Output& output = job.output;
+    const char* const wanted = output.vcd ? "vcd" : output.timeline ? "timeline" : nullptr;
+    faults.unless(wanted == nullptr || job.mode == Mode::timed,
+                  "`output.{}` = true, but only timed mode has cycles to show: set mode = \"timed\"",
+                  wanted == nullptr ? "" : wanted);
+    faults.unless(output.trace_from <= output.trace_to,
+                  "`output.trace_from` = {} comes after `output.trace_to` = {}: lower it, or raise trace_to",
+                  output.trace_from, output.trace_to);
+}
+
 }  // namespace
 
 void validate(const Job& job) {
@@ -178,6 +195,8 @@ void validate(const Job& job) {
     check_camera(job, faults);
     check_formats(job, faults);
     check_light(job.hardware, faults);
+    check_hardware(job.hardware, faults);
+    check_traces(job, faults);
     faults.raise();
 }
 

@@ -17,6 +17,52 @@ std::filesystem::path default_data_folder() {
                                        : std::filesystem::path(TESSERA_SOURCE_DIR) / ".." / "shared" / "data";
 }
 
+/// What the options for traces stand for: settings, and a flag of the command's own.
+class TraceOptions {
+  public:
+    void add_to(CLI::App& run) {
+        const std::string group = "Traces (mode = \"timed\")";
+        run.add_flag("--vcd", vcd_, "write waveforms, trace.vcd: as --set output.vcd=true")->group(group);
+        run.add_flag("--fst", fst_, "and compress them, trace.fst (with vcd2fst of the package gtkwave)")
+            ->group(group);
+        run.add_flag("--timeline", timeline_,
+                     "write activity per unit, timeline.json: as --set output.timeline=true")
+            ->group(group);
+        run.add_option("--trace", window_,
+                       "cycles FROM:TO of both: as --set output.trace_from=FROM --set output.trace_to=TO")
+            ->group(group);
+        run.add_option(
+               "--trace-units", units_,
+               "waveforms of units whose name contains one of these words: as --set output.trace_units")
+            ->group(group);
+    }
+
+    void apply_to(Command& command) const {
+        command.fst = fst_;
+        const auto set = [&](const char* key, const std::string& value) {
+            command.settings.push_back(fmt::format("output.{}={}", key, value));
+        };
+        if (vcd_ || fst_)
+            set("vcd", "true");
+        if (timeline_)
+            set("timeline", "true");
+        if (!window_.empty()) {
+            const std::size_t colon = window_.find(':');
+            if (colon == std::string::npos || colon == 0 || colon + 1 == window_.size())
+                throw InputError(
+                    fmt::format("--trace {}: wanted are two cycles, FROM:TO, as in --trace 0:5000", window_));
+            set("trace_from", window_.substr(0, colon));
+            set("trace_to", window_.substr(colon + 1));
+        }
+        if (!units_.empty())
+            set("trace_units", units_);
+    }
+
+  private:
+    bool vcd_ = false, fst_ = false, timeline_ = false;
+    std::string window_, units_;
+};
+
 }  // namespace
 
 std::optional<Command> read_command_line(int argc, const char* const* argv) {
@@ -42,6 +88,9 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     run->add_flag("--dump-config", command.dump_config,
                   "print the effective job, every key documented, and stop");
 
+    TraceOptions traces;
+    traces.add_to(*run);
+
     CLI::App* const keys =
         app.add_subcommand("keys", "print every key of a job file: unit, default, range, meaning");
 
@@ -59,6 +108,7 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
         throw InputError("JOB is empty: name a job file, or leave it out for the default job");
     command.verb = keys->parsed() ? Command::Verb::keys : Command::Verb::run;
     command.data_folder = data;
+    traces.apply_to(command);
     return command;
 }
 

@@ -13,6 +13,7 @@ struct Command {
     std::vector<std::string> settings;  ///< --set a.b=value, in order
     std::filesystem::path data_folder;  ///< what `data:` paths begin at
     bool dump_config = false;           ///< print the effective job and stop
+    bool fst = false;                   ///< waveforms also as FST
 };
 
 /// Reads the command line. Prints help or version itself and gives nothing then. Throws InputError on wrong usage.

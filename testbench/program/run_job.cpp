@@ -1,14 +1,13 @@
 #include "testbench/program/run_job.h"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <system_error>
+#include <string>
+#include <vector>
 
 #include "testbench/check/scoreboard.h"
 #include "testbench/common/atomic_file.h"
@@ -17,13 +16,16 @@
 #include "testbench/job/dump_job.h"
 #include "testbench/job/read_job.h"
 #include "testbench/job/validate_job.h"
+#include "testbench/program/output_folder.h"
 #include "testbench/program/progress.h"
 #include "testbench/program/summary.h"
+#include "testbench/program/traces.h"
 #include "testbench/render/render_run.h"
 #include "testbench/report/conformance_report.h"
 #include "testbench/report/obj_writer.h"
 #include "testbench/report/ply_writer.h"
 #include "testbench/report/statistics.h"
+#include "testbench/report/timing_report.h"
 
 namespace tessera {
 
@@ -35,32 +37,6 @@ Job load_job(const Command& command) {
         apply_setting(job, setting);
     validate(job);
     return job;
-}
-
-[[noreturn]] void refuse_run_folder(const std::filesystem::path& folder, const std::string& why) {
-    throw InputError(
-        fmt::format("output.folder = \"{}\": cannot write there: {}; choose another", folder.string(), why));
-}
-
-/// Finds out before a long run whether its folder can be written, and leaves no trace: a run that fails leaves nothing.
-void check_run_folder(const std::filesystem::path& folder) {
-    std::error_code error;
-    std::filesystem::path there = std::filesystem::absolute(folder).lexically_normal();
-    while (!std::filesystem::exists(std::filesystem::symlink_status(there, error)) &&
-           there.has_relative_path())
-        there = there.parent_path();
-    if (!std::filesystem::is_directory(there, error))
-        refuse_run_folder(folder, fmt::format("{} is no folder", there.string()));
-    if (access(there.c_str(), W_OK | X_OK) != 0)
-        refuse_run_folder(folder,
-                          fmt::format("{}: {}", there.string(), std::generic_category().message(errno)));
-}
-
-void make_run_folder(const std::filesystem::path& folder) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error)
-        refuse_run_folder(folder, error.message());
 }
 
 /// What was mended in the job's mesh and map on the way in joins the setup's own remarks.
@@ -103,12 +79,47 @@ void write_run_folder(const std::filesystem::path& folder, const Job& job, const
             std::filesystem::remove(folder / name);
         return wanted_now;
     };
+    const bool timed = job.mode == Mode::timed;
+    if (wanted(timed, "timing.txt"))
+        write_file(folder / "timing.txt", timing_text(simulation));
+    if (wanted(timed, "queue_levels.csv"))
+        write_file(folder / "queue_levels.csv",
+                   queue_levels_csv(simulation.pipeline.triangle_queue.history()));
+    wanted(job.output.vcd, "trace.vcd");  // these are there already
+    wanted(job.output.vcd, "trace.fst");
+    wanted(job.output.timeline, "timeline.json");
     if (wanted(job.output.ply, "mesh.ply"))
         write_ply(folder / "mesh.ply", simulation.monitor.mesh, units);
     if (wanted(job.output.obj, "mesh.obj"))
         write_obj(folder / "mesh.obj", simulation.monitor.mesh, units);
     if (wanted(job.output.picture, "picture.png"))
         write_picture(folder / "picture.png", simulation.monitor.mesh, setup, job);
+}
+
+/// What a run that got stuck leaves: its traces, the job, and nothing of a run before it.
+void write_stuck_run(const std::filesystem::path& folder, const Job& job) {
+    for (const char* const name : {"statistics.json", "statistics.csv", "conformance.txt", "conformance.json",
+                                   "timing.txt", "queue_levels.csv", "mesh.ply", "mesh.obj", "picture.png"})
+        std::filesystem::remove(folder / name);
+    if (!job.output.vcd)
+        std::filesystem::remove(folder / "trace.vcd");
+    if (!job.output.timeline)
+        std::filesystem::remove(folder / "timeline.json");
+    write_file(folder / "job.toml", dump_job(job, folder));
+}
+
+/// The traces' names and windows, and trace.fst if asked for.
+std::string finish_traces(Traces& traces, const Command& command, const std::filesystem::path& folder) {
+    traces.finish();
+    std::string text;
+    for (const std::string& line : traces.text())
+        text += fmt::format("  {}\n", line);
+    std::filesystem::remove(folder / "trace.fst");  // of a run before
+    if (command.fst) {
+        const std::string fault = make_fst(folder);
+        text += fmt::format("  {}\n", fault.empty() ? "trace.fst: the same, compressed" : fault);
+    }
+    return text;
 }
 
 const char* verdict(const Checks& checks) {
@@ -126,7 +137,7 @@ ExitCode run_job(const Command& command) {
         return ExitCode::fine;
     }
     const std::filesystem::path folder = job.output.folder;
-    check_run_folder(folder);
+    check_output_folder(folder);
 
     Progress progress;
     progress.show("reading mesh and map", 0);
@@ -148,12 +159,28 @@ ExitCode run_job(const Command& command) {
             static_cast<double>(simulation.host.sent()) / static_cast<double>(simulation.host.total()));
     });
 
+    std::optional<OutputFolder> output;
+    std::optional<Traces> traces;
+    if (Traces::wanted(job)) {
+        const std::vector<const Unit*> units = units_to_trace(job.output.trace_units, simulation.pipeline);
+        output.emplace(folder);
+        traces.emplace(job, folder, simulation, units);
+    }
+
     const Stopwatch stopwatch;
     const std::string stuck = simulation.run();
     const double seconds = stopwatch.seconds();
+    const std::string traces_text = traces ? finish_traces(*traces, command, folder) : std::string{};
+    if (output)
+        output->keep();
     if (!stuck.empty()) {
         progress.clear();
         fmt::print(stderr, "tessera: {}", stuck);
+        if (traces) {
+            write_stuck_run(folder, job);
+            fmt::print(stderr, "{}  in {}\n", traces_text,
+                       std::filesystem::absolute(folder).lexically_normal().string());
+        }
         return ExitCode::deadlock;
     }
 
@@ -173,11 +200,11 @@ ExitCode run_job(const Command& command) {
         checks.end_to_end = compare_end_to_end(setup, *golden, mesh);
     }
     progress.show("writing", 0.99);
-    make_run_folder(folder);
+    OutputFolder(folder).keep();
     write_run_folder(folder, job, setup, simulation, checks);
     progress.clear();
 
-    fmt::print("{}", summary(setup, simulation, checks, seconds));
+    fmt::print("{}{}", summary(setup, simulation, checks, seconds), traces_text);
     fmt::print("  {}\n  results in {}\n", verdict(checks),
                std::filesystem::absolute(folder).lexically_normal().string());
     return checks.passed() ? ExitCode::fine : ExitCode::check_failed;

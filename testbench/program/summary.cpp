@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "modules/datapath/widths.h"
+#include "testbench/report/timing_report.h"
 
 namespace tessera {
 
@@ -79,6 +80,26 @@ std::string checks_rows(const Checks& checks) {
     return text;
 }
 
+std::string timing_rows(const Simulation& simulation) {
+    const Pipeline& p = simulation.pipeline;
+    const auto per = [&](std::uint64_t count) {
+        return count == 0 ? 0.0 : static_cast<double>(simulation.cycles()) / static_cast<double>(count);
+    };
+    const double period = simulation.setup.design.timing.cycle_picoseconds * 1e-12;
+    std::string text = row(
+        "cycles",
+        fmt::format("{}: {:.1f} a finished triangle, {:.1f} a pass, {:.1f} an edge; {:.3g} ms at {:.4g} MHz",
+                    count(simulation.cycles()), per(p.pass_or_tessellate.counts().finished),
+                    per(p.pass_or_tessellate.counts().passes), per(p.edges_tested()),
+                    static_cast<double>(simulation.cycles()) * period * 1e3, 1e-6 / period));
+    text += row("bottleneck", bottleneck_text(simulation));
+    if (p.triangle_queue.spilled() > 0)
+        text +=
+            row("spilled", fmt::format("{} triangles, at most {} on chip", count(p.triangle_queue.spilled()),
+                                       count(p.triangle_queue.on_chip_high_water_mark())));
+    return text;
+}
+
 }  // namespace
 
 std::string summary(const Setup& setup, const Simulation& simulation, const Checks& checks, double seconds) {
@@ -114,8 +135,12 @@ std::string summary(const Setup& setup, const Simulation& simulation, const Chec
     const datapath::Saturations saturations = p.saturations();
     text += row("saturations", saturations_text(saturations));
     text += checks_rows(checks);
-    text += row("functional mode", fmt::format("{:.2f} s, {:.2f} million edges a second, checking included",
-                                               seconds, static_cast<double>(edges) / seconds / 1e6));
+    const bool timed = setup.design.transport == Transport::non_blocking;
+    if (timed)
+        text += timing_rows(simulation);
+    text += row(timed ? "timed mode" : "functional mode",
+                fmt::format("{:.2f} s, {:.2f} million edges a second, checking included", seconds,
+                            static_cast<double>(edges) / seconds / 1e6));
     for (const std::string& remark : setup.remarks)
         text += fmt::format("  note: {}\n", remark);
     return text;

@@ -8,6 +8,7 @@
 
 #include "modules/datapath/reciprocal.h"
 #include "modules/datapath/widths.h"
+#include "testbench/report/timing_statistics.h"
 
 namespace tessera {
 
@@ -161,7 +162,10 @@ std::vector<Figure> collect_statistics(const Setup& setup, const Simulation& sim
     };
 
     Collector run("run");
-    run.add("mode", "functional", "", "functional: blocking transport, not timed; no cycles are claimed");
+    const bool timed = setup.design.transport == Transport::non_blocking;
+    run.add("mode", timed ? "timed" : "functional", "",
+            timed ? "timed: non-blocking transport, to the cycle"
+                  : "functional: blocking transport, not timed; no cycles are claimed");
     run.add("edges_tested", edges, "edge", "edges that went through Tessellation Tests");
     run.add("edges_split", counts.edges_split, "edge", "of which split");
     run.add("triangles_finished", counts.finished, "triangle", "left the machine, culled ones included");
@@ -243,6 +247,11 @@ std::vector<Figure> collect_statistics(const Setup& setup, const Simulation& sim
     take(std::move(saturated));
 
     take(mesh_figures(simulation.monitor.mesh));
+    if (timed) {
+        std::vector<Figure> figures = timing_figures(simulation);
+        all.insert(all.end(), std::make_move_iterator(figures.begin()),
+                   std::make_move_iterator(figures.end()));
+    }
     return all;
 }
 
@@ -258,13 +267,27 @@ std::string statistics_json(const std::vector<Figure>& figures) {
     return json.dump(2) + "\n";
 }
 
+namespace {
+
+/// RFC 4180: words with a comma or a quotation mark stand in quotation marks.
+std::string csv_cell(const std::string& value) {
+    if (value.find_first_of(",\"\n") == std::string::npos)
+        return value;
+    std::string cell = "\"";
+    for (const char c : value)
+        cell += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return cell + "\"";
+}
+
+}  // namespace
+
 std::string statistics_csv(const std::vector<Figure>& figures) {
     std::string heading, values;
     for (const Figure& figure : figures) {
         const char* comma = heading.empty() ? "" : ",";
         heading += fmt::format("{}{}.{}", comma, figure.group, figure.name);
-        values +=
-            std::visit([&](const auto& value) { return fmt::format("{}{}", comma, value); }, figure.value);
+        values += comma + csv_cell(std::visit([](const auto& value) { return fmt::format("{}", value); },
+                                              figure.value));
     }
     return heading + "\n" + values + "\n";
 }

@@ -1,5 +1,6 @@
 #include "testbench/tests/run_folder.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <sstream>
 
@@ -15,10 +16,16 @@ nlohmann::ordered_json read_json(const std::filesystem::path& file) {
 }
 
 std::vector<std::string> cells_of(const std::string& row) {
-    std::vector<std::string> cells;
-    std::istringstream in(row);
-    for (std::string cell; std::getline(in, cell, ',');)
-        cells.push_back(cell);
+    std::vector<std::string> cells(1);
+    bool quoted = false;
+    for (const char c : row) {
+        if (c == '"')
+            quoted = !quoted;
+        else if (c == ',' && !quoted)
+            cells.emplace_back();
+        else
+            cells.back() += c;
+    }
     return cells;
 }
 
@@ -104,13 +111,18 @@ void require_consistent(const RunFolder& run) {
         CHECK_FALSE(content.empty());
         names.push_back(name);
     }
-    std::vector<std::string> wanted{"conformance.json", "conformance.txt", "job.toml",
-                                    "mesh.obj",         "mesh.ply",        "picture.png",
-                                    "statistics.csv",   "statistics.json"};
-    if (files.at("job.toml").find("picture = false\n") != std::string::npos)
-        wanted.erase(wanted.begin() + 5);
-    else
+    std::vector<std::string> wanted{"conformance.json", "conformance.txt", "job.toml",       "mesh.obj",
+                                    "mesh.ply",         "statistics.csv",  "statistics.json"};
+    const auto job_says = [&](const char* words) {
+        return files.at("job.toml").find(words) != std::string::npos;
+    };
+    if (!job_says("picture = false\n")) {
+        wanted.push_back("picture.png");
         CHECK(files.at("picture.png").rfind("\x89PNG\r\n\x1a\n", 0) == 0);
+    }
+    if (job_says("mode = \"timed\"\n"))
+        wanted.insert(wanted.end(), {"queue_levels.csv", "timing.txt"});
+    std::sort(wanted.begin(), wanted.end());
     CHECK(names == wanted);
 
     // Triangles: what was finished, was listened to, was lit and was written.

@@ -44,3 +44,23 @@ TEST_CASE("functional mode with the scoreboard allocates nothing per edge") {
     simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
     expect_no_allocation(setup, simulation);
 }
+
+TEST_CASE("timed mode allocates nothing per edge") {
+    Job job;
+    job.mode = Mode::timed;
+    const Setup setup = make_setup(job, load_mesh(job, {}), load_map(job, {}));
+    Simulation simulation(setup, 1'000'000);
+    expect_no_allocation(setup, simulation);
+}
+
+TEST_CASE("timed mode with three tests units, stalls and a queue that spills allocates nothing per edge") {
+    Job job;
+    job.mode = Mode::timed;
+    job.hardware.tests_units = 3;
+    job.hardware.queue_capacity = 100;
+    job.timing.stalls = {1, 100, 16};
+    const Setup setup = make_setup(job, load_mesh(job, {}), load_map(job, {}));
+    Simulation simulation(setup, 1'000'000);
+    expect_no_allocation(setup, simulation);
+    CHECK(simulation.pipeline.triangle_queue.spilled() > 1000);
+}

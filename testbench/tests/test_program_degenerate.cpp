@@ -176,7 +176,7 @@ TEST_CASE("checks and files that are switched off are left out") {
     INFO(attempt.end.text());
     REQUIRE(attempt.end.exit_code == 0);
     const RunFolder run(attempt.here.path() / "out");
-    CHECK(run.files().size() == 5);
+    CHECK(run.files().size() == 7);
     CHECK_FALSE(run.conformance.contains("conformance"));
     CHECK_FALSE(run.conformance.contains("invariants"));
     CHECK_THAT(attempt.end.out, !Contains("all checks passed"));

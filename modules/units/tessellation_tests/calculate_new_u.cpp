@@ -1,6 +1,7 @@
 #include "modules/units/tessellation_tests/calculate_new_u.h"
 
 #include "modules/datapath/midpoint.h"
+#include "modules/unit/signals.h"
 
 namespace tessera {
 
@@ -36,6 +37,10 @@ void CalculateNewU::b_transport(Work& work, sc_core::sc_time& delay) {
         (*test)->b_transport(work, its_delay);
     }
     to_view_test->b_transport(work, delay);
+}
+
+void CalculateNewU::trace_item(Signals& signals, const Work& work) const {
+    signals.edge_textures(work);
 }
 
 }  // namespace tessera

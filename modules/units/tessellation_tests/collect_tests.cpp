@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "modules/datapath/edge_tests.h"
+#include "modules/unit/signals.h"
+
 namespace tessera {
 
 CollectTests::CollectTests(const sc_core::sc_module_name& name, Clock& clock, const Timing& timing)
@@ -67,6 +70,26 @@ std::string CollectTests::holds() const {
     if (leaves_)
         text += "1 edge that Pass or Tessellate does not take, ";
     return text.empty() ? text : text.substr(0, text.size() - 2);
+}
+
+/// Shows the edge that left last.
+void CollectTests::trace(Signals& signals) const {
+    Unit::trace(signals);
+    signals.input(from_normal_test, "from_normal_test");
+    signals.input(from_tex_coord_test, "from_tex_coord_test");
+    signals.input(from_summed_height_test, "from_summed_height_test");
+    signals.input(from_view_test, "from_view_test");
+    signals.group(signals.changed(activity_.items_in()) && (leaves_ || signals.running()), [&] {
+        const unsigned tests = Signals::pass_of(leaving_).edges[Signals::index_of(leaving_)].tests;
+        signals.work(leaving_);
+        signals.flag("normal", (tests & datapath::normal_bit) != 0);
+        signals.flag("summed_height", (tests & datapath::summed_height_bit) != 0);
+        signals.flag("view", (tests & datapath::view_bit) != 0);
+        signals.flag("tex_coord", (tests & datapath::tex_coord_bit) != 0);
+        signals.flag("generation", (tests & datapath::generation_bit) != 0);
+        signals.flag("split", datapath::split_decision(static_cast<std::uint8_t>(tests)));
+    });
+    signals.pulse("edge", activity_.items_in());
 }
 
 }  // namespace tessera

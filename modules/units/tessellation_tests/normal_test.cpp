@@ -6,6 +6,7 @@
 #include "modules/datapath/map_entry.h"
 #include "modules/datapath/midpoint.h"
 #include "modules/datapath/normalise.h"
+#include "modules/unit/signals.h"
 
 namespace tessera {
 
@@ -84,6 +85,21 @@ void NormalTest::receive(TableItem& item, unsigned) {
         clock_.wake(*this);
     });
     for_each_of_three(item.work.parts, first_edge_part, [&](unsigned k) { test_edge(pass, k, entry); });
+}
+
+void NormalTest::trace_item(Signals& signals, const TableItem& item) const {
+    signals.edge_textures(item.work);
+}
+
+/// A corner that was bumped shows as its own edge's ends.
+void NormalTest::trace_answered(Signals& signals, const TableItem& item) const {
+    const datapath::EdgeTests& edge = Signals::pass_of(item.work).edges[Signals::index_of(item.work)];
+    const datapath::Direction& i = Signals::begin_of(item.work).displaced_normal;
+    const bool is_edge = Signals::is_edge(item.work);
+    signals.direction("n_i_x", "n_i_y", "n_i_z", i);
+    signals.direction("n_j_x", "n_j_y", "n_j_z", Signals::end_of(item.work).displaced_normal);
+    signals.direction("n_ij_x", "n_ij_y", "n_ij_z", is_edge ? edge.displaced_normal : i);
+    signals.flag("normal", is_edge && (edge.tests & datapath::normal_bit) != 0);
 }
 
 }  // namespace tessera

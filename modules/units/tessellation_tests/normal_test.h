@@ -44,6 +44,8 @@ class NormalTest : public TableStage<TableItem> {
     void receive(TableItem& item, unsigned k) override;
     bool goes_on(const TableItem& item) const override { return (item.work.parts & edge_parts) != 0; }
     bool may_begin(const Work& work) override;
+    void trace_item(Signals& signals, const TableItem& item) const override;
+    void trace_answered(Signals& signals, const TableItem& item) const override;
 
     std::uint64_t address(const datapath::TexCoord& t) const;
     datapath::Direction bumped(const datapath::Direction& n, const datapath::Direction& t, int handedness,

@@ -1,6 +1,7 @@
 #include "modules/units/tessellation_tests/summed_height_test.h"
 
 #include "modules/datapath/edge_tests.h"
+#include "modules/unit/signals.h"
 
 namespace tessera {
 
@@ -83,6 +84,20 @@ void SummedHeightTest::receive(SummedHeightItem& item, unsigned k) {
                                  [&](unsigned entry) { return summed_height_table.entry(entry); });
     if (k == 2)
         decide(*item.work.pass, item.edge, item.size, item.sums);
+}
+
+void SummedHeightTest::trace_item(Signals& signals, const SummedHeightItem& item) const {
+    signals.edge_textures(item.work);
+    signals.value("width", 16, item.size.width);
+    signals.value("height", 16, item.size.height);
+}
+
+void SummedHeightTest::trace_answered(Signals& signals, const SummedHeightItem& item) const {
+    signals.value("sum_i", 48, item.sums[0]);
+    signals.value("sum_j", 48, item.sums[1]);
+    signals.value("sum_ij", 48, item.sums[2]);
+    const unsigned tests = Signals::pass_of(item.work).edges[item.edge].tests;
+    signals.flag("summed_height", (tests & datapath::summed_height_bit) != 0);
 }
 
 }  // namespace tessera

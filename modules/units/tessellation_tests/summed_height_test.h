@@ -38,6 +38,8 @@ class SummedHeightTest : public TableStage<struct SummedHeightItem> {
     unsigned begin(SummedHeightItem& item) override;
     void ask(SummedHeightItem& item, unsigned k) override;
     void receive(SummedHeightItem& item, unsigned k) override;
+    void trace_item(Signals& signals, const SummedHeightItem& item) const override;
+    void trace_answered(Signals& signals, const SummedHeightItem& item) const override;
     void decide(Pass& pass, unsigned edge, const datapath::RectangleSize& size,
                 const std::array<std::uint64_t, 3>& sums) const;
 

@@ -1,6 +1,7 @@
 #include "modules/units/tessellation_tests/tex_coord_test.h"
 
 #include "modules/datapath/edge_tests.h"
+#include "modules/unit/signals.h"
 
 namespace tessera {
 
@@ -30,6 +31,15 @@ void TexCoordTest::b_transport(Work& work, sc_core::sc_time& delay) {
     process(work);
     delay += clock_.period() * timing_.latency;
     output->b_transport(work, delay);
+}
+
+void TexCoordTest::trace_item(Signals& signals, const Work& work) const {
+    const unsigned tests = Signals::pass_of(work).edges[Signals::index_of(work)].tests;
+    signals.edge_textures(work);
+    signals.value("generation_i", 8, Signals::begin_of(work).generation);
+    signals.value("generation_j", 8, Signals::end_of(work).generation);
+    signals.flag("tex_coord", (tests & datapath::tex_coord_bit) != 0);
+    signals.flag("generation", (tests & datapath::generation_bit) != 0);
 }
 
 }  // namespace tessera

@@ -28,6 +28,7 @@ class TexCoordTest : public WorkStage {
   private:
     void b_transport(Work& work, sc_core::sc_time& delay);
     void process(const Work& work) override;
+    void trace_item(Signals& signals, const Work& work) const override;
 
     const datapath::Registers& registers_;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "modules/datapath/edge_tests.h"
+#include "modules/unit/signals.h"
 
 namespace tessera {
 
@@ -62,6 +63,18 @@ void ViewTest::step() {
         from_transform.pop();
     }
     WorkStage::step();
+}
+
+void ViewTest::trace(Signals& signals) const {
+    WorkStage::trace(signals);
+    signals.input(from_transform, "from_transform");
+}
+
+void ViewTest::trace_item(Signals& signals, const Work& work) const {
+    signals.screen("screen_i_x", "screen_i_y", Signals::begin_of(work).screen);
+    signals.screen("screen_j_x", "screen_j_y", Signals::end_of(work).screen);
+    const unsigned tests = Signals::pass_of(work).edges[Signals::index_of(work)].tests;
+    signals.flag("view", (tests & datapath::view_bit) != 0);
 }
 
 }  // namespace tessera

@@ -28,10 +28,13 @@ class ViewTest : public WorkStage {
     ViewTest(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
              const Timing& timing, unsigned number);
 
+    void trace(Signals& signals) const override;
+
   private:
     void b_transport(Work& work, sc_core::sc_time& delay);
     void b_transport_from_transform(Work& work, sc_core::sc_time& delay);
     void process(const Work& work) override;
+    void trace_item(Signals& signals, const Work& work) const override;
     bool may_begin(const Work& work) override;
     const sc_core::sc_object* lacks() const override { return transform_; }
     void step() override;

@@ -1,0 +1,78 @@
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <systemc>
+#include <vector>
+
+#include "modules/clock/clock.h"
+#include "modules/pipeline.h"
+#include "modules/trace/timeline_writer.h"
+#include "modules/trace/trace_window.h"
+#include "modules/trace/vcd_writer.h"
+#include "modules/unit/activity.h"
+#include "modules/unit/signals.h"
+
+namespace tessera {
+
+/// Shows a pipeline in timed mode to the writers of waveforms and of the timeline, each optional.
+///
+/// Waveforms: the signals of the chosen units (Unit::trace), at the end of each cycle in which they were called; and the
+/// cycle (tessera.clock.cycle) and the passes under way. Timeline: a track per unit with its states, by whom it is
+/// blocked, for whom it waits or who it lacks; the Triangle Queue's level.
+/// Cost: none before and after the window, when the clock and the units are not observed. What is simulated does not
+/// depend on it.
+class Recorder : public CycleObserver {
+  public:
+    /// Before the simulation begins. vcd, timeline: may be null; their windows are this one. units: those whose signals
+    /// are wanted.
+    Recorder(Pipeline& pipeline, VcdWriter* vcd, TimelineWriter* timeline, TraceWindow window,
+             const std::vector<const Unit*>& units);
+    ~Recorder() override;
+
+    /// After the run and the units' Activity::finish, which `cycles` is the length of.
+    void finish(std::uint64_t cycles);
+
+  private:
+    struct TracedUnit {
+        const Unit* unit;
+        std::uint64_t bit;
+        Signals signals;
+    };
+    /// Hands a unit's stretches on, up to the one that reaches the window's end.
+    struct Track : ActivityObserver {
+        Track(Activity& its_activity, TimelineWriter& its_timeline, TimelineWriter::Track its_number,
+              std::uint64_t last_cycle)
+            : activity(its_activity), timeline(its_timeline), number(its_number), last(last_cycle) {}
+        void stretch(State state, const sc_core::sc_object* by, std::uint64_t begin,
+                     std::uint64_t end) override;
+
+        Activity& activity;
+        TimelineWriter& timeline;
+        TimelineWriter::Track number;
+        std::uint64_t last;
+    };
+
+    void begin(std::uint64_t cycle) override;
+    void end_of_cycle(std::uint64_t cycle, std::uint64_t called) override;
+    void show_all();
+    void show_queue_level(std::uint64_t cycle);
+
+    Pipeline& pipeline_;
+    VcdWriter* vcd_;
+    TimelineWriter* timeline_;
+    TraceWindow window_;
+    bool show_every_unit_;
+    UnitNumbers numbers_;
+    VcdWriter::Signal cycle_signal_ = 0;
+    VcdWriter::Signal passes_signal_ = 0;
+    std::vector<TracedUnit> traced_;
+    std::deque<Track> tracks_;
+    std::size_t shown_level_ = 0;
+    bool began_ = false;
+};
+
+/// In words as the timeline has them and waveforms/states.txt: "busy", "waiting for memory", ...
+const char* state_name(State state);
+
+}  // namespace tessera

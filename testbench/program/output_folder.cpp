@@ -1,0 +1,62 @@
+#include "testbench/program/output_folder.h"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <string>
+#include <system_error>
+
+#include "testbench/common/error.h"
+
+namespace tessera {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void refuse(const fs::path& folder, const std::string& why) {
+    throw InputError(
+        fmt::format("output.folder = \"{}\": cannot write there: {}; choose another", folder.string(), why));
+}
+
+bool is_there(const fs::path& path) {
+    std::error_code error;
+    return fs::exists(fs::symlink_status(path, error));
+}
+
+fs::path plain(const fs::path& folder) {
+    const fs::path path = fs::absolute(folder).lexically_normal();
+    return path.has_filename() ? path : path.parent_path();  // without a slash at its end
+}
+
+}  // namespace
+
+void check_output_folder(const fs::path& folder) {
+    std::error_code error;
+    fs::path there = plain(folder);
+    while (!is_there(there) && there.has_relative_path())
+        there = there.parent_path();
+    if (!fs::is_directory(there, error))
+        refuse(folder, fmt::format("{} is no folder", there.string()));
+    if (access(there.c_str(), W_OK | X_OK) != 0)
+        refuse(folder, fmt::format("{}: {}", there.string(), std::generic_category().message(errno)));
+}
+
+OutputFolder::OutputFolder(const fs::path& folder) {
+    for (fs::path path = plain(folder); !is_there(path) && path.has_relative_path();
+         path = path.parent_path())
+        made_.push_back(path);
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error)
+        refuse(folder, error.message());
+}
+
+OutputFolder::~OutputFolder() {
+    std::error_code ignored;
+    for (const fs::path& path : made_)
+        fs::remove(path, ignored);
+}
+
+}  // namespace tessera

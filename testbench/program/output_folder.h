@@ -1,0 +1,25 @@
+#pragma once
+#include <filesystem>
+#include <vector>
+
+namespace tessera {
+
+/// Finds out before a long run whether its folder can be written, and leaves no trace: a run that fails leaves nothing.
+/// Throws InputError.
+void check_output_folder(const std::filesystem::path& folder);
+
+/// A run's folder, made with those above it. What was made goes away again with the object, unless kept or not empty.
+class OutputFolder {
+  public:
+    explicit OutputFolder(const std::filesystem::path& folder);
+    ~OutputFolder();
+    OutputFolder(const OutputFolder&) = delete;
+    OutputFolder& operator=(const OutputFolder&) = delete;
+
+    void keep() { made_.clear(); }
+
+  private:
+    std::vector<std::filesystem::path> made_;  // innermost first
+};
+
+}  // namespace tessera

@@ -1,0 +1,95 @@
+#include <catch2/catch.hpp>
+#include <string>
+#include <vector>
+
+#include "testbench/tests/program_runner.h"
+#include "testbench/tests/run_folder.h"
+
+// Timed mode through the program: exit codes, reports, and two runs that leave the same bytes.
+
+using namespace tessera;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<std::string> timed_run(const std::string& folder, const std::vector<std::string>& settings) {
+    std::vector<std::string> arguments{"run", "--set", "output.folder=" + folder};
+    for (const std::string& setting : settings) {
+        arguments.emplace_back("--set");
+        arguments.push_back(setting);
+    }
+    return arguments;
+}
+
+const std::vector<std::string> small{"map.width=64", "map.height=64", "output.picture=false"};
+
+std::vector<std::string> with(std::vector<std::string> settings, const std::vector<std::string>& more) {
+    settings.insert(settings.end(), more.begin(), more.end());
+    return settings;
+}
+
+}  // namespace
+
+TEST_CASE("timed run: a full queue that stalls ends with exit code 3 and says who holds what") {
+    const TestFolder here;
+    const ProgramEnd end = run_tessera(
+        timed_run("out", {"hardware.queue_capacity=8", "hardware.queue_overflow=stall"}), here.path());
+    INFO(end.text());
+    CHECK(end.exit_code == 3);
+    CHECK_THAT(end.err, Contains("tessera: deadlock: ") && Contains("triangle_queue: ") &&
+                            Contains("(capacity 8)") && Contains("waits for get_triangle") &&
+                            Contains("pass_or_tessellate: ") && Contains("waits for tessellation"));
+}
+
+TEST_CASE("timed run: no progress within the bound ends with exit code 3") {
+    const TestFolder here;
+    const ProgramEnd end =
+        run_tessera(timed_run("out", {"timing.stalls_per_mille=1000", "timing.stalls_longest=100000",
+                                      "limits.cycles_without_progress=2000"}),
+                    here.path());
+    INFO(end.text());
+    CHECK(end.exit_code == 3);
+    CHECK_THAT(end.err, Contains("tessera: livelock: ") && Contains("more than 2000 cycles"));
+}
+
+TEST_CASE("timed run: a queue that may not overflow ends with exit code 4 and names the key") {
+    const TestFolder here;
+    const ProgramEnd end = run_tessera(
+        timed_run("out", {"hardware.queue_capacity=8", "hardware.queue_overflow=error"}), here.path());
+    INFO(end.text());
+    CHECK(end.exit_code == 4);
+    CHECK_THAT(end.err, Contains("hardware.queue_capacity = 8"));
+}
+
+TEST_CASE("timed run: the same job twice leaves the same bytes") {
+    const TestFolder here;
+    const std::vector<std::string> settings =
+        with(small, {"hardware.queue_capacity=8", "hardware.tests_units=3", "timing.stalls_per_mille=200"});
+    for (const char* const folder : {"a", "b"}) {
+        fs::create_directories(here.path() / folder);
+        const ProgramEnd end = run_tessera(timed_run("out", settings), here.path() / folder);
+        INFO(end.text());
+        REQUIRE(end.exit_code == 0);
+        CHECK_THAT(end.out, Contains("all checks passed"));
+    }
+    const RunFolder a(here.path() / "a/out"), b(here.path() / "b/out");
+    require_consistent(a);
+    require_same_files(a.files(), b.files());
+}
+
+TEST_CASE("timed run: the mesh files are functional mode's, byte for byte, stalls or not") {
+    const TestFolder here;
+    const auto mesh_of = [&](const std::string& folder, const std::vector<std::string>& settings) {
+        const ProgramEnd end = run_tessera(timed_run(folder, with(small, settings)), here.path());
+        INFO(end.text());
+        REQUIRE(end.exit_code == 0);
+        auto files = RunFolder(here.path() / folder).files();
+        return files.at("mesh.ply") + files.at("mesh.obj");
+    };
+    const std::string functional = mesh_of("functional", {"mode=functional"});
+    CHECK(functional.size() > 10'000);
+    CHECK(mesh_of("timed", {}) == functional);
+    CHECK(mesh_of("stalled", {"timing.stalls_per_mille=500", "timing.stalls_seed=7",
+                              "hardware.queue_order=lifo", "hardware.queue_capacity=4"}) == functional);
+}

@@ -1,0 +1,307 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "testbench/tests/program_runner.h"
+#include "testbench/tests/run_folder.h"
+#include "testbench/tests/vcd_file.h"
+
+using namespace tessera;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::uint64_t period = 5;  // ns a cycle, VCD time unit 1 ns
+
+/// A timed run of a smaller half donut into the folder "out", with these arguments besides.
+ProgramEnd run_small(const TestFolder& here, const std::vector<std::string>& more,
+                     const ProgramLimits& limits = {}) {
+    std::vector<std::string> arguments{"run", "--set", "tests.generation_limit=4", "--set",
+                                       "output.folder=out"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_tessera(arguments, here.path(), limits);
+}
+
+void require_fine(const ProgramEnd& end) {
+    INFO(end.text());
+    REQUIRE(end.exit_code == 0);
+}
+
+nlohmann::json statistics_of(const TestFolder& here) {
+    return nlohmann::json::parse(read_all(here.path() / "out/statistics.json"));
+}
+
+std::uint64_t count(const nlohmann::json& statistics, const std::string& group, const std::string& name) {
+    return statistics.at(group).at(name).at("value").get<std::uint64_t>();
+}
+
+}  // namespace
+
+TEST_CASE("tracing changes nothing but its own files, and those are the same every time") {
+    const TestFolder here;
+    require_fine(run_small(here, {}));
+    const std::map<std::string, std::string> plain = RunFolder(here.path() / "out").files();
+    require_fine(run_small(here, {"--vcd", "--timeline"}));
+    const std::map<std::string, std::string> traced = RunFolder(here.path() / "out").files();
+    require_fine(run_small(here, {"--vcd", "--timeline"}));
+    require_same_files(traced, RunFolder(here.path() / "out").files());
+    CHECK(traced.size() == plain.size() + 2);
+    for (const auto& [name, content] : plain) {
+        INFO(name);
+        if (name != "job.toml")  // which says that traces were asked for
+            CHECK((content == traced.at(name)));
+    }
+    require_fine(run_small(here, {"--timeline"}));
+    CHECK_FALSE(fs::exists(here.path() / "out/trace.vcd"));
+    require_fine(run_small(here, {}));
+    require_same_files(plain, RunFolder(here.path() / "out").files());
+}
+
+TEST_CASE("a window shows the cycles it names, with the values they have in the whole run") {
+    const TestFolder here;
+    // Also with items held back at random, and with three Tessellation Tests units.
+    const auto design = GENERATE(
+        std::vector<std::string>{},
+        std::vector<std::string>{"--set", "timing.stalls_per_mille=200", "--set", "hardware.tests_units=3"});
+    const auto trace = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), design.begin(), design.end());
+        const ProgramEnd end = run_small(here, arguments);
+        require_fine(end);
+        CHECK_THAT(end.out, Contains("trace.vcd"));
+        return VcdFile(here.path() / "out/trace.vcd");
+    };
+    const VcdFile whole = trace({"--vcd", "--trace", "0:1000000"});
+    const std::uint64_t cycles = count(statistics_of(here), "timing", "cycles");
+    CHECK(whole.begin == 0);
+    CHECK(whole.end == cycles * period);
+    for (const auto& [first, last] : std::vector<std::pair<std::uint64_t, std::uint64_t>>{
+             {0, 0}, {100, 100}, {1000, 1500}, {1001, 1007}, {cycles - 50, cycles + 50}}) {
+        INFO(first << " to " << last);
+        const VcdFile part = trace({"--vcd", "--trace", std::to_string(first) + ":" + std::to_string(last)});
+        CHECK(part.begin == first * period);
+        CHECK(part.end == std::min(last + 1, cycles) * period);
+        REQUIRE(part.signals.size() == whole.signals.size());
+        for (const auto& [name, signal] : part.signals) {
+            INFO(name);
+            const VcdFile::Signal& its = whole[name];
+            // Operands of what came before the window are shown only while still in the unit.
+            const bool operand = signal.initial != its.at(first * period);
+            std::vector<std::pair<std::uint64_t, std::uint64_t>> expected;
+            for (const auto& change : its.changes) {
+                if (change.first > first * period && change.first < (last + 1) * period)
+                    expected.push_back(change);
+            }
+            if (!operand) {
+                CHECK(signal.changes == expected);
+                continue;
+            }
+            CHECK(signal.initial == 0);
+            for (const char* const exact :
+                 {"state", "blocked_by", "occupancy", "valid", "ready", "stalled", "waiting", "level",
+                  "request", "under_way", "served", "slot_busy"})
+                CHECK_FALSE(name.substr(name.rfind('.') + 1) == exact);
+        }
+    }
+}
+
+TEST_CASE("a window that the run does not reach shows how the run ends") {
+    const TestFolder here;
+    const ProgramEnd end = run_small(here, {"--vcd", "--timeline", "--trace", "1000000:1000010"});
+    require_fine(end);
+    CHECK_THAT(end.out, Contains("before cycle 1000000"));
+    const VcdFile vcd(here.path() / "out/trace.vcd");
+    CHECK(vcd.begin == vcd.end);
+    CHECK(vcd["tessera.pass_or_tessellate.finished"].initial ==
+          count(statistics_of(here), "run", "triangles_finished"));
+}
+
+TEST_CASE("waveforms count what the statistics count") {
+    const TestFolder here;
+    require_fine(
+        run_small(here, {"--vcd", "--trace", "0:1000000", "--set", "timing.summed_height_table_ports=4"}));
+    const VcdFile vcd(here.path() / "out/trace.vcd");
+    const nlohmann::json statistics = statistics_of(here);
+    const auto high = [&](const std::string& name) {
+        return vcd["tessera." + name].high_cycles(period, vcd.end);
+    };
+    const auto cycles_in = [&](const std::string& unit, std::uint64_t state) {
+        const VcdFile::Signal& signal = vcd["tessera." + unit + ".state"];
+        VcdFile::Signal is{1, signal.initial == state, {}};
+        for (const auto& [time, value] : signal.changes)
+            is.changes.emplace_back(time, value == state);
+        return is.high_cycles(period, vcd.end);
+    };
+    CHECK(high("triangle_queue.ready") == count(statistics, "triangle_queue", "taken"));
+    CHECK(high("tessellation_tests_0.collect_tests.edge") == count(statistics, "run", "edges_tested"));
+    CHECK(high("pass_or_tessellate.decided") == count(statistics, "pass_or_tessellate", "passes") +
+                                                    count(statistics, "pass_or_tessellate", "normal_passes"));
+    CHECK(high("calculate_new_p.ready") == count(statistics, "timing.calculate_new_p", "items"));
+    CHECK(high("displace_vertex.request") == count(statistics, "displacement_map", "reads"));
+    const char* const names[] = {"starved", "busy", "waiting_for_memory", "blocked"};
+    for (const auto& [group, members] : statistics.items()) {
+        if (group.rfind("timing.", 0) != 0)
+            continue;
+        INFO(group);
+        for (std::uint64_t state = 0; state < 4; ++state)
+            CHECK(cycles_in(group.substr(7), state) == members.at(names[state]).at("value"));
+    }
+}
+
+TEST_CASE("only the units named are traced") {
+    const TestFolder here;
+    require_fine(run_small(here, {"--vcd", "--trace-units", "normal,  triangle_queue"}));
+    for (const auto& [name, signal] : VcdFile(here.path() / "out/trace.vcd").signals) {
+        INFO(name);
+        CHECK((name == "tessera.passes_under_way" || name == "tessera.clock.cycle" ||
+               name.rfind("tessera.tessellation_tests_0.normal_test.", 0) == 0 ||
+               name.rfind("tessera.normal_map.", 0) == 0 || name.rfind("tessera.triangle_queue.", 0) == 0));
+    }
+}
+
+TEST_CASE("the timeline's stretches tile the window and agree with the statistics") {
+    const TestFolder here;
+    const auto [first, last] = GENERATE(std::pair<std::uint64_t, std::uint64_t>{0, 1000000},
+                                        std::pair<std::uint64_t, std::uint64_t>{500, 2000});
+    require_fine(
+        run_small(here, {"--timeline", "--trace", std::to_string(first) + ":" + std::to_string(last)}));
+    const nlohmann::json timeline = nlohmann::json::parse(read_all(here.path() / "out/timeline.json"));
+    const nlohmann::json statistics = statistics_of(here);
+    const std::uint64_t cycles = count(statistics, "timing", "cycles");
+    std::map<int, std::string> tracks;
+    std::map<int, std::uint64_t> reached;
+    std::map<std::pair<std::string, std::string>, std::uint64_t> spent;
+    std::uint64_t counters = 0;
+    const auto in_cycles = [](const nlohmann::json& microseconds) {
+        return static_cast<std::uint64_t>(microseconds.get<double>() * 1000 / period + 0.5);
+    };
+    for (const nlohmann::json& event : timeline.at("traceEvents")) {
+        const std::string phase = event.at("ph");
+        if (phase == "M" && event.at("name") == "thread_name")
+            tracks[event.at("tid")] = event.at("args").at("name");
+        counters += phase == "C";
+        if (phase != "X")
+            continue;
+        const int track = event.at("tid");
+        const std::uint64_t begin = in_cycles(event.at("ts"));
+        CHECK(begin == (reached.count(track) == 0 ? first : reached[track]));
+        reached[track] = begin + in_cycles(event.at("dur"));
+        spent[{tracks.at(track), event.at("name")}] += in_cycles(event.at("dur"));
+        if (event.at("name") == "blocked")
+            CHECK(event.contains("args"));
+    }
+    CHECK(tracks.size() == 18);
+    CHECK(counters > 10);
+    for (const auto& [number, name] : tracks) {
+        INFO(name);
+        CHECK(reached[number] == std::min(last + 1, cycles));
+        if (first > 0)
+            continue;
+        for (const auto& [state, figure] :
+             std::map<std::string, std::string>{{"busy", "busy"},
+                                                {"starved", "starved"},
+                                                {"waiting for memory", "waiting_for_memory"},
+                                                {"blocked", "blocked"}})
+            CHECK((spent[{name, state}]) == count(statistics, "timing." + name, figure));
+    }
+}
+
+TEST_CASE("a deadlock leaves its traces, and nothing of a run before it") {
+    const TestFolder here;
+    const std::vector<std::string> stall{"--set", "hardware.queue_capacity=4",
+                                         "--set", "hardware.queue_overflow=stall",
+                                         "--vcd", "--timeline"};
+    require_fine(run_small(here, {}));
+    const ProgramEnd end = run_small(here, stall);
+    INFO(end.text());
+    REQUIRE(end.exit_code == 3);
+    CHECK_THAT(end.err, Contains("trace.vcd") && Contains("timeline.json") && Contains("out"));
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(here.path() / "out"))
+        names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    CHECK(names == std::vector<std::string>{"job.toml", "timeline.json", "trace.vcd"});
+    const VcdFile vcd(here.path() / "out/trace.vcd");
+    CHECK(vcd["tessera.triangle_queue.stalled"].at(vcd.end) == 1);
+    CHECK(nlohmann::json::parse(read_all(here.path() / "out/timeline.json")).at("traceEvents").size() > 20);
+}
+
+TEST_CASE("traces that cannot be are refused, and leave nothing") {
+    const TestFolder here;
+    const auto refused = [&](const std::vector<std::string>& arguments,
+                             const std::vector<std::string>& words) {
+        std::vector<std::string> all{"run", "--set", "output.folder=out/of/it"};
+        all.insert(all.end(), arguments.begin(), arguments.end());
+        const ProgramEnd end = run_tessera(all, here.path());
+        INFO(end.text());
+        CHECK(end.exit_code == 2);
+        CHECK(end.out.empty());
+        CHECK(lines_of(end.err).size() == 1);
+        for (const std::string& word : words)
+            CHECK_THAT(end.err, Contains(word));
+        CHECK(here.names().empty());
+    };
+    for (const auto& [option, key] : std::vector<std::pair<std::string, std::string>>{
+             {"--vcd", "output.vcd"}, {"--timeline", "output.timeline"}, {"--fst", "output.vcd"}})
+        refused({option, "--set", "mode=functional"}, {key, "mode = \"timed\""});
+    const auto refused_timed = [&](std::vector<std::string> arguments,
+                                   const std::vector<std::string>& words) {
+        arguments.insert(arguments.begin(), "--vcd");
+        refused(arguments, words);
+    };
+    refused_timed({"--trace", "20:10"}, {"output.trace_from", "20", "output.trace_to", "10"});
+    refused_timed({"--trace", "20"}, {"--trace 20", "FROM:TO"});
+    refused_timed({"--trace", ":20"}, {"FROM:TO"});
+    refused_timed({"--trace", "1:2:3"}, {"output.trace_to"});
+    refused_timed({"--trace", "-1:3"}, {"output.trace_from"});
+    refused_timed(
+        {"--trace-units", "transform queue_level"},
+        {"output.trace_units", "\"queue_level\"", "triangle_queue", "tessellation_tests_0.view_test"});
+}
+
+TEST_CASE("a limit that ends a traced run leaves no trace") {
+    const TestFolder here;
+    const ProgramEnd end = run_small(here, {"--vcd", "--timeline", "--set", "limits.triangles=100"});
+    INFO(end.text());
+    CHECK(end.exit_code == 4);
+    CHECK(here.names().empty());
+
+    ProgramLimits limits;
+    limits.file_bytes = 2'000'000;
+    const ProgramEnd full = run_small(here, {"--vcd", "--trace", "0:1000000"}, limits);
+    INFO(full.text());
+    CHECK(full.signal == 0);
+    CHECK(full.exit_code == 4);
+    CHECK(lines_of(full.err).size() == 1);
+    CHECK_THAT(full.err, Contains("out/trace.vcd"));
+    CHECK(here.names().empty());
+}
+
+TEST_CASE("trace.fst: --fst compresses the waveforms, or says which package is missing") {
+    const TestFolder here;
+    fs::create_directory(here.path() / "tools");
+    const auto run = [&] {
+        return run_program({TESSERA_PROGRAM, "run", "--fst", "--set", "tests.generation_limit=2", "--set",
+                            "output.folder=out"},
+                           here.path(), {}, {{"PATH", (here.path() / "tools").string()}});
+    };
+    const ProgramEnd without = run();
+    require_fine(without);
+    CHECK_THAT(without.out, Contains("package gtkwave"));
+    CHECK(fs::exists(here.path() / "out/trace.vcd"));
+    CHECK_FALSE(fs::exists(here.path() / "out/trace.fst"));
+
+    const auto make_tool = [&](const std::string& script) {
+        write_all(here.path() / "tools/vcd2fst", script);
+        fs::permissions(here.path() / "tools/vcd2fst", fs::perms::owner_all);
+    };
+    make_tool("#!/bin/sh\nread line < \"$1\" && echo \"$line\" > \"$2\"\n");
+    require_fine(run());
+    CHECK(read_all(here.path() / "out/trace.fst") == "$version tessera $end\n");
+    make_tool("#!/bin/sh\nexit 1\n");
+    const ProgramEnd failed = run();
+    require_fine(failed);
+    CHECK_THAT(failed.out, Contains("vcd2fst failed"));
+    CHECK_FALSE(fs::exists(here.path() / "out/trace.fst"));
+}

@@ -1,0 +1,193 @@
+#pragma once
+#include <array>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <set>
+#include <string>
+
+#include "testbench/host/inputs.h"
+#include "testbench/host/simulation.h"
+
+/// What must hold of every timed run, whatever its job and its timing.
+namespace tessera::testing {
+
+inline Setup setup_of(const Job& job) {
+    return make_setup(job, load_mesh(job, {}), load_map(job, {}));
+}
+
+inline Job timed_job() {
+    Job job;
+    job.mode = Mode::timed;
+    return job;
+}
+
+/// A plane on which every edge of every triangle splits until the generation limit: base triangles, 4, 16, 64 ... of
+/// each. Passes: base * (4^(limit + 1) - 1) / 3, none for normals only.
+inline Job full_split_job(int side, int limit) {
+    Job job = timed_job();
+    job.mesh.columns = job.mesh.rows = side;
+    job.map.source = MapSource::noise;
+    job.tests.normal_threshold = 0;
+    job.tests.summed_height_threshold = 0;
+    job.tests.view_threshold = 0;
+    job.tests.generation_limit = limit;
+    return job;
+}
+
+/// Everything of a triangle that must not depend on how the machine got there.
+using Key = std::array<std::int64_t, 37>;
+
+inline std::multiset<Key> keys(const EmittedMesh& mesh) {
+    std::multiset<Key> result;
+    for (const EmittedTriangle& triangle : mesh.triangles) {
+        Key key{};
+        std::size_t place = 0;
+        for (const auto& c : triangle.corners)
+            for (const std::int64_t value :
+                 {std::int64_t{c.texture.u}, std::int64_t{c.texture.v}, std::int64_t{c.displaced.x},
+                  std::int64_t{c.displaced.y}, std::int64_t{c.displaced.z},
+                  std::int64_t{c.displaced_normal.x}, std::int64_t{c.displaced_normal.y},
+                  std::int64_t{c.displaced_normal.z}, std::int64_t{c.position.x}, std::int64_t{c.position.y},
+                  std::int64_t{c.generation}})
+                key[place++] = value;
+        key[place++] = triangle.base;
+        key[place++] = triangle.split_by;
+        key[place++] = triangle.stopped_by;
+        key[place] = triangle.culled;
+        result.insert(key);
+    }
+    return result;
+}
+
+/// A unit's four states make up the run, and what it was blocked by makes up the cycles it was blocked.
+inline void require_cycles_add_up(const Unit& unit, std::uint64_t cycles) {
+    INFO(unit.name());
+    const Activity& activity = unit.activity();
+    std::uint64_t sum = 0;
+    for (std::size_t state = 0; state < states; ++state) {
+        const std::uint64_t in_state = activity.cycles_in(static_cast<State>(state));
+        std::uint64_t named = 0;
+        for (const Activity::Share& share : activity.shares())
+            if (share.by != nullptr && share.state == static_cast<State>(state))
+                named += share.cycles;
+        sum += in_state;
+        CAPTURE(state);
+        CHECK(named <= in_state);
+        if (static_cast<State>(state) == State::blocked)
+            CHECK(named == in_state);
+    }
+    CHECK(sum == cycles);
+    CHECK(activity.item_cycles() <= activity.high_water_mark() * cycles);
+}
+
+inline void require_empty(const Unit& unit) {
+    INFO(unit.name());
+    CHECK(unit.activity().items_in() == unit.activity().items_out());
+    CHECK(unit.activity().level() == 0);
+    CHECK(unit.holds().empty());
+}
+
+/// Of the Tessellation Tests units, however many: what `figure` says of each, summed.
+template <class Figure>
+std::uint64_t sum_over_tests(const Pipeline& pipeline, Figure figure) {
+    std::uint64_t sum = 0;
+    for (const TessellationTests& tests : pipeline.tessellation_tests)
+        sum += figure(tests);
+    return sum;
+}
+
+/// What goes into one unit came out of another: triangles, parts, edges, reads.
+inline void require_conservation(const Simulation& simulation) {
+    const Pipeline& p = simulation.pipeline;
+    const auto& counts = p.pass_or_tessellate.counts();
+    const auto in = [](const Unit& unit) { return unit.activity().items_in(); };
+    const std::uint64_t host = p.get_triangle.host_triangles();
+    const std::uint64_t passes = counts.passes;
+    const std::uint64_t rounds = passes + counts.normal_passes;
+
+    // triangles
+    CHECK(host + p.get_triangle.queue_triangles() == rounds);
+    CHECK(in(p.get_triangle) == rounds);
+    CHECK(in(p.pass_or_tessellate) == rounds);
+    CHECK(p.triangle_queue.taken() == p.tessellation.children());
+    CHECK(in(p.triangle_queue) == p.triangle_queue.taken());
+    CHECK(p.get_triangle.queue_triangles() == p.triangle_queue.taken());
+    const auto& made = p.tessellation.made_into();
+    CHECK(in(p.tessellation) == made[1] + made[2] + made[3] + made[4]);
+    CHECK(in(p.tessellation) + counts.finished == rounds);
+    CHECK(made[1] == counts.normal_passes);
+    CHECK(in(p.lighting) == counts.finished - counts.culled);
+    CHECK(simulation.rasteriser.triangles() == in(p.lighting));
+    CHECK(counts.finished == host + counts.edges_split);
+    CHECK(simulation.monitor.mesh.triangles.size() == counts.finished);
+
+    // parts along the geometry branch: a base triangle's vertices, all edges, each new vertex' normal
+    const std::uint64_t parts = p.get_triangle.parts_sent();
+    CHECK(in(p.calculate_new_p) == parts);
+    CHECK(in(p.displace_vertex) == parts);
+    CHECK(in(p.transform) == parts);
+    CHECK(p.pass_or_tessellate.from_transform.taken() == parts);
+    CHECK(p.transform.positions() == 3 * host + 3 * passes);
+    CHECK(p.transform.positions() + p.transform.normals() == parts);
+
+    // parts along the tests: vertices end in the Normal Test
+    const std::uint64_t edges = 3 * passes;
+    const std::uint64_t vertices = 3 * host;
+    const auto tests = [&](auto figure) { return sum_over_tests(p, figure); };
+    CHECK(tests([&](const auto& t) { return in(t.calculate_new_u); }) == vertices + edges);
+    CHECK(tests([&](const auto& t) { return in(t.normal_test); }) == vertices + edges);
+    CHECK(tests([&](const auto& t) { return in(t.tex_coord_test); }) == edges);
+    CHECK(tests([&](const auto& t) { return in(t.summed_height_test); }) == edges);
+    CHECK(tests([&](const auto& t) { return in(t.view_test); }) == edges);
+    CHECK(tests([&](const auto& t) { return in(t.collect_tests); }) == edges);
+
+    // reads
+    CHECK(p.displacement_map_reads() == vertices + edges);
+    CHECK(p.displacement_map.transactions() == p.displacement_map_reads());
+    CHECK(p.normal_map_reads() == vertices + edges);
+    CHECK(p.normal_map.transactions() == p.normal_map_reads());
+    CHECK(p.summed_height_table.transactions() == p.summed_height_table_reads());
+    CHECK(in(p.displacement_map) == vertices + edges);
+    CHECK(in(p.normal_map) == vertices + edges);
+    CHECK(in(p.summed_height_table) == (simulation.setup.registers.tests.summed_height_test ? 3 * edges : 0));
+    if (simulation.setup.registers.tests.summed_height_test)
+        CHECK(p.summed_height_table_reads() >= 12 * edges);
+
+    // what was spilled came back
+    CHECK(p.triangle_queue.spilled() == p.triangle_queue.refilled());
+    CHECK(in(p.off_chip_memory) == 2 * p.triangle_queue.spilled());
+    CHECK(p.off_chip_memory.bytes_read() == p.off_chip_memory.bytes_written());
+}
+
+/// To be called after a timed run that drained.
+inline void require_timed_identities(const Simulation& simulation) {
+    const Pipeline& p = simulation.pipeline;
+    for (const Unit* unit : p.units()) {
+        require_cycles_add_up(*unit, simulation.cycles());
+        require_empty(*unit);
+    }
+    require_conservation(simulation);
+    CHECK(simulation.host.idle());
+    CHECK(p.idle());
+    CHECK(p.clock.idle());
+    CHECK_FALSE(p.clock.stalled());
+    CHECK(p.passes.under_way() == 0);
+    CHECK(p.triangle_queue.waiting() == 0);
+    CHECK(p.triangle_queue.on_chip_high_water_mark() <= p.triangle_queue.high_water_mark());
+    const std::size_t capacity = simulation.setup.design.queue.capacity;
+    if (capacity != 0)
+        CHECK(p.triangle_queue.on_chip_high_water_mark() <= capacity);
+    CHECK(p.pass_or_tessellate.most_incomplete() <= simulation.setup.design.timing.pass_or_tessellate.buffer);
+    const std::uint64_t slots = p.summed_height_table.slots_taken();
+    CHECK(slots <= simulation.cycles() * p.summed_height_table.slots_per_cycle());
+}
+
+/// Runs it to its end, and all of the above.
+inline void run_timed(Simulation& simulation) {
+    const std::string stuck = simulation.run();
+    INFO(stuck);
+    REQUIRE(stuck.empty());
+    require_timed_identities(simulation);
+}
+
+}  // namespace tessera::testing
