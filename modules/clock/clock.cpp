@@ -9,6 +9,8 @@ Clock::Clock(const sc_core::sc_module_name& name, const sc_core::sc_time& period
     : sc_module(name), period_time_(period), period_(period.value()) {
     if (period_ == 0)
         SC_REPORT_ERROR("tessera/clock", "the clock's period is zero");
+    for (std::size_t cycles = 0; cycles < delays_.size(); ++cycles)
+        delays_[cycles] = sc_core::sc_time::from_value(cycles * period_);
     units_.reserve(most_units);
     far_.reserve(most_units);
     SC_HAS_PROCESS(Clock);
@@ -129,7 +131,9 @@ void Clock::tick() {
     }
     if (find_next(next_tick_)) {
         scheduled_ = true;
-        tick_event_.notify(sc_core::sc_time::from_value((next_tick_ - cycle_) * period_));
+        const std::uint64_t cycles = next_tick_ - cycle_;
+        tick_event_.notify(cycles < delays_.size() ? delays_[cycles]
+                                                   : sc_core::sc_time::from_value(cycles * period_));
     }
 }
 

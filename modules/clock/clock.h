@@ -73,6 +73,13 @@ class Clock : public sc_core::sc_module {
         }
     }
 
+    /// Nothing that `unit` could act upon has happened to it, but something an observer may want to see: calls it in the
+    /// present cycle if that is observed.
+    void show(const Clocked& unit) {
+        if (observer_ != nullptr && cycle_ >= observed_first_)
+            wake(unit);
+    }
+
     /// The present cycle; between two cycles, the next.
     std::uint64_t cycle() const { return running_ ? cycle_ : first_cycle_not_before_now(); }
 
@@ -126,6 +133,7 @@ class Clock : public sc_core::sc_module {
 
     sc_core::sc_time period_time_;
     std::uint64_t period_;
+    std::array<sc_core::sc_time, 16> delays_;  // of so many cycles: sc_time is slow to make
     sc_core::sc_event tick_event_{"tick_event"};
     std::vector<Clocked*> units_;
     std::array<std::uint64_t, span> due_{};            // by cycle modulo span: one bit a unit

@@ -11,9 +11,8 @@ namespace tessera {
 namespace {
 
 /// Index modulo a ring's size, for less than twice that.
-template <class Ring>
-std::size_t place_in(const Ring& ring, std::size_t index) {
-    return index < ring.size() ? index : index - ring.size();
+std::size_t place_in(std::size_t ring_size, std::size_t index) {
+    return index < ring_size ? index : index - ring_size;
 }
 
 /// memcpy of a table's entry, whose usual sizes the compiler makes single moves of.
@@ -54,8 +53,7 @@ TableMemory::TableMemory(const sc_core::sc_module_name& name, Clock& clock,
 }
 
 bool TableMemory::covers(std::uint64_t address, std::uint64_t length) const {
-    return address >= layout_.base && length <= layout_.bytes() &&
-           address - layout_.base <= layout_.bytes() - length;
+    return length <= storage_.size() && address - layout_.base <= storage_.size() - length;
 }
 
 void TableMemory::read(tlm::tlm_generic_payload& payload, const GatherExtension* gather) {
@@ -75,13 +73,14 @@ void TableMemory::read(tlm::tlm_generic_payload& payload, const GatherExtension*
     const unsigned count = gather == nullptr ? 1 : gather->count;
     const unsigned each = length / count;
     unsigned char* data = payload.get_data_ptr();
+    const std::uint64_t own_address = payload.get_address();
+    const std::uint64_t* const addresses = gather == nullptr ? &own_address : gather->address.data();
     for (unsigned k = 0; k < count; ++k) {
-        const std::uint64_t address = gather == nullptr ? payload.get_address() : gather->address[k];
-        if (!covers(address, each)) {
+        if (!covers(addresses[k], each)) {
             payload.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE);
             return;
         }
-        copy_entry(data + std::size_t{k} * each, &storage_[address - layout_.base], each);
+        copy_entry(data + std::size_t{k} * each, &storage_[addresses[k] - layout_.base], each);
     }
     transactions_ += count;
     payload.set_dmi_allowed(true);
@@ -109,9 +108,12 @@ tlm::tlm_sync_enum TableMemory::nb_transport_fw(int id, tlm::tlm_generic_payload
     const std::uint64_t wait = stalls_.next() + clock_.cycles(delay);
     activity_.item_in(cycle);
     payload.acquire();
-    clock_.wake_at(*this, cycle + wait);
-    if (wait == 0 && queued_ < queue_.size() && waiting_at_doors_ == 0) {
-        queue_[place_in(queue_, queue_first_ + queued_++)] = {
+    if (wait > 0 || queued_ < timing_.buffer)
+        clock_.wake_at(*this, cycle + wait);
+    else
+        clock_.show(*this);
+    if (wait == 0 && queued_ < timing_.buffer && waiting_at_doors_ == 0) {
+        queue_[place_in(timing_.buffer, queue_first_ + queued_++)] = {
             &payload, payload.get_extension<GatherExtension>(), id, 0};
         phase = tlm::END_REQ;
         return tlm::TLM_UPDATED;
@@ -123,13 +125,13 @@ tlm::tlm_sync_enum TableMemory::nb_transport_fw(int id, tlm::tlm_generic_payload
 }
 
 void TableMemory::admit(std::uint64_t cycle) {
-    for (std::size_t tries = 0; tries < at_the_door_.size() && queued_ < queue_.size(); ++tries) {
+    for (std::size_t tries = 0; tries < at_the_door_.size() && queued_ < timing_.buffer; ++tries) {
         const std::size_t door = door_turn_;
         door_turn_ = door_turn_ + 1 == at_the_door_.size() ? 0 : door_turn_ + 1;
         Request& request = at_the_door_[door];
         if (request.payload == nullptr || door_opens_[door] > cycle)
             continue;
-        queue_[place_in(queue_, queue_first_ + queued_++)] = request;
+        queue_[place_in(timing_.buffer, queue_first_ + queued_++)] = request;
         tlm::tlm_generic_payload& payload = *request.payload;
         request.payload = nullptr;
         --waiting_at_doors_;
@@ -139,20 +141,32 @@ void TableMemory::admit(std::uint64_t cycle) {
     }
 }
 
+/// Returns the cycle of the last port slot the request's entries take.
+std::uint64_t TableMemory::take_slots(const tlm::tlm_generic_payload& payload, const GatherExtension* gather,
+                                      unsigned count, std::uint64_t cycle) {
+    const std::uint64_t ports = timing_.ports;
+    if (timing_.banks == 1) {  // one after another
+        std::uint64_t& free = bank_free_[0];
+        free = std::max(free, cycle * ports) + std::uint64_t{count} * slots_per_entry_;
+        next_free_ = ports == 1 ? free : free / ports;
+        return ports == 1 ? free - 1 : (free - 1) / ports;
+    }
+    std::uint64_t last = cycle;
+    for (unsigned k = 0; k < count; ++k) {
+        const std::uint64_t address = gather == nullptr ? payload.get_address() : gather->address[k];
+        std::uint64_t& free = bank_free_[(address - layout_.base) / layout_.entry_bytes % timing_.banks];
+        free = std::max(free, cycle * ports) + slots_per_entry_;
+        last = std::max(last, (free - 1) / ports);
+    }
+    next_free_ = *std::min_element(bank_free_.begin(), bank_free_.end()) / ports;
+    return last;
+}
+
 void TableMemory::serve(const Request& request, std::uint64_t cycle) {
     tlm::tlm_generic_payload& payload = *request.payload;
     const GatherExtension* gather = request.gather;
     const unsigned count = gather == nullptr ? 1 : gather->count;
-    std::uint64_t last_slot_cycle = cycle;
-    for (unsigned k = 0; k < count; ++k) {
-        const std::uint64_t address = gather == nullptr ? payload.get_address() : gather->address[k];
-        const std::size_t bank =
-            timing_.banks == 1 ? 0 : (address - layout_.base) / layout_.entry_bytes % timing_.banks;
-        std::uint64_t& free = bank_free_[bank];
-        free = std::max(free, cycle * timing_.ports) + slots_per_entry_;
-        last_slot_cycle = std::max(last_slot_cycle, (free - 1) / timing_.ports);
-    }
-    next_free_ = *std::min_element(bank_free_.begin(), bank_free_.end()) / timing_.ports;
+    const std::uint64_t last_slot_cycle = take_slots(payload, gather, count, cycle);
     last_address_ = payload.get_address();
     slots_taken_ += std::uint64_t{count} * slots_per_entry_;
     busy_until_ = std::max(busy_until_, last_slot_cycle + 1);
@@ -163,7 +177,7 @@ void TableMemory::serve(const Request& request, std::uint64_t cycle) {
         answer_first_ = 0;
         answer_ring_.resize(2 * answer_ring_.size());
     }
-    Request& answer = answer_ring_[place_in(answer_ring_, answer_first_ + answers_++)];
+    Request& answer = answer_ring_[place_in(answer_ring_.size(), answer_first_ + answers_++)];
     answer = request;
     answer.answer_at = last_slot_cycle + timing_.latency;
 }
@@ -174,7 +188,7 @@ void TableMemory::step() {
         admit(cycle);
     while (queued_ > 0 && next_free_ <= cycle) {
         const Request request = queue_[queue_first_];
-        queue_first_ = queue_first_ + 1 == queue_.size() ? 0 : queue_first_ + 1;
+        queue_first_ = queue_first_ + 1 == timing_.buffer ? 0 : queue_first_ + 1;
         --queued_;
         serve(request, cycle);
         if (waiting_at_doors_ > 0)

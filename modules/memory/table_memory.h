@@ -65,6 +65,8 @@ class TableMemory : public Unit {
     void step() override;
     void admit(std::uint64_t cycle);
     void serve(const Request& request, std::uint64_t cycle);
+    std::uint64_t take_slots(const tlm::tlm_generic_payload& payload, const GatherExtension* gather,
+                             unsigned count, std::uint64_t cycle);
     void read(tlm::tlm_generic_payload& payload, const GatherExtension* gather);
     bool covers(std::uint64_t address, std::uint64_t length) const;
 

@@ -41,6 +41,13 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
         stalls_ = RandomStalls(stalls, this->name());
     }
 
+    /// Timed mode, for a unit that does nothing until there is an item in all of its inputs: it is called only then.
+    /// empty_inputs: how many of them are empty; shared by them, and theirs to count.
+    void waits_for_all(unsigned& empty_inputs) {
+        empty_inputs_ = &empty_inputs;
+        ++empty_inputs;
+    }
+
     bool empty() const { return size_ == 0; }
     std::size_t size() const { return size_; }
     std::size_t depth() const { return depth_; }
@@ -55,6 +62,8 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
     void pop() {
         first_ = first_ + 1 == depth_ ? 0 : first_ + 1;
         --size_;
+        if (empty_inputs_ != nullptr && size_ == 0)
+            ++*empty_inputs_;
         admit();
     }
 
@@ -91,13 +100,19 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
         const std::uint64_t wait = stalls_.next() + clock_->cycles(delay);
         if (wait == 0 && size_ < depth_) {
             push(payload);
-            clock_->wake(*unit_);
+            if (empty_inputs_ == nullptr || *empty_inputs_ == 0)
+                clock_->wake(*unit_);
+            else
+                clock_->show(*unit_);
             phase = tlm::END_REQ;
             return tlm::TLM_UPDATED;
         }
         at_the_door_ = &payload;
         door_opens_ = clock_->cycle() + wait;
-        clock_->wake_at(*unit_, door_opens_);
+        if (size_ < depth_)
+            clock_->wake_at(*unit_, door_opens_);
+        else
+            clock_->show(*unit_);
         return tlm::TLM_ACCEPTED;
     }
 
@@ -108,6 +123,8 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
     void push(const Payload& payload) {
         const std::size_t place = first_ + size_;
         ring_[place < depth_ ? place : place - depth_] = payload;
+        if (empty_inputs_ != nullptr && size_ == 0)
+            --*empty_inputs_;
         ++size_;
         ++taken_;
     }
@@ -122,6 +139,7 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
     std::size_t size_ = 0;
     Payload* at_the_door_ = nullptr;
     std::uint64_t door_opens_ = 0;
+    unsigned* empty_inputs_ = nullptr;
     std::uint64_t taken_ = 0;
     RandomStalls stalls_;
 };

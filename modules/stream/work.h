@@ -41,7 +41,7 @@ struct Work {
 template <class Each>
 inline void for_each_of_three(Parts parts, unsigned first, Each&& each) {
     for (unsigned k = 0; k < 3; ++k) {
-        if ((parts >> (first + k) & 1u) != 0)
+        if ((unsigned{parts} >> (first + k) & 1u) != 0)
             each(k);
     }
 }

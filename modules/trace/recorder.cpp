@@ -71,12 +71,32 @@ void Recorder::show_queue_level(std::uint64_t cycle) {
     timeline_->counter("triangle_queue", "triangles waiting", cycle, shown_level_);
 }
 
+/// Cycles that show nothing new but their number.
+void Recorder::end_cycles_before(std::uint64_t cycle) {
+    for (; next_cycle_ < cycle; ++next_cycle_) {
+        vcd_->set(cycle_signal_, next_cycle_);
+        vcd_->end_cycle(next_cycle_);
+    }
+}
+
+void Recorder::show_called(std::uint64_t called) {
+    if (show_every_unit_)
+        called = ~std::uint64_t{0};
+    for (TracedUnit& traced : traced_) {
+        if ((called & traced.bit) != 0) {
+            traced.signals.begin(false);
+            traced.unit->trace(traced.signals);
+        }
+    }
+    vcd_->set(passes_signal_, pipeline_.passes.under_way());
+}
+
 void Recorder::begin(std::uint64_t cycle) {
     began_ = true;
     if (vcd_ != nullptr) {
         show_all();
-        if (cycle > window_.first)
-            vcd_->end_cycle(window_.first);
+        next_cycle_ = window_.first;
+        end_cycles_before(std::min(cycle, end_of_window()));
     }
     if (timeline_ != nullptr) {
         for (Track& track : tracks_)
@@ -87,17 +107,9 @@ void Recorder::begin(std::uint64_t cycle) {
 
 void Recorder::end_of_cycle(std::uint64_t cycle, std::uint64_t called) {
     if (vcd_ != nullptr) {
-        if (show_every_unit_)
-            called = ~std::uint64_t{0};
-        for (TracedUnit& traced : traced_) {
-            if ((called & traced.bit) != 0) {
-                traced.signals.begin(false);
-                traced.unit->trace(traced.signals);
-            }
-        }
-        vcd_->set(cycle_signal_, cycle);
-        vcd_->set(passes_signal_, pipeline_.passes.under_way());
-        vcd_->end_cycle(cycle);
+        end_cycles_before(cycle);
+        show_called(called);
+        end_cycles_before(cycle + 1);
     }
     if (timeline_ != nullptr && pipeline_.triangle_queue.waiting() != shown_level_)
         show_queue_level(cycle);
@@ -105,10 +117,11 @@ void Recorder::end_of_cycle(std::uint64_t cycle, std::uint64_t called) {
 
 void Recorder::finish(std::uint64_t cycles) {
     if (vcd_ != nullptr) {
-        if (!began_ && cycles > 0) {
+        if (!began_) {
             show_all();
-            vcd_->end_cycle(cycles - 1);
+            next_cycle_ = cycles == 0 ? 0 : cycles - 1;
         }
+        end_cycles_before(began_ ? std::min(cycles, end_of_window()) : cycles);
         vcd_->finish(cycles);
     }
     if (timeline_ != nullptr)

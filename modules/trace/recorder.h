@@ -56,6 +56,11 @@ class Recorder : public CycleObserver {
     void begin(std::uint64_t cycle) override;
     void end_of_cycle(std::uint64_t cycle, std::uint64_t called) override;
     void show_all();
+    void show_called(std::uint64_t called);
+    void end_cycles_before(std::uint64_t cycle);
+    std::uint64_t end_of_window() const {
+        return window_.last == UINT64_MAX ? window_.last : window_.last + 1;
+    }
     void show_queue_level(std::uint64_t cycle);
 
     Pipeline& pipeline_;
@@ -70,6 +75,7 @@ class Recorder : public CycleObserver {
     std::deque<Track> tracks_;
     std::size_t shown_level_ = 0;
     bool began_ = false;
+    std::uint64_t next_cycle_ = 0;  // the first whose waveforms are not complete
 };
 
 /// In words as the timeline has them and waveforms/states.txt: "busy", "waiting for memory", ...

@@ -84,17 +84,24 @@ class Activity {
             return;
         const std::uint64_t length = cycle - since_;
         cycles_[static_cast<std::size_t>(state_)] += length;
-        for (Share& share : shares_) {
-            if (share.by == nullptr)
-                share = {state_, by_, 0};
-            if (share.by == by_ && share.state == state_) {
-                share.cycles += length;
-                break;
-            }
-        }
+        if (by_ != nullptr)
+            present_share().cycles += length;
         if (observer_ != nullptr)
             observer_->stretch(state_, by_, since_, cycle);
         since_ = cycle;
+    }
+    Share& present_share() {
+        if (shares_[recent_].by == by_ && shares_[recent_].state == state_)
+            return shares_[recent_];
+        for (recent_ = 0; recent_ < most_shares; ++recent_) {
+            Share& share = shares_[recent_];
+            if (share.by == nullptr)
+                share = {state_, by_, 0};
+            if (share.by == by_ && share.state == state_)
+                return share;
+        }
+        SC_REPORT_FATAL("tessera/activity", "a unit has more neighbours than can be told apart");
+        return shares_[recent_ = 0];
     }
     void integrate(std::uint64_t cycle) {
         item_cycles_ += level_ * (cycle - level_since_);
@@ -106,6 +113,7 @@ class Activity {
     std::uint64_t since_ = 0;
     std::array<std::uint64_t, states> cycles_{};
     std::array<Share, most_shares> shares_{};
+    std::size_t recent_ = 0;  // of these, the one that was added to last
     std::uint64_t items_in_ = 0;
     std::uint64_t items_out_ = 0;
     std::uint64_t level_ = 0;

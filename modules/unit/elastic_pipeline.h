@@ -22,21 +22,23 @@ class ElasticPipeline {
     explicit ElasticPipeline(const UnitTiming& timing, unsigned servers = 1, unsigned further_stages = 0)
         : latency_(timing.latency),
           interval_(timing.interval),
+          servers_(servers),
           next_start_(servers, 0),
-          ring_(servers *
-                std::max(1u, (timing.latency + further_stages + timing.interval - 1) / timing.interval)) {}
+          capacity_(std::size_t{servers} *
+                    std::max(1u, (timing.latency + further_stages + timing.interval - 1) / timing.interval)),
+          ring_(capacity_) {}
 
     bool empty() const { return size_ == 0; }
-    bool full() const { return size_ == ring_.size(); }
+    bool full() const { return size_ == capacity_; }
     std::size_t size() const { return size_; }
-    std::size_t capacity() const { return ring_.size(); }
+    std::size_t capacity() const { return capacity_; }
 
     bool may_start(std::uint64_t cycle) const { return !full() && cycle >= next_start_[server_]; }
 
     /// Starts an item; to be filled in. It is finished at cycle + latency, or when `finish` says.
     Item& start(std::uint64_t cycle) {
         next_start_[server_] = cycle + interval_;
-        server_ = server_ + 1 == next_start_.size() ? 0 : server_ + 1;
+        server_ = server_ + 1 == servers_ ? 0 : server_ + 1;
         Slot& slot = ring_[place(size_++)];
         slot.finished = cycle + latency_;
         return slot.item;
@@ -47,13 +49,13 @@ class ElasticPipeline {
     Item& at(std::size_t k) { return ring_[place(k)].item; }
     const Item& at(std::size_t k) const { return ring_[place(k)].item; }
     /// The item started last, even if it has left since; before the first, an empty one.
-    const Item& newest() const { return ring_[(first_ + size_ + ring_.size() - 1) % ring_.size()].item; }
+    const Item& newest() const { return ring_[(first_ + size_ + capacity_ - 1) % capacity_].item; }
     bool front_finished(std::uint64_t cycle) const { return size_ > 0 && ring_[first_].finished <= cycle; }
     void finish(std::size_t k, std::uint64_t cycle) { ring_[place(k)].finished = cycle; }
     std::uint64_t latency() const { return latency_; }
 
     void pop() {
-        first_ = first_ + 1 == ring_.size() ? 0 : first_ + 1;
+        first_ = first_ + 1 == capacity_ ? 0 : first_ + 1;
         --size_;
     }
 
@@ -74,13 +76,15 @@ class ElasticPipeline {
 
     std::size_t place(std::size_t k) const {
         const std::size_t sum = first_ + k;
-        return sum < ring_.size() ? sum : sum - ring_.size();
+        return sum < capacity_ ? sum : sum - capacity_;
     }
 
     std::uint64_t latency_;
     std::uint64_t interval_;
+    std::size_t servers_;
     std::vector<std::uint64_t> next_start_;  // one a server
     std::size_t server_ = 0;                 // whose turn it is
+    std::size_t capacity_;
     std::vector<Slot> ring_;
     std::size_t first_ = 0;
     std::size_t size_ = 0;

@@ -24,7 +24,8 @@ struct TableItem {
 /// A unit whose items read a table, in timed mode: an item starts when the reads of the one before have been taken by
 /// the memory; it is finished a latency after its last answer. Enough register stages that the memory's own latency
 /// holds nothing up: ceil((latency + memory latency) / interval).
-template <class Item>
+/// A derived unit says what is done to an item, in functions that step() calls without a table: it is a friend of its base.
+template <class Derived, class Item>
 class TableStage : public Unit {
   public:
     std::string holds() const override {
@@ -43,7 +44,7 @@ class TableStage : public Unit {
         signals.input(*input_);
         signals.group(signals.changed(activity_.items_in()) && !pipeline_.empty(), [&] {
             signals.work(pipeline_.newest().work);
-            trace_item(signals, pipeline_.newest());
+            unit().trace_item(signals, pipeline_.newest());
         });
         signals.pulse("request", port_->reads());
         signals.flag("request_held", port_->on_offer());
@@ -54,7 +55,7 @@ class TableStage : public Unit {
             const Item& item = waiting_ > 0 ? pipeline_.at(waiting_ - 1) : pipeline_.newest();
             signals.value("answered_triangle", 32, Signals::pass_of(item.work).number);
             signals.value("answered_part", Signals::part_bits, Signals::part_of(item.work));
-            trace_answered(signals, item);
+            unit().trace_answered(signals, item);
         });
     }
 
@@ -78,19 +79,19 @@ class TableStage : public Unit {
         port.clocked_by(clock_, *this, pipeline_.capacity() * most_requests);
     }
 
-    /// The unit's work on an item before its reads. Returns how many requests it makes.
-    virtual unsigned begin(Item& item) = 0;
-    /// Makes request `k` of an item.
-    virtual void ask(Item& item, unsigned k) = 0;
-    /// The answer to request `k` is there (port.entry); with the last one the item's work is completed.
-    virtual void receive(Item& item, unsigned k) = 0;
+    // What a derived unit provides:
+    //   unsigned begin(Item&)          its work on an item before its reads; returns how many requests it makes
+    //   void ask(Item&, unsigned k)    makes request k of an item
+    //   void receive(Item&, unsigned k)    the answer to request k is there (port.entry); with the last one the item's
+    //                                      work is completed
+    // and, if it differs from this,
     /// False: the item ends here.
-    virtual bool goes_on(const Item&) const { return true; }
+    bool goes_on(const Item&) const { return true; }
     /// False: the item lacks what another unit has to bring; the unit will be called when it comes.
-    virtual bool may_begin(const Work&) { return true; }
+    bool may_begin(const Work&) { return true; }
     /// Shows operands of an item that was started, and results of one whose reads have come, in traces.
-    virtual void trace_item(Signals&, const Item&) const {}
-    virtual void trace_answered(Signals&, const Item&) const {}
+    void trace_item(Signals&, const Item&) const {}
+    void trace_answered(Signals&, const Item&) const {}
 
     void step() override {
         const std::uint64_t cycle = clock_.cycle();
@@ -98,19 +99,20 @@ class TableStage : public Unit {
         take_answers(cycle);
         while (pipeline_.front_finished(cycle)) {
             Item& item = pipeline_.front();
-            if (goes_on(item) && !output_.deliver(item.work))
+            if (unit().goes_on(item) && !output_.deliver(item.work))
                 break;
             pipeline_.pop();
             --asking_;
             --waiting_;
             activity_.item_out(cycle);
         }
-        while (ask_all() && !input_->empty() && pipeline_.may_start(cycle) && may_begin(input_->front())) {
+        while (ask_all() && !input_->empty() && pipeline_.may_start(cycle) &&
+               unit().may_begin(input_->front())) {
             Item& item = pipeline_.start(cycle);
             item = Item{};
             item.work = input_->front();
             activity_.item_in(cycle);
-            item.requests = begin(item);
+            item.requests = unit().begin(item);
             if (item.requests > 0)
                 pipeline_.finish(pipeline_.size() - 1, never);
             input_->pop();
@@ -132,11 +134,14 @@ class TableStage : public Unit {
     const UnitTiming timing_;
 
   private:
+    Derived& unit() { return static_cast<Derived&>(*this); }
+    const Derived& unit() const { return static_cast<const Derived&>(*this); }
+
     void take_answers(std::uint64_t cycle) {
         while (port_->answered()) {
             skip_finished();
             Item& item = pipeline_.at(waiting_);
-            receive(item, item.answered);
+            unit().receive(item, item.answered);
             port_->pop_answer();
             if (++item.answered == item.requests)
                 pipeline_.finish(waiting_, cycle + pipeline_.latency());
@@ -158,7 +163,7 @@ class TableStage : public Unit {
             while (item.asked < item.requests) {
                 if (!port_->may_request())
                     return false;
-                ask(item, item.asked++);
+                unit().ask(item, item.asked++);
             }
             ++asking_;
         }

@@ -12,7 +12,8 @@
 namespace tessera {
 
 /// A unit with one input, a pipeline, and one or more outputs for the same item: how most of them behave in timed mode.
-/// A derived unit says what is done to an item.
+/// A derived unit says what is done to an item, in functions that step() calls without a table: it is a friend of its base.
+template <class Derived>
 class WorkStage : public Unit {
   public:
     std::string holds() const override {
@@ -29,7 +30,7 @@ class WorkStage : public Unit {
         signals.input(*input_);
         signals.group(signals.changed(activity_.items_in()) && !pipeline_.empty(), [&] {
             signals.work(pipeline_.newest());
-            trace_item(signals, pipeline_.newest());
+            unit().trace_item(signals, pipeline_.newest());
         });
     }
 
@@ -49,34 +50,34 @@ class WorkStage : public Unit {
         output.clocked_by(clock_, *this);
     }
 
-    /// The unit's work on an item, done when it starts.
-    virtual void process(const Work& work) = 0;
+    // What a derived unit provides: void process(const Work&), its work on an item, done when it starts; and, if it
+    // differs from this,
     /// Which outputs get a finished item.
-    virtual unsigned targets(const Work&) const { return ~0u; }
+    unsigned targets(const Work&) const { return ~0u; }
     /// False: the item lacks what another unit has to bring; the unit will be called when it comes.
-    virtual bool may_begin(const Work&) { return true; }
-    virtual const sc_core::sc_object* lacks() const { return nullptr; }
+    bool may_begin(const Work&) { return true; }
+    const sc_core::sc_object* lacks() const { return nullptr; }
     /// Shows operands and result of an item that was started, in traces.
-    virtual void trace_item(Signals&, const Work&) const {}
+    void trace_item(Signals&, const Work&) const {}
 
     void step() override {
         const std::uint64_t cycle = clock_.cycle();
         input_->admit();
         while (pipeline_.front_finished(cycle) &&
-               fork_.deliver(pipeline_.front(), targets(pipeline_.front()))) {
+               fork_.deliver(pipeline_.front(), unit().targets(pipeline_.front()))) {
             pipeline_.pop();
             activity_.item_out(cycle);
         }
         bool lacking = false;
         while (!input_->empty() && pipeline_.may_start(cycle)) {
-            if (!may_begin(input_->front())) {
+            if (!unit().may_begin(input_->front())) {
                 lacking = true;
                 break;
             }
             Work& work = pipeline_.start(cycle);
             work = input_->front();
             activity_.item_in(cycle);
-            process(work);
+            unit().process(work);
             input_->pop();
         }
         if (pipeline_.front_finished(cycle))
@@ -84,7 +85,7 @@ class WorkStage : public Unit {
         else if (!pipeline_.empty() || (!lacking && !input_->empty()))
             activity_.set(cycle, State::busy);
         else
-            activity_.set(cycle, State::starved, lacking ? lacks() : nullptr);
+            activity_.set(cycle, State::starved, lacking ? unit().lacks() : nullptr);
         wake_at(pipeline_.next_finished(cycle));
         if (!input_->empty())
             wake_at(pipeline_.next_start(cycle));
@@ -93,6 +94,9 @@ class WorkStage : public Unit {
     const UnitTiming timing_;
 
   private:
+    Derived& unit() { return static_cast<Derived&>(*this); }
+    const Derived& unit() const { return static_cast<const Derived&>(*this); }
+
     StreamInput<Work>* input_ = nullptr;
     Fork<Work> fork_;
     ElasticPipeline<Work> pipeline_;

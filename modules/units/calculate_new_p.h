@@ -18,18 +18,19 @@ namespace tessera {
 /// Arithmetic: add, arithmetic shift right by 1.
 /// Timing: one vertex, normal or edge per interval; latency 1, interval 1 by default.
 /// Waits for nothing but its input; held back by Displace Vertex.
-class CalculateNewP : public WorkStage {
+class CalculateNewP : public WorkStage<CalculateNewP> {
   public:
     StreamInput<Work> from_get_triangle{"from_get_triangle"};
     StreamOutput<Work> to_displace_vertex{"to_displace_vertex"};
 
     CalculateNewP(const sc_core::sc_module_name& name, Clock& clock, const Timing& timing);
 
-    void process(const Work& work) override;
+    void process(const Work& work);
 
   private:
+    friend class WorkStage<CalculateNewP>;
     void b_transport(Work& work, sc_core::sc_time& delay);
-    void trace_item(Signals& signals, const Work& work) const override;
+    void trace_item(Signals& signals, const Work& work) const;
 };
 
 }  // namespace tessera

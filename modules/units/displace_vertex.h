@@ -19,7 +19,7 @@ namespace tessera {
 /// Arithmetic: normalise (the pipeline's existing unit), multiply, round, multiply-accumulate, saturate (counted).
 /// Timing: one vertex, normal or edge per interval; latency 6 plus the map read, interval 1 by default.
 /// Waits for the displacement map; held back by Transform.
-class DisplaceVertex : public TableStage<TableItem> {
+class DisplaceVertex : public TableStage<DisplaceVertex, TableItem> {
   public:
     StreamInput<Work> from_calculate_new_p{"from_calculate_new_p"};
     StreamOutput<Work> to_transform{"to_transform"};
@@ -31,12 +31,13 @@ class DisplaceVertex : public TableStage<TableItem> {
     const datapath::Saturations& saturations() const { return saturations_; }
 
   private:
+    friend class TableStage<DisplaceVertex, TableItem>;
     void b_transport(Work& work, sc_core::sc_time& delay);
-    unsigned begin(TableItem& item) override;
-    void ask(TableItem& item, unsigned k) override;
-    void receive(TableItem& item, unsigned k) override;
-    void trace_item(Signals& signals, const TableItem& item) const override;
-    void trace_answered(Signals& signals, const TableItem& item) const override;
+    unsigned begin(TableItem& item);
+    void ask(TableItem& item, unsigned k);
+    void receive(TableItem& item, unsigned k);
+    void trace_item(Signals& signals, const TableItem& item) const;
+    void trace_answered(Signals& signals, const TableItem& item) const;
 
     std::uint64_t address(const datapath::TexCoord& t) const;
     void displace_vertex(datapath::Vertex& vertex, std::uint64_t code);

@@ -169,7 +169,7 @@ PassOrTessellate::Way PassOrTessellate::join(Pass& pass) {
     for (unsigned k = 0; k < 3; ++k) {
         datapath::Vertex& vertex = triangle.vertices[k];
         vertex.displaced_known = true;
-        if ((pass.new_normals >> k & 1u) != 0)
+        if ((unsigned{pass.new_normals} >> k & 1u) != 0)
             vertex.screen_normal_known = true;
     }
     if (!pass.tested) {

@@ -24,7 +24,7 @@ namespace tessera {
 /// Timing: one vertex, normal or edge per interval and pipeline; latency 20, interval 1, one pipeline by default.
 ///       Several pipelines take turns; items stay in order.
 /// Waits for nothing but its input; held back by Pass or Tessellate.
-class Transform : public WorkStage {
+class Transform : public WorkStage<Transform> {
   public:
     StreamInput<Work> from_displace_vertex{"from_displace_vertex"};
     StreamOutput<Work> to_pass_or_tessellate{"to_pass_or_tessellate"};
@@ -40,10 +40,11 @@ class Transform : public WorkStage {
     std::uint64_t occupied_cycles() const override { return WorkStage::occupied_cycles() / pipelines_; }
 
   private:
+    friend class WorkStage<Transform>;
     void b_transport(Work& work, sc_core::sc_time& delay);
-    void process(const Work& work) override;
-    unsigned targets(const Work& work) const override;
-    void trace_item(Signals& signals, const Work& work) const override;
+    void process(const Work& work);
+    unsigned targets(const Work& work) const;
+    void trace_item(Signals& signals, const Work& work) const;
 
     const datapath::Registers& registers_;
     unsigned pipelines_;

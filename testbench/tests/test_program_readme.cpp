@@ -38,12 +38,13 @@ std::vector<std::string> commands_in(const std::string& markdown) {
 }
 
 /// A checkout to run commands in: the project's own scripts, everything else by link, the program of this build where
-/// scripts/run puts it. cmake and ctest do nothing there, so that nothing is built and no test runs tests.
+/// scripts/run puts it. cmake and ctest do nothing there, so that nothing is built and no test runs tests; nor does
+/// gtkwave, which would wait for its user.
 class Checkout {
   public:
     Checkout() {
         fs::create_directories(root() / "tools");
-        for (const char* const tool : {"cmake", "ctest"}) {
+        for (const char* const tool : {"cmake", "ctest", "gtkwave"}) {
             write_all(root() / "tools" / tool, "#!/bin/sh\nexit 0\n");
             fs::permissions(root() / "tools" / tool, fs::perms::owner_all);
         }

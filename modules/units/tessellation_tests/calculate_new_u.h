@@ -16,7 +16,7 @@ namespace tessera {
 /// Arithmetic: add, shift by 1.
 /// Timing: one edge or vertex per interval; latency 1, interval 1 by default.
 /// Waits for nothing but its input; held back by the slowest of the tests.
-class CalculateNewU : public WorkStage {
+class CalculateNewU : public WorkStage<CalculateNewU> {
   public:
     StreamInput<Work> input{"input"};
     StreamOutput<Work> to_tex_coord_test{"to_tex_coord_test"};
@@ -27,10 +27,11 @@ class CalculateNewU : public WorkStage {
     CalculateNewU(const sc_core::sc_module_name& name, Clock& clock, const Timing& timing);
 
   private:
+    friend class WorkStage<CalculateNewU>;
     void b_transport(Work& work, sc_core::sc_time& delay);
-    void process(const Work& work) override;
-    unsigned targets(const Work& work) const override;
-    void trace_item(Signals& signals, const Work& work) const override;
+    void process(const Work& work);
+    unsigned targets(const Work& work) const;
+    void trace_item(Signals& signals, const Work& work) const;
 };
 
 }  // namespace tessera

@@ -12,6 +12,7 @@ CollectTests::CollectTests(const sc_core::sc_module_name& name, Clock& clock, co
     for (StreamInput<Work>* input : inputs()) {
         input->serve<&CollectTests::b_transport>(*this);
         input->clocked_by(clock, *this, timing.results_buffer, timing.stalls);
+        input->waits_for_all(empty_inputs_);
     }
     to_pass_or_tessellate.clocked_by(clock, *this);
 }
@@ -27,7 +28,6 @@ void CollectTests::b_transport(Work& work, sc_core::sc_time& delay) {
 
 void CollectTests::step() {
     const std::uint64_t cycle = now();
-    StreamInput<Work>* lacking = nullptr;
     for (StreamInput<Work>* input : inputs())
         input->admit();
     for (;;) {
@@ -37,12 +37,7 @@ void CollectTests::step() {
             leaves_ = false;
             activity_.item_out(cycle);
         }
-        lacking = nullptr;
-        for (StreamInput<Work>* input : inputs()) {
-            if (input->empty())
-                lacking = input;
-        }
-        if (lacking != nullptr)
+        if (empty_inputs_ > 0)
             break;
         leaving_ = from_view_test.front();
         for (StreamInput<Work>* input : inputs()) {

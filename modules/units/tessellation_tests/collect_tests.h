@@ -40,6 +40,7 @@ class CollectTests : public Unit {
 
     Work leaving_;
     bool leaves_ = false;
+    unsigned empty_inputs_ = 0;
     unsigned come_ = 0;        // functional mode: tests that have decided the pass
     sc_core::sc_time latest_;  // and when the last of them had
 };

@@ -23,7 +23,7 @@ namespace tessera {
 /// Timing: one edge or vertex per interval; latency 9 plus the map read, interval 1 by default.
 /// Waits for Calculate New U and the normal map; with three Tessellation Tests units an edge of a base triangle also
 /// for the corner that another unit bumps. Held back by the collection of the tests.
-class NormalTest : public TableStage<TableItem> {
+class NormalTest : public TableStage<NormalTest, TableItem> {
   public:
     StreamInput<Work> input{"input"};
     StreamOutput<Work> output{"output"};
@@ -38,14 +38,15 @@ class NormalTest : public TableStage<TableItem> {
     const datapath::Saturations& saturations() const { return saturations_; }
 
   private:
+    friend class TableStage<NormalTest, TableItem>;
     void b_transport(Work& work, sc_core::sc_time& delay);
-    unsigned begin(TableItem&) override { return 1; }
-    void ask(TableItem& item, unsigned k) override;
-    void receive(TableItem& item, unsigned k) override;
-    bool goes_on(const TableItem& item) const override { return (item.work.parts & edge_parts) != 0; }
-    bool may_begin(const Work& work) override;
-    void trace_item(Signals& signals, const TableItem& item) const override;
-    void trace_answered(Signals& signals, const TableItem& item) const override;
+    unsigned begin(TableItem&) { return 1; }
+    void ask(TableItem& item, unsigned k);
+    void receive(TableItem& item, unsigned k);
+    bool goes_on(const TableItem& item) const { return (item.work.parts & edge_parts) != 0; }
+    bool may_begin(const Work& work);
+    void trace_item(Signals& signals, const TableItem& item) const;
+    void trace_answered(Signals& signals, const TableItem& item) const;
 
     std::uint64_t address(const datapath::TexCoord& t) const;
     datapath::Direction bumped(const datapath::Direction& n, const datapath::Direction& t, int handedness,

@@ -24,7 +24,7 @@ namespace tessera {
 /// Timing: one edge per interval, latency 3, interval 1 by default, plus the table reads: with one port a rectangle
 ///         takes four cycles, an edge 12, a triangle 36.
 /// Waits for Calculate New U and the Summed Height Table; held back by the collection of the tests.
-class SummedHeightTest : public TableStage<struct SummedHeightItem> {
+class SummedHeightTest : public TableStage<SummedHeightTest, struct SummedHeightItem> {
   public:
     StreamInput<Work> input{"input"};
     StreamOutput<Work> output{"output"};
@@ -34,12 +34,13 @@ class SummedHeightTest : public TableStage<struct SummedHeightItem> {
                      const Timing& timing, bool use_direct_memory);
 
   private:
+    friend class TableStage<SummedHeightTest, SummedHeightItem>;
     void b_transport(Work& work, sc_core::sc_time& delay);
-    unsigned begin(SummedHeightItem& item) override;
-    void ask(SummedHeightItem& item, unsigned k) override;
-    void receive(SummedHeightItem& item, unsigned k) override;
-    void trace_item(Signals& signals, const SummedHeightItem& item) const override;
-    void trace_answered(Signals& signals, const SummedHeightItem& item) const override;
+    unsigned begin(SummedHeightItem& item);
+    void ask(SummedHeightItem& item, unsigned k);
+    void receive(SummedHeightItem& item, unsigned k);
+    void trace_item(Signals& signals, const SummedHeightItem& item) const;
+    void trace_answered(Signals& signals, const SummedHeightItem& item) const;
     void decide(Pass& pass, unsigned edge, const datapath::RectangleSize& size,
                 const std::array<std::uint64_t, 3>& sums) const;
 

@@ -17,7 +17,7 @@ namespace tessera {
 /// Arithmetic: two compares of bit slices per axis; a maximum, an increment, a compare.
 /// Timing: one edge per interval; latency 1, interval 1 by default.
 /// Waits for Calculate New U; held back by the collection of the tests.
-class TexCoordTest : public WorkStage {
+class TexCoordTest : public WorkStage<TexCoordTest> {
   public:
     StreamInput<Work> input{"input"};
     StreamOutput<Work> output{"output"};
@@ -26,9 +26,10 @@ class TexCoordTest : public WorkStage {
                  const Timing& timing);
 
   private:
+    friend class WorkStage<TexCoordTest>;
     void b_transport(Work& work, sc_core::sc_time& delay);
-    void process(const Work& work) override;
-    void trace_item(Signals& signals, const Work& work) const override;
+    void process(const Work& work);
+    void trace_item(Signals& signals, const Work& work) const;
 
     const datapath::Registers& registers_;
 };

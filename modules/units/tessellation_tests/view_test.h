@@ -18,7 +18,7 @@ namespace tessera {
 /// Timing: one edge per interval; latency 1, interval 1 by default.
 /// Waits for Calculate New U, and for a base triangle's edge until Transform has sent the screen positions of its
 /// vertices, which it takes at any time. Held back by the collection of the tests.
-class ViewTest : public WorkStage {
+class ViewTest : public WorkStage<ViewTest> {
   public:
     StreamInput<Work> input{"input"};
     StreamInput<Work> from_transform{"from_transform"};
@@ -31,12 +31,13 @@ class ViewTest : public WorkStage {
     void trace(Signals& signals) const override;
 
   private:
+    friend class WorkStage<ViewTest>;
     void b_transport(Work& work, sc_core::sc_time& delay);
     void b_transport_from_transform(Work& work, sc_core::sc_time& delay);
-    void process(const Work& work) override;
-    void trace_item(Signals& signals, const Work& work) const override;
-    bool may_begin(const Work& work) override;
-    const sc_core::sc_object* lacks() const override { return transform_; }
+    void process(const Work& work);
+    void trace_item(Signals& signals, const Work& work) const;
+    bool may_begin(const Work& work);
+    const sc_core::sc_object* lacks() const { return transform_; }
     void step() override;
     void end_of_elaboration() override;
 
