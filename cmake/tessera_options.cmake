@@ -1,11 +1,12 @@
 # Compiler settings every target of ours shares.
 #  * warnings are errors in our code; libraries come in as SYSTEM includes
+#  * -fno-plt, -falign-functions: a twentieth of timed mode, which calls the SystemC kernel eight times an edge
 #  * -ffp-contract=off: the golden model's doubles must not depend on the compiler fusing a multiply-add
 add_library(tessera_options INTERFACE)
 target_compile_features(tessera_options INTERFACE cxx_std_17)
 target_compile_options(tessera_options INTERFACE
   -Wall -Wextra -Wpedantic -Werror -Wshadow -Wconversion -Wsign-conversion -Wold-style-cast -Wnon-virtual-dtor
-  -Wcast-align -ffp-contract=off)
+  -Wcast-align -ffp-contract=off -fno-plt -falign-functions=32)
 target_include_directories(tessera_options INTERFACE ${CMAKE_SOURCE_DIR})
 if(TESSERA_SANITIZE)
   set(sanitize -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)

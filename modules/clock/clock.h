@@ -83,7 +83,7 @@ class Clock : public sc_core::sc_module {
     /// The present cycle; between two cycles, the next.
     std::uint64_t cycle() const { return running_ ? cycle_ : first_cycle_not_before_now(); }
 
-    /// The cycle in which something was last called.
+    /// The cycle in which something was last called; within a step, the present one.
     std::uint64_t last_cycle() const { return cycle_; }
 
     /// Cycles from now on that `delay` spans, rounded up.

@@ -183,7 +183,7 @@ void TableMemory::serve(const Request& request, std::uint64_t cycle) {
 }
 
 void TableMemory::step() {
-    const std::uint64_t cycle = now();
+    const std::uint64_t cycle = clock_.last_cycle();
     if (waiting_at_doors_ > 0)
         admit(cycle);
     while (queued_ > 0 && next_free_ <= cycle) {

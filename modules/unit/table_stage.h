@@ -94,7 +94,7 @@ class TableStage : public Unit {
     void trace_answered(Signals&, const Item&) const {}
 
     void step() override {
-        const std::uint64_t cycle = clock_.cycle();
+        const std::uint64_t cycle = clock_.last_cycle();
         input_->admit();
         take_answers(cycle);
         while (pipeline_.front_finished(cycle)) {

@@ -22,8 +22,8 @@ class Unit : public Clocked, public sc_core::sc_module {
     /// For a deadlock's report: what is in the unit and at its door, in words; empty: nothing.
     virtual std::string holds() const = 0;
 
-    /// Share of the run's cycles in which the unit could not have taken more work than it did: items times the initiation
-    /// interval (memories: slots taken over slots there were). As a fraction: occupied cycles, times `of`.
+    /// Cycles the unit's work needs at its initiation interval, or at a memory's ports: of all cycles, those in which it
+    /// could not have taken more.
     virtual std::uint64_t occupied_cycles() const = 0;
 
     bool idle() const { return activity_.level() == 0; }

@@ -61,7 +61,7 @@ class WorkStage : public Unit {
     void trace_item(Signals&, const Work&) const {}
 
     void step() override {
-        const std::uint64_t cycle = clock_.cycle();
+        const std::uint64_t cycle = clock_.last_cycle();
         input_->admit();
         while (pipeline_.front_finished(cycle) &&
                fork_.deliver(pipeline_.front(), unit().targets(pipeline_.front()))) {

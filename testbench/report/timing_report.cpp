@@ -87,9 +87,8 @@ std::string bottleneck_text(const Simulation& simulation) {
     const Unit& get = simulation.pipeline.get_triangle;
     if (!found.binding)
         return fmt::format(
-            "none: the most taken, {}, is so in {:.1f} % of all cycles; too few triangles were under way to "
-            "hide the "
-            "latencies (get_triangle starved {:.1f} %, blocked {:.1f} %)",
+            "none: the most taken, {}, is so in {:.1f} % of all cycles; too few triangles were under way "
+            "to hide the latencies (get_triangle starved {:.1f} %, blocked {:.1f} %)",
             unit_name(*found.unit), 100 * found.utilisation, state_percent(get, State::starved, cycles),
             state_percent(get, State::blocked, cycles));
     std::string text =
@@ -110,9 +109,9 @@ std::string bottleneck_text(const Simulation& simulation) {
         text += fmt::format("; {} waits for it {:.1f} %", unit_name(*waiting),
                             percent(static_cast<double>(most), static_cast<double>(cycles)));
     if (found.next != nullptr && found.next_utilisation > 0)
-        text += fmt::format(
-            "; next is {} with {:.1f} %, so that more of the first gains at most {:.1f} times",
-            unit_name(*found.next), 100 * found.next_utilisation, found.utilisation / found.next_utilisation);
+        text += fmt::format("; without it the next limit is {}, at {:.1f} % now: up to {:.1f} times faster",
+                            unit_name(*found.next), 100 * found.next_utilisation,
+                            found.utilisation / found.next_utilisation);
     return text;
 }
 
@@ -125,13 +124,13 @@ std::string timing_text(const Simulation& simulation) {
         "cycles.\n"
         "utilisation: cycles in which no more work could have been taken. occupancy: items in the unit, on "
         "average.\n\n"
-        "{:<38}{:>10}{:>8}{:>9}{:>9}{:>8}{:>13}{:>11}{:>9}{:>6}  {}\n",
+        "{:<40}{:>10}{:>8}{:>9}{:>9}{:>8}{:>13}{:>11}{:>9}{:>6}  {}\n",
         cycles, "unit", "items", "busy", "starved", "blocked", "memory", "utilisation", "items/kcyc",
         "occup.", "most", "by whom");
     for (const Unit* unit : simulation.pipeline.units()) {
         const Activity& activity = unit->activity();
         std::string line = fmt::format(
-            "{:<38}{:>10}{:>8.2f}{:>9.2f}{:>9.2f}{:>8.2f}{:>13.2f}{:>11.2f}{:>9.3f}{:>6}  {}",
+            "{:<40}{:>10}{:>8.2f}{:>9.2f}{:>9.2f}{:>8.2f}{:>13.2f}{:>11.2f}{:>9.3f}{:>6}  {}",
             unit_name(*unit), activity.items_in(), state_percent(*unit, State::busy, cycles),
             state_percent(*unit, State::starved, cycles), state_percent(*unit, State::blocked, cycles),
             state_percent(*unit, State::waiting_for_memory, cycles), 100 * utilisation(*unit, cycles),
