@@ -57,7 +57,7 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
     pass_or_tessellate.to_lighting.bind(lighting.from_pass_or_tessellate);
     tessellation.to_triangle_queue.bind(triangle_queue.from_tessellation);
     triangle_queue.to_get_triangle.bind(get_triangle.from_triangle_queue);
-    triangle_queue.off_chip_memory.socket.bind(off_chip_memory.socket);
+    triangle_queue.off_chip_memory.bind(off_chip_memory);
     attach();
 }
 

@@ -80,14 +80,14 @@ bool Clock::find_next(std::uint64_t& next) const {
 }
 
 /// Those that asked for the present cycle, until none is left. Returns who was called, if observed.
-template <bool observed>
+template <bool Observed>
 std::uint64_t Clock::call_due() {
     std::uint64_t called = 0;
     for (unsigned calls = 0; due_now_ != 0; ++calls) {
         if (calls == calls_in_a_cycle)
             SC_REPORT_ERROR("tessera/clock", "a cycle does not end: units keep waking one another");
         const auto unit = static_cast<unsigned>(__builtin_ctzll(due_now_));
-        if constexpr (observed)
+        if constexpr (Observed)
             called |= due_now_ & -due_now_;
         due_now_ &= due_now_ - 1;
         units_[unit]->step();
@@ -112,6 +112,7 @@ void Clock::tick() {
     cycle_ = next_tick_;
     running_ = true;
     scheduled_ = false;
+    ++cycles_without_progress_;
     take_far();
     const std::uint64_t place = cycle_ % span;
     due_now_ = due_[place];
@@ -124,7 +125,7 @@ void Clock::tick() {
         call_due<false>();
     }
     running_ = false;
-    if (most_without_progress_ != 0 && cycle_ - last_progress_ > most_without_progress_) {
+    if (cycles_without_progress_ > most_without_progress_ && most_without_progress_ != 0) {
         stalled_ = true;
         sc_core::sc_stop();
         return;

@@ -95,9 +95,10 @@ class Clock : public sc_core::sc_module {
     /// Nobody asked for a later cycle.
     bool idle() const { return !running_ && !scheduled_; }
 
-    /// Told when work is completed (Pass or Tessellate: a triangle decided). Without it for `most` cycles, 0: for ever,
-    /// the clock stops the simulation.
-    void progress() { last_progress_ = cycle_; }
+    /// Told when work is completed (a triangle decided, or lit). When something was called in more than `most` cycles
+    /// without it, 0: for ever, the clock stops the simulation. Cycles in which all just wait do not count: a latency,
+    /// however long, comes to its end.
+    void progress() { cycles_without_progress_ = 0; }
     void stop_without_progress_for(std::uint64_t most) { most_without_progress_ = most; }
     std::uint64_t most_without_progress() const { return most_without_progress_; }
     /// The clock did that.
@@ -122,7 +123,7 @@ class Clock : public sc_core::sc_module {
     using Far = std::pair<std::uint64_t, std::uint64_t>;  // cycle and bit, beyond the table
 
     void tick();
-    template <bool observed>
+    template <bool Observed>
     std::uint64_t call_due();
     bool begin_observing();
     void take_far();
@@ -144,7 +145,7 @@ class Clock : public sc_core::sc_module {
     std::uint64_t next_tick_ = 0;
     bool running_ = false;
     bool scheduled_ = false;
-    std::uint64_t last_progress_ = 0;
+    std::uint64_t cycles_without_progress_ = 0;
     std::uint64_t most_without_progress_ = 0;
     bool stalled_ = false;
     CycleObserver* observer_ = nullptr;

@@ -116,7 +116,7 @@ class MemoryPort : public tlm::tlm_mm_interface {
 
         tlm::tlm_generic_payload payload;
         GatherExtension gather;
-        std::array<unsigned char, 8 * datapath::RectangleReads::most> data{};
+        std::array<unsigned char, std::size_t{8} * datapath::RectangleReads::most> data{};
         bool taken = false;
     };
 

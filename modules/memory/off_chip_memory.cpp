@@ -125,8 +125,8 @@ void OffChipMemory::step() {
 }
 
 /// Shows the request served last.
-void OffChipMemory::trace(Signals& signals) const {
-    Unit::trace(signals);
+void OffChipMemory::show(Signals& signals) const {
+    Unit::show(signals);
     signals.pulse("served", channel_cycles_);
     signals.group(signals.changed(channel_cycles_) && signals.running(), [&] {
         const Request& last =

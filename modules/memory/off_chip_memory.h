@@ -30,7 +30,7 @@ class OffChipMemory : public Unit {
 
     std::string holds() const override { return count_of(std::size_t{queued_} + answers_, "request"); }
     std::uint64_t occupied_cycles() const override { return channel_cycles_; }
-    void trace(Signals& signals) const override;
+    void show(Signals& signals) const override;
 
   private:
     struct Request {

@@ -22,6 +22,15 @@ class StorePort : public tlm::tlm_mm_interface {
               std::size_t most_under_way);
     ~StorePort() override;
 
+    /// Binds the port to a memory (with a socket of that name).
+    template <class Memory>
+    void bind(Memory& memory) {
+        socket.bind(memory.socket);
+        memory_ = &memory;
+    }
+    /// The memory: who is waited for.
+    const sc_core::sc_object* memory() const { return memory_; }
+
     /// A request may be made.
     bool may_request() const { return !on_offer_ && under_way_ < slots_.size(); }
     bool on_offer() const { return on_offer_; }
@@ -52,6 +61,7 @@ class StorePort : public tlm::tlm_mm_interface {
     std::size_t first_ = 0;
     std::size_t under_way_ = 0;
     bool on_offer_ = false;
+    const sc_core::sc_object* memory_ = nullptr;
 };
 
 }  // namespace tessera

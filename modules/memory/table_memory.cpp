@@ -44,7 +44,9 @@ TableMemory::TableMemory(const sc_core::sc_module_name& name, Clock& clock,
       storage_(layout.bytes()),
       stalls_(stalls, this->name()),
       queue_(timing.buffer),
-      bank_free_(timing.banks, 0),
+      one_by_one_(timing.banks == 1 && slots_per_entry_ == 1),
+      port_free_(std::size_t{timing.banks} * timing.ports, 0),
+      bank_slots_(timing.banks, 0),
       answer_ring_(16) {
     socket.register_b_transport(this, &TableMemory::b_transport);
     socket.register_nb_transport_fw(this, &TableMemory::nb_transport_fw);
@@ -141,25 +143,47 @@ void TableMemory::admit(std::uint64_t cycle) {
     }
 }
 
+/// The bank's port that is free first.
+std::uint64_t* TableMemory::free_port(std::size_t bank) {
+    const auto first = port_free_.begin() + static_cast<std::ptrdiff_t>(bank * timing_.ports);
+    return &*std::min_element(first, first + timing_.ports);
+}
+
+/// The first cycle, later ones excepted, in which the request can be served.
+std::uint64_t TableMemory::when_served(const Request& request) {
+    if (one_by_one_)
+        return timing_.ports == 1 ? next_slot_ : next_slot_ / timing_.ports;
+    std::uint64_t when = 0;
+    const unsigned count = request.gather == nullptr ? 1 : request.gather->count;
+    for (unsigned k = 0; k < count; ++k)
+        when = std::max(when, *free_port(bank_of(request.gather == nullptr ? request.payload->get_address()
+                                                                           : request.gather->address[k])));
+    return when;
+}
+
 /// Returns the cycle of the last port slot the request's entries take.
 std::uint64_t TableMemory::take_slots(const tlm::tlm_generic_payload& payload, const GatherExtension* gather,
                                       unsigned count, std::uint64_t cycle) {
-    const std::uint64_t ports = timing_.ports;
-    if (timing_.banks == 1) {  // one after another
-        std::uint64_t& free = bank_free_[0];
-        free = std::max(free, cycle * ports) + std::uint64_t{count} * slots_per_entry_;
-        next_free_ = ports == 1 ? free : free / ports;
-        return ports == 1 ? free - 1 : (free - 1) / ports;
+    slots_taken_ += std::uint64_t{count} * slots_per_entry_;
+    if (one_by_one_) {
+        next_slot_ = std::max(next_slot_, cycle * timing_.ports) + count;
+        return timing_.ports == 1 ? next_slot_ - 1 : (next_slot_ - 1) / timing_.ports;
     }
     std::uint64_t last = cycle;
     for (unsigned k = 0; k < count; ++k) {
-        const std::uint64_t address = gather == nullptr ? payload.get_address() : gather->address[k];
-        std::uint64_t& free = bank_free_[(address - layout_.base) / layout_.entry_bytes % timing_.banks];
-        free = std::max(free, cycle * ports) + slots_per_entry_;
-        last = std::max(last, (free - 1) / ports);
+        const std::size_t bank = bank_of(gather == nullptr ? payload.get_address() : gather->address[k]);
+        std::uint64_t* const free = free_port(bank);
+        *free = std::max(*free, cycle) + slots_per_entry_;
+        bank_slots_[bank] += slots_per_entry_;
+        last = std::max(last, *free - 1);
     }
-    next_free_ = *std::min_element(bank_free_.begin(), bank_free_.end()) / ports;
     return last;
+}
+
+std::uint64_t TableMemory::occupied_cycles() const {
+    const std::uint64_t slots =
+        one_by_one_ ? slots_taken_ : *std::max_element(bank_slots_.begin(), bank_slots_.end());
+    return std::max(slots / timing_.ports, cycles_held_up_);
 }
 
 void TableMemory::serve(const Request& request, std::uint64_t cycle) {
@@ -168,8 +192,6 @@ void TableMemory::serve(const Request& request, std::uint64_t cycle) {
     const unsigned count = gather == nullptr ? 1 : gather->count;
     const std::uint64_t last_slot_cycle = take_slots(payload, gather, count, cycle);
     last_address_ = payload.get_address();
-    slots_taken_ += std::uint64_t{count} * slots_per_entry_;
-    busy_until_ = std::max(busy_until_, last_slot_cycle + 1);
     read(payload, gather);
     if (answers_ == answer_ring_.size()) {
         std::rotate(answer_ring_.begin(), answer_ring_.begin() + static_cast<std::ptrdiff_t>(answer_first_),
@@ -184,9 +206,12 @@ void TableMemory::serve(const Request& request, std::uint64_t cycle) {
 
 void TableMemory::step() {
     const std::uint64_t cycle = clock_.last_cycle();
+    if (held_up_)
+        cycles_held_up_ += cycle - held_up_since_;
     if (waiting_at_doors_ > 0)
         admit(cycle);
-    while (queued_ > 0 && next_free_ <= cycle) {
+    std::uint64_t next = 0;
+    while (queued_ > 0 && (next = when_served(queue_[queue_first_])) <= cycle) {
         const Request request = queue_[queue_first_];
         queue_first_ = queue_first_ + 1 == timing_.buffer ? 0 : queue_first_ + 1;
         --queued_;
@@ -194,6 +219,8 @@ void TableMemory::step() {
         if (waiting_at_doors_ > 0)
             admit(cycle);
     }
+    held_up_ = queued_ > 0;
+    held_up_since_ = cycle;
     while (answers_ > 0 && answer_ring_[answer_first_].answer_at <= cycle) {
         const Request answer = answer_ring_[answer_first_];
         answer_first_ = answer_first_ + 1 == answer_ring_.size() ? 0 : answer_first_ + 1;
@@ -205,9 +232,9 @@ void TableMemory::step() {
             stream_protocol_error(socket.name(), "BEGIN_RESP was not completed at once");
         answer.payload->release();
     }
-    activity_.set(cycle, busy_until_ > cycle ? State::busy : State::starved);
-    if (busy_until_ > cycle)
-        wake_at(queued_ > 0 ? std::min(busy_until_, next_free_) : busy_until_);
+    activity_.set(cycle, answers_ > 0 ? State::busy : State::starved);
+    if (held_up_)
+        wake_at(next);
     if (answers_ > 0)
         wake_at(answer_ring_[answer_first_].answer_at);
 }
@@ -235,8 +262,8 @@ unsigned TableMemory::transport_dbg(int, tlm::tlm_generic_payload& payload) {
 }
 
 /// Shows the request served last, of which data is the first entry.
-void TableMemory::trace(Signals& signals) const {
-    Unit::trace(signals);
+void TableMemory::show(Signals& signals) const {
+    Unit::show(signals);
     signals.pulse("served", slots_taken_);
     signals.group(signals.changed(slots_taken_) && signals.running(), [&] {
         // Answers leave the ring in order, so the newest stays where it is until the ring comes round.
@@ -254,7 +281,7 @@ void TableMemory::trace(Signals& signals) const {
         signals.value("entries", 4, entries);
         signals.value("data", 64, data);
     });
-    signals.flag("slot_busy", activity_.state() == State::busy);
+    signals.flag("held_up", held_up_);
     signals.flag("stalled", waiting_at_doors_ > 0);
     signals.value("queued", 16, queued_);
     signals.value("answers_due", 16, answers_);

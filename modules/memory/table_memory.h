@@ -21,11 +21,13 @@ namespace tessera {
 /// Errors: a write gives TLM_COMMAND_ERROR_RESPONSE, an address outside TLM_ADDRESS_ERROR_RESPONSE, byte enables or
 /// streaming the TLM responses for those.
 ///
-/// b_transport, DMI (functional mode): one cycle an entry and the latency, not arbitrated.
+/// b_transport, DMI (functional mode): the latency for each entry, not arbitrated.
 /// nb_transport (timed mode): requests are served in order of arrival; those of one cycle in the order of units. Entry k
 /// is at bank k mod banks; each bank has `ports` ports, each port takes an entry's address every
-/// ceil(entry bytes / width) cycles, and its data comes `latency` cycles later. A request is answered (BEGIN_RESP) when
-/// its last entry has come. Capacity: `buffer` requests waiting; beyond that END_REQ is withheld.
+/// ceil(entry bytes / width) cycles, and its data comes `latency` cycles after the last of these. A request is served from the cycle on in which each bank it reads has a port free, and answered (BEGIN_RESP) when its last entry
+/// has come. Capacity: `buffer` requests waiting; beyond that END_REQ is withheld. Busy: from then until the answer.
+/// Utilisation: the share of the busiest bank's port slots that were taken, or of the cycles in which a request waited
+/// for a port, whichever is more: banks in conflict hold requests up with most of their ports idle.
 class TableMemory : public Unit {
   public:
     tlm_utils::multi_passthrough_target_socket<TableMemory> socket{"socket"};
@@ -40,14 +42,16 @@ class TableMemory : public Unit {
     std::uint64_t transactions() const { return transactions_; }
     /// Port slots taken: entries times the cycles a port needs for one.
     std::uint64_t slots_taken() const { return slots_taken_; }
-    /// Port slots a cycle.
+    /// Port slots a cycle, of all banks.
     std::uint64_t slots_per_cycle() const { return std::uint64_t{timing_.ports} * timing_.banks; }
+    /// Cycles in which a request in the buffer waited for a port.
+    std::uint64_t cycles_held_up() const { return cycles_held_up_; }
     /// Address and count of the request served last, for traces.
     std::uint64_t last_address() const { return last_address_; }
 
     std::string holds() const override { return count_of(size_t{queued_} + answers_, "request"); }
-    std::uint64_t occupied_cycles() const override { return slots_taken_ / slots_per_cycle(); }
-    void trace(Signals& signals) const override;
+    std::uint64_t occupied_cycles() const override;
+    void show(Signals& signals) const override;
 
   private:
     struct Request {
@@ -67,6 +71,11 @@ class TableMemory : public Unit {
     void serve(const Request& request, std::uint64_t cycle);
     std::uint64_t take_slots(const tlm::tlm_generic_payload& payload, const GatherExtension* gather,
                              unsigned count, std::uint64_t cycle);
+    std::size_t bank_of(std::uint64_t address) const {
+        return (address - layout_.base) / layout_.entry_bytes % timing_.banks;
+    }
+    std::uint64_t* free_port(std::size_t bank);
+    std::uint64_t when_served(const Request& request);
     void read(tlm::tlm_generic_payload& payload, const GatherExtension* gather);
     bool covers(std::uint64_t address, std::uint64_t length) const;
 
@@ -84,12 +93,16 @@ class TableMemory : public Unit {
     std::vector<Request> queue_;  // a ring
     std::size_t queue_first_ = 0;
     std::size_t queued_ = 0;
-    std::vector<std::uint64_t> bank_free_;  // per bank, in port slots: cycle * ports + port
-    std::vector<Request> answer_ring_;      // served, not yet answered, in order
+    bool one_by_one_;                        // one bank whose ports take an entry a cycle: the quick way
+    std::uint64_t next_slot_ = 0;            // then, the first free: cycle * ports + port
+    std::vector<std::uint64_t> port_free_;   // else, bank by bank: the cycle from which the port is free
+    std::vector<std::uint64_t> bank_slots_;  // and how many were taken
+    std::vector<Request> answer_ring_;       // served, not yet answered, in order
     std::size_t answer_first_ = 0;
     std::size_t answers_ = 0;
-    std::uint64_t next_free_ = 0;  // cycle in which some bank's port is free
-    std::uint64_t busy_until_ = 0;
+    std::uint64_t held_up_since_ = 0;
+    bool held_up_ = false;  // the first request in the queue waits for a port
+    std::uint64_t cycles_held_up_ = 0;
     std::uint64_t slots_taken_ = 0;
     std::uint64_t last_address_ = 0;
 };

@@ -32,7 +32,7 @@ Recorder::Recorder(Pipeline& pipeline, VcdWriter* vcd, TimelineWriter* timeline,
         for (const Unit* unit : units) {
             traced_.push_back({unit, Clock::bit_of(*unit), Signals(*vcd_, numbers_, unit->name())});
             traced_.back().signals.begin(true);
-            unit->trace(traced_.back().signals);
+            unit->show(traced_.back().signals);
         }
     }
     if (timeline_ != nullptr) {
@@ -60,7 +60,7 @@ void Recorder::Track::stretch(State state, const sc_core::sc_object* by, std::ui
 void Recorder::show_all() {
     for (TracedUnit& traced : traced_) {
         traced.signals.begin(false);
-        traced.unit->trace(traced.signals);
+        traced.unit->show(traced.signals);
         traced.signals.set_running();
     }
     vcd_->set(passes_signal_, pipeline_.passes.under_way());
@@ -85,7 +85,7 @@ void Recorder::show_called(std::uint64_t called) {
     for (TracedUnit& traced : traced_) {
         if ((called & traced.bit) != 0) {
             traced.signals.begin(false);
-            traced.unit->trace(traced.signals);
+            traced.unit->show(traced.signals);
         }
     }
     vcd_->set(passes_signal_, pipeline_.passes.under_way());

@@ -17,7 +17,7 @@ namespace tessera {
 
 /// Shows a pipeline in timed mode to the writers of waveforms and of the timeline, each optional.
 ///
-/// Waveforms: the signals of the chosen units (Unit::trace), at the end of each cycle in which they were called; and the
+/// Waveforms: the signals of the chosen units (Unit::show), at the end of each cycle in which they were called; and the
 /// cycle (tessera.clock.cycle) and the passes under way. Timeline: a track per unit with its states, by whom it is
 /// blocked, for whom it waits or who it lacks; the Triangle Queue's level.
 /// Cost: none before and after the window, when the clock and the units are not observed. What is simulated does not

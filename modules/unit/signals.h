@@ -32,7 +32,7 @@ class UnitNumbers {
     std::unordered_map<const sc_core::sc_object*, unsigned> known_;
 };
 
-/// One unit's signals in a waveform file. Unit::trace is called once to declare them, then at the end of each traced
+/// One unit's signals in a waveform file. Unit::show is called once to declare them, then at the end of each traced
 /// cycle in which the unit was called, to show their values. So trace makes the same calls, in the same order, each
 /// time: what depends on the unit's state is a value or a group, never an `if` around a call.
 ///
@@ -42,7 +42,7 @@ class Signals {
     Signals(VcdWriter& vcd, UnitNumbers& numbers, std::string scope)
         : vcd_(vcd), numbers_(numbers), scope_(std::move(scope)) {}
 
-    /// Begins a call of Unit::trace.
+    /// Begins a call of Unit::show.
     void begin(bool declaring) {
         declaring_ = declaring;
         signal_ = memory_ = group_ = 0;

@@ -39,8 +39,8 @@ class TableStage : public Unit {
     std::uint64_t occupied_cycles() const override { return activity_.items_in() * timing_.interval; }
 
     /// Shows the item started last, the read made last, and the item whose last read came last.
-    void trace(Signals& signals) const override {
-        Unit::trace(signals);
+    void show(Signals& signals) const override {
+        Unit::show(signals);
         signals.input(*input_);
         signals.group(signals.changed(activity_.items_in()) && !pipeline_.empty(), [&] {
             signals.work(pipeline_.newest().work);
@@ -106,8 +106,12 @@ class TableStage : public Unit {
             --waiting_;
             activity_.item_out(cycle);
         }
-        while (ask_all() && !input_->empty() && pipeline_.may_start(cycle) &&
-               unit().may_begin(input_->front())) {
+        bool lacking = false;
+        while (ask_all() && !input_->empty() && pipeline_.may_start(cycle)) {
+            if (!unit().may_begin(input_->front())) {
+                lacking = true;
+                break;
+            }
             Item& item = pipeline_.start(cycle);
             item = Item{};
             item.work = input_->front();
@@ -123,7 +127,8 @@ class TableStage : public Unit {
         else if (port_->under_way())
             activity_.set(cycle, State::waiting_for_memory, port_->memory());
         else
-            activity_.set(cycle, pipeline_.empty() ? State::starved : State::busy);
+            activity_.set(
+                cycle, !pipeline_.empty() || (!lacking && !input_->empty()) ? State::busy : State::starved);
         const std::uint64_t finished = pipeline_.next_finished(cycle);
         if (finished != never)
             wake_at(finished);

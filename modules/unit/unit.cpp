@@ -4,7 +4,7 @@
 
 namespace tessera {
 
-void Unit::trace(Signals& signals) const {
+void Unit::show(Signals& signals) const {
     signals.value("state", 2, static_cast<std::uint64_t>(activity_.state()));
     signals.unit("blocked_by", activity_.by());
     signals.value("occupancy", 32, activity_.level());

@@ -30,7 +30,7 @@ class Unit : public Clocked, public sc_core::sc_module {
 
     /// Declares the unit's signals, or shows their values at the end of a cycle (modules/unit/signals.h). Of every unit:
     /// its state, who it is blocked by, waits for or lacks, and the items in it.
-    virtual void trace(Signals& signals) const;
+    virtual void show(Signals& signals) const;
 
   protected:
     Unit(const sc_core::sc_module_name& name, Clock& clock) : sc_module(name), clock_(clock) {}
@@ -44,6 +44,14 @@ class Unit : public Clocked, public sc_core::sc_module {
     Clock& clock_;
     Activity activity_;
 };
+
+/// occupied_cycles() of a unit that holds one item at a time and sends it on in parts: the first a latency after it has
+/// come, but an interval after the part before at least.
+constexpr std::uint64_t one_at_a_time_cycles(const UnitTiming& timing, std::uint64_t items,
+                                             std::uint64_t parts) {
+    const std::uint64_t first = timing.latency > timing.interval ? timing.latency : timing.interval;
+    return items * first + (parts - items) * timing.interval;
+}
 
 /// "3 edges", "1 edge", "".
 std::string count_of(std::size_t count, const char* what);

@@ -25,8 +25,8 @@ class WorkStage : public Unit {
     std::uint64_t occupied_cycles() const override { return activity_.items_in() * timing_.interval; }
 
     /// Shows the item started last.
-    void trace(Signals& signals) const override {
-        Unit::trace(signals);
+    void show(Signals& signals) const override {
+        Unit::show(signals);
         signals.input(*input_);
         signals.group(signals.changed(activity_.items_in()) && !pipeline_.empty(), [&] {
             signals.work(pipeline_.newest());

@@ -87,7 +87,7 @@ bool GetTriangle::begin(std::uint64_t cycle) {
         branch.left = k == 0 ? parts : tested;
         if (k > 0 && branch_count_ > 2)
             branch.left = static_cast<Parts>(branch.left & 0111u << (k - 1));
-        branch.next = cycle + timing_.latency;
+        branch.next = std::max(branch.next, cycle + timing_.latency);
     }
     return true;
 }
@@ -153,8 +153,8 @@ std::string GetTriangle::holds() const {
     return text;
 }
 
-void GetTriangle::trace(Signals& signals) const {
-    Unit::trace(signals);
+void GetTriangle::show(Signals& signals) const {
+    Unit::show(signals);
     signals.input(from_host, "from_host");
     signals.input(from_triangle_queue, "from_triangle_queue");
     signals.group(signals.changed(activity_.items_in()) && pass_ != nullptr, [&] {

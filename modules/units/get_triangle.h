@@ -24,8 +24,8 @@ namespace tessera {
 ///
 /// In:   triangles. Out: to Calculate New P all parts, to Tessellation Tests vertices and edges; with three Tessellation
 ///       Tests units vertex and edge k to unit k.
-/// Timing: one part a cycle on each output, the first a latency (1) after the triangle was taken. Capacity: one triangle;
-///       the next is taken when all parts of the last have been.
+/// Timing: one part per interval (1) on each output, the first a latency (1) after the triangle was taken. Capacity: one
+///       triangle; the next is taken when all parts of the last have been.
 /// Waits for the Triangle Queue or the host; takes a host triangle only while the queue is below its watermark and has
 /// nothing to send. Held back by Calculate New P and Tessellation Tests.
 class GetTriangle : public Unit {
@@ -41,12 +41,14 @@ class GetTriangle : public Unit {
 
     std::uint64_t host_triangles() const { return host_triangles_; }
     std::uint64_t queue_triangles() const { return queue_triangles_; }
-    /// Passes in which no vertex was new: P', P's of all three known from the pass before.
+    /// Vertices, normals and edges sent to Calculate New P.
     std::uint64_t parts_sent() const { return parts_sent_; }
 
     std::string holds() const override;
-    std::uint64_t occupied_cycles() const override { return parts_sent_; }
-    void trace(Signals& signals) const override;
+    std::uint64_t occupied_cycles() const override {
+        return one_at_a_time_cycles(timing_, activity_.items_in(), parts_sent_);
+    }
+    void show(Signals& signals) const override;
 
     /// Sets what has to be sent on: the unit's whole decision.
     static void prepare(datapath::TrianglePass& pass);

@@ -42,6 +42,7 @@ void Lighting::step() {
         offered_ = false;
         pipeline_.pop();
         activity_.item_out(cycle);
+        clock_.progress();
     }
     while (!from_pass_or_tessellate.empty() && pipeline_.may_start(cycle)) {
         pipeline_.start(cycle) = light(from_pass_or_tessellate.front());
@@ -62,8 +63,8 @@ std::string Lighting::holds() const {
     return count_of(pipeline_.size() + from_pass_or_tessellate.size(), "triangle");
 }
 
-void Lighting::trace(Signals& signals) const {
-    Unit::trace(signals);
+void Lighting::show(Signals& signals) const {
+    Unit::show(signals);
     signals.input(from_pass_or_tessellate);
     signals.group(signals.changed(activity_.items_in()), [&] {
         const LitTriangle& lit = pipeline_.newest();

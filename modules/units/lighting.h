@@ -39,7 +39,7 @@ class Lighting : public Unit {
 
     std::string holds() const override;
     std::uint64_t occupied_cycles() const override { return activity_.items_in() * timing_.interval; }
-    void trace(Signals& signals) const override;
+    void show(Signals& signals) const override;
 
   private:
     void b_transport(datapath::Triangle& triangle, sc_core::sc_time& delay);

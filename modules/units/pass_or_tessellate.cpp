@@ -35,7 +35,8 @@ void PassOrTessellate::end_of_elaboration() {
         return port == nullptr ? nullptr : port->get_parent_object();
     };
     transform_ = producer(from_transform);
-    tests_ = producer(from_tessellation_tests[0]);
+    for (StreamInput<Work>& input : from_tessellation_tests)
+        tests_.push_back(producer(input));
 }
 
 void PassOrTessellate::b_transport(Work& work, sc_core::sc_time& delay) {
@@ -138,29 +139,57 @@ void PassOrTessellate::step() {
     if (offered_)
         activity_.set(cycle, State::blocked,
                       to_lighting.free() ? to_tessellation.consumer() : to_lighting.consumer());
-    else if (!pipeline_.empty())
+    else if (!pipeline_.empty() || first_is_complete())
         activity_.set(cycle, State::busy);
-    else if (incomplete_count_ > 0)
-        activity_.set(cycle, State::starved,
-                      incomplete_[first_incomplete_]->geometry_left != 0 ? transform_ : tests_);
     else
-        activity_.set(cycle, State::starved);
+        activity_.set(cycle, State::starved, lacks());
     wake_at(pipeline_.next_finished(cycle));
     if (incomplete_count_ > 0)
         wake_at(pipeline_.next_start(cycle));
 }
 
+bool PassOrTessellate::first_is_complete() const {
+    if (incomplete_count_ == 0)
+        return false;
+    const Pass& first = *incomplete_[first_incomplete_];
+    return first.geometry_left == 0 && first.tests_left == 0;
+}
+
+/// The branch of which something lacks while all of the other's is there; null: neither is late.
+const sc_core::sc_object* PassOrTessellate::lacks() const {
+    if (incomplete_count_ == 0) {
+        for (const StreamInput<Work>& input : from_tessellation_tests) {
+            if (!input.empty())
+                return transform_;
+        }
+        return nullptr;
+    }
+    const Pass& first = *incomplete_[first_incomplete_];
+    if (first.geometry_left == 0)
+        return tests_[tests_.size() == 1 ? 0 : Signals::index_of({nullptr, first.tests_left})];
+    return first.tests_left == 0 ? transform_ : nullptr;
+}
+
 std::string PassOrTessellate::holds() const {
     std::string text;
+    const auto add = [&](const std::string& what) {
+        if (!what.empty())
+            text += (text.empty() ? "" : "; ") + what;
+    };
     if (incomplete_count_ > 0) {
-        const Pass& pass = *incomplete_[first_incomplete_];
-        text = count_of(incomplete_count_, "incomplete triangle") + ", the first (" +
-               std::to_string(pass.number) + ") lacks its parts from " +
-               (pass.geometry_left != 0 ? (pass.tests_left != 0 ? "both branches" : "Transform")
-                                        : "Tessellation Tests");
+        const Pass& first = *incomplete_[first_incomplete_];
+        add(count_of(incomplete_count_, "triangle") + " to be joined, the first (" +
+            std::to_string(first.number) + ") " +
+            (first_is_complete()        ? "complete"
+             : first.geometry_left == 0 ? "lacks its parts from Tessellation Tests"
+             : first.tests_left == 0    ? "lacks its parts from Transform"
+                                        : "lacks its parts from both branches"));
     }
-    if (!pipeline_.empty())
-        text += (text.empty() ? "" : "; ") + count_of(pipeline_.size(), "decided triangle");
+    add(count_of(pipeline_.size(), "decided triangle"));
+    std::size_t edges = 0;
+    for (const StreamInput<Work>& input : from_tessellation_tests)
+        edges += input.size();
+    add(count_of(edges, "tested edge") + (edges > 0 ? " that came before its triangle's place" : ""));
     return text;
 }
 
@@ -229,8 +258,8 @@ PassOrTessellate::Way PassOrTessellate::finish(datapath::Triangle& triangle) {
 }
 
 /// Shows the triangle decided last; of one that only fetched normals, tests and split as it brought them.
-void PassOrTessellate::trace(Signals& signals) const {
-    Unit::trace(signals);
+void PassOrTessellate::show(Signals& signals) const {
+    Unit::show(signals);
     signals.input(from_transform, "from_transform");
     for (const StreamInput<Work>& input : from_tessellation_tests)
         signals.input(input, input.basename());

@@ -66,7 +66,7 @@ class PassOrTessellate : public Unit {
 
     std::string holds() const override;
     std::uint64_t occupied_cycles() const override { return activity_.items_out() * timing_.interval; }
-    void trace(Signals& signals) const override;
+    void show(Signals& signals) const override;
 
   private:
     enum class Way : std::uint8_t { tessellation, lighting, dropped };
@@ -79,6 +79,8 @@ class PassOrTessellate : public Unit {
     void step() override;
     bool take_parts(std::uint64_t cycle);
     bool deliver(Decided& next);
+    bool first_is_complete() const;
+    const sc_core::sc_object* lacks() const;
     void end_of_elaboration() override;
 
     /// Completes the pass and says where it goes.
@@ -98,7 +100,7 @@ class PassOrTessellate : public Unit {
     ElasticPipeline<Decided> pipeline_;
     bool offered_ = false;  // the pipeline's first is on offer
     const sc_core::sc_object* transform_ = nullptr;
-    const sc_core::sc_object* tests_ = nullptr;
+    std::vector<const sc_core::sc_object*> tests_;  // one per Tessellation Tests unit
     Counts counts_;
 };
 

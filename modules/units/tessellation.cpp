@@ -1,5 +1,7 @@
 #include "modules/units/tessellation.h"
 
+#include <algorithm>
+
 #include "modules/datapath/tessellate.h"
 #include "modules/unit/signals.h"
 
@@ -42,7 +44,7 @@ void Tessellation::step() {
                    [&](const datapath::Triangle& child) { children_[made_++] = child; });
         ++made_into_[made_];
         activity_.item_in(cycle);
-        next_ = cycle + timing_.latency;
+        next_ = std::max(next_, cycle + timing_.latency);
         from_pass_or_tessellate.pop();
         passes_.give_back(pass);
     }
@@ -64,8 +66,8 @@ std::string Tessellation::holds() const {
     return text;
 }
 
-void Tessellation::trace(Signals& signals) const {
-    Unit::trace(signals);
+void Tessellation::show(Signals& signals) const {
+    Unit::show(signals);
     signals.input(from_pass_or_tessellate);
     signals.group(signals.changed(activity_.items_in()),
                   [&] { signals.value("base", 32, children_[0].base); });

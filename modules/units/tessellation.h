@@ -37,8 +37,10 @@ class Tessellation : public Unit {
     }
 
     std::string holds() const override;
-    std::uint64_t occupied_cycles() const override { return children() * timing_.interval; }
-    void trace(Signals& signals) const override;
+    std::uint64_t occupied_cycles() const override {
+        return one_at_a_time_cycles(timing_, activity_.items_in(), children());
+    }
+    void show(Signals& signals) const override;
 
   private:
     void b_transport(Work& work, sc_core::sc_time& delay);

@@ -78,8 +78,6 @@ void TriangleQueue::level_changed(std::uint64_t cycle) {
 }
 
 void TriangleQueue::spill(const datapath::Triangle& triangle) {
-    if (off_chip_ == design_.off_chip_triangles)
-        SC_REPORT_ERROR("tessera/triangle_queue", "off-chip memory is full");
     if (!datapath::pack_triangle(triangle, registers_.formats, off_chip_memory.record_to_write()))
         SC_REPORT_ERROR("tessera/triangle_queue",
                         "a spilled triangle does not fit its format (generations beyond generation_bits?)");
@@ -107,6 +105,11 @@ bool TriangleQueue::put(const datapath::Triangle& triangle) {
         case QueueOverflow::spill:
             break;
     }
+    if (off_chip_ == design_.off_chip_triangles) {
+        off_chip_memory_full_ = true;
+        sc_core::sc_stop();
+        return false;
+    }
     if (!off_chip_memory.may_request())
         return false;
     if (fifo) {
@@ -131,6 +134,7 @@ void TriangleQueue::take_back() {
                 store_.push_oldest(triangle);
             --refills_;
             ++refilled_;
+            on_chip_high_water_mark_ = std::max(on_chip_high_water_mark_, store_.size());
         }
         off_chip_memory.pop_answer();
     }
@@ -181,8 +185,8 @@ void TriangleQueue::step() {
         activity_.set(cycle, State::blocked, to_get_triangle.consumer());
     else if (!leaving_.empty() || !store_.empty())
         activity_.set(cycle, State::busy);
-    else if (off_chip_memory.under_way() > 0)
-        activity_.set(cycle, State::waiting_for_memory);
+    else if (refills_ > 0 || off_chip_ > 0)
+        activity_.set(cycle, State::waiting_for_memory, off_chip_memory.memory());
     else
         activity_.set(cycle, State::starved);
     wake_at(leaving_.next_finished(cycle));
@@ -196,6 +200,8 @@ std::string TriangleQueue::holds() const {
     std::string text = count_of(waiting(), "triangle");
     if (off_chip_ > 0)
         text += ", " + std::to_string(off_chip_) + " of them off chip";
+    if (!leaving_.empty())
+        text += ", " + std::to_string(leaving_.size()) + " of them on the way out";
     if (!from_tessellation.empty())
         text += std::string(text.empty() ? "" : "; ") + "no place for the next" +
                 (design_.capacity == 0 ? "" : " (capacity " + std::to_string(design_.capacity) + ")");
@@ -203,8 +209,8 @@ std::string TriangleQueue::holds() const {
 }
 
 /// Shows the levels, what goes off chip and comes back, and the triangle that was read from the store last.
-void TriangleQueue::trace(Signals& signals) const {
-    Unit::trace(signals);
+void TriangleQueue::show(Signals& signals) const {
+    Unit::show(signals);
     signals.input(from_tessellation);
     signals.value("level", 32, waiting());
     signals.value("on_chip", 32, store_.size());

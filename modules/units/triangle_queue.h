@@ -72,9 +72,12 @@ class TriangleQueue : public Unit, public TriangleQueueLevel {
     /// A triangle came that found no place, with QueueOverflow::error.
     bool overflowed() const { return overflowed_; }
 
+    /// A triangle was to be spilled when all places in off-chip memory were taken.
+    bool off_chip_memory_full() const { return off_chip_memory_full_; }
+
     std::string holds() const override;
     std::uint64_t occupied_cycles() const override { return taken_ * timing_.interval; }
-    void trace(Signals& signals) const override;
+    void show(Signals& signals) const override;
 
   private:
     void b_transport(datapath::Triangle& triangle, sc_core::sc_time& delay);
@@ -105,6 +108,7 @@ class TriangleQueue : public Unit, public TriangleQueueLevel {
     std::uint64_t spilled_ = 0;
     std::uint64_t refilled_ = 0;
     bool overflowed_ = false;
+    bool off_chip_memory_full_ = false;
     LevelHistory history_;
 
     sc_core::sc_event arrival_{"arrival"};

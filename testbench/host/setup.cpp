@@ -366,6 +366,7 @@ Design make_design(const Job& job) {
         job.hardware.queue_order == QueueOrder::lifo ? TriangleOrder::lifo : TriangleOrder::fifo;
     design.queue.watermark = static_cast<std::size_t>(job.hardware.queue_watermark);
     design.queue.capacity = static_cast<std::size_t>(job.hardware.queue_capacity);
+    design.queue.off_chip_triangles = static_cast<std::uint64_t>(job.hardware.off_chip_triangles);
     design.queue.overflow = job.hardware.queue_overflow == Overflow::spill   ? QueueOverflow::spill
                             : job.hardware.queue_overflow == Overflow::stall ? QueueOverflow::stall
                                                                              : QueueOverflow::error;

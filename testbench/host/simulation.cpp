@@ -41,6 +41,12 @@ std::string Simulation::run() {
             "hardware.queue_capacity = {}: in cycle {} a triangle found the Triangle Queue full; raise the "
             "capacity, or set hardware.queue_order = \"lifo\" or hardware.queue_overflow = \"spill\"",
             setup.design.queue.capacity, pipeline.clock.last_cycle()));
+    if (pipeline.triangle_queue.off_chip_memory_full())
+        throw ResourceError(fmt::format(
+            "hardware.off_chip_triangles = {}: in cycle {} a full Triangle Queue (hardware.queue_capacity = "
+            "{}) had "
+            "more to spill; raise either, or set hardware.queue_order = \"lifo\", which needs far fewer",
+            setup.design.queue.off_chip_triangles, pipeline.clock.last_cycle(), setup.design.queue.capacity));
     return drained() ? std::string{} : stuck();
 }
 
@@ -53,8 +59,10 @@ std::string Simulation::stuck() const {
     const Clock& clock = pipeline.clock;
     std::string text =
         clock.stalled()
-            ? fmt::format("livelock: no triangle has been decided for more than {} cycles, up to cycle {}\n",
-                          clock.most_without_progress(), clock.last_cycle())
+            ? fmt::format(
+                  "livelock: for more than limits.cycles_without_progress = {} cycles of work, up to cycle "
+                  "{}, no triangle has been decided or lit; if the design is just slow, raise the limit\n",
+                  clock.most_without_progress(), clock.last_cycle())
             : fmt::format("deadlock: the simulation has nothing left to do{}, yet work is left\n",
                           timed ? fmt::format(" after cycle {}", clock.last_cycle()) : std::string{});
     const auto& counts = pipeline.pass_or_tessellate.counts();
@@ -72,6 +80,12 @@ std::string Simulation::stuck() const {
         if (!line.empty())
             text += fmt::format("  {}: {}\n", unit->name(), line);
     }
+    if (!clock.stalled() && pipeline.triangle_queue.waiting() > 0 && setup.design.queue.capacity > 0 &&
+        setup.design.queue.overflow == QueueOverflow::stall)
+        text += fmt::format(
+            "  a full queue may not spill: raise hardware.queue_capacity = {}, or set "
+            "hardware.queue_overflow = \"spill\"\n",
+            setup.design.queue.capacity);
     return text;
 }
 

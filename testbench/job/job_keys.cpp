@@ -148,16 +148,18 @@ constexpr double most_places = 65536;    // of a buffer
 
 /// The three figures of a unit. `unit(timing)` is a reference to its UnitTiming.
 template <typename Writer, typename Select>
-void add_unit(const Writer& key, const std::string& leaf, const std::string& name, Select unit) {
+void add_unit(const Writer& key, const std::string& leaf, const std::string& name, Select unit,
+              const std::string& besides_latency = "",
+              const std::string& buffered = "items that may wait at its input") {
     key.add_deep(
         leaf + "_latency", [unit](auto& t) -> auto& { return unit(t).latency; }, "cycles",
-        between(1, most_cycles), name + ": from an item's start to its result, memory reads not counted");
+        between(1, most_cycles), name + ": from an item's start to its result" + besides_latency);
     key.add_deep(
         leaf + "_interval", [unit](auto& t) -> auto& { return unit(t).interval; }, "cycles",
         between(1, most_cycles), name + ": between the starts of two items");
     key.add_deep(
         leaf + "_buffer", [unit](auto& t) -> auto& { return unit(t).buffer; }, "items",
-        between(1, most_places), name + ": items that may wait at its input");
+        between(1, most_places), name + ": " + buffered);
 }
 
 template <typename Writer, typename Select>
@@ -189,7 +191,8 @@ void add_timing(const Writer& key) {
     add_unit(
         key, "calculate_new_p", "Calculate New P", [](auto& t) -> auto& { return t.calculate_new_p; });
     add_unit(
-        key, "displace_vertex", "Displace Vertex", [](auto& t) -> auto& { return t.displace_vertex; });
+        key, "displace_vertex", "Displace Vertex", [](auto& t) -> auto& { return t.displace_vertex; },
+        ", table reads come on top");
     add_unit(
         key, "transform", "Transform", [](auto& t) -> auto& { return t.transform; });
     add_unit(
@@ -198,9 +201,10 @@ void add_timing(const Writer& key) {
         key, "tex_coord_test", "Tex Coord Test", [](auto& t) -> auto& { return t.tex_coord_test; });
     add_unit(
         key, "summed_height_test", "Summed Height Test",
-        [](auto& t) -> auto& { return t.summed_height_test; });
+        [](auto& t) -> auto& { return t.summed_height_test; }, ", table reads come on top");
     add_unit(
-        key, "normal_test", "Normal Test", [](auto& t) -> auto& { return t.normal_test; });
+        key, "normal_test", "Normal Test", [](auto& t) -> auto& { return t.normal_test; },
+        ", table reads come on top");
     add_unit(
         key, "view_test", "View Test", [](auto& t) -> auto& { return t.view_test; });
     key.add_deep(
@@ -208,7 +212,8 @@ void add_timing(const Writer& key) {
         "Edges decided by one test that may wait for the other three");
     add_unit(
         key, "pass_or_tessellate", "Pass or Tessellate",
-        [](auto& t) -> auto& { return t.pass_or_tessellate; });
+        [](auto& t) -> auto& { return t.pass_or_tessellate; }, "",
+        "triangles of which not all parts have come from both branches");
     add_unit(
         key, "tessellation", "Tessellation", [](auto& t) -> auto& { return t.tessellation; });
     add_unit(
@@ -322,6 +327,7 @@ std::vector<KeyTable> declare_keys() {
         key.add("queue_order", &Hardware::queue_order, "Triangle Queue: which waiting triangle goes next, the oldest or the newest");
         key.add("queue_watermark", &Hardware::queue_watermark, "triangles", between(1, any_count), "Host triangles are taken while fewer than this many wait");
         key.add("queue_capacity", &Hardware::queue_capacity, "triangles", between(0, any_count), "Timed mode: Triangle Queue's places on chip; 0: unbounded");
+        key.add("off_chip_triangles", &Hardware::off_chip_triangles, "triangles", between(1, 1000000000), "Timed mode: places for spilled triangles in off-chip memory; a run that needs more ends with exit code 4");
         key.add("queue_overflow", &Hardware::queue_overflow, "Timed mode: a full queue spills to off-chip memory, stalls the pipeline, or ends the run with exit code 4");
         key.add("tests_units", &Hardware::tests_units, "-", between(1, 3), "Timed mode: Tessellation Tests units, 1 or 3 (one for each edge of a triangle)");
         key.add("transform_pipelines", &Hardware::transform_pipelines, "-", between(1, 16), "Timed mode: Transform pipelines that take turns");
@@ -339,7 +345,7 @@ std::vector<KeyTable> declare_keys() {
     });
     list.table("limits", &Job::limits, "Where a run gives up.", [](const auto& key) {
         using Limits = Job::Limits;
-        key.add("cycles_without_progress", &Limits::cycles_without_progress, "cycles", between(1, any_count), "Timed mode: cycles in which no triangle is decided; more end the run with exit code 3");
+        key.add("cycles_without_progress", &Limits::cycles_without_progress, "cycles", between(1, any_count), "Timed mode: cycles in which units were at work and no triangle was decided or lit; more end the run with exit code 3");
         key.add("triangles", &Limits::triangles, "triangles", between(1, any_count), "Emitted triangles; more end the run with exit code 4");
     });
     list.table("output", &Job::output, "What a run leaves behind.", [](const auto& key) {

@@ -46,6 +46,8 @@ class TraceOptions {
             set("vcd", "true");
         if (timeline_)
             set("timeline", "true");
+        if (!window_.empty() || !units_.empty())
+            command.trace_option = window_.empty() ? "--trace-units" : "--trace";
         if (!window_.empty()) {
             const std::size_t colon = window_.find(':');
             if (colon == std::string::npos || colon == 0 || colon + 1 == window_.size())

@@ -14,6 +14,7 @@ struct Command {
     std::filesystem::path data_folder;  ///< what `data:` paths begin at
     bool dump_config = false;           ///< print the effective job and stop
     bool fst = false;                   ///< waveforms also as FST
+    std::string trace_option;           ///< --trace or --trace-units, if given: it wants something to trace
 };
 
 /// Reads the command line. Prints help or version itself and gives nothing then. Throws InputError on wrong usage.

@@ -136,6 +136,10 @@ ExitCode run_job(const Command& command) {
         fmt::print("{}", dump_job(job));
         return ExitCode::fine;
     }
+    if (!command.trace_option.empty() && !Traces::wanted(job))
+        throw InputError(
+            fmt::format("{} chooses what to trace, and nothing is traced: add --vcd, --timeline or both",
+                        command.trace_option));
     const std::filesystem::path folder = job.output.folder;
     check_output_folder(folder);
 

@@ -58,7 +58,9 @@ std::string unit_name(const sc_core::sc_object& unit) {
 }
 
 double utilisation(const Unit& unit, std::uint64_t cycles) {
-    return cycles == 0 ? 0 : static_cast<double>(unit.occupied_cycles()) / static_cast<double>(cycles);
+    // The last item's interval may reach beyond the run's end.
+    const std::uint64_t occupied = std::min(unit.occupied_cycles(), cycles);
+    return cycles == 0 ? 0 : static_cast<double>(occupied) / static_cast<double>(cycles);
 }
 
 Bottleneck find_bottleneck(const Simulation& simulation) {

@@ -64,6 +64,8 @@ void unit_figures(const Unit& unit, std::uint64_t cycles, std::vector<Figure>& f
     const Activity& activity = unit.activity();
     Group group(figures, "timing." + unit_name(unit));
     group.count("items", activity.items_in(), "item", "started, or asked for");
+    group.count("items_out", activity.items_out(), "item",
+                "finished and handed on, or dropped as not needed");
     group.count("busy", activity.cycles_in(State::busy), "cycle", "working on an item");
     group.count("starved", activity.cycles_in(State::starved), "cycle",
                 "nothing to work on, or its other half lacks");

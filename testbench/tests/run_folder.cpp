@@ -173,6 +173,23 @@ void require_consistent(const RunFolder& run) {
                                                   run.count("normal_map", "size") +
                                                   run.count("summed_height_table", "size"));
 
+    // A unit's cycles add up to the run's, exactly, and nothing is left in it.
+    const bool timed = run.statistics.contains("timing");
+    for (const auto& [group, members] : run.statistics.items()) {
+        if (group.rfind("timing.", 0) != 0)
+            continue;
+        INFO(group);
+        CHECK(run.count(group, "busy") + run.count(group, "starved") + run.count(group, "blocked") +
+                  run.count(group, "waiting_for_memory") ==
+              run.count("timing", "cycles"));
+        CHECK(run.count(group, "items") == run.count(group, "items_out"));
+        std::uint64_t blocked = 0;
+        for (const auto& [name, figure] : members.items())
+            blocked += name.rfind("blocked_by_", 0) == 0 ? figure.at("value").get<std::uint64_t>() : 0;
+        CHECK(blocked == run.count(group, "blocked"));
+    }
+    CHECK(timed == job_says("mode = \"timed\"\n"));
+
     // The table for spreadsheets has what the JSON has, in its order.
     std::vector<std::pair<std::string, std::string>> figures;
     for (const auto& [group, members] : run.statistics.items()) {

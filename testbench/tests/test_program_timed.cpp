@@ -39,18 +39,58 @@ TEST_CASE("timed run: a full queue that stalls ends with exit code 3 and says wh
     CHECK(end.exit_code == 3);
     CHECK_THAT(end.err, Contains("tessera: deadlock: ") && Contains("triangle_queue: ") &&
                             Contains("(capacity 8)") && Contains("waits for get_triangle") &&
+                            Contains("hardware.queue_overflow = \"spill\"") &&
                             Contains("pass_or_tessellate: ") && Contains("waits for tessellation"));
 }
 
 TEST_CASE("timed run: no progress within the bound ends with exit code 3") {
     const TestFolder here;
-    const ProgramEnd end =
-        run_tessera(timed_run("out", {"timing.stalls_per_mille=1000", "timing.stalls_longest=100000",
-                                      "limits.cycles_without_progress=2000"}),
-                    here.path());
+    const ProgramEnd end = run_tessera(timed_run("out", {"limits.cycles_without_progress=10"}), here.path());
     INFO(end.text());
     CHECK(end.exit_code == 3);
-    CHECK_THAT(end.err, Contains("tessera: livelock: ") && Contains("more than 2000 cycles"));
+    CHECK_THAT(end.err, Contains("tessera: livelock: ") && Contains("limits.cycles_without_progress = 10"));
+}
+
+TEST_CASE("timed run: to be slow is no livelock") {
+    const TestFolder here;
+    const std::vector<std::string> tiny{"tests.generation_limit=1", "output.picture=false",
+                                        "check.end_to_end=false"};
+    for (const std::vector<std::string>& slow : std::vector<std::vector<std::string>>{
+             {"timing.transform_latency=1000000", "limits.cycles_without_progress=1000"},
+             {"timing.stalls_per_mille=1000", "timing.stalls_longest=1000000"},
+             {"timing.lighting_latency=2000", "limits.cycles_without_progress=1000"}}) {
+        const ProgramEnd end = run_tessera(timed_run("out", with(tiny, slow)), here.path());
+        INFO(end.text());
+        CHECK(end.exit_code == 0);
+    }
+}
+
+TEST_CASE("timed run: off-chip memory that is full ends with exit code 4 and names the key") {
+    const TestFolder here;
+    for (const std::string order : {"fifo", "lifo"}) {
+        const ProgramEnd end =
+            run_tessera(timed_run("out", {"hardware.queue_capacity=2", "hardware.off_chip_triangles=5",
+                                          "hardware.queue_order=" + order}),
+                        here.path());
+        INFO(end.text());
+        CHECK(end.exit_code == 4);
+        CHECK_THAT(end.err,
+                   Contains("hardware.off_chip_triangles = 5") && Contains("hardware.queue_capacity = 2"));
+        CHECK(here.names().empty());
+    }
+}
+
+TEST_CASE("timed run: a window or units to trace without a trace are refused") {
+    const TestFolder here;
+    for (const std::vector<std::string>& option :
+         std::vector<std::vector<std::string>>{{"--trace", "5:50"}, {"--trace-units", "queue"}}) {
+        std::vector<std::string> arguments = timed_run("out", {});
+        arguments.insert(arguments.end(), option.begin(), option.end());
+        const ProgramEnd end = run_tessera(arguments, here.path());
+        INFO(end.text());
+        CHECK(end.exit_code == 2);
+        CHECK_THAT(end.err, Contains(option[0]) && Contains("--vcd") && Contains("--timeline"));
+    }
 }
 
 TEST_CASE("timed run: a queue that may not overflow ends with exit code 4 and names the key") {

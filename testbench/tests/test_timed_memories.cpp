@@ -185,6 +185,13 @@ TEST_CASE("memory: a port narrower than an entry takes it in pieces") {
 TEST_CASE("memory: a width that does not divide the entry rounds up") {
     expect_answers(timing(1, 1, 1, 3), gathers(4, 4), every(18, 8, 4));  // 2 cycles an entry, 8 a gather
 }
+TEST_CASE("memory: two narrow ports take two entries in pieces, and no entry in one cycle") {
+    // 4 bytes at 2 a cycle: entries 0 and 1 in cycles 10 and 11, one on each port
+    expect_answers(timing(2, 1, 1, 2), single_reads(6), {12, 12, 14, 14, 16, 16});
+}
+TEST_CASE("memory: a gather of four through two narrow ports") {
+    expect_answers(timing(2, 1, 1, 2), gathers(3, 4), every(14, 4, 3));
+}
 TEST_CASE("memory: a port wider than an entry takes one a cycle all the same") {
     expect_answers(timing(1, 1, 1, 64), single_reads(10), every(11, 1, 10));
 }
@@ -205,6 +212,17 @@ TEST_CASE("memory: requests wait while every bank is taken") {
     bench.run();
     // two in each bank, cycles 10 and 11; {0, 2} bank 0 in 12, 13; {1, 3} as bank 1 is free in 12: 12, 13
     CHECK(bench.reader().answered == Cycles{12, 14, 14});
+}
+
+TEST_CASE("memory: an idle bank does not let requests past one that is taken") {
+    // all in bank 0 of two: one a cycle, as with one bank, and the buffer (1) holds the rest at the door
+    Bench bench(timing(1, 2, 1), 1, {}, 2);
+    for (std::uint32_t k = 0; k < 10; ++k)
+        bench.reader().reads.push_back({2 * k, 2 * k + 4, 2 * k + 8});
+    bench.run();
+    CHECK(bench.reader().answered == every(13, 3, 10));
+    CHECK(bench.memory.occupied_cycles() == 30);
+    CHECK(bench.memory.cycles_held_up() > 20);
 }
 
 TEST_CASE("memory: three readers take turns, none starves") {
@@ -262,14 +280,15 @@ TEST_CASE("memory: no more requests are under way than the reader has room for")
     CHECK(bench.reader().answered == Cycles{20, 21, 30, 31, 40, 41});
 }
 
-TEST_CASE("memory: busy exactly as many cycles as its one port takes addresses") {
+TEST_CASE("memory: busy from the first address to the last answer, its port as long as it takes addresses") {
     Bench bench(timing(1, 1, 7), 2);
     bench.reader(0).reads = gathers(9, 4);
     bench.reader(1).reads = single_reads(11);
     bench.reader(1).from = 300;
     bench.run();
     CHECK(bench.memory.slots_taken() == 9 * 4 + 11);
-    CHECK(bench.memory.activity().cycles_in(State::busy) == 9 * 4 + 11);
+    // twice, for cycle 300 begins anew, the last address waits 7 cycles for its data, the first of them its port's
+    CHECK(bench.memory.activity().cycles_in(State::busy) == 9 * 4 + 6 + 11 + 6);
     CHECK(bench.memory.occupied_cycles() == 9 * 4 + 11);
 }
 

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cstdint>
 
+#include "testbench/report/timing_report.h"
 #include "testbench/tests/timed_checks.h"
 
 // Long runs: the slowest unit's interval times its work, and the cycles the machine takes to fill and to drain, to the
@@ -166,7 +167,7 @@ TEST_CASE("two Transform pipelines every 8 cycles: 4 cycles a part") {
     CHECK(simulation.pipeline.transform.activity().high_water_mark() == 6);
 }
 
-// Tessellation: 6120 children, one every 20 cycles, and a latency (1) between taking a pass and its first child.
+// Tessellation: 6120 children, one every 20 cycles, also from one pass's last to the next one's first.
 TEST_CASE("Tessellation every 20 cycles binds where the tests take less") {
     Setup setup = full_split();
     setup.design.timing.summed_height_table.ports = 4;
@@ -174,9 +175,86 @@ TEST_CASE("Tessellation every 20 cycles binds where the tests take less") {
     Simulation simulation(setup, 1'000'000);
     run_full_split(simulation);
     CHECK(simulation.pipeline.tessellation.children() == passes - base);
-    // of the four children of a pass three wait 20 cycles for the one before, the first only its latency
+    CHECK(simulation.cycles() >= 20 * (passes - base - 1));
+    // and when the last is made, the finished ones may still wait for the table, nine cycles each
+    CHECK(simulation.cycles() < 20 * (passes - base) + 9 * finished + 500);
+    CHECK(simulation.pipeline.tessellation.occupied_cycles() == 20 * (passes - base));
+    CHECK(find_bottleneck(simulation).unit == &simulation.pipeline.tessellation);
+}
+
+// One pass at a time: a latency of 300 before its first child, and the other three in the cycles after it.
+TEST_CASE("Tessellation of latency 300 binds: 303 cycles a split") {
+    Setup setup = full_split();
+    setup.design.timing.summed_height_table.ports = 4;
+    setup.design.timing.tessellation.latency = 300;
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
     const std::uint64_t splits = (passes - base) / 4;
-    CHECK(simulation.cycles() > 61 * splits);
+    CHECK(simulation.pipeline.tessellation.occupied_cycles() == 303 * splits);
+    CHECK(simulation.cycles() >= 303 * splits);
+    CHECK(simulation.cycles() < 303 * splits + 9 * finished + 500);
+    CHECK(find_bottleneck(simulation).unit == &simulation.pipeline.tessellation);
+}
+
+TEST_CASE("Get Triangle every 100 cycles binds: 100 cycles a part") {
+    Setup setup = full_split();
+    setup.design.timing.get_triangle.interval = 100;
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    CHECK(simulation.cycles() >= 100 * (parts - 1));
+    CHECK(simulation.cycles() < 100 * parts + 1000);
+    CHECK(simulation.pipeline.get_triangle.occupied_cycles() == 100 * parts);
+    CHECK(find_bottleneck(simulation).unit == &simulation.pipeline.get_triangle);
+}
+
+TEST_CASE("Get Triangle of latency 200 binds: 200 cycles a pass") {
+    Setup setup = full_split();
+    setup.design.timing.get_triangle.latency = 200;
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    CHECK(simulation.cycles() >= 200 * passes);
+    CHECK(find_bottleneck(simulation).unit == &simulation.pipeline.get_triangle);
+}
+
+// Eight triangles may be under way at the join, so one a 400 / 8 cycles at most, where the tests take nine.
+TEST_CASE("a Transform of latency 400 is what the join waits for") {
+    Setup setup = full_split();
+    setup.design.timing.summed_height_table.ports = 4;
+    setup.design.timing.transform.latency = 400;
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    const Pipeline& p = simulation.pipeline;
+    std::uint64_t for_transform = 0;
+    for (const Activity::Share& share : p.pass_or_tessellate.activity().shares())
+        for_transform += share.by == &p.transform && share.state == State::starved ? share.cycles : 0;
+    CHECK(2 * for_transform > simulation.cycles());
+}
+
+// As many banks as a row has entries put the corners of a rectangle that lie below one another into one bank: it takes
+// two cycles, and the next one waits when it needs either bank, while nearly all banks idle.
+TEST_CASE("banks in conflict are a bottleneck though their ports idle") {
+    Setup setup = full_split();
+    setup.design.timing.summed_height_table.banks = setup.registers.summed_height_table.columns;
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    const TableMemory& table = simulation.pipeline.summed_height_table;
+    CHECK(table.slots_taken() < table.slots_per_cycle() * simulation.cycles() / 5);
+    CHECK(simulation.cycles() > 10 * passes);
+    CHECK(table.occupied_cycles() == table.cycles_held_up());
+    CHECK(find_bottleneck(simulation).unit == &table);
+}
+
+TEST_CASE("an interval that lasts is no lack of work") {
+    Setup setup = full_split();
+    setup.design.timing.displace_vertex = {1, 100, 1};
+    setup.design.timing.pass_or_tessellate.interval = 50;
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    const Pipeline& p = simulation.pipeline;
+    CHECK(p.displace_vertex.activity().cycles_in(State::busy) +
+              p.displace_vertex.activity().cycles_in(State::waiting_for_memory) >
+          simulation.cycles() * 9 / 10);
+    CHECK(find_bottleneck(simulation).unit == &p.displace_vertex);
 }
 
 // Little's law, exactly: where nothing is ever held up, what is in a unit, summed over all cycles, is items times latency:

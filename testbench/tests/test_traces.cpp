@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -98,9 +99,8 @@ TEST_CASE("a window shows the cycles it names, with the values they have in the 
                 continue;
             }
             CHECK(signal.initial == 0);
-            for (const char* const exact :
-                 {"state", "blocked_by", "occupancy", "valid", "ready", "stalled", "waiting", "level",
-                  "request", "under_way", "served", "slot_busy"})
+            for (const char* const exact : {"state", "blocked_by", "occupancy", "valid", "ready", "stalled",
+                                            "waiting", "level", "request", "under_way", "served", "held_up"})
                 CHECK_FALSE(name.substr(name.rfind('.') + 1) == exact);
         }
     }
@@ -174,7 +174,7 @@ TEST_CASE("the timeline's stretches tile the window and agree with the statistic
     std::map<std::pair<std::string, std::string>, std::uint64_t> spent;
     std::uint64_t counters = 0;
     const auto in_cycles = [](const nlohmann::json& microseconds) {
-        return static_cast<std::uint64_t>(microseconds.get<double>() * 1000 / period + 0.5);
+        return static_cast<std::uint64_t>(std::llround(microseconds.get<double>() * 1000 / period));
     };
     for (const nlohmann::json& event : timeline.at("traceEvents")) {
         const std::string phase = event.at("ph");

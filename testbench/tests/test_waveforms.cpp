@@ -174,7 +174,8 @@ TEST_CASE("scripts/waves opens a run in a view, from where the filters are") {
     write_all(here.path() / "run/trace.vcd", "");
     write_all(here.path() / "tools/gtkwave", "#!/bin/sh\npwd\nfor argument; do echo \"$argument\"; done\n");
     fs::permissions(here.path() / "tools/gtkwave", fs::perms::owner_all);
-    const Environment environment{{"PATH", (here.path() / "tools").string() + ":" + std::getenv("PATH")}};
+    const Environment environment{{"DISPLAY", ":0"},
+                                  {"PATH", (here.path() / "tools").string() + ":" + std::getenv("PATH")}};
     const auto waves = [&](std::vector<std::string> arguments) {
         arguments.insert(arguments.begin(), (source_folder() / "scripts/waves").string());
         return run_program(arguments, here.path(), {}, environment);

@@ -12,14 +12,14 @@ std::uint64_t VcdFile::Signal::at(std::uint64_t time) const {
     return after == changes.begin() ? initial : std::prev(after)->second;
 }
 
-std::uint64_t VcdFile::Signal::high_cycles(std::uint64_t period, std::uint64_t end) const {
+std::uint64_t VcdFile::Signal::high_cycles(std::uint64_t period, std::uint64_t end_time) const {
     std::uint64_t cycles = 0, since = 0, value = initial;
     for (const auto& [time, next] : changes) {
         cycles += value * (time - since) / period;
         since = time;
         value = next;
     }
-    return cycles + value * (end - since) / period;
+    return cycles + value * (end_time - since) / period;
 }
 
 VcdFile::VcdFile(const std::filesystem::path& file) {

@@ -18,7 +18,7 @@ struct VcdFile {
 
         std::uint64_t at(std::uint64_t time) const;
         /// Of a signal of one bit: the cycles in which it is 1.
-        std::uint64_t high_cycles(std::uint64_t period, std::uint64_t end) const;
+        std::uint64_t high_cycles(std::uint64_t period, std::uint64_t end_time) const;
     };
 
     explicit VcdFile(const std::filesystem::path& file);

@@ -68,8 +68,8 @@ std::string CollectTests::holds() const {
 }
 
 /// Shows the edge that left last.
-void CollectTests::trace(Signals& signals) const {
-    Unit::trace(signals);
+void CollectTests::show(Signals& signals) const {
+    Unit::show(signals);
     signals.input(from_normal_test, "from_normal_test");
     signals.input(from_tex_coord_test, "from_tex_coord_test");
     signals.input(from_summed_height_test, "from_summed_height_test");

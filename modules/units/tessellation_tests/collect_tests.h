@@ -29,7 +29,7 @@ class CollectTests : public Unit {
 
     std::string holds() const override;
     std::uint64_t occupied_cycles() const override { return activity_.items_in(); }
-    void trace(Signals& signals) const override;
+    void show(Signals& signals) const override;
 
   private:
     void b_transport(Work& work, sc_core::sc_time& delay);

@@ -65,8 +65,8 @@ void ViewTest::step() {
     WorkStage::step();
 }
 
-void ViewTest::trace(Signals& signals) const {
-    WorkStage::trace(signals);
+void ViewTest::show(Signals& signals) const {
+    WorkStage::show(signals);
     signals.input(from_transform, "from_transform");
 }
 

@@ -28,7 +28,7 @@ class ViewTest : public WorkStage<ViewTest> {
     ViewTest(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
              const Timing& timing, unsigned number);
 
-    void trace(Signals& signals) const override;
+    void show(Signals& signals) const override;
 
   private:
     friend class WorkStage<ViewTest>;
