@@ -1,5 +1,4 @@
 #include <catch2/catch.hpp>
-#include <set>
 #include <tuple>
 
 #include "testbench/benchmark/bare_recursion.h"
@@ -8,11 +7,13 @@
 #include "testbench/common/error.h"
 #include "testbench/host/inputs.h"
 #include "testbench/host/simulation.h"
+#include "testbench/tests/mesh_keys.h"
 
 // The whole machine, from the host's triangles to the rasteriser. SystemC elaborates once a process, so each case runs
 // one simulation.
 
 using namespace tessera;
+using tessera::testing::keys;
 
 namespace {
 
@@ -20,30 +21,6 @@ namespace {
 Setup setup_of(Job job) {
     job.mode = Mode::functional;
     return make_setup(job, load_mesh(job, {}), load_map(job, {}));
-}
-
-/// Everything of a triangle that must not depend on how the machine got there.
-using Key = std::array<std::int64_t, 36>;
-
-std::multiset<Key> keys(const EmittedMesh& mesh) {
-    std::multiset<Key> result;
-    for (const EmittedTriangle& triangle : mesh.triangles) {
-        Key key{};
-        std::size_t place = 0;
-        for (const auto& c : triangle.corners)
-            for (const std::int64_t value :
-                 {std::int64_t{c.texture.u}, std::int64_t{c.texture.v}, std::int64_t{c.displaced.x},
-                  std::int64_t{c.displaced.y}, std::int64_t{c.displaced.z},
-                  std::int64_t{c.displaced_normal.x}, std::int64_t{c.displaced_normal.y},
-                  std::int64_t{c.displaced_normal.z}, std::int64_t{c.position.x}, std::int64_t{c.position.y},
-                  std::int64_t{c.generation}})
-                key[place++] = value;
-        key[place++] = triangle.base;
-        key[place++] = triangle.split_by;
-        key[place] = triangle.stopped_by;
-        result.insert(key);
-    }
-    return result;
 }
 
 void check_run(const Setup& setup, Simulation& simulation) {

@@ -1,12 +1,11 @@
 #pragma once
-#include <array>
 #include <catch2/catch.hpp>
 #include <cstdint>
-#include <set>
 #include <string>
 
 #include "testbench/host/inputs.h"
 #include "testbench/host/simulation.h"
+#include "testbench/tests/mesh_keys.h"
 
 /// What must hold of every timed run, whatever its job and its timing.
 namespace tessera::testing {
@@ -32,31 +31,6 @@ inline Job full_split_job(int side, int limit) {
     job.tests.view_threshold = 0;
     job.tests.generation_limit = limit;
     return job;
-}
-
-/// Everything of a triangle that must not depend on how the machine got there.
-using Key = std::array<std::int64_t, 37>;
-
-inline std::multiset<Key> keys(const EmittedMesh& mesh) {
-    std::multiset<Key> result;
-    for (const EmittedTriangle& triangle : mesh.triangles) {
-        Key key{};
-        std::size_t place = 0;
-        for (const auto& c : triangle.corners)
-            for (const std::int64_t value :
-                 {std::int64_t{c.texture.u}, std::int64_t{c.texture.v}, std::int64_t{c.displaced.x},
-                  std::int64_t{c.displaced.y}, std::int64_t{c.displaced.z},
-                  std::int64_t{c.displaced_normal.x}, std::int64_t{c.displaced_normal.y},
-                  std::int64_t{c.displaced_normal.z}, std::int64_t{c.position.x}, std::int64_t{c.position.y},
-                  std::int64_t{c.generation}})
-                key[place++] = value;
-        key[place++] = triangle.base;
-        key[place++] = triangle.split_by;
-        key[place++] = triangle.stopped_by;
-        key[place] = triangle.culled;
-        result.insert(key);
-    }
-    return result;
 }
 
 /// A unit's four states make up the run, and what it was blocked by makes up the cycles it was blocked.
