@@ -1,16 +1,9 @@
 #pragma once
-#include <array>
 #include <cstdint>
-#include <glm/glm.hpp>
-#include <vector>
+
+#include "testbench/check/nearest_triangle.h"
 
 namespace tessera {
-
-/// Triangles as bare positions.
-using TriangleSoup = std::vector<std::array<glm::dvec3, 3>>;
-
-/// The point of a triangle nearest to p. A collapsed triangle is the segment or point it collapsed to.
-glm::dvec3 closest_point(const std::array<glm::dvec3, 3>& triangle, const glm::dvec3& p);
 
 struct SurfaceDistance {
     std::uint64_t points = 0;

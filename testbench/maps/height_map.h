@@ -22,6 +22,10 @@ struct HeightMap {
     double range_low = 0;
     double range_high = 1;
 
+    /// How many of its source's own units one unit of value is: PGM's maximum value, 255 or 65535 for PNG, 1 for the
+    /// others. An elevation of 1533 m in a PGM of maximum value 2478 is the value 0.6186 here, and 1533 units.
+    double source_units = 1;
+
     /// Repairs made and oddities met while reading, one sentence each without the file's name, for the report
     /// ("3 NaN texels set to ..."). Empty for a file about which there is nothing to say.
     std::vector<std::string> repairs;

@@ -107,6 +107,7 @@ HeightMap PgmParser::parse() {
     HeightMap map;
     map.width = static_cast<int>(width);
     map.height = static_cast<int>(height);
+    map.source_units = static_cast<double>(maxval);
     if (position_ > long_header) {
         map.repairs.push_back(fmt::format(
             "The PGM header has {} bytes, nearly all of them comments; they were skipped.", position_));

@@ -232,6 +232,7 @@ HeightMap PngDecoder::decode() {
     width_ = static_cast<std::size_t>(map.width);
     channels_ = png_get_channels(png_, info_);
     wide_ = png_get_bit_depth(png_, info_) == 16;
+    map.source_units = wide_ ? 65535 : 255;
     const auto height = static_cast<std::size_t>(map.height);
     map.values.resize(width_ * height);
 

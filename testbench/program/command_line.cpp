@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "testbench/common/error.h"
+#include "testbench/program/render_options.h"
 
 namespace tessera {
 
@@ -93,6 +94,19 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     TraceOptions traces;
     traces.add_to(*run);
 
+    CLI::App* const compare = app.add_subcommand(
+        "compare",
+        "measure a run's mesh against the displaced surface: error.json and error.txt in its folder");
+    compare->add_option("RUN", command.run_folder, "folder that `tessera run` left")->required();
+    compare->add_option("--data", data,
+                        "folder that `data:` paths of its job begin at; $TESSERA_DATA likewise");
+
+    CLI::App* const render =
+        app.add_subcommand("render", "pictures of a finished run, from its folder, as PNG or EXR");
+    RenderOptions render_options;
+    render_options.add_to(*render);
+    render->add_option("--data", data, "folder that `data:` paths of the run's job begin at");
+
     CLI::App* const keys =
         app.add_subcommand("keys", "print every key of a job file: unit, default, range, meaning");
 
@@ -102,14 +116,24 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
         app.exit(success);
         return std::nullopt;
     } catch (const CLI::ParseError& error) {
-        throw InputError(fmt::format("{}; see `tessera --help` and `tessera run --help`", error.what()));
+        const std::vector<CLI::App*> verbs = app.get_subcommands();
+        throw InputError(fmt::format("{}; see `tessera --help` and `tessera {} --help`", error.what(),
+                                     verbs.empty() ? "run" : verbs.front()->get_name()));
     }
-    if (!run->parsed() && !keys->parsed())
-        throw InputError("say what to do: `tessera run` or `tessera keys`; see `tessera --help`");
+    if (app.get_subcommands().empty())
+        throw InputError(
+            "say what to do: `tessera run`, `tessera compare`, `tessera render` or `tessera keys`; see "
+            "`tessera --help`");
     if (job->count() > 0 && command.job_file.empty())
         throw InputError("JOB is empty: name a job file, or leave it out for the default job");
-    command.verb = keys->parsed() ? Command::Verb::keys : Command::Verb::run;
+    command.verb = keys->parsed()      ? Command::Verb::keys
+                   : compare->parsed() ? Command::Verb::compare
+                                       : Command::Verb::run;
     command.data_folder = data;
+    if (render->parsed()) {
+        command.verb = Command::Verb::render;
+        command.render = render_options.request();
+    }
     traces.apply_to(command);
     return command;
 }

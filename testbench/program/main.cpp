@@ -12,6 +12,8 @@
 #include "testbench/common/error.h"
 #include "testbench/job/document_keys.h"
 #include "testbench/program/command_line.h"
+#include "testbench/program/compare_run.h"
+#include "testbench/program/render_command.h"
 #include "testbench/program/run_job.h"
 
 namespace {
@@ -27,6 +29,10 @@ tessera::ExitCode obey(const std::optional<tessera::Command>& command) {
         return tessera::ExitCode::fine;
     if (command->verb == tessera::Command::Verb::run)
         return tessera::run_job(*command);
+    if (command->verb == tessera::Command::Verb::render)
+        return tessera::render_command(command->render, command->data_folder);
+    if (command->verb == tessera::Command::Verb::compare)
+        return tessera::compare_run(*command);
     fmt::print("{}", tessera::document_keys());
     return tessera::ExitCode::fine;
 }

@@ -15,9 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void refuse(const fs::path& folder, const std::string& why) {
+[[noreturn]] void refuse(const std::string& key, const fs::path& folder, const std::string& why) {
     throw InputError(
-        fmt::format("output.folder = \"{}\": cannot write there: {}; choose another", folder.string(), why));
+        fmt::format("{} = \"{}\": cannot write there: {}; choose another", key, folder.string(), why));
 }
 
 bool is_there(const fs::path& path) {
@@ -32,25 +32,25 @@ fs::path plain(const fs::path& folder) {
 
 }  // namespace
 
-void check_output_folder(const fs::path& folder) {
+void check_output_folder(const fs::path& folder, const std::string& key) {
     std::error_code error;
     fs::path there = plain(folder);
     while (!is_there(there) && there.has_relative_path())
         there = there.parent_path();
     if (!fs::is_directory(there, error))
-        refuse(folder, fmt::format("{} is no folder", there.string()));
+        refuse(key, folder, fmt::format("{} is no folder", there.string()));
     if (access(there.c_str(), W_OK | X_OK) != 0)
-        refuse(folder, fmt::format("{}: {}", there.string(), std::generic_category().message(errno)));
+        refuse(key, folder, fmt::format("{}: {}", there.string(), std::generic_category().message(errno)));
 }
 
-OutputFolder::OutputFolder(const fs::path& folder) {
+OutputFolder::OutputFolder(const fs::path& folder, const std::string& key) {
     for (fs::path path = plain(folder); !is_there(path) && path.has_relative_path();
          path = path.parent_path())
         made_.push_back(path);
     std::error_code error;
     fs::create_directories(folder, error);
     if (error)
-        refuse(folder, error.message());
+        refuse(key, folder, error.message());
 }
 
 OutputFolder::~OutputFolder() {

@@ -1,17 +1,18 @@
 #pragma once
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace tessera {
 
 /// Finds out before a long run whether its folder can be written, and leaves no trace: a run that fails leaves nothing.
-/// Throws InputError.
-void check_output_folder(const std::filesystem::path& folder);
+/// `key` is what names the folder, for messages. Throws InputError.
+void check_output_folder(const std::filesystem::path& folder, const std::string& key = "output.folder");
 
 /// A run's folder, made with those above it. What was made goes away again with the object, unless kept or not empty.
 class OutputFolder {
   public:
-    explicit OutputFolder(const std::filesystem::path& folder);
+    explicit OutputFolder(const std::filesystem::path& folder, const std::string& key = "output.folder");
     ~OutputFolder();
     OutputFolder(const OutputFolder&) = delete;
     OutputFolder& operator=(const OutputFolder&) = delete;

@@ -18,6 +18,7 @@
 #include "testbench/job/validate_job.h"
 #include "testbench/program/output_folder.h"
 #include "testbench/program/progress.h"
+#include "testbench/program/render_command.h"
 #include "testbench/program/summary.h"
 #include "testbench/program/traces.h"
 #include "testbench/render/render_run.h"
@@ -79,6 +80,9 @@ void write_run_folder(const std::filesystem::path& folder, const Job& job, const
             std::filesystem::remove(folder / name);
         return wanted_now;
     };
+    wanted(false, "error.json");  // `tessera compare` measured the mesh before this one
+    wanted(false, "error.txt");
+    remove_pictures(folder);  // and `tessera render` drew it
     const bool timed = job.mode == Mode::timed;
     if (wanted(timed, "timing.txt"))
         write_file(folder / "timing.txt", timing_text(simulation));
@@ -98,9 +102,11 @@ void write_run_folder(const std::filesystem::path& folder, const Job& job, const
 
 /// What a run that got stuck leaves: its traces, the job, and nothing of a run before it.
 void write_stuck_run(const std::filesystem::path& folder, const Job& job) {
-    for (const char* const name : {"statistics.json", "statistics.csv", "conformance.txt", "conformance.json",
-                                   "timing.txt", "queue_levels.csv", "mesh.ply", "mesh.obj", "picture.png"})
+    for (const char* const name :
+         {"statistics.json", "statistics.csv", "conformance.txt", "conformance.json", "timing.txt",
+          "queue_levels.csv", "mesh.ply", "mesh.obj", "picture.png", "error.json", "error.txt"})
         std::filesystem::remove(folder / name);
+    remove_pictures(folder);
     if (!job.output.vcd)
         std::filesystem::remove(folder / "trace.vcd");
     if (!job.output.timeline)

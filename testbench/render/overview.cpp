@@ -1,18 +1,28 @@
 #include "testbench/render/overview.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "testbench/render/draw_text.h"
 #include "testbench/render/key_light.h"
 #include "testbench/render/legend.h"
+#include "testbench/render/picture_view.h"
 #include "testbench/render/render.h"
 
 namespace tessera {
 namespace {
 
-constexpr int caption_height = 64;  // below the pictures
-constexpr int margin = 24;
+// Pixels at scale 1, which is that of a picture 1600 wide.
+constexpr double usual_width = 1600;
+constexpr double caption_height = 64;  // below the pictures
+constexpr double margin = 24;
+
+/// Never more than half of the height is for the captions.
+double scale_of(const PictureOptions& options) {
+    const double scale = options.width / usual_width;
+    return options.height > 0 ? std::min(scale, options.height / (2 * caption_height)) : scale;
+}
 
 /// 13144 -> "13,144"
 std::string grouped(std::uint64_t number) {
@@ -27,41 +37,41 @@ std::string caption(const RenderMesh& mesh) {
     return mesh.base_triangles == 0 ? made : made + " from " + grouped(mesh.base_triangles);
 }
 
-void paste(const Image& from, int left, int top, Image& to) {
-    for (int y = 0; y < from.height; ++y)
-        std::copy_n(&from.bytes[from.offset(0, y)], 3 * static_cast<std::size_t>(from.width),
-                    &to.bytes[to.offset(left, top + y)]);
-}
-
 }  // namespace
 
-Image render_overview(const RenderMesh& mesh, const View& view, const OverviewOptions& options) {
+int overview_height(const RenderMesh& mesh, const View& camera, const PictureOptions& options) {
+    const double wide = options.whole_viewport ? static_cast<double>(camera.width) / camera.height
+                                               : proportions(camera, mesh);
     const int panel_width = options.width / 2;
-    const double wide =
-        options.whole_viewport ? static_cast<double>(view.width) / view.height : proportions(view, mesh);
-    const int height = options.height > 0
-                           ? options.height
-                           : static_cast<int>(std::clamp(panel_width / wide + caption_height,
-                                                         0.3 * options.width, 0.6 * options.width));
-    const int panel_height = height - caption_height;
-    const View panel = options.whole_viewport ? resized(view, panel_width, panel_height)
-                                              : framed(view, mesh, panel_width, panel_height);
-    Style shaded;
-    shaded.key_light = choose_key_light(mesh, view);
-    Style triangles;
-    triangles.colour_by = options.colour_by;
-    triangles.wireframe = true;
-    const std::vector<Image> pictures = render_styles(mesh, panel, {shaded, triangles});
+    return static_cast<int>(std::clamp(panel_width / wide + caption_height * scale_of(options),
+                                       0.3 * options.width, 0.6 * options.width));
+}
 
-    Image result(options.width, height, shaded.background);
+Picture render_overview(const RenderMesh& mesh, const View& camera, const PictureOptions& options) {
+    const double scale = scale_of(options);
+    const int panel_width = options.width / 2;
+    const int height = options.height > 0 ? options.height : overview_height(mesh, camera, options);
+    const int panel_height = std::max(1, height - static_cast<int>(std::lround(caption_height * scale)));
+    const View all = options.whole_viewport ? resized(camera, panel_width, panel_height)
+                                            : framed(camera, mesh, panel_width, panel_height);
+    const View panel = zoomed(all, options.zoom.across, options.zoom.down, options.zoom.factor);
+    Style shaded = style_of(PictureView::shaded);
+    shaded.key_light = choose_key_light(mesh, camera);
+    Style triangles = style_of(PictureView::generation);
+    triangles.line_width = line_width(options, panel_width);
+    const std::vector<Picture> pictures = render_pictures(mesh, panel, {shaded, triangles}, options.linear);
+
+    Picture result = plain_picture(options.width, height, shaded.background, options.linear);
     paste(pictures[0], 0, 0, result);
     paste(pictures[1], panel_width, 0, result);
-    const double base_line = height - margin - legend_descent;
-    const std::string text = caption(mesh);
-    draw_text(result, (panel_width - text_width(legend_letter, text)) / 2, base_line, legend_letter, text,
+    const double base_line = height - (margin + legend_descent) * scale;
+    const std::string text = options.caption.empty() ? caption(mesh) : options.caption;
+    const double letter = std::min(legend_letter * scale, panel_width * 0.95 / text_width(1, text));
+    draw_text(result.image, (panel_width - text_width(letter, text)) / 2, base_line, letter, text,
               legend_ink);
-    draw_legend(result, panel_width + (panel_width - legend_width(mesh, options.colour_by)) / 2, base_line,
-                mesh, options.colour_by);
+    draw_legend(result.image, panel_width + (panel_width - legend_width(mesh, triangles, scale)) / 2,
+                base_line, mesh, triangles, scale);
+    take_over_annotations(result);
     return result;
 }
 

@@ -1,21 +1,17 @@
 #pragma once
-#include "testbench/render/image.h"
+#include "testbench/render/picture.h"
+#include "testbench/render/picture_options.h"
 #include "testbench/render/render_mesh.h"
-#include "testbench/render/style.h"
 #include "testbench/render/view.h"
 
 namespace tessera {
 
-struct OverviewOptions {
-    int width = 1600;
-    int height = 0;  ///< 0: what the mesh's proportions ask for, 0.3 to 0.6 times the width
-    ColourBy colour_by = ColourBy::generation;
-    bool whole_viewport =
-        false;  ///< true: show all the run's camera saw; false: enlarge what there is of the mesh
-};
+/// The default picture of a run: left the surface, shaded; right the same view with its triangles, coloured by
+/// generation, and what the colours mean. Below the left one the caption; without one, how many triangles the mesh has.
+/// Height, if it is left open: 0.3 to 0.6 times the width. `camera` is the run's.
+Picture render_overview(const RenderMesh& mesh, const View& camera, const PictureOptions& options = {});
 
-/// The default picture of a run: left the surface, shaded; right the same view with its triangles, coloured,
-/// and what the colours mean. `view` is the run's camera.
-Image render_overview(const RenderMesh& mesh, const View& view, const OverviewOptions& options = {});
+/// The height of an overview that leaves it open.
+int overview_height(const RenderMesh& mesh, const View& camera, const PictureOptions& options);
 
 }  // namespace tessera

@@ -16,6 +16,7 @@ namespace {
 
 constexpr int tile_side = 8;
 constexpr double line_shade = 0.16;  // of the surface's colour
+constexpr double far_in_sizes = 50;  // an eye further from the mesh than that many of its sizes is far away
 
 /// 4 x 4 strata; no two samples share a row or a column of 16, so edges along the axes are smooth too.
 glm::dvec2 sample_position(std::size_t sample) {
@@ -38,32 +39,59 @@ class Paint {
             generations_[g] = to_linear(generation_colour(g));
         for (unsigned t = 0; t < tests_.size(); ++t)
             tests_[t] = to_linear(deciding_test_colour(static_cast<DecidingTest>(t)));
+        for (unsigned s = 0; s < stops; ++s)
+            stops_[s] = to_linear(stop_colour(static_cast<Stop>(s)));
+        if (style.colour_by == ColourBy::error)
+            for (std::size_t e = 0; e < error_steps; ++e)
+                errors_[e] = to_linear(error_colour(static_cast<double>(e) / (error_steps - 1)));
     }
 
     bool has_lines() const { return style_.wireframe; }
     const glm::dvec3& background() const { return background_; }
 
-    glm::dvec3 colour(std::uint32_t triangle, const Light& light, const Wireframe* lines,
+    glm::dvec3 colour(const ShadingPoint& point, const Light& light, const Wireframe* lines,
                       const glm::dvec2& at) const {
-        const glm::dvec3& paint = paint_of(mesh_.triangles[triangle]);
-        const glm::dvec3 lit = paint * light.diffuse + light.highlight;
+        const glm::dvec3 paint = paint_at(point);
+        glm::dvec3 lit = paint * light.diffuse + light.highlight;
+        if (style_.relief < 1)
+            lit = glm::mix(paint, lit, style_.relief);
         if (!lines)
             return lit;
-        return glm::mix(lit, paint * line_shade * (0.4 + 0.6 * light.diffuse),
-                        lines->coverage(at.x, at.y, style_.line_width));
+        return glm::mix(lit, paint * line_shade * (0.4 + 0.6 * light.diffuse), lines->coverage(at.x, at.y));
     }
 
   private:
-    const glm::dvec3& paint_of(const RenderMesh::Triangle& triangle) const {
+    static constexpr std::size_t error_steps = 1024;
+
+    glm::dvec3 paint_at(const ShadingPoint& point) const {
+        const RenderMesh::Triangle& triangle = mesh_.triangles[point.triangle];
         switch (style_.colour_by) {
             case ColourBy::generation:
                 return generations_[std::min<std::size_t>(triangle.generation, generations_.size() - 1)];
             case ColourBy::deciding_test:
                 return tests_[static_cast<std::size_t>(triangle.deciding_test)];
+            case ColourBy::stopped_by:
+                return stops_[static_cast<std::size_t>(stop_of(triangle.stopped_by))];
+            case ColourBy::error:
+                return error_paint(point);
             case ColourBy::none:
                 break;
         }
         return surface_;
+    }
+
+    const glm::dvec3& error_paint(const ShadingPoint& point) const {
+        double error = 0;
+        if (!mesh_.triangle_errors.empty())
+            error = static_cast<double>(mesh_.triangle_errors[point.triangle]);
+        else if (!mesh_.vertex_errors.empty())
+            for (int k = 0; k < 3; ++k)
+                error += point.weights[k] *
+                         static_cast<double>(mesh_.vertex_errors[mesh_.triangles[point.triangle]
+                                                                     .vertices[static_cast<std::size_t>(k)]]);
+        const double fraction = style_.errors.largest > 0 ? error / style_.errors.largest : 0;
+        return errors_[static_cast<std::size_t>(
+            std::lround(std::clamp(fraction, 0.0, 1.0) * (error_steps - 1)))];
     }
 
     const Style& style_;
@@ -71,31 +99,38 @@ class Paint {
     glm::dvec3 background_, surface_;
     std::array<glm::dvec3, 16> generations_;
     std::array<glm::dvec3, 4> tests_;
+    std::array<glm::dvec3, stops> stops_;
+    std::vector<glm::dvec3> errors_ = std::vector<glm::dvec3>(error_steps, glm::dvec3(0));
 };
 
 class Renderer {
   public:
-    Renderer(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles)
+    Renderer(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles, bool linear)
         : mesh_(mesh), view_(view), scene_(mesh), illumination_(view, styles.front(), scene_) {
         for (const Style& style : styles) {
             paints_.emplace_back(style, mesh);
-            images_.emplace_back(view.width, view.height, style.background);
-            any_lines_ = any_lines_ || style.wireframe;
+            pictures_.push_back(plain_picture(view.width, view.height, style.background, linear));
+            if (style.wireframe)
+                line_width_ = style.line_width;
         }
         glm::dvec3 low(0), high(0);
         for (const glm::vec3& p : mesh.positions) {
             low = glm::min(low, glm::dvec3(p));
             high = glm::max(high, glm::dvec3(p));
         }
-        clearance_ = 3e-6 * glm::length(high - low);
+        const double size = glm::length(high - low);
+        clearance_ = 3e-6 * size;
+        const double distance = -glm::dot((low + high) / 2.0 + mesh.origin - view.eye, view.backward);
+        if (distance > far_in_sizes * size)
+            start_ = distance - size;
     }
 
-    std::vector<Image> run() {
+    std::vector<Picture> run() {
         for (int y = 0; y < view_.height; y += tile_side)
             for (int x = 0; x < view_.width; x += tile_side)
                 render_tile(x, y, std::min(x + tile_side, view_.width),
                             std::min(y + tile_side, view_.height));
-        return std::move(images_);
+        return std::move(pictures_);
     }
 
   private:
@@ -108,11 +143,21 @@ class Renderer {
         if (!anything)
             return;
         for (std::size_t s = 0; s < paints_.size(); ++s) {
+            pictures_[s].mesh_in_sight = true;
             const glm::dvec3* sum = &sums_[s * pixels];
             for (int y = top; y < bottom; ++y)
                 for (int x = left; x < right; ++x)
-                    images_[s].set(x, y, to_srgb(*sum++ / static_cast<double>(samples_per_pixel)));
+                    set_pixel(pictures_[s], x, y, *sum++ / static_cast<double>(samples_per_pixel));
         }
+    }
+
+    static void set_pixel(Picture& picture, int x, int y, const glm::dvec3& light) {
+        picture.image.set(x, y, to_srgb(light));
+        if (picture.linear.values.empty())
+            return;
+        float* const values = &picture.linear.values[picture.linear.offset(x, y)];
+        for (int k = 0; k < 3; ++k)
+            values[k] = static_cast<float>(light[k]);
     }
 
     /// Adds one sample of every pixel in the tile to the sums; false if none met the mesh.
@@ -123,8 +168,9 @@ class Renderer {
         for (int y = top; y < bottom; ++y)
             for (int x = left; x < right; ++x) {
                 at_.push_back({x + offset.x, y + offset.y});
-                rays_.push_back(
-                    {view_.eye - mesh_.origin, view_.ray(at_.back().x, at_.back().y), view_.near_plane});
+                const glm::dvec3 direction = view_.ray(at_.back().x, at_.back().y);
+                rays_.push_back({view_.eye - mesh_.origin + start_ * direction, direction,
+                                 std::max(0.0, view_.near_plane - start_)});
             }
         scene_.first_hits(rays_, hits_);
         points_.clear();
@@ -140,10 +186,10 @@ class Renderer {
                     sums_[s * rays_.size() + i] += paints_[s].background();
                 continue;
             }
-            const Wireframe lines = any_lines_ ? wireframe_of(hits_[i]) : Wireframe();
+            const Wireframe lines = line_width_ > 0 ? wireframe_of(hits_[i]) : Wireframe();
             for (std::size_t s = 0; s < paints_.size(); ++s)
                 sums_[s * rays_.size() + i] += paints_[s].colour(
-                    hits_[i], lights_[point], paints_[s].has_lines() ? &lines : nullptr, at_[i]);
+                    points_[point], lights_[point], paints_[s].has_lines() ? &lines : nullptr, at_[i]);
             ++point;
         }
         return !points_.empty();
@@ -175,6 +221,7 @@ class Renderer {
 
         ShadingPoint result;
         result.triangle = index;
+        result.weights = {b[0], b[1], b[2]};
         glm::dvec3 normal(0);
         for (std::size_t k = 0; k < 3; ++k) {
             result.position += b[k] * p[k];
@@ -197,7 +244,7 @@ class Renderer {
         for (std::size_t k = 0; k < 3; ++k)
             corners[k] = view_.project(mesh_.origin +
                                        glm::dvec3(mesh_.positions[mesh_.triangles[triangle].vertices[k]]));
-        return Wireframe(corners);
+        return {corners, line_width_};
     }
 
     const RenderMesh& mesh_;
@@ -205,8 +252,10 @@ class Renderer {
     RayScene scene_;
     Illumination illumination_;
     std::vector<Paint> paints_;
-    std::vector<Image> images_;
-    bool any_lines_ = false;
+    std::vector<Picture> pictures_;
+    double line_width_ = 0;  // all wireframes'; 0: there are none
+    double start_ =
+        0;  // of the rays, along the view direction: single precision sees nothing from too far away
     double clearance_ =
         0;  // of the rays to the lights above the surface, against single precision's rounding
 
@@ -221,13 +270,23 @@ class Renderer {
 
 }  // namespace
 
-std::vector<Image> render_styles(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles) {
+std::vector<Picture> render_pictures(const RenderMesh& mesh, const View& view,
+                                     const std::vector<Style>& styles, bool linear) {
     if (styles.empty())
         return {};
-    std::vector<Image> images = Renderer(mesh, view, styles).run();
+    std::vector<Picture> pictures = Renderer(mesh, view, styles, linear).run();
     for (std::size_t s = 0; s < styles.size(); ++s)
-        if (styles[s].legend)
-            draw_legend(images[s], 16, view.height - 16 - legend_descent, mesh, styles[s].colour_by);
+        if (styles[s].legend) {
+            draw_legend(pictures[s].image, 16, view.height - 16 - legend_descent, mesh, styles[s]);
+            take_over_annotations(pictures[s]);
+        }
+    return pictures;
+}
+
+std::vector<Image> render_styles(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles) {
+    std::vector<Image> images;
+    for (Picture& picture : render_pictures(mesh, view, styles, false))
+        images.push_back(std::move(picture.image));
     return images;
 }
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
+#include <utility>
+
+#include "testbench/report/mesh_units.h"
 
 namespace tessera {
 namespace {
-
-glm::vec3 to_vector(double x, double y, double z) {
-    return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
-}
 
 /// Finds a vertex among those met before: open addressing, so that a million triangles take a few megabytes.
 class VertexIndex {
@@ -31,12 +31,17 @@ class VertexIndex {
   private:
     static constexpr std::uint32_t empty = UINT32_MAX;
 
+    /// Of the bits: any number will do. -0 and 0 are equal, so they must be equal here.
     static std::uint64_t hash(const glm::vec3& p) {
         std::uint64_t result = 0;
-        for (int k = 0; k < 3; ++k)
-            result = (result ^ static_cast<std::uint64_t>(static_cast<std::int64_t>(std::ldexp(p[k], 20)))) *
-                     0x9E3779B97F4A7C15u;
-        return result ^ (result >> 32);
+        for (int k = 0; k < 3; ++k) {
+            const float number = p[k] + 0.0f;
+            std::uint32_t bits;
+            std::memcpy(&bits, &number, sizeof bits);
+            result = (result ^ bits) * 0x9E3779B97F4A7C15u;
+            result ^= result >> 32;
+        }
+        return result;
     }
 
     std::uint32_t& find(const glm::vec3& position, const glm::vec3& normal) {
@@ -58,32 +63,109 @@ class VertexIndex {
     std::vector<std::uint32_t> slots_;
 };
 
+/// Takes triangles with corners of their own. Whoever gives the same numbers in the same order gets the same mesh.
+class MeshMaker {
+  public:
+    struct Corner {
+        glm::dvec3 position;
+        glm::vec3 normal;
+    };
+
+    /// `low`, `high`: the bounding box of all positions.
+    MeshMaker(const glm::dvec3& low, const glm::dvec3& high, std::size_t triangles) : index_(mesh_) {
+        // A multiple of the mesh's size, rounded: 0 for a mesh about 0, so that its numbers stay what they are.
+        const glm::dvec3 size = high - low;
+        const double largest = std::max({size.x, size.y, size.z});
+        if (largest > 0) {
+            const double step = std::ldexp(1.0, std::ilogb(largest) + 1);
+            for (int k = 0; k < 3; ++k)
+                mesh_.origin[k] = std::nearbyint((low[k] / 2 + high[k] / 2) / step) * step;
+        } else {
+            mesh_.origin = low;
+        }
+        mesh_.triangles.reserve(triangles);
+        bases_.reserve(triangles);
+    }
+
+    void add(const std::array<Corner, 3>& corners, std::uint8_t generation, std::uint8_t split_by,
+             std::uint8_t stopped_by, std::uint32_t base) {
+        RenderMesh::Triangle triangle;
+        for (std::size_t k = 0; k < 3; ++k)
+            triangle.vertices[k] =
+                index_.index_of(glm::vec3(corners[k].position - mesh_.origin), corners[k].normal);
+        triangle.generation = generation;
+        triangle.deciding_test = static_cast<DecidingTest>(split_by & 3);
+        triangle.stopped_by = stopped_by;
+        mesh_.triangles.push_back(triangle);
+        bases_.push_back(base);
+    }
+
+    RenderMesh finish() {
+        std::sort(bases_.begin(), bases_.end());
+        mesh_.base_triangles =
+            static_cast<std::uint64_t>(std::unique(bases_.begin(), bases_.end()) - bases_.begin());
+        return std::move(mesh_);
+    }
+
+  private:
+    RenderMesh mesh_;
+    VertexIndex index_;
+    std::vector<std::uint32_t> bases_;
+};
+
+class Bounds {
+  public:
+    void include(const glm::dvec3& position) {
+        low = some_ ? glm::min(low, position) : position;
+        high = some_ ? glm::max(high, position) : position;
+        some_ = true;
+    }
+
+    glm::dvec3 low{0}, high{0};
+
+  private:
+    bool some_ = false;
+};
+
 }  // namespace
 
 RenderMesh make_render_mesh(const EmittedMesh& mesh, const Setup& setup) {
-    RenderMesh result;
-    result.origin = setup.model_scale.centre;
-    result.base_triangles = setup.base_triangles.size();
-    result.triangles.reserve(mesh.triangles.size());
-    const datapath::Formats& formats = setup.registers.formats;
-    const double position_lsb = std::ldexp(1.0, -formats.position.fraction) / setup.model_scale.scale;
-    const double normal_lsb = std::ldexp(1.0, -formats.normal.fraction);
-    VertexIndex index(result);
+    const MeshUnits units{setup.registers.formats, setup.registers.map, setup.model_scale.scale,
+                          setup.model_scale.centre};
+    Bounds bounds;
+    for (const EmittedTriangle& triangle : mesh.triangles)
+        if (!triangle.culled)
+            for (const EmittedTriangle::Corner& corner : triangle.corners)
+                bounds.include(units.position(corner.displaced));
+    MeshMaker maker(bounds.low, bounds.high, mesh.triangles.size());
     for (const EmittedTriangle& from : mesh.triangles) {
-        RenderMesh::Triangle to;
+        if (from.culled)
+            continue;
+        std::array<MeshMaker::Corner, 3> corners;
+        std::uint8_t generation = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             const EmittedTriangle::Corner& corner = from.corners[k];
-            const datapath::Position& p = corner.displaced;
-            const datapath::Direction& n = corner.displaced_normal;
-            to.vertices[k] =
-                index.index_of(to_vector(p.x * position_lsb, p.y * position_lsb, p.z * position_lsb),
-                               to_vector(n.x * normal_lsb, n.y * normal_lsb, n.z * normal_lsb));
-            to.generation = std::max(to.generation, corner.generation);
+            corners[k] = {units.position(corner.displaced), units.normal(corner.displaced_normal)};
+            generation = std::max(generation, corner.generation);
         }
-        to.deciding_test = static_cast<DecidingTest>(from.split_by & 3);
-        result.triangles.push_back(to);
+        maker.add(corners, generation, from.split_by, from.stopped_by, from.base);
     }
-    return result;
+    return maker.finish();
+}
+
+RenderMesh make_render_mesh(const RecordedMesh& mesh) {
+    Bounds bounds;
+    for (const RecordedMesh::Triangle& triangle : mesh.triangles)
+        for (const glm::dvec3& position : mesh.corners(triangle))
+            bounds.include(position);
+    MeshMaker maker(bounds.low, bounds.high, mesh.triangles.size());
+    for (const RecordedMesh::Triangle& from : mesh.triangles) {
+        std::array<MeshMaker::Corner, 3> corners;
+        for (std::size_t k = 0; k < 3; ++k)
+            corners[k] = {mesh.positions[from.vertices[k]], mesh.normals[from.vertices[k]]};
+        maker.add(corners, from.generation, from.split_by, from.stopped_by, from.base);
+    }
+    return maker.finish();
 }
 
 }  // namespace tessera

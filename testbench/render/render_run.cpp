@@ -10,8 +10,8 @@ namespace tessera {
 
 void write_picture(const std::filesystem::path& path, const EmittedMesh& mesh, const Setup& setup,
                    const Job& job) {
-    const Image picture = render_overview(make_render_mesh(mesh, setup), make_view(job.camera));
-    const std::vector<std::uint8_t> file = encode_png(picture);
+    const Picture picture = render_overview(make_render_mesh(mesh, setup), make_view(job.camera));
+    const std::vector<std::uint8_t> file = encode_png(picture.image);
     write_file(path, std::string(file.begin(), file.end()));
 }
 

@@ -82,4 +82,12 @@ View framed(const View& view, const RenderMesh& mesh, int width, int height, dou
     return enlarged(view, {part.low - border, part.high + border}, width, height);
 }
 
+View zoomed(const View& view, double across, double down, double factor) {
+    const glm::dvec2 size(view.width, view.height);
+    View result = view;
+    result.focal *= factor;
+    result.centre = size / 2.0 + (view.centre - glm::dvec2(across, down) * size) * factor;
+    return result;
+}
+
 }  // namespace tessera

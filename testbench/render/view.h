@@ -36,4 +36,8 @@ double proportions(const View& view, const RenderMesh& mesh);
 /// image's sides). What `view` leaves out stays out, but for margin and what the image's proportions add.
 View framed(const View& view, const RenderMesh& mesh, int width, int height, double margin = 0.04);
 
+/// A close-up: the image point (across * width, down * height) comes to the middle, and everything gets `factor` times
+/// larger.
+View zoomed(const View& view, double across, double down, double factor);
+
 }  // namespace tessera

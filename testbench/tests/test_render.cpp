@@ -18,71 +18,11 @@
 #include "testbench/render/render_mesh.h"
 #include "testbench/render/view.h"
 #include "testbench/render/wireframe.h"
+#include "testbench/tests/render_scenes.h"
 
 using namespace tessera;
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
-
-void add_quad(RenderMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
-    mesh.triangles.push_back({{a, b, c}, 0, DecidingTest::base});
-    mesh.triangles.push_back({{a, c, d}, 1, DecidingTest::normal});
-}
-
-/// Of radius 1 around the origin it is given.
-RenderMesh make_sphere(const glm::dvec3& origin, std::uint32_t columns = 192) {
-    const std::uint32_t rows = columns / 2;
-    RenderMesh mesh;
-    mesh.origin = origin;
-    for (std::uint32_t row = 0; row <= rows; ++row)
-        for (std::uint32_t column = 0; column <= columns; ++column) {
-            const double polar = pi * row / rows;
-            const double angle = 2 * pi * column / columns;
-            mesh.positions.emplace_back(std::sin(polar) * std::cos(angle), std::sin(polar) * std::sin(angle),
-                                        std::cos(polar));
-        }
-    mesh.normals = mesh.positions;
-    for (std::uint32_t row = 0; row < rows; ++row)
-        for (std::uint32_t column = 0; column < columns; ++column) {
-            const std::uint32_t first = row * (columns + 1) + column;
-            add_quad(mesh, first, first + columns + 1, first + columns + 2, first + 1);
-        }
-    return mesh;
-}
-
-/// A square from -1 to 1 in x and y, facing +z, cut from lower left to upper right.
-RenderMesh make_square() {
-    RenderMesh mesh;
-    mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
-    mesh.normals.assign(4, {0, 0, 1});
-    add_quad(mesh, 0, 1, 2, 3);
-    return mesh;
-}
-
-View look_down(double distance, int width, int height, double focal) {
-    View view;
-    view.eye = {0, 0, distance};
-    view.width = width;
-    view.height = height;
-    view.focal = focal;
-    view.centre = glm::dvec2(width, height) / 2.0;
-    view.near_plane = 0.01;
-    return view;
-}
-
-bool is_background(const Image& image) {
-    for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x)
-            if (image.at(x, y) != Style{}.background)
-                return false;
-    return true;
-}
-
-int brightness(const Image& image, int x, int y) {
-    const Colour colour = image.at(x, y);
-    return colour[0] + colour[1] + colour[2];
-}
 
 std::vector<std::uint8_t> decode(const std::vector<std::uint8_t>& file, png_image& header) {
     header = {};
@@ -173,23 +113,23 @@ TEST_CASE("The wireframe darkens the pixels along edges and no others") {
 TEST_CASE("Lines keep their width at any distance and fade on small triangles") {
     const auto at = [](double size, double w) {
         const auto corner = [&](double x, double y) { return glm::dvec3(x * w, y * w, w); };
-        return Wireframe({corner(0, 0), corner(size, 0), corner(0, size)});
+        return Wireframe({corner(0, 0), corner(size, 0), corner(0, size)}, 1);
     };
-    CHECK(at(100, 1).coverage(40, 0, 1) == Approx(1));
-    CHECK(at(100, 50).coverage(40, 0, 1) == Approx(1));
-    CHECK(at(100, 50).coverage(40, 0.5, 1) == Approx(at(100, 1).coverage(40, 0.5, 1)));
-    CHECK(at(100, 1).coverage(30, 30, 1) == 0);
-    CHECK(at(1, 1).coverage(0.5, 0, 1) < 0.3);
-    CHECK(at(1, 1).coverage(0.5, 0, 1) < at(3, 1).coverage(1.5, 0, 1));
-    CHECK(Wireframe({glm::dvec3(0), glm::dvec3(0), glm::dvec3(0)}).coverage(0, 0, 1) == 0);
+    CHECK(at(100, 1).coverage(40, 0) == Approx(1));
+    CHECK(at(100, 50).coverage(40, 0) == Approx(1));
+    CHECK(at(100, 50).coverage(40, 0.5) == Approx(at(100, 1).coverage(40, 0.5)));
+    CHECK(at(100, 1).coverage(30, 30) == 0);
+    CHECK(at(1, 1).coverage(0.5, 0) < 0.3);
+    CHECK(at(1, 1).coverage(0.5, 0) < at(3, 1).coverage(1.5, 0));
+    CHECK(Wireframe({glm::dvec3(0), glm::dvec3(0), glm::dvec3(0)}, 1).coverage(0, 0) == 0);
 }
 
 TEST_CASE("Two renderings are identical") {
     const RenderMesh mesh = make_sphere({0, 0, 0}, 48);
-    OverviewOptions options;
+    PictureOptions options;
     options.width = 320;
-    const Image first = render_overview(mesh, look_down(3, 256, 192, 200), options);
-    const Image second = render_overview(mesh, look_down(3, 256, 192, 200), options);
+    const Image first = render_overview(mesh, look_down(3, 256, 192, 200), options).image;
+    const Image second = render_overview(mesh, look_down(3, 256, 192, 200), options).image;
     CHECK(first.width == 320);
     CHECK(first.bytes == second.bytes);
     CHECK(encode_png(first) == encode_png(second));
@@ -214,7 +154,7 @@ TEST_CASE("Nothing to see gives the background") {
     near.near_plane = 6;
     CHECK(is_background(render(make_sphere({0, 0, 0}, 24), near, Style{})));
     CHECK(render_styles(RenderMesh{}, view, {}).empty());
-    CHECK(render_overview(RenderMesh{}, view).width == 1600);
+    CHECK(render_overview(RenderMesh{}, view).image.width == 1600);
 }
 
 TEST_CASE("Collapsed triangles and missing normals do no harm") {
@@ -259,10 +199,17 @@ TEST_CASE("A PNG file decodes to the same pixels") {
 TEST_CASE("Legend and text stay inside the image") {
     Image image(40, 20, Style{}.background);
     draw_text(image, -10, 5, 30, "AB\n\x80?", legend_ink);
-    draw_legend(image, 30, 19, make_square(), ColourBy::generation);
-    draw_legend(image, -30, 50, make_square(), ColourBy::deciding_test);
+    Style style;
+    CHECK(legend_width(make_square(), style) == 0);
+    for (const ColourBy colours :
+         {ColourBy::generation, ColourBy::deciding_test, ColourBy::stopped_by, ColourBy::error}) {
+        style.colour_by = colours;
+        style.errors = {0.1, 0.3, 0.01};
+        draw_legend(image, 30, 19, make_square(), style);
+        draw_legend(image, -30, 50, make_square(), style, 3);
+        CHECK(legend_width(make_square(), style, 2) == Approx(2 * legend_width(make_square(), style)));
+    }
     CHECK_FALSE(is_background(image));
-    CHECK(legend_width(make_square(), ColourBy::none) == 0);
     CHECK(text_width(6, "AB") == Approx(10));
 }
 
@@ -326,8 +273,11 @@ TEST_CASE("A run's mesh comes back in model units, each vertex once") {
     const RenderMesh mesh = make_render_mesh(run, setup);
     REQUIRE(mesh.triangles.size() == 2);
     CHECK(mesh.positions.size() == 4);
-    CHECK(mesh.origin == glm::dvec3(10, 20, 30));
-    CHECK(mesh.positions[mesh.triangles[0].vertices[2]] == glm::vec3(2, 1, 0));
+    const auto corner = [&](std::size_t triangle, std::size_t k) {
+        return mesh.origin + glm::dvec3(mesh.positions[mesh.triangles[triangle].vertices[k]]);
+    };
+    CHECK(corner(0, 0) == glm::dvec3(10, 20, 30));
+    CHECK(corner(0, 2) == glm::dvec3(12, 21, 30));
     CHECK(mesh.normals[0] == glm::vec3(0, 0, 1));
     CHECK(mesh.triangles[0].generation == 0);
     CHECK(mesh.triangles[0].deciding_test == DecidingTest::base);

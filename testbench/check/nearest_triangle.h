@@ -1,0 +1,54 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "testbench/check/box_hierarchy.h"
+
+namespace tessera {
+
+/// Triangles as bare positions.
+using TriangleSoup = std::vector<std::array<glm::dvec3, 3>>;
+
+/// The point of a triangle nearest to p. A collapsed triangle is the segment or point it collapsed to.
+glm::dvec3 closest_point(const std::array<glm::dvec3, 3>& triangle, const glm::dvec3& p);
+
+inline double squared_distance(const std::array<glm::dvec3, 3>& triangle, const glm::dvec3& p) {
+    const glm::dvec3 away = closest_point(triangle, p) - p;
+    return glm::dot(away, away);
+}
+
+/// What rounding may make of a squared distance: two ways to compute it agree within this factor. Who leaves something
+/// out by a bound leaves out only what is farther than this, and the answer does not depend on the order of looking.
+inline constexpr double rounding_slack = 1 + 1e-12;
+
+/// Looks up the triangle nearest to a point. Of triangles equally near the first in the soup is it, so the answer
+/// depends on the soup alone. Quick if points come in an order in which neighbours are neighbours in space.
+class NearestTriangle {
+  public:
+    struct Found {
+        std::size_t triangle = 0;
+        double squared = std::numeric_limits<double>::infinity();  ///< of the distance
+
+        bool is_beaten_by(double other_squared, std::size_t other_triangle) const {
+            return other_squared < squared || (other_squared == squared && other_triangle < triangle);
+        }
+    };
+
+    /// `soup` must outlive this and not be empty.
+    explicit NearestTriangle(const TriangleSoup& soup);
+
+    Found nearest(const glm::dvec3& p);
+
+    /// Every triangle within `radius` of p, in no useful order; false, and not all of them, if there are more than
+    /// `most`.
+    bool within(const glm::dvec3& p, double radius, std::size_t most, std::vector<Found>& found) const;
+
+  private:
+    const TriangleSoup& soup_;
+    BoxHierarchy boxes_;
+    std::size_t last_ = 0;  // a neighbour's nearest triangle is a good first guess
+};
+
+}  // namespace tessera

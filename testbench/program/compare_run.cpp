@@ -1,0 +1,32 @@
+#include "testbench/program/compare_run.h"
+
+#include <fmt/core.h>
+
+#include "testbench/common/atomic_file.h"
+#include "testbench/host/inputs.h"
+#include "testbench/measure/measure_error.h"
+#include "testbench/program/progress.h"
+#include "testbench/report/error_report.h"
+#include "testbench/run_folder/read_run.h"
+
+namespace tessera {
+
+ExitCode compare_run(const Command& command) {
+    Progress progress;
+    progress.show("reading the run", 0);
+    const RecordedRun run = read_run(command.run_folder, command.data_folder);
+    const BaseMesh base = load_mesh(run.job, command.data_folder);
+    const HeightMap map = load_map(run.job, command.data_folder);
+    progress.show("measuring", 0.1);
+    const MeshError error = measure_error(base, map, DisplacementOf::from(run.job), run.mesh);
+    progress.clear();
+
+    const std::string text = error_text(run.job, run.mesh, error);
+    write_file(run.folder / "error.json", statistics_json(error_figures(run.mesh, error)));
+    write_file(run.folder / "error.txt", text);
+    fmt::print("{}\n  error.json and error.txt in {}\n", text,
+               std::filesystem::absolute(run.folder).lexically_normal().string());
+    return ExitCode::fine;
+}
+
+}  // namespace tessera

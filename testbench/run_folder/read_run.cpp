@@ -1,0 +1,66 @@
+#include "testbench/run_folder/read_run.h"
+
+#include <fmt/format.h>
+
+#include "testbench/common/error.h"
+#include "testbench/job/job_paths.h"
+#include "testbench/job/read_job.h"
+#include "testbench/job/validate_job.h"
+#include "testbench/run_folder/ply_reader.h"
+
+namespace tessera {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_there(const fs::path& path) {
+    std::error_code ignored;
+    return fs::exists(path, ignored);
+}
+
+void find_input(const char* key, const std::string& text, const Job& job, const fs::path& data_folder) {
+    const fs::path file = resolve_path(text, job.folder, data_folder);
+    if (is_there(file))
+        return;
+    const bool in_data = text.rfind("data:", 0) == 0;
+    throw InputError(fmt::format(
+        "{}: {} = \"{}\": {} is not there; {}", (fs::path(job.folder) / "job.toml").string(), key, text,
+        file.lexically_normal().string(),
+        in_data
+            ? "name the data folder with --data FOLDER"
+            : "put it back where it was when the job ran, or run the job again with the file's new place"));
+}
+
+}  // namespace
+
+RecordedRun read_run(const fs::path& folder, const fs::path& data_folder) {
+    std::error_code failed;
+    if (!fs::is_directory(folder, failed))
+        throw InputError(fmt::format(
+            "{}: no such folder; name the folder of a run, as `tessera run` prints it", folder.string()));
+    const fs::path job_file = folder / "job.toml", mesh_file = folder / "mesh.ply";
+    if (!is_there(job_file))
+        throw InputError(
+            fmt::format("{}: there is no job.toml, so this is no run's folder; name one as `tessera run` "
+                        "prints it",
+                        folder.string()));
+    RecordedRun run;
+    run.folder = folder;
+    run.job = read_job(job_file);
+    validate(run.job);
+    if (run.job.mesh.source == MeshSource::file)
+        find_input("mesh.file", run.job.mesh.file, run.job, data_folder);
+    if (run.job.map.source == MapSource::file)
+        find_input("map.file", run.job.map.file, run.job, data_folder);
+    if (!is_there(mesh_file))
+        throw InputError(fmt::format(
+            "{}: the run left no mesh: {}", mesh_file.string(),
+            run.job.output.ply
+                ? "it got stuck (exit code 3) or the file was taken away; run a job that ends, without "
+                  "output.ply=false"
+                : "its job.toml has output.ply = false; run it again with --set output.ply=true"));
+    run.mesh = read_ply(mesh_file);
+    return run;
+}
+
+}  // namespace tessera

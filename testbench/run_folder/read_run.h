@@ -1,0 +1,24 @@
+#pragma once
+#include <filesystem>
+
+#include "testbench/job/job.h"
+#include "testbench/run_folder/recorded_mesh.h"
+
+namespace tessera {
+
+/// A run as it lies in its folder.
+struct RecordedRun {
+    std::filesystem::path folder;
+    Job job;  ///< the effective job; its paths are relative to `folder`, as load_mesh and load_map take them
+    RecordedMesh mesh;  ///< what it emitted, but for culled triangles
+};
+
+/// Reads job.toml and mesh.ply of a folder that `tessera run` left. `data_folder`: what `data:` paths begin at; the
+/// job's mesh and map files are looked for, not read (inputs.h does that).
+///
+/// Errors: InputError with file and what to do: no such folder, no job.toml (not a run's folder), a job that is not
+/// valid, mesh or map no longer where the job says, no mesh.ply (the run wrote none, output.ply = false, or got stuck),
+/// a mesh.ply that is not one (ply_reader.h).
+RecordedRun read_run(const std::filesystem::path& folder, const std::filesystem::path& data_folder);
+
+}  // namespace tessera

@@ -1,0 +1,244 @@
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "testbench/common/atomic_file.h"
+#include "testbench/common/error.h"
+#include "testbench/job/dump_job.h"
+#include "testbench/report/ply_writer.h"
+#include "testbench/run_folder/ply_reader.h"
+#include "testbench/run_folder/read_run.h"
+
+using namespace tessera;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+class Folder {
+  public:
+    Folder() {
+        std::string name = (fs::temp_directory_path() / "tessera_measure_XXXXXX").string();
+        REQUIRE(::mkdtemp(name.data()) != nullptr);
+        path_ = name;
+    }
+    ~Folder() {
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+    }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    const fs::path& path() const { return path_; }
+    fs::path file() const { return path_ / "mesh.ply"; }
+
+  private:
+    fs::path path_;
+};
+
+/// Two triangles that share an edge, and one that was culled.
+EmittedMesh small_mesh() {
+    EmittedMesh mesh;
+    const auto corner = [](std::int32_t x, std::int32_t y, std::uint8_t generation) {
+        EmittedTriangle::Corner c;
+        c.position = {x, y, 0};
+        c.displaced = {x, y, x + 2 * y};
+        c.displaced_normal = {0, x, 16384};
+        c.texture = {static_cast<std::uint32_t>(4096 * x), static_cast<std::uint32_t>(4096 * y)};
+        c.generation = generation;
+        return c;
+    };
+    EmittedTriangle a, b;
+    a.corners = {corner(0, 0, 0), corner(4, 0, 1), corner(0, 4, 2)};
+    a.base = 5;
+    a.split_by = 3;
+    a.stopped_by = 4 | 16;
+    b.corners = {corner(4, 0, 1), corner(4, 4, 0), corner(0, 4, 2)};
+    b.base = 1;
+    b.split_by = 1;
+    b.stopped_by = 8;
+    EmittedTriangle culled = a;
+    culled.culled = true;
+    mesh.triangles = {a, culled, b};
+    return mesh;
+}
+
+MeshUnits units() {
+    MeshUnits units;
+    units.map.width = units.map.height = 8;
+    units.scale = 0.5;
+    units.centre = {10, 20, 30.1};
+    return units;
+}
+
+std::string bytes_of(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+    const std::size_t place = text.find(what);
+    REQUIRE(place != std::string::npos);
+    return text.replace(place, what.size(), by);
+}
+
+/// Reads the bytes as a file; the message if they are refused, which must name the file and what to do.
+std::string refusal(const Folder& here, const std::string& bytes) {
+    std::ofstream(here.file(), std::ios::binary) << bytes;
+    try {
+        read_ply(here.file());
+    } catch (const InputError& error) {
+        const std::string message = error.what();
+        CHECK_THAT(message, Contains("mesh.ply") && Contains("run the job again"));
+        CHECK(message.find('\n') == std::string::npos);
+        return message;
+    }
+    return {};
+}
+
+}  // namespace
+
+TEST_CASE("a mesh that was written is read back") {
+    const Folder here;
+    const EmittedMesh mesh = small_mesh();
+    write_ply(here.file(), mesh, units());
+    const RecordedMesh read = read_ply(here.file());
+    REQUIRE(read.positions.size() == 4);
+    REQUIRE(read.normals.size() == 4);
+    REQUIRE(read.textures.size() == 4);
+    REQUIRE(read.triangles.size() == 2);
+    std::size_t next = 0;
+    for (const EmittedTriangle& t : mesh.triangles) {
+        if (t.culled)
+            continue;
+        const RecordedMesh::Triangle& r = read.triangles[next++];
+        CHECK(r.base == t.base);
+        CHECK(r.split_by == t.split_by);
+        CHECK(r.stopped_by == t.stopped_by);
+        CHECK(r.generation == 2);
+        for (std::size_t k = 0; k < 3; ++k) {
+            CHECK(read.positions[r.vertices[k]] == units().position(t.corners[k].displaced));
+            CHECK(read.normals[r.vertices[k]] == units().normal(t.corners[k].displaced_normal));
+            CHECK(read.textures[r.vertices[k]] == units().texture(t.corners[k].texture));
+        }
+    }
+    write_ply(here.file(), EmittedMesh{}, units());
+    CHECK(read_ply(here.file()).triangles.empty());
+}
+
+TEST_CASE("a mesh file cut off anywhere, or longer than it says, is refused") {
+    const Folder here;
+    write_ply(here.file(), small_mesh(), units());
+    const std::string whole = bytes_of(here.file());
+    REQUIRE(refusal(here, whole).empty());
+    for (std::size_t length = 0; length < whole.size(); ++length) {
+        INFO(length);
+        REQUIRE_FALSE(refusal(here, whole.substr(0, length)).empty());
+    }
+    CHECK_THAT(refusal(here, whole + '\0'), Contains("bytes after its header"));
+}
+
+TEST_CASE("any byte of a mesh file changed is refused or read, and a header's own is refused") {
+    const Folder here;
+    write_ply(here.file(), small_mesh(), units());
+    const std::string whole = bytes_of(here.file());
+    const std::size_t body = whole.find("end_header\n") + 11;
+    const std::size_t first_comment = whole.find("comment"), after_comments = whole.find("element vertex");
+    for (std::size_t place = 0; place < whole.size(); ++place) {
+        for (const int flip : {0x01, 0x80, 0xff}) {
+            std::string bytes = whole;
+            bytes[place] = static_cast<char>(bytes[place] ^ flip);
+            INFO(place << ' ' << flip);
+            const std::string message = refusal(here, bytes);
+            const bool in_comments = place >= first_comment && place < after_comments;
+            if (place < body && !in_comments)
+                REQUIRE_FALSE(message.empty());
+        }
+    }
+}
+
+TEST_CASE("a mesh file that says something else is refused with what it says") {
+    const Folder here;
+    write_ply(here.file(), small_mesh(), units());
+    const std::string whole = bytes_of(here.file());
+    const auto with = [&](const std::string& what, const std::string& by) {
+        return refusal(here, replaced(whole, what, by));
+    };
+    CHECK_THAT(with("ply\n", "obj\n"), Contains("\"obj\""));
+    CHECK_THAT(with("binary_little_endian", "ascii"), Contains("ascii"));
+    CHECK_THAT(with("double x", "float x"), Contains("property float x"));
+    CHECK_THAT(with("element vertex 4", "element vertex -4"), Contains("-4"));
+    CHECK_THAT(with("element vertex 4", "element vertex "), Contains("a number"));
+    CHECK_THAT(with("element vertex 4", "element vertex 99999999999"), Contains("a number"));
+    CHECK_THAT(with("element vertex 4", "element vertex 4000000000"), Contains("are the most"));
+    CHECK_THAT(with("element vertex 4", "element vertex 2000000000"), Contains("announces 88000000040"));
+    CHECK_THAT(with("element face 2", "element face 2147483647"), Contains("announces"));
+    CHECK_THAT(with("comment x", "comment " + std::string(300, 'x')), Contains("longer than"));
+    std::string comments;
+    for (int k = 0; k < 100; ++k)
+        comments += "comment\n";
+    CHECK_THAT(with("comment x", comments + "comment x"), Contains("more than 64 lines"));
+
+    const std::size_t vertices = whole.find("end_header\n") + 11, faces = vertices + 4 * 44;
+    const auto with_bytes = [&](std::size_t place, const std::string& bytes) {
+        std::string changed = whole;
+        changed.replace(place, bytes.size(), bytes);
+        return refusal(here, changed);
+    };
+    CHECK_THAT(with_bytes(vertices, std::string("\0\0\0\0\0\0\xf8\x7f", 8)),
+               Contains("vertex 0: its position"));
+    CHECK_THAT(with_bytes(vertices, "\xff\xff\xff\xff\xff\xff\xef\x7f"), Contains("vertex 0: its position"));
+    CHECK_THAT(with_bytes(vertices + 44 + 24, std::string("\0\0\x80\x7f", 4)),
+               Contains("vertex 1: its normal"));
+    CHECK_THAT(with_bytes(vertices + 36, std::string("\0\0\x80\xff", 4)), Contains("its texture coordinate"));
+    CHECK_THAT(with_bytes(faces, "\x04"), Contains("4 corners"));
+    CHECK_THAT(with_bytes(faces + 1, std::string("\x04\0\0\0", 4)), Contains("vertex 4 of 4"));
+    CHECK_THAT(with_bytes(faces + 1, "\xff\xff\xff\xff"), Contains("face 0 names vertex"));
+    CHECK_THAT(with_bytes(faces + 14, "\x04"), Contains("split_by"));
+    CHECK_THAT(with_bytes(faces + 15, "\x03"), Contains("stopped_by"));
+    CHECK_THAT(with_bytes(faces + 20 + 16, "\xff\xff\xff\xff"), Contains("face 1: its base triangle"));
+
+    CHECK_THROWS_AS(read_ply(here.path()), InputError);
+    CHECK_THROWS_AS(read_ply(here.path() / "absent.ply"), InputError);
+}
+
+TEST_CASE("a run's folder is read back, with paths that hold from there") {
+    const Folder here;
+    const fs::path run = here.path() / "runs/one";
+    fs::create_directories(run);
+    fs::create_directories(here.path() / "data");
+    write_file(here.path() / "map.pgm", "P2 1 1 9\n5\n");
+    write_file(here.path() / "data/map.pgm", "P2 1 1 9\n5\n");
+    Job job;
+    job.folder = here.path().string();
+    job.map.source = MapSource::file;
+    job.map.file = "map.pgm";
+    write_file(run / "job.toml", dump_job(job, run));
+    const auto read = [&] { return read_run(run, here.path() / "data"); };
+    CHECK_THROWS_WITH(read(), Contains("mesh.ply") && Contains("got stuck"));
+    write_ply(run / "mesh.ply", small_mesh(), units());
+    const RecordedRun result = read();
+    CHECK(result.mesh.triangles.size() == 2);
+    CHECK(fs::equivalent(fs::path(result.job.folder) / result.job.map.file, here.path() / "map.pgm"));
+    CHECK(result.folder == run);
+
+    fs::remove(here.path() / "map.pgm");
+    CHECK_THROWS_WITH(read(), Contains("map.file") && Contains("map.pgm") && Contains("put it back"));
+    job.map.file = "data:map.pgm";
+    write_file(run / "job.toml", dump_job(job, run));
+    CHECK(read().job.map.file == "data:map.pgm");
+    CHECK_THROWS_WITH(read_run(run, here.path()), Contains("--data FOLDER"));
+    job.output.ply = false;
+    write_file(run / "job.toml", dump_job(job, run));
+    fs::remove(run / "mesh.ply");
+    CHECK_THROWS_WITH(read(), Contains("--set output.ply=true"));
+    write_file(run / "job.toml", "[tests]\nview_threshold = -1\n");
+    CHECK_THROWS_AS(read(), InputError);
+    fs::remove(run / "job.toml");
+    CHECK_THROWS_WITH(read(), Contains("no job.toml"));
+    CHECK_THROWS_WITH(read_run(here.path() / "absent", ""), Contains("no such folder"));
+    CHECK_THROWS_AS(read_run(here.path() / "data/map.pgm", ""), InputError);
+}
