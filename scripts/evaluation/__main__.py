@@ -1,0 +1,74 @@
+"""Runs the paper's evaluation; see scripts/figures."""
+import argparse
+import importlib
+import os
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from page import write_page
+from section import FAILED, NOT_RUN, Claim, Section
+from study import ROOT, MissingData, ProgramError, Study
+
+# In the order of the page.
+NAMES = ["text_plane", "two_tests", "view_distances", "crater_lake", "teapot", "tex_coord_test", "generation_limit",
+         "triangulation", "tests_units", "host_bandwidth"]
+LONGEST_FIRST = ["crater_lake", "view_distances", "two_tests", "tests_units"]
+
+
+def options_from(arguments):
+    parser = argparse.ArgumentParser(prog="scripts/figures", description="Runs the paper's evaluation on tessera.")
+    parser.add_argument("--output", type=Path, default=Path("runs/figures"), help="folder to leave (%(default)s)")
+    parser.add_argument("--data", type=Path, default=Path(os.environ.get("TESSERA_DATA", ROOT.parent / "shared/data")),
+                        help="folder of the inputs that are not part of the project (%(default)s)")
+    parser.add_argument("--only", action="append", choices=NAMES, metavar="NAME", help="this experiment; may be repeated")
+    parser.add_argument("--list", action="store_true", help="name the experiments and stop")
+    parser.add_argument("--jobs", type=int, default=2, help="experiments at a time (%(default)s)")
+    parser.add_argument("--picture-width", type=int, default=1000, help="pixels (%(default)s)")
+    parser.add_argument("--program", type=Path, default=ROOT / "build/release/testbench/program/tessera",
+                        help=argparse.SUPPRESS)
+    return parser.parse_args(arguments)
+
+
+def load(name):
+    return importlib.import_module(f"experiments.{name}").EXPERIMENT
+
+
+def perform(experiment, options):
+    """(Section, commands). Missing data and a failed command become claims, so that the rest still has its page."""
+    folder = (options.output / "runs" / experiment.name).resolve()
+    study = Study(options.program, options.data.resolve(), folder, options.picture_width)
+    print(f"  {experiment.name}: begun", file=sys.stderr, flush=True)
+    try:
+        section = experiment.measure(study)
+    except (MissingData, ProgramError) as error:
+        verdict = NOT_RUN if isinstance(error, MissingData) else FAILED
+        print(f"  {experiment.name}: {verdict}: {error}", file=sys.stderr, flush=True)
+        return Section(claims=[Claim(experiment.shows, experiment.figure, str(error), verdict)]), []
+    print(f"  {experiment.name}: done", file=sys.stderr, flush=True)
+    # The page names no place of this machine.
+    return section, [command.replace(f"{folder}/", f"runs/figures/runs/{experiment.name}/").replace(f"{ROOT}/", "")
+                     for command in study.commands]
+
+
+def main():
+    options = options_from(sys.argv[1:])
+    if options.list:
+        for name in NAMES:
+            print(f"{name:20} {load(name).title} ({load(name).figure})")
+        return 0
+    names = [name for name in NAMES if not options.only or name in options.only]
+    order = sorted(names, key=lambda name: LONGEST_FIRST.index(name) if name in LONGEST_FIRST else len(LONGEST_FIRST))
+    options.output.mkdir(parents=True, exist_ok=True)
+    print(f"{len(names)} experiments, {options.jobs} at a time", file=sys.stderr)
+    with ThreadPoolExecutor(options.jobs) as pool:
+        pending = {name: pool.submit(perform, load(name), options) for name in order}
+        results = {name: pending[name].result() for name in names}
+    write_page(options.output, [(load(name), *results[name]) for name in names])
+    print(options.output / "index.html")
+    verdicts = [claim.verdict for section, _ in results.values() for claim in section.claims]
+    return 1 if FAILED in verdicts else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

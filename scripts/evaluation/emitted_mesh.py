@@ -1,0 +1,66 @@
+"""A run's mesh.ply as arrays, and where on the map its triangles are."""
+from dataclasses import dataclass
+
+import numpy as np
+
+VERTEX = np.dtype([(name, "<f8") for name in ("x", "y", "z")]
+                  + [(name, "<f4") for name in ("nx", "ny", "nz", "s", "t")])
+
+
+@dataclass
+class EmittedMesh:
+    positions: np.ndarray  # n x 3, model units
+    texture: np.ndarray  # n x 2, 0..1 over the map, t from its bottom row
+    triangles: np.ndarray  # m x 3 vertex numbers
+    generation: np.ndarray  # m
+
+    def texture_areas(self):
+        a, b, c = (self.texture[self.triangles[:, k]] for k in range(3))
+        return 0.5 * np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
+
+    def centres(self):
+        return self.texture[self.triangles].mean(axis=1)
+
+    def smallest_angles(self):
+        """Degrees, of the displaced triangles."""
+        corners = [self.positions[self.triangles[:, k]] for k in range(3)]
+        angles = []
+        for k in range(3):
+            p = corners[(k + 1) % 3] - corners[k]
+            q = corners[(k + 2) % 3] - corners[k]
+            length = np.maximum(np.linalg.norm(p, axis=1) * np.linalg.norm(q, axis=1), 1e-300)
+            angles.append(np.degrees(np.arccos(np.clip((p * q).sum(axis=1) / length, -1, 1))))
+        return np.minimum.reduce(angles)
+
+
+def read_mesh(path):
+    content = path.read_bytes()
+    header_end = content.index(b"end_header\n") + len(b"end_header\n")
+    counts, face_fields, element = {}, [], ""
+    types = {"uchar": "u1", "int": "<i4", "uint": "<u4", "ushort": "<u2"}
+    for line in content[:header_end].decode().splitlines():
+        words = line.split()
+        if words[0] == "element":
+            element = words[1]
+            counts[element] = int(words[2])
+        elif words[0] == "property" and element == "face" and words[1] != "list":
+            face_fields.append((words[2], types[words[1]]))
+    vertices = np.frombuffer(content, VERTEX, counts["vertex"], header_end)
+    face = np.dtype([("corners", "u1"), ("vertices", "<i4", 3), *face_fields])
+    faces = np.frombuffer(content, face, counts["face"], header_end + vertices.nbytes)
+    return EmittedMesh(
+        positions=np.stack([vertices[name] for name in "xyz"], axis=1),
+        texture=np.stack([vertices[name] for name in "st"], axis=1).astype(float),
+        triangles=faces["vertices"],
+        generation=faces["generation"].astype(int))
+
+
+def density_in(mesh, region):
+    """Triangles per unit of texture area where `region` (a boolean image of the map, top row first) is true: by the
+    triangles' centres. Of several regions the quotients say where the detail is."""
+    rows, columns = region.shape
+    centres = mesh.centres()
+    column = np.clip((centres[:, 0] * columns).astype(int), 0, columns - 1)
+    row = np.clip(((1 - centres[:, 1]) * rows).astype(int), 0, rows - 1)
+    share = region.mean()
+    return region[row, column].sum() / share if share > 0 else 0.0

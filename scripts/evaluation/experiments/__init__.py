@@ -1,0 +1,1 @@
+"""One file per experiment; the page shows them in this order."""

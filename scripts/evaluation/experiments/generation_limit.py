@@ -1,0 +1,37 @@
+"""The fifth test, which the paper does not have: what happens without it."""
+from section import Experiment, Claim, Section, Table, Chart, MEASURED
+import charts
+
+LIMITS = (2, 4, 6, 8, 10, 12, 15)
+TRIANGLES = 400_000
+SETTINGS = {"tests.view": False, "tests.normal_threshold": 0.1, "tests.summed_height_threshold": 1}
+UNLIMITED = {"tests.generation": False, "limits.triangles": TRIANGLES, "check.invariants": False, "check.golden": False}
+
+
+def measure(study):
+    section, rows = Section(), []
+    for limit in LIMITS:
+        run = study.run(f"limit_{limit}", settings={**SETTINGS, "tests.generation_limit": limit})
+        rows.append([str(limit), run.triangles, run.figures["run.edges_tested"],
+                     run.error["interpolated.reference_to_mesh_rms_texels"],
+                     run.error["interpolated.reference_to_mesh_max_texels"], int((run.mesh.smallest_angles() < 1).sum())])
+    unlimited = study.run("limit_none", settings={**SETTINGS, **UNLIMITED}, exit_codes=(0, 4))
+    ended = unlimited.exit_code == 0
+    section.claims.append(Claim(
+        "Printed with four tests, the recursion is taken to end by itself.", "section 2.6",
+        (f"without the Generation Test the half donut ends with {unlimited.triangles:,} triangles" if ended else
+         f"without the Generation Test the half donut passes {TRIANGLES:,} triangles and is stopped")
+        + f"; with it, {rows[-2][1]:,} at the default limit of 12. Edges whose midpoints creep along a long edge never meet "
+        "the Tex Coord Test's condition; the fifth test is edge-only too, and ends every recursion.", MEASURED))
+    section.charts.append(Chart(
+        charts.lines({"half donut": ([row[1] for row in rows], [row[3] for row in rows])},
+                     "triangles", "RMS error, texels", log_x=True, log_y=True),
+        "Error against triangles as the generation limit rises from 2 to 15"))
+    section.tables.append(Table("generation_limit", "Generation limits, without the View Test",
+                                [("limit", ""), ("triangles", ""), ("edges tested", ""), ("RMS error", "texel"),
+                                 ("maximum error", "texel"), ("triangles with an angle below 1 degree", "")], rows))
+    return section
+
+
+EXPERIMENT = Experiment("generation_limit", "The Generation Test", "tessera's addition",
+                        "A fifth, edge-only test bounds the depth of the recursion.", measure)

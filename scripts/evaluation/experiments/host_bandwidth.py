@@ -1,0 +1,45 @@
+"""Section 5: what the host sends."""
+from section import Chart, Claim, Experiment, Section, Table, reproduced_if
+from study import MissingData
+import charts
+
+JOBS = {
+    "half donut on 18 triangles": (None, []),
+    "Utah teapot, half donut": ("teapot", []),
+    "Crater Lake on 704 triangles": ("crater_lake_704", ["maps/crater_lake_west_336x459.pgm"]),
+    "head on 1,800 triangles": ("head", ["maps/head_lps_512.pgm", "meshes/cylinder_1800_lps.obj"]),
+}
+
+
+def measure(study):
+    section, rows = Section(), []
+    for title, (job, files) in JOBS.items():
+        try:
+            for name in files:
+                study.data_file(name)
+        except MissingData as missing:
+            section.notes.append(f"Without {title}: {missing}.")
+            continue
+        figures = study.run(job or "half_donut", job, {"check.golden": False}).figures
+        rows.append([title, figures["host.mesh_bytes"], figures["host.table_bytes"], figures["run.triangles_finished"],
+                     figures["host.tessellated_mesh_bytes"], figures["host.bandwidth_saving"],
+                     figures["host.frames_to_pay_for_tables"]])
+    savings = [row[5] for row in rows]
+    section.claims.append(Claim(
+        "Displacement mapping as a primitive can significantly reduce the bottleneck of sending triangle data.", "section 5",
+        "; ".join(f"{row[0]}: {row[5]:,.0f} times fewer bytes a frame, tables paid for after {max(1, -(-row[6] // 1)):,.0f} "
+                  f"frame{'s' if row[6] > 1 else ''}" for row in rows),
+        reproduced_if(min(savings) > 2)))
+    section.charts.append(Chart(charts.bars([row[0] for row in rows], savings,
+                                            "bytes of the tessellated mesh / bytes of the base mesh"),
+                                "Saving per frame, once the tables are there"))
+    section.tables.append(Table(
+        "host_bandwidth", "Bytes from the host",
+        [("job", ""), ("base mesh", "byte"), ("tables, once", "byte"), ("triangles", ""),
+         ("the tessellated mesh instead, indexed", "byte"), ("saving a frame", "times"), ("tables paid after", "frames")],
+        rows))
+    return section
+
+
+EXPERIMENT = Experiment("host_bandwidth", "Host bandwidth", "Section 5",
+                        "The host sends the base mesh each frame and the tables once, instead of every triangle.", measure)

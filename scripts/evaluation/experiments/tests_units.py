@@ -1,0 +1,66 @@
+"""Section 3.1: one Tessellation Tests unit or three, and what hides behind Transform."""
+from section import Chart, Claim, Experiment, Section, Table, PARTLY, REPRODUCED, NOT_REPRODUCED
+import charts
+
+QUIET = {"mode": "timed", "check.golden": False, "check.invariants": False, "output.ply": False}
+LATENCIES = (1, 10, 20, 40, 80)
+
+
+def timed(study, units, ports, latency=None):
+    settings = {**QUIET, "hardware.tests_units": units, "timing.summed_height_table_ports": ports}
+    name = f"units_{units}_ports_{ports}"
+    if latency is not None:
+        settings["timing.transform_latency"] = latency
+        name += f"_transform_{latency}"
+    return study.run(name, settings=settings).figures
+
+
+def measure(study):
+    section, rows, passes = Section(), [], {}
+    for units in (1, 3):
+        for ports in (1, 2, 4, 12):
+            figures = timed(study, units, ports)
+            passes[units, ports] = figures["timing.cycles_per_pass"]
+            rows.append([units, ports, figures["timing.cycles"], figures["timing.cycles_per_pass"],
+                         figures["timing.cycles_per_triangle"], figures["timing.bottleneck"]])
+    waits, cycles = {}, {}
+    for units, ports in ((1, 1), (1, 4), (3, 12)):
+        name = f"{units} tests unit{'s' if units > 1 else ''}, {ports} port{'s' if ports > 1 else ''}"
+        waits[name], cycles[name] = [], []
+        for latency in LATENCIES:
+            figures = timed(study, units, ports, latency)
+            late = figures.get("timing.pass_or_tessellate.starved_of_tessellation_tests_0.collect_tests", 0)
+            waits[name].append(100 * late / figures["timing.cycles"])
+            cycles[name].append(figures["timing.cycles"])
+    hidden = {name: next((latency for latency, share in zip(LATENCIES, shares) if share < 1), None)
+              for name, shares in waits.items()}
+    found = [latency for latency in hidden.values() if latency is not None]
+    section.claims = [
+        Claim("Transform's latency hides that of the Tessellation Tests, which run in parallel.", "section 3.1",
+              "the join waits for the tests in less than 1 % of all cycles from this Transform latency on: "
+              + "; ".join(f"{name}: " + (f"{latency} cycles" if latency else f"more than {LATENCIES[-1]}")
+                          for name, latency in hidden.items())
+              + ". In throughput nothing hides: the tests' table reads set the pace.",
+              REPRODUCED if len(found) == len(hidden) and max(found) <= 20 else PARTLY if found else NOT_REPRODUCED),
+        Claim("The Tessellation Tests unit may be replicated three times, an edge each.", "section 3.1",
+              f"cycles a pass with one unit and three: {passes[1, 1]:.1f} and {passes[3, 1]:.1f} with one port to the "
+              f"Summed Height Table, {passes[1, 12]:.2f} and {passes[3, 12]:.2f} with twelve: three rectangles of four "
+              "reads an edge bind first, so units without ports buy nothing.",
+              PARTLY if passes[3, 12] < passes[1, 12] else NOT_REPRODUCED),
+    ]
+    section.charts.append(Chart(
+        charts.lines({name: (LATENCIES, shares) for name, shares in waits.items()}, "latency of Transform, cycles",
+                     "cycles in which the join waits for the tests, %", log_x=True),
+        "What of the tests' latency shows, half donut, 256 x 256"))
+    section.tables = [
+        Table("tests_units", "Units and ports, half donut, 256 x 256",
+              [("tests units", ""), ("table ports", ""), ("cycles", ""), ("a pass", "cycles"), ("a triangle", "cycles"),
+               ("bottleneck", "")], rows),
+        Table("transform_latency", "The join's wait for the tests, % of cycles, by Transform's latency",
+              [("latency", "cycles"), *((name, "%") for name in waits)],
+              [[latency, *(shares[k] for shares in waits.values())] for k, latency in enumerate(LATENCIES)])]
+    return section
+
+
+EXPERIMENT = Experiment("tests_units", "One Tessellation Tests unit or three", "Section 3.1",
+                        "What a cycle-by-cycle run says about latency, throughput and the bottleneck.", measure)

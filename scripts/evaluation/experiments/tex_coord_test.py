@@ -1,0 +1,53 @@
+"""Section 2.5: what the Tex Coord Test saves."""
+from section import Claim, Experiment, Picture, Section, Table, reproduced_if
+from .view_distances import LICENCE
+from study import MissingData
+
+NOISE = {
+    "map.source": "noise", "map.width": 64, "map.height": 64, "displacement.scale": 0.04,
+    "mesh.columns": 6, "mesh.rows": 6, "tests.normal_threshold": 0.05, "tests.summed_height_threshold": 0.5,
+}
+VIEW_THRESHOLDS = (8, 12, 16)  # pixels; a texel of the noise is 16 to 24 pixels long
+SHOWN = 12
+HEAD = {"tests.view_threshold": 3}
+
+
+def measure(study):
+    section, rows, savings = Section(), [], {}
+    cases = [("noise", None, {**NOISE, "tests.view_threshold": threshold}) for threshold in VIEW_THRESHOLDS]
+    try:
+        study.data_file("maps/head_lps_512.pgm")
+        study.data_file("meshes/cylinder_1800_lps.obj")
+        cases.append(("head", "head", HEAD))
+        section.sources.append(LICENCE)
+    except MissingData as missing:
+        section.notes.append(f"Without the head: {missing}.")
+    for name, job, settings in cases:
+        threshold = settings["tests.view_threshold"]
+        runs = {state: study.run(f"{name}_{threshold}_{state}", job, {**settings, "tests.tex_coord": state == "on"})
+                for state in ("on", "off")}
+        savings[name, threshold] = 1 - runs["on"].triangles / runs["off"].triangles
+        for state, run in runs.items():
+            rows.append([name, threshold, state, run.triangles, run.figures["run.edges_tested"],
+                         run.error["interpolated.reference_to_mesh_rms_texels"],
+                         run.error["nearest_texel.reference_to_mesh_rms_texels"],
+                         run.figures["pass_or_tessellate.stopped_by_tex_coord"]])
+            if threshold == SHOWN or name == "head":
+                options = {"caption": LICENCE, "zoom": (0.45, 0.4, 4)} if name == "head" else {"zoom": (0.5, 0.6, 3)}
+                section.pictures.append(Picture(run.render("wireframe", **options),
+                                                f"{name.capitalize()}, Tex Coord Test {state}: {run.triangles:,} triangles"))
+    section.claims.append(Claim(
+        "On noisy maps such as hair the Tex Coord Test alone can halve the number of triangles.", "section 2.5",
+        "; ".join(f"{name}, View Test from {threshold} pixels: {100 * saving:.0f} % fewer triangles"
+                  for (name, threshold), saving in savings.items())
+        + ". The larger a texel on the screen, the more it saves; what it leaves out are the steps between texels.",
+        reproduced_if(max(saving for (name, _), saving in savings.items() if name == "noise") >= 0.5)))
+    section.tables.append(Table(
+        "tex_coord_test", "With and without the Tex Coord Test",
+        [("map", ""), ("View Test threshold", "pixel"), ("Tex Coord Test", ""), ("triangles", ""), ("edges tested", ""),
+         ("RMS, map interpolated", "texel"), ("RMS, nearest texel", "texel"), ("edges it stopped", "")], rows))
+    return section
+
+
+EXPERIMENT = Experiment("tex_coord_test", "The Tex Coord Test on noise and on the head", "Section 2.5",
+                        "No edge is split below the map's resolution, where there is nothing more to find.", measure)

@@ -1,0 +1,114 @@
+"""Runs of the program, and what they left: figures, errors, pictures, meshes."""
+import json
+import shlex
+import subprocess
+from functools import cached_property
+from pathlib import Path
+
+from emitted_mesh import read_mesh
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+JOBS = ROOT / "testbench/jobs"
+
+
+class MissingData(Exception):
+    """An input that is not part of the project and was not found."""
+
+
+class ProgramError(Exception):
+    """The program ended with an exit code it should not have."""
+
+
+def toml(value):
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(toml(item) for item in value) + "]"
+    return str(value)
+
+
+def figures_of(path):
+    """{"group.name": value} of a JSON report of tessera."""
+    groups = json.loads(path.read_text())
+    return {f"{group}.{name}": figure["value"] for group, figures in groups.items()
+            for name, figure in figures.items() if "value" in figure}
+
+
+class Study:
+    """Runs the program in a folder of its own per experiment; writes down every command."""
+
+    # The golden model checks every edge of every run; the files nobody reads here are left out.
+    QUIET = {"mode": "functional", "check.end_to_end": False, "output.obj": False, "output.picture": False}
+
+    def __init__(self, program, data, folder, picture_width):
+        self.program = program
+        self.data = data
+        self.folder = folder
+        self.picture_width = picture_width
+        self.commands = []
+
+    def data_file(self, name):
+        path = self.data / name
+        if not path.is_file():
+            raise MissingData(f"{name} is not in {self.data} (choose the folder with --data)")
+        return path
+
+    def call(self, *arguments, exit_codes=(0,)):
+        command = [str(self.program), *(str(argument) for argument in arguments)]
+        self.commands.append(shlex.join(["tessera", *command[1:]]))
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        if done.returncode not in exit_codes:
+            raise ProgramError(f"exit code {done.returncode} of {shlex.join(command)}\n{done.stderr.strip()}")
+        return done
+
+    def run(self, name, job=None, settings=None, exit_codes=(0,)):
+        """job: a name in testbench/jobs, a path, or None for the half donut."""
+        folder = self.folder / name
+        arguments = ["run"]
+        if job is not None:
+            arguments.append(job if isinstance(job, Path) else JOBS / f"{job}.toml")
+        arguments += ["--data", self.data]
+        for key, value in {**self.QUIET, **(settings or {}), "output.folder": folder}.items():
+            arguments += ["--set", f"{key}={toml(value)}"]
+        done = self.call(*arguments, exit_codes=exit_codes)
+        return Run(self, folder, done.returncode)
+
+
+class Run:
+    """A finished run's folder."""
+
+    def __init__(self, study, folder, exit_code=0):
+        self.study = study
+        self.folder = folder
+        self.exit_code = exit_code
+
+    @cached_property
+    def figures(self):
+        return figures_of(self.folder / "statistics.json")
+
+    @property
+    def triangles(self):
+        return self.figures["mesh.triangles"]
+
+    @cached_property
+    def mesh(self):
+        return read_mesh(self.folder / "mesh.ply")
+
+    @cached_property
+    def error(self):
+        """Against the densely displaced surface, the map interpolated: see `tessera compare`."""
+        self.study.call("compare", self.folder, "--data", self.study.data)
+        return figures_of(self.folder / "error.json")
+
+    def render(self, view, name=None, **options):
+        """A picture beside the mesh, or NAME.png; options as `tessera render` has them, underscores for hyphens."""
+        output = self.folder / f"{name or view}.png"
+        arguments = ["render", self.folder, "--view", view, "--output", output, "--data", self.study.data]
+        if "size" not in options:
+            options["size"] = f"{self.study.picture_width}x{self.study.picture_width * 3 // 4}"
+        for option, value in options.items():
+            arguments.append("--" + option.replace("_", "-"))
+            if value is not True:
+                arguments += value if isinstance(value, (list, tuple)) else [value]
+        self.study.call(*arguments)
+        return output
