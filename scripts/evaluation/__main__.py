@@ -12,7 +12,7 @@ from study import ROOT, MissingData, ProgramError, Study
 
 # In the order of the page.
 NAMES = ["text_plane", "two_tests", "view_distances", "crater_lake", "teapot", "tex_coord_test", "generation_limit",
-         "triangulation", "tests_units", "host_bandwidth"]
+         "triangulation", "tests_units", "host_bandwidth", "highlight_test", "curved_surfaces", "displacement_scale"]
 LONGEST_FIRST = ["crater_lake", "view_distances", "two_tests", "tests_units"]
 
 
