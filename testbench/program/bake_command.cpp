@@ -42,6 +42,17 @@ BakedMap bake(const BakeRequest& request, const Surface& surface, const Job& job
     return bake_over_mesh(*quadric, load_mesh(job, data_folder), job.map, request.width, request.height);
 }
 
+/// The job must not be written over what it is made from.
+void check_job_file(const BakeRequest& request, const fs::path& job_file) {
+    for (const fs::path& read : {request.surface, request.mesh_job}) {
+        std::error_code absent;
+        if (!read.empty() && fs::equivalent(job_file, read, absent))
+            throw InputError(
+                fmt::format("--output {}: the job {} beside it would overwrite {}: choose another name",
+                            request.output.string(), job_file.filename().string(), read.string()));
+    }
+}
+
 std::string share(std::size_t texels, const BakedMap& map) {
     return fmt::format("{} texel{} ({:.1f} %)", texels, texels == 1 ? "" : "s",
                        100 * static_cast<double>(texels) / static_cast<double>(map.values.size()));
@@ -79,6 +90,9 @@ ExitCode bake_command(const BakeRequest& request, const fs::path& data_folder) {
     Job job = base_job(request, surface);
     const fs::path folder = request.output.has_parent_path() ? request.output.parent_path() : fs::path(".");
     check_output_folder(folder, "--output");
+    const std::string name = request.output.stem().string();
+    const fs::path job_file = folder / (name + ".job.toml");
+    check_job_file(request, job_file);
 
     Progress progress;
     progress.show("baking", 0);
@@ -90,10 +104,8 @@ ExitCode bake_command(const BakeRequest& request, const fs::path& data_folder) {
     job.map.file = rebase_path(request.output.string(), "", job.folder);
     job.map.channel.clear();
     job.displacement = {file.scale, file.bias};
-    const std::string name = request.output.stem().string();
     job.output.folder = "runs/" + name;
     validate(job);
-    const fs::path job_file = folder / (name + ".job.toml");
     const std::string job_text = dump_short_job(
         job, folder,
         fmt::format("What `tessera bake` made of {}.", printable(request.surface.filename().string())));

@@ -137,7 +137,12 @@ TEST_CASE("bake: hostile arguments are refused in one line") {
     write_all(here.path() / "far.toml", "[quadric]\nshape = \"sphere\"\nradius = 0.1\ncentre = [9, 0, 0]\n");
     refused({"far.toml", "--output", "a.pgm"}, here, {"far.toml:1: the quadric is nowhere"});
     write_all(here.path() / "bad.toml", "[bezier]\nheights = [[0, 1], [2, 3]]\nweights = [[1, 1], [1, 0]]\n");
-    refused({"bad.toml", "--output", "a.pgm"}, here, {"bad.toml:3:23:", "`weights`"});
+    refused({"bad.toml", "--output", "a.pgm"}, here, {"bad.toml:3:24:", "`weights`"});
+    for (const char* const name : {"c.job.toml", "d.job.toml"})
+        write_all(here.path() / name, read_all(example(name[0] == 'c' ? "dome.toml" : "barrel_base.toml")));
+    refused({"c.job.toml", "--output", "c.pgm"}, here, {"--output c.pgm", "would overwrite c.job.toml"});
+    refused({dome, "--mesh", "d.job.toml", "--output", "./d.pgm"}, here, {"would overwrite d.job.toml"});
+    CHECK(read_all(here.path() / "c.job.toml") == read_all(dome));
     fs::create_directory(here.path() / "b.pgm");
     refused({dome, "--output", "b.pgm"}, here, {"b.pgm", "folder"});
 }
