@@ -15,6 +15,19 @@ std::string facts(const Key& key) {
     return fmt::format("{}{}; default {}", unit, range_text(key), toml_value(default_of(key)));
 }
 
+/// The job with its paths as they are from another folder.
+Job moved_to(const std::filesystem::path& folder, const Job& job) {
+    Job moved = job;
+    for (const KeyTable& table : job_tables()) {
+        for (const Key& key : table.keys) {
+            if (key.kind == KeyKind::file) {
+                set_value(moved, key, rebase_path(std::get<std::string>(key.get(job)), job.folder, folder));
+            }
+        }
+    }
+    return moved;
+}
+
 }  // namespace
 
 std::string dump_job(const Job& job) {
@@ -32,16 +45,25 @@ std::string dump_job(const Job& job) {
 }
 
 std::string dump_job(const Job& job, const std::filesystem::path& run_folder) {
-    Job moved = job;
+    return dump_job(moved_to(run_folder, job));
+}
+
+std::string dump_short_job(const Job& job, const std::filesystem::path& folder, const std::string& heading) {
+    const Job moved = moved_to(folder, job);
+    std::string out = "# " + heading + "\n";
     for (const KeyTable& table : job_tables()) {
+        std::string keys;
         for (const Key& key : table.keys) {
-            if (key.kind == KeyKind::file) {
-                set_value(moved, key,
-                          rebase_path(std::get<std::string>(key.get(job)), job.folder, run_folder));
+            const std::string value = toml_value(key.get(moved));
+            if (value != toml_value(default_of(key))) {
+                keys += fmt::format("{} = {}\n", key.leaf(), value);
             }
         }
+        if (!keys.empty()) {
+            out += (table.name.empty() ? "" : fmt::format("\n[{}]\n", table.name)) + keys;
+        }
     }
-    return dump_job(moved);
+    return out;
 }
 
 }  // namespace tessera

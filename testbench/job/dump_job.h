@@ -13,4 +13,7 @@ std::string dump_job(const Job& job);
 /// The same to be written into `run_folder`: relative paths are rewritten to hold from there (job_paths.h).
 std::string dump_job(const Job& job, const std::filesystem::path& run_folder);
 
+/// The same with only those keys that do not have their defaults, and no comments but `heading`, one line.
+std::string dump_short_job(const Job& job, const std::filesystem::path& folder, const std::string& heading);
+
 }  // namespace tessera

@@ -7,7 +7,7 @@
 
 namespace tessera {
 
-enum class MeshSource { plane, cylinder, sphere, file };
+enum class MeshSource { plane, cylinder, sphere, file, patches };
 enum class MapSource { half_donut, text, noise, constant, ramp, file };
 enum class Addressing { clamp, repeat };
 enum class Triangulation { shorter, first, second };
@@ -17,13 +17,18 @@ enum class SummedHeightUnit { sum, area };
 enum class Overflow { spill, stall, error };
 enum class Mode { functional, timed };
 
+/// Whether a mesh of this source is in mesh.file.
+constexpr bool reads_file(MeshSource source) {
+    return source == MeshSource::file || source == MeshSource::patches;
+}
+
 /// One run of tessera: what a job file says. Every key's unit, default, range and description are declared
 /// once, in job_keys.cpp; the defaults are the initialisers below and make the default job (the half donut on
 /// the plane of 18 triangles).
 struct Job {
     struct Mesh {
         MeshSource source = MeshSource::plane;
-        std::string file;          // OBJ, with source = "file"
+        std::string file;          // OBJ, with source = "file"; Bezier patches, with "patches"
         std::int64_t columns = 0;  // quads along u; 0: the source's own (job_keys.cpp)
         std::int64_t rows = 0;     // quads along v; 0: likewise
         double width = 2;          // plane: size along x

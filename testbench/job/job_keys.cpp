@@ -256,10 +256,10 @@ std::vector<KeyTable> declare_keys() {
     });
     list.table("mesh", &Job::mesh, "The base mesh.", [](const auto& key) {
         using Mesh = Job::Mesh;
-        key.add("source", &Mesh::source, "Built-in shape, or file for the mesh in mesh.file");
-        key.add("file", &Mesh::file, KeyKind::file, "OBJ file, with mesh.source = \"file\"");
-        key.add("columns", &Mesh::columns, "quads", between(0, 2048), "Quads along u; 0: 3 for the plane, 30 for cylinder and sphere, which need 3 or more");
-        key.add("rows", &Mesh::rows, "quads", between(0, 2048), "Quads along v; 0: 3 for the plane, 30 for cylinder and sphere; a sphere needs 2 or more");
+        key.add("source", &Mesh::source, "Built-in shape, file for the mesh in mesh.file, or patches for the Bezier patches in it");
+        key.add("file", &Mesh::file, KeyKind::file, "OBJ file, with mesh.source = \"file\"; with \"patches\" one of bicubic Bezier patches as Newell's teapot has it");
+        key.add("columns", &Mesh::columns, "quads", between(0, 2048), "Quads along u; 0: 3 for the plane, 4 for each patch, 30 for cylinder and sphere, which need 3 or more");
+        key.add("rows", &Mesh::rows, "quads", between(0, 2048), "Quads along v; 0: 3 for the plane, 4 for each patch, 30 for cylinder and sphere; a sphere needs 2 or more");
         key.add("width", &Mesh::width, "model units", length_range, "Size of the plane along x");
         key.add("depth", &Mesh::depth, "model units", length_range, "Size of the plane along y");
         key.add("radius", &Mesh::radius, "model units", length_range, "Radius of the cylinder or sphere");

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "testbench/common/error.h"
+#include "testbench/measure/texel_centres.h"
 
 namespace tessera {
 namespace {
@@ -19,23 +20,9 @@ struct Facet {
     std::array<double, 3> height;
 };
 
-double cross(const glm::dvec2& a, const glm::dvec2& b) {
-    return a.x * b.y - a.y * b.x;
-}
-
-struct Range {
-    std::int64_t first, last;  // grid lines; none if last < first
-};
-
-/// Grid lines, at .5, within [low, high].
-Range grid_lines(double low, double high) {
-    const auto line = [](double at) { return static_cast<std::int64_t>(std::clamp(at, -1e15, 1e15)); };
-    return {line(std::ceil(low - 0.5 - 1e-9)), line(std::floor(high - 0.5 + 1e-9))};
-}
-
 /// Rows of a band, and its columns.
 struct Band {
-    Range columns, rows;
+    GridRange columns, rows;
 
     std::size_t index(std::int64_t x, std::int64_t y) const {
         return static_cast<std::size_t>((y - rows.first) * (columns.last - columns.first + 1) +
@@ -46,30 +33,10 @@ struct Band {
 /// Calls at(x, y, height) for the grid points of the band under a triangle, its border among them.
 template <class At>
 void cover(const Facet& facet, const Band& band, At&& at) {
-    const auto& t = facet.texel;
-    const Range rows = grid_lines(std::min({t[0].y, t[1].y, t[2].y}), std::max({t[0].y, t[1].y, t[2].y}));
-    const Range columns = grid_lines(std::min({t[0].x, t[1].x, t[2].x}), std::max({t[0].x, t[1].x, t[2].x}));
-    const std::int64_t first_row = std::max(rows.first, band.rows.first),
-                       last_row = std::min(rows.last, band.rows.last);
-    const std::int64_t first = std::max(columns.first, band.columns.first);
-    const std::int64_t last = std::min(columns.last, band.columns.last);
-    if (first_row > last_row || first > last)
-        return;
-    const glm::dvec2 ab = t[1] - t[0], ac = t[2] - t[0];
-    const double area = cross(ab, ac);
-    if (std::abs(area) < 1e-15)
-        return;
-    // A point on an edge must be inside of one of its two triangles whatever rounding does.
-    constexpr double inside = -1e-9;
-    for (std::int64_t y = first_row; y <= last_row; ++y) {
-        for (std::int64_t x = first; x <= last; ++x) {
-            const glm::dvec2 away = glm::dvec2(x, y) + 0.5 - t[0];
-            const double b = cross(away, ac) / area, c = cross(ab, away) / area;
-            if (b < inside || c < inside || 1 - b - c < inside)
-                continue;
-            at(x, y, (1 - b - c) * facet.height[0] + b * facet.height[1] + c * facet.height[2]);
-        }
-    }
+    for_texel_centres(facet.texel, band.columns, band.rows,
+                      [&](std::int64_t x, std::int64_t y, const glm::dvec3& b) {
+                          at(x, y, b.x * facet.height[0] + b.y * facet.height[1] + b.z * facet.height[2]);
+                      });
 }
 
 Facet facet_of(const HeightField& field, const std::array<glm::dvec3, 3>& corners) {
@@ -169,7 +136,7 @@ VerticalError measure_vertical_error(const HeightField& field, const BaseMesh& b
             low = glm::min(low, t);
             high = glm::max(high, t);
         }
-    const Range columns = grid_lines(low.x, high.x), rows = grid_lines(low.y, high.y);
+    const GridRange columns = grid_lines(low.x, high.x), rows = grid_lines(low.y, high.y);
     const std::int64_t width = columns.last - columns.first + 1, height = rows.last - rows.first + 1;
     if (width < 1 || height < 1)
         return result;

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "testbench/common/error.h"
+#include "testbench/meshes/bezier_patches.h"
 #include "testbench/meshes/built_in.h"
 #include "testbench/meshes/obj_reader.h"
 
@@ -10,11 +11,12 @@ namespace tessera {
 
 namespace {
 
-/// 0 in a job: the paper's plane of 18 triangles; round surfaces of the 1800 triangles of its cylinder.
+/// 0 in a job: the paper's plane of 18 triangles; round surfaces of the 1800 triangles of its cylinder; patches of 32
+/// triangles, which make its teapot.
 std::int64_t quads(std::int64_t wanted, MeshSource source) {
     if (wanted != 0)
         return wanted;
-    return source == MeshSource::plane ? 3 : 30;
+    return source == MeshSource::plane ? 3 : source == MeshSource::patches ? 4 : 30;
 }
 
 }  // namespace
@@ -34,8 +36,15 @@ BaseMesh make_base_mesh(Job::Mesh const& job, std::string const& file) {
                 throw InputError("mesh.file is empty: with mesh.source = \"file\" it must name an OBJ file");
             }
             return read_obj(file);
+        case MeshSource::patches:
+            if (file.empty()) {
+                throw InputError(
+                    "mesh.file is empty: with mesh.source = \"patches\" it must name a file of Bezier "
+                    "patches");
+            }
+            return make_patch_mesh(read_bezier_patches(file), columns, rows, file);
     }
-    throw InputError("mesh.source is none of plane, cylinder, sphere, file");
+    throw InputError("mesh.source is none of plane, cylinder, sphere, file, patches");
 }
 
 }  // namespace tessera

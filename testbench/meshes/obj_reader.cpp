@@ -3,14 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 
 #include "testbench/common/error.h"
 #include "testbench/meshes/equal_groups.h"
 #include "testbench/meshes/mesh_limits.h"
+#include "testbench/meshes/mesh_text.h"
 #include "testbench/meshes/obj_text.h"
 #include "testbench/meshes/polygon_cutter.h"
 #include "testbench/meshes/smooth_normals.h"
@@ -304,37 +301,6 @@ class Assembler {
     BaseMesh mesh_;
 };
 
-std::string read_text(std::string const& path) {
-    std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(path, error);
-    if (!std::filesystem::exists(status)) {
-        throw InputError(fmt::format("{}: no such file: mesh.file must name an OBJ file", path));
-    }
-    if (!std::filesystem::is_regular_file(status)) {
-        throw InputError(fmt::format("{}: not a regular file: mesh.file must name an OBJ file", path));
-    }
-    std::ifstream in(path, std::ios::binary);
-    if (!in) {
-        throw InputError(
-            fmt::format("{}: cannot be opened ({}): check its permissions", path, std::strerror(errno)));
-    }
-    std::string text;
-    std::vector<char> piece(std::size_t{1} << 20);
-    while (in) {
-        in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
-        text.append(piece.data(), static_cast<std::size_t>(in.gcount()));
-        if (text.size() > largest_obj_bytes) {
-            throw ResourceError(
-                fmt::format("{}: more than {} bytes, the limit of an OBJ file: simplify the mesh", path,
-                            largest_obj_bytes));
-        }
-    }
-    if (in.bad()) {
-        throw InputError(fmt::format("{}: reading failed after {} bytes: check the disk", path, text.size()));
-    }
-    return text;
-}
-
 }  // namespace
 
 BaseMesh parse_obj(std::string_view text, std::string const& name, MissingTexture missing) {
@@ -342,7 +308,7 @@ BaseMesh parse_obj(std::string_view text, std::string const& name, MissingTextur
 }
 
 BaseMesh read_obj(std::string const& path, MissingTexture missing) {
-    return parse_obj(read_text(path), path, missing);
+    return parse_obj(read_mesh_text(path, "an OBJ file"), path, missing);
 }
 
 }  // namespace tessera

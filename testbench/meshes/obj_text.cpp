@@ -11,68 +11,10 @@
 
 #include "testbench/common/error.h"
 #include "testbench/meshes/mesh_limits.h"
+#include "testbench/meshes/mesh_text.h"
 
 namespace tessera {
 namespace {
-
-/// A piece of the file for a message: printable, short.
-std::string quoted(std::string_view token) {
-    constexpr std::size_t longest = 40;
-    std::string text = "'";
-    for (char c : token.substr(0, longest)) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (byte < 0x20 || byte >= 0x7f) {
-            text += fmt::format("\\x{:02x}", byte);
-        } else {
-            text += c;
-        }
-    }
-    return text + (token.size() > longest ? "...'" : "'");
-}
-
-/// Whether a decimal number that a double cannot hold is too small for it, rather than too large.
-bool underflows(std::string_view digits) {
-    std::int64_t exponent = 0;
-    const std::size_t e = digits.find_first_of("eE");
-    if (e != std::string_view::npos) {
-        std::string_view tail = digits.substr(e + 1);
-        const bool negative = !tail.empty() && tail.front() == '-';
-        if (!tail.empty() && (tail.front() == '-' || tail.front() == '+')) {
-            tail.remove_prefix(1);
-        }
-        for (char c : tail) {
-            exponent = std::min<std::int64_t>(exponent * 10 + (c - '0'), std::int64_t{1} << 40);
-        }
-        exponent = negative ? -exponent : exponent;
-        digits = digits.substr(0, e);
-    }
-    const std::size_t significant = digits.find_first_of("123456789");
-    if (significant == std::string_view::npos) {
-        return true;  // zero, whatever its exponent
-    }
-    const std::size_t point = std::min(digits.find('.'), digits.size());
-    return exponent + static_cast<std::int64_t>(point) - static_cast<std::int64_t>(significant) < 0;
-}
-
-/// Locale-independent, correctly rounded; nothing where the token is not a number from end to end.
-std::optional<double> to_number(std::string_view token) {
-    if (!token.empty() && token.front() == '+') {
-        token.remove_prefix(1);
-        if (!token.empty() && (token.front() == '-' || token.front() == '+')) {
-            return std::nullopt;
-        }
-    }
-    double value = 0;
-    char const* end = token.data() + token.size();
-    const auto [stop, error] = std::from_chars(token.data(), end, value);
-    if (stop != end || (error != std::errc() && error != std::errc::result_out_of_range)) {
-        return std::nullopt;
-    }
-    if (error == std::errc::result_out_of_range) {
-        return underflows(token) ? 0.0 : HUGE_VAL;
-    }
-    return value;
-}
 
 class Reader {
   public:

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "testbench/common/error.h"
+#include "testbench/program/bake_options.h"
 #include "testbench/program/render_options.h"
 
 namespace tessera {
@@ -107,6 +108,12 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     render_options.add_to(*render);
     render->add_option("--data", data, "folder that `data:` paths of the run's job begin at");
 
+    CLI::App* const bake = app.add_subcommand(
+        "bake", "sample a curved surface, a quadric or NURBS patch, into a displacement map");
+    BakeOptions bake_options;
+    bake_options.add_to(*bake);
+    bake->add_option("--data", data, "folder that `data:` paths of the base mesh's job begin at");
+
     CLI::App* const keys =
         app.add_subcommand("keys", "print every key of a job file: unit, default, range, meaning");
 
@@ -122,8 +129,9 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     }
     if (app.get_subcommands().empty())
         throw InputError(
-            "say what to do: `tessera run`, `tessera compare`, `tessera render` or `tessera keys`; see "
-            "`tessera --help`");
+            "say what to do: `tessera run`, `tessera compare`, `tessera render`, `tessera bake` or `tessera "
+            "keys`; "
+            "see `tessera --help`");
     if (job->count() > 0 && command.job_file.empty())
         throw InputError("JOB is empty: name a job file, or leave it out for the default job");
     command.verb = keys->parsed()      ? Command::Verb::keys
@@ -133,6 +141,10 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     if (render->parsed()) {
         command.verb = Command::Verb::render;
         command.render = render_options.request();
+    }
+    if (bake->parsed()) {
+        command.verb = Command::Verb::bake;
+        command.bake = bake_options.request();
     }
     traces.apply_to(command);
     return command;

@@ -11,6 +11,7 @@
 
 #include "testbench/common/error.h"
 #include "testbench/job/document_keys.h"
+#include "testbench/program/bake_command.h"
 #include "testbench/program/command_line.h"
 #include "testbench/program/compare_run.h"
 #include "testbench/program/render_command.h"
@@ -31,6 +32,8 @@ tessera::ExitCode obey(const std::optional<tessera::Command>& command) {
         return tessera::run_job(*command);
     if (command->verb == tessera::Command::Verb::render)
         return tessera::render_command(command->render, command->data_folder);
+    if (command->verb == tessera::Command::Verb::bake)
+        return tessera::bake_command(command->bake, command->data_folder);
     if (command->verb == tessera::Command::Verb::compare)
         return tessera::compare_run(*command);
     fmt::print("{}", tessera::document_keys());

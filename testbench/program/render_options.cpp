@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "testbench/maps/stroke_font.h"
+#include "testbench/program/side_text.h"
 
 namespace tessera {
 
@@ -29,14 +30,6 @@ PictureView view_of(const std::string& name) {
         if (name_of(view) == name)
             return view;
     throw InputError(fmt::format("--view {}: there is no such view; there are {}", name, view_names()));
-}
-
-/// A picture's side; 0 if this is no number.
-int side_of(const std::string& digits) {
-    const bool number =
-        !digits.empty() && digits.size() <= 6 &&
-        std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; });
-    return number ? std::stoi(digits) : -1;
 }
 
 void apply_size(const std::string& text, PictureOptions& picture) {

@@ -48,7 +48,7 @@ RecordedRun read_run(const fs::path& folder, const fs::path& data_folder) {
     run.folder = folder;
     run.job = read_job(job_file);
     validate(run.job);
-    if (run.job.mesh.source == MeshSource::file)
+    if (reads_file(run.job.mesh.source))
         find_input("mesh.file", run.job.mesh.file, run.job, data_folder);
     if (run.job.map.source == MapSource::file)
         find_input("map.file", run.job.map.file, run.job, data_folder);

@@ -184,6 +184,9 @@ TEST_CASE("keys that contradict each other") {
         return validate_error_of(job);
     };
     CHECK_THAT(error_with({"mesh.source=file"}), Contains("`mesh.file` is empty"));
+    CHECK_THAT(error_with({"mesh.source=patches"}),
+               Contains("`mesh.file` is empty, but `mesh.source` = \"patches\""));
+    CHECK_THAT(error_with({"mesh.source=patches", "mesh.file=a.txt"}), Equals(""));
     CHECK_THAT(error_with({"mesh.file=a.obj"}),
                Contains("`mesh.file` = \"a.obj\", but `mesh.source` = \"plane\""));
     CHECK_THAT(error_with({"map.source=file"}), Contains("`map.file` is empty"));

@@ -1,0 +1,110 @@
+#include "testbench/meshes/mesh_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "testbench/common/error.h"
+#include "testbench/meshes/mesh_limits.h"
+
+namespace tessera {
+namespace {
+
+/// Whether a decimal number that a double cannot hold is too small for it, rather than too large.
+bool underflows(std::string_view digits) {
+    std::int64_t exponent = 0;
+    const std::size_t e = digits.find_first_of("eE");
+    if (e != std::string_view::npos) {
+        std::string_view tail = digits.substr(e + 1);
+        const bool negative = !tail.empty() && tail.front() == '-';
+        if (!tail.empty() && (tail.front() == '-' || tail.front() == '+')) {
+            tail.remove_prefix(1);
+        }
+        for (char c : tail) {
+            exponent = std::min<std::int64_t>(exponent * 10 + (c - '0'), std::int64_t{1} << 40);
+        }
+        exponent = negative ? -exponent : exponent;
+        digits = digits.substr(0, e);
+    }
+    const std::size_t significant = digits.find_first_of("123456789");
+    if (significant == std::string_view::npos) {
+        return true;  // zero, whatever its exponent
+    }
+    const std::size_t point = std::min(digits.find('.'), digits.size());
+    return exponent + static_cast<std::int64_t>(point) - static_cast<std::int64_t>(significant) < 0;
+}
+
+}  // namespace
+
+std::string quoted(std::string_view token) {
+    constexpr std::size_t longest = 40;
+    std::string text = "'";
+    for (char c : token.substr(0, longest)) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte < 0x20 || byte >= 0x7f) {
+            text += fmt::format("\\x{:02x}", byte);
+        } else {
+            text += c;
+        }
+    }
+    return text + (token.size() > longest ? "...'" : "'");
+}
+
+std::optional<double> to_number(std::string_view token) {
+    if (!token.empty() && token.front() == '+') {
+        token.remove_prefix(1);
+        if (!token.empty() && (token.front() == '-' || token.front() == '+')) {
+            return std::nullopt;
+        }
+    }
+    double value = 0;
+    char const* end = token.data() + token.size();
+    const auto [stop, error] = std::from_chars(token.data(), end, value);
+    if (stop != end || (error != std::errc() && error != std::errc::result_out_of_range)) {
+        return std::nullopt;
+    }
+    if (error == std::errc::result_out_of_range) {
+        return underflows(token) ? 0.0 : HUGE_VAL;
+    }
+    return value;
+}
+
+std::string read_mesh_text(std::string const& path, std::string_view kind) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (!std::filesystem::exists(status)) {
+        throw InputError(fmt::format("{}: no such file: mesh.file must name {}", path, kind));
+    }
+    if (!std::filesystem::is_regular_file(status)) {
+        throw InputError(fmt::format("{}: not a regular file: mesh.file must name {}", path, kind));
+    }
+    std::ifstream in(path, std::ios::binary);
+    if (!in) {
+        throw InputError(
+            fmt::format("{}: cannot be opened ({}): check its permissions", path, std::strerror(errno)));
+    }
+    std::string text;
+    std::vector<char> piece(std::size_t{1} << 20);
+    while (in) {
+        in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+        text.append(piece.data(), static_cast<std::size_t>(in.gcount()));
+        if (text.size() > largest_mesh_file) {
+            throw ResourceError(fmt::format("{}: more than {} bytes, the limit of {}: simplify the mesh",
+                                            path, largest_mesh_file, kind));
+        }
+    }
+    if (in.bad()) {
+        throw InputError(fmt::format("{}: reading failed after {} bytes: check the disk", path, text.size()));
+    }
+    return text;
+}
+
+}  // namespace tessera
