@@ -103,6 +103,9 @@ void BareRecursion::evaluate_edge(TrianglePass& pass, int k) {
     if (r.tests.normal_test &&
         normal_test(i.displaced_normal, j.displaced_normal, edge.displaced_normal, r.tests))
         tests |= normal_bit;
+    if (r.tests.highlight_test &&
+        highlight_test(i.displaced_normal, j.displaced_normal, edge.displaced_normal, r.tests))
+        tests |= highlight_bit;
     if (r.tests.summed_height_test) {
         const RectangleSize size = rectangle_size(i.texture, j.texture, r.map, r.formats);
         if (summed_height_test(sum_around(i.texture, size), sum_around(j.texture, size),
@@ -135,8 +138,8 @@ std::uint64_t BareRecursion::run(EmittedMesh& mesh) {
                 const std::uint8_t tests = pass.edges[static_cast<std::size_t>(k)].tests;
                 if (split_decision(tests))
                     split |= 1u << k;
-                else if ((tests & (normal_bit | summed_height_bit)) != 0)
-                    stopped_by |= ~tests & (view_bit | tex_coord_bit | generation_bit);
+                else if ((tests & asking_bits) != 0)
+                    stopped_by |= ~tests & allowing_bits;
             }
             edges += 3;
             pass.split = static_cast<std::uint8_t>(split);
