@@ -44,10 +44,10 @@ constexpr DecisionName decision_names[] = {
     {"VT", "View Test"},
     {"TCT", "Tex Coord Test"},
     {"GT", "Generation Test"},
+    {"HT", "Highlight Test"},
     {"split", "whether the edge is split"},
     {"diagonal", "which diagonal cuts the quadrilateral left by two split edges"},
     {"in_front", "whether a vertex lies in front of the near plane"},
-    {"HT", "Highlight Test"},
 };
 
 double lsb_per_unit(const datapath::Format& format) {

@@ -64,10 +64,10 @@ class Scoreboard : public tlm::tlm_analysis_if<datapath::TrianglePass> {
         view_decision,
         tex_coord_decision,
         generation_decision,
+        highlight_decision,
         split_decision,
         diagonal_decision,
         in_front_decision,
-        highlight_decision,
         decision_count
     };
     struct ValueStatistics {

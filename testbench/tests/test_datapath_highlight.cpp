@@ -18,17 +18,21 @@ using namespace tessera::testing;
 
 namespace {
 
+double real(std::int32_t value) {
+    return value;
+}
+
 /// The definition again, in another arithmetic: doubles hold every number here exactly.
 bool reference(const Direction& i, const Direction& j, const Direction& ij,
                const TestParameters& parameters) {
     const auto cosine = [&](const Direction& n) {
-        return double{n.x} * parameters.half_vector[0] + double{n.y} * parameters.half_vector[1] +
-               double{n.z} * parameters.half_vector[2];
+        return real(n.x) * parameters.half_vector[0] + real(n.y) * parameters.half_vector[1] +
+               real(n.z) * parameters.half_vector[2];
     };
     const double nearest = std::max({cosine(i), cosine(j), cosine(ij)});
     double largest = 0;
     for (const Direction& end : {i, j})
-        for (const double difference : {double{ij.x} - end.x, double{ij.y} - end.y, double{ij.z} - end.z})
+        for (const double difference : {real(ij.x) - end.x, real(ij.y) - end.y, real(ij.z) - end.z})
             largest = std::max(largest, std::fabs(difference));
     return nearest > static_cast<double>(parameters.highlight_cosine) &&
            largest > parameters.highlight_normal_threshold;
@@ -85,8 +89,8 @@ TEST_CASE("Highlight Test: random normals of the widest formats, as defined, the
             };
             const Direction i = direction(), j = direction(), ij = random.coin() ? direction() : i;
             const Direction h = direction();
-            auto parameters = parameters_of({h.x, h.y, h.z}, 0,
-                                            random.natural(0, 2 * static_cast<std::uint32_t>(limit)));
+            auto parameters =
+                parameters_of({h.x, h.y, h.z}, 0, random.natural(0, 2 * static_cast<std::uint32_t>(limit)));
             parameters.highlight_cosine = random.any_size(std::int64_t{limit} * limit);
             const bool asks = highlight_test(i, j, ij, parameters);
             ++seen[asks ? 1 : 0];
@@ -133,7 +137,8 @@ TEST_CASE("Highlight Test: never where the normals are alike, never without a ha
 TEST_CASE("split decision: (NT or SHT or HT) and VT and TCT and GT, all 64 rows") {
     for (unsigned row = 0; row < 64; ++row) {
         const bool asked = (row & (normal_bit | summed_height_bit | highlight_bit)) != 0;
-        const bool allowed = (row & view_bit) != 0 && (row & tex_coord_bit) != 0 && (row & generation_bit) != 0;
+        const bool allowed =
+            (row & view_bit) != 0 && (row & tex_coord_bit) != 0 && (row & generation_bit) != 0;
         CHECK(split_decision(static_cast<std::uint8_t>(row)) == (asked && allowed));
     }
 }
@@ -197,7 +202,8 @@ TEST_CASE("queue entry: one bit more with a Highlight Test, none without") {
         for (Vertex& v : triangle.vertices)
             v.position = {random.integer32(-99999, 99999), random.integer32(-99999, 99999), k};
         triangle.base = random.natural(0, 0xffffffff);
-        triangle.split_by = static_cast<std::uint8_t>(random.natural(0, 3) | (random.coin() ? highlight_bit : 0));
+        triangle.split_by =
+            static_cast<std::uint8_t>(random.natural(0, 3) | (random.coin() ? highlight_bit : 0));
         triangle.stopped_by = static_cast<std::uint8_t>(random.natural(0, 7) << 2);
         triangle.finished = random.coin();
         std::array<unsigned char, 512> bytes{};
