@@ -11,7 +11,7 @@ namespace tessera {
 /// A Phong highlight: (N' . H)^exponent, light and viewer infinitely far.
 struct Highlight {
     glm::dvec3 half_vector{0, 0, 1};  ///< unit length
-    double angle = 20;                ///< degrees from H within which a normal counts as in the highlight
+    double angle = 25;                ///< degrees from H within which a normal counts as in the highlight
     int exponent = 32;                ///< at least 0
 };
 

@@ -200,11 +200,12 @@ TEST_CASE("Highlight Test: splits in the highlight, and there only") {
         if (triangle.split_by != datapath::highlight_bit)
             continue;
         ++alone;
-        // one corner is the inserted vertex: not far outside, wherever the edge's lit normal was
+        // A corner is an inserted vertex, its edge left whole by NT: its normal's components are within 0.12 of the
+        // lit one's, an angle of at most 12 degrees.
         std::int64_t nearest = cosine(triangle.corners[0].displaced_normal);
         for (const auto& corner : triangle.corners)
             nearest = std::max(nearest, cosine(corner.displaced_normal));
-        CHECK(static_cast<double>(nearest) > std::ldexp(std::cos(35 * 3.14159 / 180), 28));
+        CHECK(static_cast<double>(nearest) > std::ldexp(std::cos((25 + 12) * 3.14159 / 180), 28));
     }
     CHECK(alone > 1000);
 }
@@ -216,7 +217,7 @@ TEST_CASE(
     const Setup with = setup_of(with_highlight(job));
     const Setup without = setup_of(job);
     const EmittedMesh highlighted = bare_mesh(with);
-    job.tests.normal_threshold = 0.095;
+    job.tests.normal_threshold = 0.1;
     const Setup finer = setup_of(job);
     const EmittedMesh finer_mesh = bare_mesh(finer);
     CHECK(finer_mesh.triangles.size() >= highlighted.triangles.size());
