@@ -55,9 +55,17 @@ void NormalTest::test_edge(Pass& pass, unsigned k, std::uint64_t entry) {
     if (registers_.tests.normal_test &&
         normal_test(i.displaced_normal, j.displaced_normal, edge.displaced_normal, registers_.tests))
         edge.tests |= datapath::normal_bit;
-    if (registers_.tests.highlight_test &&
-        highlight_test(i.displaced_normal, j.displaced_normal, edge.displaced_normal, registers_.tests))
-        edge.tests |= datapath::highlight_bit;
+}
+
+void NormalTest::test_for_highlight(const Work& work) const {
+    Pass& pass = *work.pass;
+    for_each_of_three(work.parts, first_edge_part, [&](unsigned k) {
+        const datapath::Direction& i = pass.edge_begin(static_cast<int>(k)).displaced_normal;
+        const datapath::Direction& j = pass.edge_end(static_cast<int>(k)).displaced_normal;
+        datapath::EdgeTests& edge = pass.edges[k];
+        if (highlight_test(i, j, edge.displaced_normal, registers_.tests))
+            edge.tests |= datapath::highlight_bit;
+    });
 }
 
 void NormalTest::b_transport(Work& work, sc_core::sc_time& delay) {
@@ -69,6 +77,8 @@ void NormalTest::b_transport(Work& work, sc_core::sc_time& delay) {
     for_each_of_three(work.parts, first_edge_part, [&](unsigned k) {
         test_edge(pass, k, normal_map.read(address(pass.edges[k].texture), delay));
     });
+    if (registers_.tests.highlight_test)
+        test_for_highlight(work);
     delay += clock_.period() * timing_.latency;
     output->b_transport(work, delay);
 }
@@ -98,6 +108,8 @@ void NormalTest::receive(TableItem& item, unsigned) {
         clock_.wake(*this);
     });
     for_each_of_three(item.work.parts, first_edge_part, [&](unsigned k) { test_edge(pass, k, entry); });
+    if (registers_.tests.highlight_test)
+        test_for_highlight(item.work);
 }
 
 void NormalTest::trace_item(Signals& signals, const TableItem& item) const {

@@ -57,6 +57,8 @@ class NormalTest : public TableStage<NormalTest, TableItem> {
                                std::uint64_t entry);
     void bump_corner(datapath::Vertex& vertex, std::uint64_t entry);
     void test_edge(Pass& pass, unsigned edge, std::uint64_t entry);
+    /// Apart from test_edge, which in a design without it would still pay for the registers it takes.
+    [[gnu::noinline]] void test_for_highlight(const Work& work) const;
 
     const datapath::Registers& registers_;
     std::vector<Clocked*> others_;
