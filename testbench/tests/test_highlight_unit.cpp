@@ -72,7 +72,7 @@ struct Bench {
             payload.set_address(registers.normal_map.address(x, 0));
             payload.set_data_ptr(bytes.data());
             payload.set_data_length(static_cast<unsigned>(bytes.size()));
-            REQUIRE(unit.normal_map->transport_dbg(payload) == bytes.size());
+            REQUIRE(unit.normal_map.socket->transport_dbg(payload) == bytes.size());
         }
     }
 

@@ -80,6 +80,29 @@ TEST_CASE("highlight run: functional and timed mode, with a queue that spills, l
     CHECK((mesh_of({"hardware.queue_capacity=4", "hardware.tests_units=3"}) == functional));
 }
 
+// A Highlight Test that never asks: its mesh is that of a design without, and so is its every cycle, but for the latency.
+TEST_CASE("highlight run: to the cycle a Normal Test as much longer") {
+    const TestFolder here;
+    const auto levels_of = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> settings{"map.width=64", "map.height=64", "output.picture=false",
+                                          "timing.summed_height_table_ports=12",
+                                          "tests.highlight_normal_threshold=2"};
+        settings.insert(settings.end(), more.begin(), more.end());
+        const ProgramEnd end = run_tessera(run_with(settings), here.path());
+        INFO(end.text());
+        REQUIRE(end.exit_code == 0);
+        const RunFolder run(here.path() / "out");
+        return std::to_string(run.count("timing", "cycles")) + "\n" + run.files().at("queue_levels.csv");
+    };
+    const std::string longer = levels_of({"timing.normal_test_latency=34"});
+    CHECK((levels_of({"tests.highlight=true", "timing.highlight_test_latency=25"}) == longer));
+    const std::string as_is = levels_of({});
+    CHECK((as_is != longer));
+    CHECK((levels_of({"tests.highlight=true", "timing.highlight_test_latency=0"}) == as_is));
+    CHECK((levels_of({"timing.highlight_test_latency=25"}) ==
+           as_is));  // no Highlight Test: it counts for nothing
+}
+
 TEST_CASE("highlight run: waveforms have its bit only in a design that has it") {
     const TestFolder here;
     const auto waveforms = [&](const std::string& highlight) {
