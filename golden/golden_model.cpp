@@ -110,7 +110,15 @@ EdgeEvaluation evaluate_edge(const Vertex& i, const Vertex& j, const Map& map, c
 
     e.generation_test = !enabled.generation || m.generation <= parameters.generation_limit;
 
-    e.split = (e.normal_test || e.summed_height_test) && e.view_test && e.tex_coord_test && e.generation_test;
+    e.end_cosine = std::max(glm::dot(i.displaced_normal, parameters.half_vector),
+                            glm::dot(j.displaced_normal, parameters.half_vector));
+    e.midpoint_cosine = glm::dot(m.displaced_normal, parameters.half_vector);
+    e.highlight_test = enabled.highlight &&
+                       std::max(e.end_cosine, e.midpoint_cosine) > parameters.highlight_cosine &&
+                       e.normal_difference > parameters.highlight_normal_threshold;
+
+    e.split = (e.normal_test || e.summed_height_test || e.highlight_test) && e.view_test &&
+              e.tex_coord_test && e.generation_test;
     return e;
 }
 

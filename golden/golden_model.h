@@ -16,7 +16,7 @@ namespace tessera::golden {
 enum class Diagonal { shorter, first, second };
 
 /// What the mesh's author and the view supply. A test that is not enabled counts as false (normal, summed
-/// height) or as true (view, texture coordinate, generation).
+/// height, highlight) or as true (view, texture coordinate, generation).
 struct Parameters {
     double scale = 0;  ///< world units per code; displacement = scale * code + bias
     double bias = 0;   ///< world units
@@ -27,8 +27,15 @@ struct Parameters {
     double view_threshold = 0;           ///< pixels
     int generation_limit = 12;           ///< largest generation that is still inserted
 
+    /// Section 7, the highlight test: halfway between the directions to the light and to the viewer, both
+    /// infinitely far; the cosine of the highlight's angle about it; the difference of one component of two normals.
+    glm::dvec3 half_vector{0};
+    double highlight_cosine = 1;
+    double highlight_normal_threshold = 0;
+
     struct Enabled {
-        bool normal = true, summed_height = true, view = true, tex_coord = true, generation = true;
+        bool normal = true, summed_height = true, view = true, tex_coord = true, generation = true,
+             highlight = false;
     } enabled;
 
     Diagonal diagonal = Diagonal::shorter;
@@ -80,7 +87,7 @@ struct Insertion {
 };
 Insertion insert_vertex(const Vertex& i, const Vertex& j, const Map& map, const Parameters& parameters);
 
-/// Sections 3 and 4: what the tests saw on an edge and what they said (`enabled` applied).
+/// Sections 3, 4 and 7: what the tests saw on an edge and what they said (`enabled` applied).
 struct EdgeEvaluation {
     Insertion inserted;
 
@@ -90,10 +97,13 @@ struct EdgeEvaluation {
     double summed_height_limit = 0;  ///< SHT = summed_height > it: 4 * threshold, or threshold * area
     double view_length = 0;  ///< VT = it > view_threshold; Manhattan, pixels; an end not in front: +infinity,
                              ///< both: -infinity
+    /// Of N' and the half vector: the larger of the two ends', and the midpoint's. HT = one of them >
+    /// highlight_cosine and normal_difference > highlight_normal_threshold.
+    double end_cosine = 0, midpoint_cosine = 0;
 
     bool normal_test = false, summed_height_test = false, view_test = false, tex_coord_test = false,
-         generation_test = false;
-    bool split = false;  ///< (NT or SHT) and VT and TCT and GT
+         generation_test = false, highlight_test = false;
+    bool split = false;  ///< (NT or SHT or HT) and VT and TCT and GT
 };
 EdgeEvaluation evaluate_edge(const Vertex& i, const Vertex& j, const Map& map, const Parameters& parameters);
 

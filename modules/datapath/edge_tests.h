@@ -13,14 +13,37 @@ constexpr std::uint64_t absolute_difference(std::int64_t a, std::int64_t b) {
     return static_cast<std::uint64_t>(a > b ? a - b : b - a);
 }
 
-/// NT (paper 2.2): some component of N'_ij differs from that of N'_i or N'_j by more than the threshold:
-/// six absolute differences, six compares, one OR.
-constexpr bool normal_test(const Direction& i, const Direction& j, const Direction& ij,
-                           const TestParameters& parameters) {
-    const std::uint64_t threshold = parameters.normal_threshold;
+/// Some component of N'_ij differs from that of N'_i or N'_j by more than the threshold (normal's format).
+constexpr bool normals_differ(const Direction& i, const Direction& j, const Direction& ij,
+                              std::uint64_t threshold) {
     return absolute_difference(ij.x, i.x) > threshold || absolute_difference(ij.y, i.y) > threshold ||
            absolute_difference(ij.z, i.z) > threshold || absolute_difference(ij.x, j.x) > threshold ||
            absolute_difference(ij.y, j.y) > threshold || absolute_difference(ij.z, j.z) > threshold;
+}
+
+/// NT (paper 2.2): six absolute differences, six compares, one OR.
+constexpr bool normal_test(const Direction& i, const Direction& j, const Direction& ij,
+                           const TestParameters& parameters) {
+    return normals_differ(i, j, ij, parameters.normal_threshold);
+}
+
+/// Whether a displaced normal lies in the Phong highlight: N' . H above the cosine. Three products, two sums, one
+/// compare, exact: sum and register have twice the normal's fraction bits and, for normals of any length that the
+/// format holds, two bits more than twice its width.
+constexpr bool in_highlight(const Direction& n, const TestParameters& parameters) {
+    const auto& h = parameters.half_vector;
+    const std::int64_t cosine =
+        std::int64_t{n.x} * h[0] + std::int64_t{n.y} * h[1] + std::int64_t{n.z} * h[2];
+    return cosine > parameters.highlight_cosine;
+}
+
+/// HT (paper 5.1, algorithm section 7): one of the edge's three displaced normals lies in the highlight, and they
+/// differ by more than a finer threshold. NT's six differences serve both; six more compares, three dot products.
+/// N' of a vertex being the same from every edge that has it, so is its place in or out of the highlight.
+constexpr bool highlight_test(const Direction& i, const Direction& j, const Direction& ij,
+                              const TestParameters& parameters) {
+    return normals_differ(i, j, ij, parameters.highlight_normal_threshold) &&
+           (in_highlight(i, parameters) || in_highlight(j, parameters) || in_highlight(ij, parameters));
 }
 
 /// SHT (paper 2.3) on the three sums: | S_ij / 2 - (S_i + S_j) / 4 | > threshold, both sides times 4, so that the
@@ -66,10 +89,9 @@ constexpr bool generation_test(const Vertex& i, const Vertex& j, const TestParam
     return inserted_generation(i, j) <= parameters.generation_limit;
 }
 
-/// split(i, j) = (NT or SHT) and VT and TCT and GT (paper 2.6, plus GT), on TestBits.
+/// split(i, j) = (NT or SHT or HT) and VT and TCT and GT (paper 2.6, plus HT and GT), on TestBits.
 constexpr bool split_decision(std::uint8_t tests) {
-    constexpr std::uint8_t needed = view_bit | tex_coord_bit | generation_bit;
-    return (tests & (normal_bit | summed_height_bit)) != 0 && (tests & needed) == needed;
+    return (tests & asking_bits) != 0 && (tests & allowing_bits) == allowing_bits;
 }
 
 }  // namespace tessera::datapath

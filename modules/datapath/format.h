@@ -35,6 +35,7 @@ struct Formats {
     Format summed_height = Format::make_unsigned(32, 0);  ///< SAT entry, modulo 2^bits, in displacement codes
     Format screen = Format::make_signed(24, 8);           ///< P's in pixels
     int generation_bits = 4;
+    bool highlight_tag = false;  ///< with a Highlight Test: the queue entry's split_by has a bit for it
 };
 
 /// How often a result did not fit its format and was set to the nearest value that does, per quantity.

@@ -13,7 +13,7 @@ namespace tessera::datapath {
 /// Layout, the lowest bit first, little endian, without gaps: vertices 0, 1, 2, each
 ///     P  N  T  handedness (1: negative)  t  generation  displaced_known  screen_normal_known
 ///     P'  N'  P's x, y, w, in front  N's
-/// then split_by (2 bits: NT, SHT), stopped_by (3 bits: VT, TCT, GT), finished. Signed fields are two's complement.
+/// then split_by (2 bits: NT, SHT; with a Highlight Test a third: HT), stopped_by (3 bits: VT, TCT, GT), finished. Signed fields are two's complement.
 /// Every width is its format's; together they are stream_widths().triangle. The last byte's unused bits are zero.
 /// Widths: 1 to 32 bits, of the generation 1 to 8.
 
@@ -62,6 +62,14 @@ class PackedFieldWriter {
         beyond_ |= value ^ (code << place);
         unsigned_number(code, bits);
     }
+    constexpr void split_by(std::uint8_t value, bool highlight_tag) {
+        if (!highlight_tag) {
+            test_bits(value, 0, 2);
+            return;
+        }
+        test_bits(static_cast<std::uint8_t>(value & ~highlight_bit), 0, 2);
+        flag((value & highlight_bit) != 0);
+    }
 
     constexpr void finish() { store_word(static_cast<std::uint32_t>(waiting_), next_); }
     constexpr bool fits() const { return beyond_ == 0; }
@@ -103,6 +111,11 @@ class PackedFieldReader {
     constexpr void sign(std::int8_t& value) { value = take(1) != 0 ? std::int8_t{-1} : std::int8_t{1}; }
     constexpr void test_bits(std::uint8_t& value, int place, int bits) {
         value = static_cast<std::uint8_t>(take(bits) << place);
+    }
+    constexpr void split_by(std::uint8_t& value, bool highlight_tag) {
+        test_bits(value, 0, 2);
+        if (highlight_tag && take(1) != 0)
+            value |= highlight_bit;
     }
 
   private:
@@ -154,7 +167,7 @@ template <class Fields, class AnyTriangle>
 constexpr void visit_packed_triangle(Fields& fields, AnyTriangle& triangle, const Formats& formats) {
     for (auto& vertex : triangle.vertices)
         visit_packed_vertex(fields, vertex, formats);
-    fields.test_bits(triangle.split_by, 0, 2);
+    fields.split_by(triangle.split_by, formats.highlight_tag);
     fields.test_bits(triangle.stopped_by, 2, 3);
     fields.flag(triangle.finished);
 }

@@ -33,7 +33,7 @@ enum class SummedHeightUnit : std::uint8_t { sum, area };
 
 /// The thresholds and switches of the edge tests. They belong to the mesh's author (paper 2.2 to 2.4).
 struct TestParameters {
-    bool normal_test = true;  ///< a test switched off: NT, SHT count as false; VT, TCT, GT as true
+    bool normal_test = true;  ///< a test switched off: NT, SHT, HT count as false; VT, TCT, GT as true
     bool summed_height_test = true;
     bool view_test = true;
     bool tex_coord_test = true;
@@ -44,6 +44,13 @@ struct TestParameters {
     SummedHeightUnit summed_height_unit = SummedHeightUnit::sum;
     std::uint32_t view_threshold = 0;  ///< screen's format
     std::uint32_t generation_limit = 12;
+
+    bool highlight_test = false;  ///< HT: three more dot products and their compares, where it is built
+    /// H, halfway between the directions to the light and to the viewer, both infinitely far: unit length, world
+    /// space, normal's format. Zero: nothing lies in the highlight.
+    std::array<std::int32_t, 3> half_vector{};
+    std::int64_t highlight_cosine = 0;  ///< N'.H of the highlight's border, twice the normal's fraction
+    std::uint32_t highlight_normal_threshold = 0;  ///< normal's format
 };
 
 /// P' = P + (S * d + bias) * N. Both in the position's format; d = code / 2^bits.

@@ -20,8 +20,8 @@ int tessellate(const TrianglePass& pass, Triangulation choice, Child&& child) {
         if ((pass.split >> k & 1) == 0)
             continue;
         inserted[static_cast<std::size_t>(k)] = inserted_vertex(pass, k);
-        split_by = static_cast<std::uint8_t>(
-            split_by | (pass.edges[static_cast<std::size_t>(k)].tests & (normal_bit | summed_height_bit)));
+        split_by = static_cast<std::uint8_t>(split_by |
+                                             (pass.edges[static_cast<std::size_t>(k)].tests & asking_bits));
     }
     const bool second = choose_second_diagonal(
         pass.split, choice,

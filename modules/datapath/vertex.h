@@ -61,15 +61,20 @@ enum TestBits : std::uint8_t {
     view_bit = 4,
     tex_coord_bit = 8,
     generation_bit = 16,
+    highlight_bit = 32,
 };
+
+/// The tests that ask for a split; the others allow it.
+constexpr std::uint8_t asking_bits = normal_bit | summed_height_bit | highlight_bit;
+constexpr std::uint8_t allowing_bits = view_bit | tex_coord_bit | generation_bit;
 
 /// A triangle as it waits in the Triangle Queue. Edge k runs from vertex k to vertex (k + 1) mod 3.
 struct Triangle {
     std::array<Vertex, 3> vertices;
     std::uint32_t base = 0;     ///< index of the base triangle it descends from: a tag, not decided upon
-    std::uint8_t split_by = 0;  ///< NT and SHT bits of the parent's split edges; 0: a base triangle
-    std::uint8_t stopped_by =
-        0;                  ///< VT, TCT, GT bits: tests that kept an edge whole which NT or SHT would split
+    std::uint8_t split_by = 0;  ///< NT, SHT and HT bits of the parent's split edges; 0: a base triangle
+    /// VT, TCT, GT bits: tests that kept an edge whole which NT, SHT or HT would split.
+    std::uint8_t stopped_by = 0;
     bool finished = false;  ///< no edge splits; goes round once more for its normals in screen space
 };
 

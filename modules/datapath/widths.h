@@ -26,7 +26,7 @@ constexpr Widths stream_widths(const Formats& f) {
     Widths widths;
     widths.base_vertex = position + 2 * direction + handedness + texture;
     widths.vertex = widths.base_vertex + bits(f.generation_bits) + known + position + 2 * direction + screen;
-    widths.triangle = 3 * widths.vertex + 2 + 3 + 1;
+    widths.triangle = 3 * widths.vertex + (f.highlight_tag ? 3 : 2) + 3 + 1;
     widths.emitted_vertex = screen + direction + texture;
     widths.finished_vertex = position + direction + texture;
     return widths;

@@ -225,16 +225,18 @@ void PassOrTessellate::decide_edges(datapath::TrianglePass& pass) {
         if (!(edge.texture == pass.new_vertex[k].texture))
             SC_REPORT_ERROR("tessera/pass_or_tessellate",
                             "the two branches disagree on the midpoint of an edge");
-        const unsigned wanted = edge.tests & (datapath::normal_bit | datapath::summed_height_bit);
+        const unsigned wanted = edge.tests & datapath::asking_bits;
         if (datapath::split_decision(edge.tests)) {
             split |= 1u << k;
             ++counts_.edges_split;
-            counts_.split_by_normal += wanted == datapath::normal_bit;
-            counts_.split_by_summed_height += wanted == datapath::summed_height_bit;
-            counts_.split_by_both += wanted == (datapath::normal_bit | datapath::summed_height_bit);
+            const unsigned by = wanted & (datapath::normal_bit | datapath::summed_height_bit);
+            counts_.split_by_normal += by == datapath::normal_bit;
+            counts_.split_by_summed_height += by == datapath::summed_height_bit;
+            counts_.split_by_both += by == (datapath::normal_bit | datapath::summed_height_bit);
+            counts_.split_by_highlight += by == 0;
+            counts_.split_in_highlight += (wanted & datapath::highlight_bit) != 0;
         } else if (wanted != 0) {
-            const unsigned missing =
-                ~edge.tests & (datapath::view_bit | datapath::tex_coord_bit | datapath::generation_bit);
+            const unsigned missing = ~edge.tests & datapath::allowing_bits;
             stopped_by |= missing;
             counts_.stopped_by_view += (missing & datapath::view_bit) != 0;
             counts_.stopped_by_tex_coord += (missing & datapath::tex_coord_bit) != 0;
@@ -274,6 +276,12 @@ void PassOrTessellate::show(Signals& signals) const {
         signals.value("tests_0", 5, pass.edges[0].tests);
         signals.value("tests_1", 5, pass.edges[1].tests);
         signals.value("tests_2", 5, pass.edges[2].tests);
+        if (registers_.tests.highlight_test) {
+            unsigned highlight = 0;
+            for (unsigned k = 0; k < 3; ++k)
+                highlight |= (pass.edges[k].tests & datapath::highlight_bit) != 0 ? 1u << k : 0u;
+            signals.value("highlight", 3, highlight);
+        }
         signals.value("split", 3, pass.split);
         signals.value("way", 2, static_cast<std::uint64_t>(last.way));
     });

@@ -22,6 +22,14 @@ TableLayout as_indices(const TableLayout& layout) {
     return {0, layout.columns, layout.rows, 1};
 }
 
+/// Not inline, as in the unit (normal_test.h): a design without it pays for no register it takes.
+[[gnu::noinline]] unsigned highlight_bit_of(const Vertex& i, const Vertex& j, const EdgeTests& edge,
+                                            const TestParameters& tests) {
+    return highlight_test(i.displaced_normal, j.displaced_normal, edge.displaced_normal, tests)
+               ? unsigned{highlight_bit}
+               : 0U;
+}
+
 }  // namespace
 
 BareRecursion::BareRecursion(const Setup& setup) : setup_(setup), codes_(setup.map.codes) {
@@ -115,6 +123,8 @@ void BareRecursion::evaluate_edge(TrianglePass& pass, int k) {
         tests |= tex_coord_bit;
     if (!r.tests.generation_test || generation_test(i, j, r.tests))
         tests |= generation_bit;
+    if (r.tests.highlight_test)
+        tests |= highlight_bit_of(i, j, edge, r.tests);
     edge.tests = static_cast<std::uint8_t>(tests);
 }
 
@@ -135,8 +145,8 @@ std::uint64_t BareRecursion::run(EmittedMesh& mesh) {
                 const std::uint8_t tests = pass.edges[static_cast<std::size_t>(k)].tests;
                 if (split_decision(tests))
                     split |= 1u << k;
-                else if ((tests & (normal_bit | summed_height_bit)) != 0)
-                    stopped_by |= ~tests & (view_bit | tex_coord_bit | generation_bit);
+                else if ((tests & asking_bits) != 0)
+                    stopped_by |= ~tests & allowing_bits;
             }
             edges += 3;
             pass.split = static_cast<std::uint8_t>(split);

@@ -119,6 +119,13 @@ class ErrorBounds {
         return result;
     }
 
+    /// N' . H, H the same on both sides; `n_error` bounds the errors of N'. edge_tests.h rounds nothing:
+    ///     (N' + e) . H - N' . H = e . H, at most sum |e_c| |H_c|.
+    double cosine(const glm::dvec3& n, const glm::dvec3& n_error, const glm::dvec3& half_vector) const {
+        const glm::dvec3 h = glm::abs(half_vector);
+        return glm::dot(n_error, h) + double_rounding * glm::dot(glm::abs(n), h);
+    }
+
   private:
     /// Golden's own: relative error of a few double operations, against the sum of their terms' absolute
     /// values.

@@ -60,8 +60,13 @@ golden::Parameters golden_parameters(const datapath::Registers& registers) {
     result.summed_height_threshold = real(tests.summed_height_threshold, result.area ? 0 : 2);
     result.view_threshold = real(tests.view_threshold, formats.screen.fraction);
     result.generation_limit = static_cast<int>(tests.generation_limit);
-    result.enabled = {tests.normal_test, tests.summed_height_test, tests.view_test, tests.tex_coord_test,
-                      tests.generation_test};
+    const int normal = formats.normal.fraction;
+    const auto& half = tests.half_vector;
+    result.half_vector = {real(half[0], normal), real(half[1], normal), real(half[2], normal)};
+    result.highlight_cosine = real(tests.highlight_cosine, 2 * normal);
+    result.highlight_normal_threshold = real(tests.highlight_normal_threshold, normal);
+    result.enabled = {tests.normal_test,    tests.summed_height_test, tests.view_test,
+                      tests.tex_coord_test, tests.generation_test,    tests.highlight_test};
     result.diagonal = golden_diagonal(registers.triangulation);
 
     const int matrix = datapath::TransformParameters::matrix_fraction;

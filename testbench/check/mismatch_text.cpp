@@ -41,6 +41,8 @@ std::string tests_text(std::uint8_t tests) {
     add(datapath::view_bit, "VT");
     add(datapath::tex_coord_bit, "TCT");
     add(datapath::generation_bit, "GT");
+    if ((tests & datapath::highlight_bit) != 0)
+        result += ", HT 1";
     return result;
 }
 
@@ -86,6 +88,9 @@ std::string edge_text(const datapath::Registers& registers, const datapath::Tria
         std::ldexp(golden.normal_difference, formats.normal.fraction), golden.rectangle_width,
         golden.rectangle_height, golden.summed_height, golden.summed_height_limit,
         std::ldexp(golden.view_length, formats.screen.fraction));
+    if (registers.tests.highlight_test)
+        result += fmt::format("  golden's HT {}; N'.H {:.9g} (larger end), {:.9g} (midpoint)\n",
+                              int{golden.highlight_test}, golden.end_cosine, golden.midpoint_cosine);
     return result;
 }
 
@@ -93,6 +98,11 @@ std::string registers_text(const datapath::Registers& registers) {
     const datapath::Formats& f = registers.formats;
     const datapath::TestParameters& t = registers.tests;
     const datapath::TransformParameters& m = registers.transform;
+    const std::string highlight =
+        t.highlight_test ? fmt::format("H ({} {} {}), highlight cosine {}, highlight normal threshold {}; ",
+                                       t.half_vector[0], t.half_vector[1], t.half_vector[2],
+                                       t.highlight_cosine, t.highlight_normal_threshold)
+                         : "";
     const auto row = [](const std::array<std::int64_t, 4>& r) {
         return fmt::format("({} {} {} {})", r[0], r[1], r[2], r[3]);
     };
@@ -102,7 +112,7 @@ std::string registers_text(const datapath::Registers& registers) {
     return fmt::format(
         "  registers: scale {}, bias {}; normal threshold {}, summed height threshold {} ({}), view "
         "threshold {}, "
-        "generation limit {}; row_x {}, row_y {}, row_w {}, exponent {}, near plane {}; triangulation {}\n"
+        "generation limit {}; {}row_x {}, row_y {}, row_w {}, exponent {}, near plane {}; triangulation {}\n"
         "  map: {} x {}, {} in u, {} in v\n"
         "  formats (bits.fraction): position {}.{}, normal {}.{}, texture {}.{}, displacement {}, summed "
         "height {}, "
@@ -110,7 +120,7 @@ std::string registers_text(const datapath::Registers& registers) {
         registers.displacement.scale, registers.displacement.bias, t.normal_threshold,
         t.summed_height_threshold,
         t.summed_height_unit == datapath::SummedHeightUnit::area ? "area" : "sum, times 4", t.view_threshold,
-        t.generation_limit, row(m.row_x), row(m.row_y), row(m.row_w), m.exponent, m.near_plane,
+        t.generation_limit, highlight, row(m.row_x), row(m.row_y), row(m.row_w), m.exponent, m.near_plane,
         static_cast<int>(registers.triangulation), registers.map.width, registers.map.height,
         mode(registers.map.address_u), mode(registers.map.address_v), f.position.bits, f.position.fraction,
         f.normal.bits, f.normal.fraction, f.texture.bits, f.texture.fraction, f.displacement.bits,

@@ -44,6 +44,7 @@ constexpr DecisionName decision_names[] = {
     {"VT", "View Test"},
     {"TCT", "Tex Coord Test"},
     {"GT", "Generation Test"},
+    {"HT", "Highlight Test"},
     {"split", "whether the edge is split"},
     {"diagonal", "which diagonal cuts the quadrilateral left by two split edges"},
     {"in_front", "whether a vertex lies in front of the near plane"},
@@ -167,7 +168,11 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
         std::abs(golden.normal_difference - inputs_.parameters.normal_threshold) <= leeway;
     const bool normal_flipped =
         decide(normal_decision, says(datapath::normal_bit), golden.normal_test, near_threshold, context);
-    flipped = flipped || normal_flipped;
+    const bool highlight_flipped =
+        inputs_.parameters.enabled.highlight
+            ? compare_highlight(says(datapath::highlight_bit), golden, bumped_bound, leeway, context)
+            : false;
+    flipped = flipped || normal_flipped || highlight_flipped;
     decide(summed_height_decision, says(datapath::summed_height_bit), golden.summed_height_test, false,
            context);
     decide(view_decision, says(datapath::view_bit), golden.view_test, false, context);
@@ -175,14 +180,31 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
     decide(generation_decision, says(datapath::generation_bit), golden.generation_test, false, context);
 
     const bool split = (pass.split >> k & 1) != 0;
-    // Where NT flipped, the decision that follows from the hardware's own NT; it need not differ from
+    // Where NT or HT flipped, the decision that follows from the hardware's own; it need not differ from
     // golden's.
-    const bool follows = normal_flipped
-                             ? (!golden.normal_test || golden.summed_height_test) && golden.view_test &&
-                                   golden.tex_coord_test && golden.generation_test
-                             : golden.split;
+    const bool asked = golden.normal_test != normal_flipped || golden.summed_height_test ||
+                       golden.highlight_test != highlight_flipped;
+    const bool follows = asked && golden.view_test && golden.tex_coord_test && golden.generation_test;
     decide(split_decision, split, split == follows ? golden.split : follows, split == follows, context);
     flipped_edges_ += flipped ? 1 : 0;
+}
+
+bool Scoreboard::compare_highlight(bool hardware, const golden::EdgeEvaluation& golden,
+                                   const glm::dvec3& normal_bound, double difference_leeway,
+                                   const Context& context) {
+    const golden::Parameters& parameters = inputs_.parameters;
+    const double leeway =
+        bounds_.cosine(golden.inserted.vertex.displaced_normal, normal_bound, parameters.half_vector);
+    // What either half of the test may be found to be: in the highlight at least and at most, likewise different.
+    const auto in_highlight = [&](double midpoint_cosine) {
+        return std::max(golden.end_cosine, midpoint_cosine) > parameters.highlight_cosine;
+    };
+    const auto differ = [&](double difference) { return difference > parameters.highlight_normal_threshold; };
+    const bool must =
+        in_highlight(golden.midpoint_cosine - leeway) && differ(golden.normal_difference - difference_leeway);
+    const bool may =
+        in_highlight(golden.midpoint_cosine + leeway) && differ(golden.normal_difference + difference_leeway);
+    return decide(highlight_decision, hardware, golden.highlight_test, may && !must, context);
 }
 
 void Scoreboard::compare_diagonal(const datapath::TrianglePass& pass,
@@ -339,6 +361,8 @@ ConformanceResult Scoreboard::result() const {
                                      s.count, s.outside, s.max_error, rms, s.max_bound, s.worst_ratio});
     }
     for (std::size_t k = 0; k < decision_count; ++k) {
+        if (k == highlight_decision && !inputs_.parameters.enabled.highlight)
+            continue;
         const DecisionStatistics& s = decisions_[k];
         result.tests.push_back({decision_names[k].name, decision_names[k].description, s.compared, s.agreed,
                                 s.allowed_flips, s.mismatches});

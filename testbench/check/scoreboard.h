@@ -23,7 +23,9 @@ namespace tessera {
 ///
 /// Tests: SHT, VT, TCT, GT and the diagonal are exact on both sides, no difference allowed. NT may differ where
 /// golden's largest difference lies within the bound of N'_ij of the threshold, in_front where golden's w lies
-/// within its bound of the near plane, the split decision as far as it follows from such an NT.
+/// within its bound of the near plane, the split decision as far as it follows from such an NT or HT.
+/// HT, compared where the design has it, may differ as NT does (with its own threshold), and where golden's N'_ij . H
+/// lies within its bound of the cosine and neither end is in the highlight; the ends' own products are exact.
 ///
 /// Everything else is a mismatch: counted, the first kept with all operands. The diagonal is the datapath's
 /// (triangulate.h) from the pass's P': Tessellation applies that same function later.
@@ -62,6 +64,7 @@ class Scoreboard : public tlm::tlm_analysis_if<datapath::TrianglePass> {
         view_decision,
         tex_coord_decision,
         generation_decision,
+        highlight_decision,
         split_decision,
         diagonal_decision,
         in_front_decision,
@@ -88,6 +91,9 @@ class Scoreboard : public tlm::tlm_analysis_if<datapath::TrianglePass> {
     void compare_base_vertex(const datapath::TrianglePass& pass, int k, const golden::Vertex& given);
     void compare_edge(const datapath::TrianglePass& pass, int k, const golden::Vertex& i,
                       const golden::Vertex& j);
+    /// HT; true: it flipped as allowed. `difference_leeway`: of golden's normal_difference.
+    bool compare_highlight(bool hardware, const golden::EdgeEvaluation& golden,
+                           const glm::dvec3& normal_bound, double difference_leeway, const Context& context);
     void compare_diagonal(const datapath::TrianglePass& pass, const std::array<golden::Vertex, 3>& given);
     /// Returns whether in_front flipped as allowed.
     bool compare_displaced(Value position, Value screen, Value w, const datapath::Position& displaced,

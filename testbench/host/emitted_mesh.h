@@ -20,7 +20,7 @@ struct EmittedTriangle {
     };
     std::array<Corner, 3> corners;
     std::uint32_t base = 0;
-    std::uint8_t split_by = 0;    ///< NT, SHT bits of the split that made it; 0: a base triangle
+    std::uint8_t split_by = 0;    ///< NT, SHT, HT bits of the split that made it; 0: a base triangle
     std::uint8_t stopped_by = 0;  ///< VT, TCT, GT bits
     bool culled = false;          ///< faces away and did not go to Lighting
 
@@ -41,6 +41,13 @@ struct EmittedTriangle {
 /// Every finished triangle of a run, culled ones too.
 struct EmittedMesh {
     std::vector<EmittedTriangle> triangles;
+
+    /// A triangle was split while the Highlight Test was true: only then do files speak of it.
+    bool has_highlight_splits() const {
+        return std::any_of(triangles.begin(), triangles.end(), [](const EmittedTriangle& triangle) {
+            return (triangle.split_by & datapath::highlight_bit) != 0;
+        });
+    }
 
     /// An order that does not depend on when a triangle was finished: by base triangle, then texture coordinates, then
     /// displaced positions. Two runs that emit the same set of triangles so leave identical files.

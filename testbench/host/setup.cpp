@@ -337,10 +337,42 @@ Format view_distance_format(const datapath::TransformParameters& transform, cons
     return Format::make_signed(position.bits, position.fraction - shift);
 }
 
+/// Unit length, world space.
+glm::dvec3 towards_light(const Job::Hardware& hardware) {
+    return glm::normalize(glm::dvec3(hardware.light[0], hardware.light[1], hardware.light[2]));
+}
+
+/// The Highlight Test's registers, if the design has one.
+void set_highlight_test(const Job& job, Setup& setup) {
+    const auto& tests = job.tests;
+    if (!tests.highlight)
+        return;
+    datapath::Formats& formats = setup.registers.formats;
+    datapath::TestParameters& result = setup.registers.tests;
+    formats.highlight_tag = true;
+    result.highlight_test = true;
+    const glm::dvec3 sum = towards_light(job.hardware) + make_view(job.camera).backward;
+    // Shorter, and its direction would be that of rounding errors.
+    constexpr double shortest = 1e-9;
+    if (glm::length(sum) > shortest) {
+        const datapath::Direction half = to_direction(glm::normalize(sum), formats.normal);
+        result.half_vector = {half.x, half.y, half.z};
+    } else {
+        setup.remarks.emplace_back(
+            "hardware.light shines straight towards the viewer: there is no highlight, and the Highlight "
+            "Test "
+            "never asks for a split");
+    }
+    // To nearest, so that the cosines of 0, 60 and 90 degrees are what they should be.
+    result.highlight_cosine =
+        to_fixed(std::cos(tests.highlight_angle * pi / 180), 2 * formats.normal.fraction);
+    result.highlight_normal_threshold = static_cast<std::uint32_t>(
+        std::floor(std::ldexp(tests.highlight_normal_threshold, formats.normal.fraction)));
+}
+
 datapath::LightParameters make_light(const Job& job, const Setup& setup) {
     const View view = make_view(job.camera);
-    const auto& light = job.hardware.light;
-    const glm::dvec3 world = glm::normalize(glm::dvec3(light[0], light[1], light[2]));
+    const glm::dvec3 world = towards_light(job.hardware);
     const glm::dvec3 seen(glm::dot(view.right, world), glm::dot(view.up, world),
                           glm::dot(view.backward, world));
     const datapath::Direction d = to_direction(seen, setup.registers.formats.normal);
@@ -399,6 +431,7 @@ Setup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& map) {
     choose_summed_height_bits(job, setup);
     lay_out_tables(setup);
     registers.tests = make_tests(job, setup);
+    set_highlight_test(job, setup);
     registers.transform = make_transform(job, setup);
     registers.formats.view_distance = view_distance_format(registers.transform, registers.formats.position);
     registers.light = make_light(job, setup);

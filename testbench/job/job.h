@@ -76,6 +76,9 @@ struct Job {
         bool tex_coord = true;
         bool generation = true;
         std::int64_t generation_limit = 12;
+        bool highlight = false;
+        double highlight_angle = 25;               // degrees from the half vector
+        double highlight_normal_threshold = 0.05;  // difference of one component of two unit normals
     } tests;
 
     struct Formats {

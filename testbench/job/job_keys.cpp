@@ -205,6 +205,10 @@ void add_timing(const Writer& key) {
     add_unit(
         key, "normal_test", "Normal Test", [](auto& t) -> auto& { return t.normal_test; },
         ", table reads come on top");
+    key.add_deep(
+        "highlight_test_latency", [](auto& t) -> auto& { return t.highlight_test_latency; }, "cycles",
+        between(0, most_cycles),
+        "Highlight Test, if there is one: what it adds to the Normal Test's latency");
     add_unit(
         key, "view_test", "View Test", [](auto& t) -> auto& { return t.view_test; });
     key.add_deep(
@@ -293,7 +297,7 @@ std::vector<KeyTable> declare_keys() {
         key.add("viewport_width", &Camera::viewport_width, "pixels", between(1, 16384), "Width of the picture");
         key.add("viewport_height", &Camera::viewport_height, "pixels", between(1, 16384), "Height of the picture");
     });
-    list.table("tests", &Job::tests, "The edge tests: split = (normal or summed_height) and view and tex_coord and generation.", [](const auto& key) {
+    list.table("tests", &Job::tests, "The edge tests: split = (normal or summed_height or highlight) and view and tex_coord and generation.", [](const auto& key) {
         using Tests = Job::Tests;
         key.add("normal", &Tests::normal, "Normal Test; off: never asks for a split");
         key.add("normal_threshold", &Tests::normal_threshold, "unit normal component", between(0, 2), "Normal Test: a component of two normals that differs by more splits the edge");
@@ -305,6 +309,9 @@ std::vector<KeyTable> declare_keys() {
         key.add("tex_coord", &Tests::tex_coord, "Tex Coord Test, ends at the map's resolution; off: allows every split");
         key.add("generation", &Tests::generation, "Generation Test; off: allows every split, and a run may not end");
         key.add("generation_limit", &Tests::generation_limit, "generations", between(0, 15), "Generation Test: the highest generation a new vertex may have");
+        key.add("highlight", &Tests::highlight, "Highlight Test, for per-vertex lighting: finer triangles where the Phong highlight of hardware.light is; off: the design has none");
+        key.add("highlight_angle", &Tests::highlight_angle, "degrees", between(0, 90), "Highlight Test: a normal lies in the highlight if it is nearer than this to the half vector between the directions to the light and to the viewer (camera.eye - camera.target)");
+        key.add("highlight_normal_threshold", &Tests::highlight_normal_threshold, "unit normal component", between(0, 2), "Highlight Test: an edge with a normal in the highlight is split if a component of two of its normals differs by more");
     });
     list.table("formats", &Job::formats, "Fixed-point formats of the hardware; bits count the sign where there is one.", [](const auto& key) {
         using Formats = Job::Formats;

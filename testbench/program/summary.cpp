@@ -116,9 +116,12 @@ std::string summary(const Setup& setup, const Simulation& simulation, const Chec
                     counts.culled > 0 ? fmt::format(", {} culled", count(counts.culled)) : ""));
     text += row("edges", fmt::format("{} tested, {} split ({:.1f} %)", count(edges),
                                      count(counts.edges_split), percent(counts.edges_split, edges)));
-    text +=
-        row("  split by", fmt::format("normal {}, summed height {}, both {}", count(counts.split_by_normal),
-                                      count(counts.split_by_summed_height), count(counts.split_by_both)));
+    text += row("  split by",
+                fmt::format("normal {}, summed height {}, both {}{}", count(counts.split_by_normal),
+                            count(counts.split_by_summed_height), count(counts.split_by_both),
+                            setup.registers.tests.highlight_test
+                                ? fmt::format(", highlight alone {}", count(counts.split_by_highlight))
+                                : ""));
     text += row(
         "  wanted, but stopped by",
         fmt::format("view {}, tex coord {}, generation {} (may be several)", count(counts.stopped_by_view),

@@ -42,6 +42,13 @@ Legend make_legend(const RenderMesh& mesh, ColourBy colour_by) {
                           {deciding_test_colour(DecidingTest::summed_height), "summed height"},
                           {deciding_test_colour(DecidingTest::both), "both"},
                           {deciding_test_colour(DecidingTest::base), "none: base"}};
+        const bool highlight = std::any_of(mesh.triangles.begin(), mesh.triangles.end(),
+                                           [](const RenderMesh::Triangle& triangle) {
+                                               return triangle.deciding_test == DecidingTest::highlight;
+                                           });
+        if (highlight)  // only in a picture that has it: others stay as they are
+            legend.entries.insert(legend.entries.end() - 1,
+                                  {deciding_test_colour(DecidingTest::highlight), "highlight"});
     } else if (colour_by == ColourBy::stopped_by) {
         legend.title = "kept whole by";
         legend.entries = {{stop_colour(Stop::none), "no test"},

@@ -48,6 +48,8 @@ Colour deciding_test_colour(DecidingTest test) {
             return {86, 180, 233};
         case DecidingTest::both:
             return {0, 158, 115};
+        case DecidingTest::highlight:
+            return {204, 121, 167};
         case DecidingTest::base:
             break;
     }

@@ -14,7 +14,7 @@ Colour generation_colour(unsigned generation);
 /// From the palette of Okabe and Ito, safe for the colour-blind.
 Colour deciding_test_colour(DecidingTest test);
 
-/// Which tests kept a triangle's edges whole that the Normal or the Summed Height Test would have split.
+/// Which tests kept a triangle's edges whole that the Normal, Summed Height or Highlight Test would have split.
 enum class Stop : std::uint8_t { none, view, tex_coord, generation, several };
 inline constexpr unsigned stops = 5;
 

@@ -98,7 +98,7 @@ class Paint {
     const RenderMesh& mesh_;
     glm::dvec3 background_, surface_;
     std::array<glm::dvec3, 16> generations_;
-    std::array<glm::dvec3, 4> tests_;
+    std::array<glm::dvec3, deciding_tests> tests_;
     std::array<glm::dvec3, stops> stops_;
     std::vector<glm::dvec3> errors_ = std::vector<glm::dvec3>(error_steps, glm::dvec3(0));
 };

@@ -94,7 +94,7 @@ class MeshMaker {
             triangle.vertices[k] =
                 index_.index_of(glm::vec3(corners[k].position - mesh_.origin), corners[k].normal);
         triangle.generation = generation;
-        triangle.deciding_test = static_cast<DecidingTest>(split_by & 3);
+        triangle.deciding_test = deciding_test_of(split_by);
         triangle.stopped_by = stopped_by;
         mesh_.triangles.push_back(triangle);
         bases_.push_back(base);

@@ -4,14 +4,12 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "testbench/host/deciding_test.h"
 #include "testbench/host/emitted_mesh.h"
 #include "testbench/host/setup.h"
 #include "testbench/run_folder/recorded_mesh.h"
 
 namespace tessera {
-
-/// What kind of split made a triangle; the values are split_by's bits.
-enum class DecidingTest : std::uint8_t { base = 0, normal = 1, summed_height = 2, both = 3 };
 
 /// A run's displaced surface, indexed, in model units.
 struct RenderMesh {

@@ -72,7 +72,9 @@ void add_triangle(Figures& figures, std::uint64_t number, const RecordedMesh::Tr
     figures.add("base", triangle.base, "-", "its base triangle");
     figures.add("generation", triangle.generation, "-", "its generation");
     figures.add("split_by", triangle.split_by, "-",
-                "tests that split its parent: 1 Normal, 2 Summed Height, 3 both, 0 base");
+                triangle.split_by < 32
+                    ? "tests that split its parent: 1 Normal, 2 Summed Height, 3 both, 0 base"
+                    : "tests that split its parent: 32 Highlight, plus 1 Normal, 2 Summed Height, 3 both");
     figures.add("stopped_by", triangle.stopped_by, "-",
                 "what kept an edge of it whole: sum of 4 View Test, 8 Tex Coord Test, 16 Generation Test");
     figures.add("why_whole", why_whole(triangle.stopped_by), "-",

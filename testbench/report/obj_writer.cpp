@@ -9,17 +9,19 @@
 #include <vector>
 
 #include "testbench/common/atomic_file.h"
+#include "testbench/host/deciding_test.h"
 #include "testbench/report/indexed_mesh.h"
 
 namespace tessera {
 namespace {
 
-constexpr std::array<const char*, 4> test_names = {"base", "normal", "summed_height", "both"};
+constexpr std::array<const char*, deciding_tests> test_names = {"base", "normal", "summed_height", "both",
+                                                                "highlight"};
 constexpr std::size_t generations = 256;
 
 std::size_t group_of(const EmittedTriangle& triangle) {
-    constexpr int tests = datapath::normal_bit | datapath::summed_height_bit;
-    return static_cast<std::size_t>(triangle.split_by & tests) * generations + triangle_generation(triangle);
+    return static_cast<std::size_t>(deciding_test_of(triangle.split_by)) * generations +
+           triangle_generation(triangle);
 }
 
 /// The triangles' numbers in the order of their groups; stable. begins[g]: where group g begins.
@@ -61,9 +63,10 @@ void write_obj(const std::filesystem::path& path, const EmittedMesh& mesh, const
                     "# vt: texture coordinates, 0..1 spans the map, v = 0 is its bottom row\n"
                     "# g and usemtl <test>_g<generation>:\n"
                     "#   test: which test split the triangle's parent: normal (Normal Test),\n"
-                    "#     summed_height (Summed Height Test), both, or base: it is a base triangle\n"
+                    "#     summed_height (Summed Height Test), both,{} or base: it is a base triangle\n"
                     "#   generation: of its youngest vertex, 0 for a base triangle\n"),
-        indexed.vertices.size(), indexed.triangles.size());
+        indexed.vertices.size(), indexed.triangles.size(),
+        mesh.has_highlight_splits() ? " highlight (Highlight Test alone)," : "");
     const auto corner = [&](const IndexedMesh::Vertex& v) -> const EmittedTriangle::Corner& {
         return mesh.triangles[v.triangle].corners[v.corner];
     };

@@ -48,6 +48,7 @@ class Record {
 
 void write_ply(const std::filesystem::path& path, const EmittedMesh& mesh, const MeshUnits& units) {
     const IndexedMesh indexed = IndexedMesh::from(mesh);
+    const bool highlight = mesh.has_highlight_splits();
     AtomicFile file(path);
     file.write(fmt::format(
         "ply\n"
@@ -57,8 +58,8 @@ void write_ply(const std::filesystem::path& path, const EmittedMesh& mesh, const
         "comment s t: texture coordinates, 0..1 spans the map, t = 0 is its bottom row\n"
         "comment generation: of the triangle's youngest vertex; 0 is a base triangle's\n"
         "comment split_by: tests that split the parent: 0 none (a base triangle), 1 Normal Test, "
-        "2 Summed Height Test, 3 both\n"
-        "comment stopped_by: tests that kept an edge whole which Normal or Summed Height Test would split: "
+        "2 Summed Height Test, 3 both{}\n"
+        "comment stopped_by: tests that kept an edge whole which Normal{} Summed Height{} Test would split: "
         "sum of 4 View Test, 8 Tex Coord Test, 16 Generation Test\n"
         "comment base: the base triangle it descends from\n"
         "element vertex {}\n"
@@ -77,7 +78,8 @@ void write_ply(const std::filesystem::path& path, const EmittedMesh& mesh, const
         "property uchar stopped_by\n"
         "property int base\n"
         "end_header\n",
-        indexed.vertices.size(), indexed.triangles.size()));
+        highlight ? "; 32 is added where the Highlight Test was true" : "", highlight ? "," : " or",
+        highlight ? " or Highlight" : "", indexed.vertices.size(), indexed.triangles.size()));
     Record record(file);
     for (const IndexedMesh::Vertex& v : indexed.vertices) {
         const auto& corner = mesh.triangles[v.triangle].corners[v.corner];

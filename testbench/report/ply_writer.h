@@ -14,9 +14,10 @@ namespace tessera {
 ///             float s t            texture coordinates, 0..1 spans the map (s, t: the names readers know)
 ///     face:   list uchar int vertex_indices
 ///             uchar generation     of its youngest vertex
-///             uchar split_by       which tests split its parent: 1 Normal, 2 Summed Height, 3 both; 0: a
-///             base triangle uchar stopped_by     sum of 4 View, 8 Tex Coord, 16 Generation: what kept an
-///             edge of it whole int base             its base triangle
+///             uchar split_by       which tests split its parent: 1 Normal, 2 Summed Height, 3 both; 32 is added
+///                                  where the Highlight Test was true; 0: a base triangle
+///             uchar stopped_by     sum of 4 View, 8 Tex Coord, 16 Generation: what kept an edge of it whole
+///             int base             its base triangle
 ///
 /// Positions are doubles because the machine's 32 bits do not fit a float. The header's comments say all this
 /// too. Order: the mesh's (call EmittedMesh::sort() before); vertices by first use, shared as in

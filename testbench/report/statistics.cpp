@@ -196,6 +196,12 @@ std::vector<Figure> collect_statistics(const Setup& setup, const Simulation& sim
     decide.add("split_by_summed_height", counts.split_by_summed_height, "edge",
                "split by the Summed Height Test alone");
     decide.add("split_by_both", counts.split_by_both, "edge", "split by both");
+    if (setup.registers.tests.highlight_test) {
+        decide.add("split_by_highlight", counts.split_by_highlight, "edge",
+                   "split by neither, but by the Highlight Test alone");
+        decide.add("split_in_highlight", counts.split_in_highlight, "edge",
+                   "split while the Highlight Test was true, whatever the others said");
+    }
     decide.add("stopped_by_view", counts.stopped_by_view, "edge",
                "kept whole by the View Test (perhaps among others)");
     decide.add("stopped_by_tex_coord", counts.stopped_by_tex_coord, "edge", "likewise the Tex Coord Test");

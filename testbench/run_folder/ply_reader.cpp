@@ -192,8 +192,9 @@ RecordedMesh read_ply(const std::filesystem::path& path) {
         t.split_by = file.take<std::uint8_t>();
         t.stopped_by = file.take<std::uint8_t>();
         t.base = file.take<std::uint32_t>();
-        if (t.split_by > 3)
-            file.refuse(fmt::format("face {}: split_by is {}, beyond 0 to 3", f, t.split_by));
+        if ((t.split_by & ~(3 | 32)) != 0)
+            file.refuse(
+                fmt::format("face {}: split_by is {}, neither 0 to 3 nor that plus 32", f, t.split_by));
         if ((t.stopped_by & ~(4 | 8 | 16)) != 0)
             file.refuse(fmt::format("face {}: stopped_by is {}, not a sum of 4, 8 and 16", f, t.stopped_by));
         if (t.base > most_elements)

@@ -12,8 +12,8 @@ struct RecordedMesh {
     struct Triangle {
         std::array<std::uint32_t, 3> vertices{};
         std::uint8_t generation = 0;  ///< of its youngest vertex
-        std::uint8_t split_by =
-            0;  ///< tests that split its parent: 1 Normal, 2 Summed Height, 3 both, 0 base
+        /// Tests that split its parent: 1 Normal, 2 Summed Height, 3 both, plus 32 Highlight; 0 base.
+        std::uint8_t split_by = 0;
         std::uint8_t stopped_by = 0;  ///< sum of 4 View, 8 Tex Coord, 16 Generation: what kept an edge whole
         std::uint32_t base = 0;       ///< the base triangle it descends from
     };

@@ -129,6 +129,9 @@ class Machine {
             bit(parameters.normal_test &&
                     normal_test(i.displaced_normal, j.displaced_normal, edge.displaced_normal, parameters),
                 datapath::normal_bit) |
+            bit(parameters.highlight_test &&
+                    highlight_test(i.displaced_normal, j.displaced_normal, edge.displaced_normal, parameters),
+                datapath::highlight_bit) |
             bit(parameters.summed_height_test && summed_height(i.texture, j.texture),
                 datapath::summed_height_bit) |
             bit(!parameters.view_test || view_test(i.screen, j.screen, parameters), datapath::view_bit) |

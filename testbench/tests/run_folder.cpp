@@ -155,9 +155,12 @@ void require_consistent(const RunFolder& run) {
     const std::uint64_t split = run.count("run", "edges_split");
     CHECK(edges == 3 * run.count("pass_or_tessellate", "passes"));
     CHECK(split == made_into_2 + 2 * made_into_3 + 3 * made_into_4);
+    const bool highlight = run.statistics.at("pass_or_tessellate").contains("split_by_highlight");
+    CHECK(highlight == job_says("highlight = true\n"));
     CHECK(split == run.count("pass_or_tessellate", "split_by_normal") +
                        run.count("pass_or_tessellate", "split_by_summed_height") +
-                       run.count("pass_or_tessellate", "split_by_both"));
+                       run.count("pass_or_tessellate", "split_by_both") +
+                       (highlight ? run.count("pass_or_tessellate", "split_by_highlight") : 0));
     CHECK(run.statistics.at("run").at("edges_per_triangle").at("value").get<double>() ==
           Approx(static_cast<double>(edges) / static_cast<double>(finished)));
 

@@ -1,10 +1,12 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <string>
 #include <vector>
 
 #include "modules/datapath/parameters.h"
@@ -217,5 +219,31 @@ struct Case {
         return result;
     }
 };
+
+inline const ConformanceResult::Quantity& quantity(const ConformanceResult& result, const std::string& name) {
+    for (const auto& q : result.quantities)
+        if (q.name == name)
+            return q;
+    FAIL("no quantity " << name);
+    return result.quantities.front();
+}
+
+inline const ConformanceResult::Test& test(const ConformanceResult& result, const std::string& name) {
+    for (const auto& t : result.tests)
+        if (t.name == name)
+            return t;
+    FAIL("no test " << name);
+    return result.tests.front();
+}
+
+inline ConformanceResult check(const Case& c, const std::vector<datapath::TrianglePass>& passes) {
+    Scoreboard scoreboard(c.setup.registers, c.inputs);
+    for (const datapath::TrianglePass& pass : passes)
+        scoreboard.write(pass);
+    return scoreboard.result();
+}
+inline ConformanceResult check(const Case& c, const datapath::TrianglePass& pass) {
+    return check(c, std::vector<datapath::TrianglePass>{pass});
+}
 
 }  // namespace tessera::testing

@@ -45,6 +45,17 @@ TEST_CASE("functional mode with the scoreboard allocates nothing per edge") {
     expect_no_allocation(setup, simulation);
 }
 
+TEST_CASE("functional mode with a Highlight Test and the scoreboard allocates nothing per edge") {
+    Job job;
+    job.tests.highlight = true;
+    const Setup setup = make_setup(job, load_mesh(job, {}), load_map(job, {}));
+    Simulation simulation(setup, 1'000'000);
+    const GoldenInputs golden(setup);
+    Scoreboard scoreboard(setup.registers, golden);
+    simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
+    expect_no_allocation(setup, simulation);
+}
+
 TEST_CASE("timed mode allocates nothing per edge") {
     Job job;
     job.mode = Mode::timed;

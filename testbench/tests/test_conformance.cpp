@@ -47,6 +47,20 @@ void expect_conformance(const Job& job, const HeightMap& map, const std::string&
     CHECK(meshes.golden_triangles == Approx(meshes.hardware_triangles).epsilon(0.1));
 }
 
+Job with_highlight(Job job) {
+    job.tests.highlight = true;
+    return job;
+}
+
+Job head() {
+    Job job;
+    job.mesh.source = MeshSource::file;
+    job.map.address_u = Addressing::repeat;
+    job.displacement.scale = 1.891544222831726;
+    job.camera.eye = {0, -6, 0};
+    return job;
+}
+
 Job crater_lake(std::int64_t columns, std::int64_t rows) {
     Job job;
     job.mesh.columns = columns;
@@ -64,6 +78,10 @@ TEST_CASE("half donut, 256 texels") {
 }
 TEST_CASE("half donut, 1024 texels") {
     expect_conformance(Job{}, half_donut_map(1024, 1024));
+}
+
+TEST_CASE("half donut with a Highlight Test, 1024 texels") {
+    expect_conformance(with_highlight(Job{}), half_donut_map(1024, 1024));
 }
 
 TEST_CASE("noise, eye among the heights") {
@@ -100,14 +118,13 @@ TEST_CASE("Crater Lake on 704 triangles") {
 
 TEST_CASE("the head on its cylinder, repeated in u") {
     const std::string map = "maps/head_lps_512.pgm", mesh = "meshes/cylinder_1800_lps.obj";
-    if (!present(map) || !present(mesh))
-        return;
-    Job job;
-    job.mesh.source = MeshSource::file;
-    job.map.address_u = Addressing::repeat;
-    job.displacement.scale = 1.891544222831726;
-    job.camera.eye = {0, -6, 0};
-    expect_conformance(job, read_height_map(data / map), mesh);
+    if (present(map) && present(mesh))
+        expect_conformance(head(), read_height_map(data / map), mesh);
+}
+TEST_CASE("the head on its cylinder with a Highlight Test") {
+    const std::string map = "maps/head_lps_512.pgm", mesh = "meshes/cylinder_1800_lps.obj";
+    if (present(map) && present(mesh))
+        expect_conformance(with_highlight(head()), read_height_map(data / map), mesh);
 }
 
 TEST_CASE("half donut on the teapot") {

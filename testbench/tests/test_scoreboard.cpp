@@ -16,32 +16,6 @@ using namespace tessera::testing;
 
 namespace {
 
-const ConformanceResult::Quantity& quantity(const ConformanceResult& result, const std::string& name) {
-    for (const auto& q : result.quantities)
-        if (q.name == name)
-            return q;
-    FAIL("no quantity " << name);
-    return result.quantities.front();
-}
-
-const ConformanceResult::Test& test(const ConformanceResult& result, const std::string& name) {
-    for (const auto& t : result.tests)
-        if (t.name == name)
-            return t;
-    FAIL("no test " << name);
-    return result.tests.front();
-}
-
-ConformanceResult check(const Case& c, const std::vector<datapath::TrianglePass>& passes) {
-    Scoreboard scoreboard(c.setup.registers, c.inputs);
-    for (const datapath::TrianglePass& pass : passes)
-        scoreboard.write(pass);
-    return scoreboard.result();
-}
-ConformanceResult check(const Case& c, const datapath::TrianglePass& pass) {
-    return check(c, std::vector<datapath::TrianglePass>{pass});
-}
-
 /// Next to the near plane w may be the largest of its format already: what lies beyond comes round at the other end.
 template <class Value>
 void move_around(Value& value, int by) {

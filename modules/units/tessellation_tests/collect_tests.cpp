@@ -7,8 +7,9 @@
 
 namespace tessera {
 
-CollectTests::CollectTests(const sc_core::sc_module_name& name, Clock& clock, const Timing& timing)
-    : Unit(name, clock) {
+CollectTests::CollectTests(const sc_core::sc_module_name& name, Clock& clock,
+                           const datapath::Registers& registers, const Timing& timing)
+    : Unit(name, clock), registers_(registers) {
     for (StreamInput<Work>* input : inputs()) {
         input->serve<&CollectTests::b_transport>(*this);
         input->clocked_by(clock, *this, timing.results_buffer, timing.stalls);
@@ -82,6 +83,8 @@ void CollectTests::show(Signals& signals) const {
         signals.flag("view", (tests & datapath::view_bit) != 0);
         signals.flag("tex_coord", (tests & datapath::tex_coord_bit) != 0);
         signals.flag("generation", (tests & datapath::generation_bit) != 0);
+        if (registers_.tests.highlight_test)
+            signals.flag("highlight", (tests & datapath::highlight_bit) != 0);
         signals.flag("split", datapath::split_decision(static_cast<std::uint8_t>(tests)));
     });
     signals.pulse("edge", activity_.items_in());

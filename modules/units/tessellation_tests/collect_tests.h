@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <systemc>
 
+#include "modules/datapath/parameters.h"
 #include "modules/stream/stream_input.h"
 #include "modules/stream/stream_output.h"
 #include "modules/stream/work.h"
@@ -25,7 +26,8 @@ class CollectTests : public Unit {
     StreamInput<Work> from_view_test{"from_view_test"};
     StreamOutput<Work> to_pass_or_tessellate{"to_pass_or_tessellate"};
 
-    CollectTests(const sc_core::sc_module_name& name, Clock& clock, const Timing& timing);
+    CollectTests(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
+                 const Timing& timing);
 
     std::string holds() const override;
     std::uint64_t occupied_cycles() const override { return activity_.items_in(); }
@@ -38,6 +40,7 @@ class CollectTests : public Unit {
         return {&from_normal_test, &from_tex_coord_test, &from_summed_height_test, &from_view_test};
     }
 
+    const datapath::Registers& registers_;
     Work leaving_;
     bool leaves_ = false;
     unsigned empty_inputs_ = 0;

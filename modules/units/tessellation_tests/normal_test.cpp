@@ -9,10 +9,20 @@
 #include "modules/unit/signals.h"
 
 namespace tessera {
+namespace {
+
+UnitTiming with_highlight_test(UnitTiming timing, const Timing& all, const datapath::TestParameters& tests) {
+    if (tests.highlight_test)
+        timing.latency += all.highlight_test_latency;
+    return timing;
+}
+
+}  // namespace
 
 NormalTest::NormalTest(const sc_core::sc_module_name& name, Clock& clock,
                        const datapath::Registers& registers, const Timing& timing, bool use_direct_memory)
-    : TableStage(name, clock, timing.normal_test, timing.normal_map.latency),
+    : TableStage(name, clock, with_highlight_test(timing.normal_test, timing, registers.tests),
+                 timing.normal_map.latency),
       normal_map("normal_map", registers.normal_map.entry_bytes, use_direct_memory),
       registers_(registers) {
     takes_from(input, timing.stalls);
@@ -47,6 +57,17 @@ void NormalTest::test_edge(Pass& pass, unsigned k, std::uint64_t entry) {
         edge.tests |= datapath::normal_bit;
 }
 
+void NormalTest::test_for_highlight(const Work& work) const {
+    Pass& pass = *work.pass;
+    for_each_of_three(work.parts, first_edge_part, [&](unsigned k) {
+        const datapath::Direction& i = pass.edge_begin(static_cast<int>(k)).displaced_normal;
+        const datapath::Direction& j = pass.edge_end(static_cast<int>(k)).displaced_normal;
+        datapath::EdgeTests& edge = pass.edges[k];
+        if (highlight_test(i, j, edge.displaced_normal, registers_.tests))
+            edge.tests |= datapath::highlight_bit;
+    });
+}
+
 void NormalTest::b_transport(Work& work, sc_core::sc_time& delay) {
     Pass& pass = *work.pass;
     for_each_of_three(work.parts, 0, [&](unsigned k) {
@@ -56,6 +77,8 @@ void NormalTest::b_transport(Work& work, sc_core::sc_time& delay) {
     for_each_of_three(work.parts, first_edge_part, [&](unsigned k) {
         test_edge(pass, k, normal_map.read(address(pass.edges[k].texture), delay));
     });
+    if (registers_.tests.highlight_test)
+        test_for_highlight(work);
     delay += clock_.period() * timing_.latency;
     output->b_transport(work, delay);
 }
@@ -85,6 +108,8 @@ void NormalTest::receive(TableItem& item, unsigned) {
         clock_.wake(*this);
     });
     for_each_of_three(item.work.parts, first_edge_part, [&](unsigned k) { test_edge(pass, k, entry); });
+    if (registers_.tests.highlight_test)
+        test_for_highlight(item.work);
 }
 
 void NormalTest::trace_item(Signals& signals, const TableItem& item) const {
@@ -100,6 +125,8 @@ void NormalTest::trace_answered(Signals& signals, const TableItem& item) const {
     signals.direction("n_j_x", "n_j_y", "n_j_z", Signals::end_of(item.work).displaced_normal);
     signals.direction("n_ij_x", "n_ij_y", "n_ij_z", is_edge ? edge.displaced_normal : i);
     signals.flag("normal", is_edge && (edge.tests & datapath::normal_bit) != 0);
+    if (registers_.tests.highlight_test)
+        signals.flag("highlight", is_edge && (edge.tests & datapath::highlight_bit) != 0);
 }
 
 }  // namespace tessera

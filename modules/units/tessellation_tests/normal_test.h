@@ -12,15 +12,19 @@
 namespace tessera {
 
 /// Normal Test (paper figure 8, 2.2, 3.1.4): Calculate New N, Normalise, Bump, and the comparison of the displaced
-/// normals.
+/// normals. And, in the same place because it needs the same three normals and their differences, the optional Highlight
+/// Test (algorithm section 7), which asks for more where the Phong highlight is.
 ///
 /// In:   edges, with N, T, N' of both ends and edges[k].texture; vertices of a base triangle, with N, T, t.
-/// Out:  edges[k].normal = N_ij, .tangent = T_ij, .displaced_normal = N'_ij, normal_bit of edges[k].tests;
+/// Out:  edges[k].normal = N_ij, .tangent = T_ij, .displaced_normal = N'_ij, normal_bit and highlight_bit of
+///       edges[k].tests;
 ///       vertices[k].displaced_normal (a base triangle's corners are bumped first, and end here).
 /// Memory: one read of the normal map per edge or vertex.
 /// Arithmetic: add, shift by 1; the pipeline's existing normalise and bump units; six absolute differences and
-///       compares, one OR.
-/// Timing: one edge or vertex per interval; latency 9 plus the map read, interval 1 by default.
+///       compares, one OR. The Highlight Test adds three dot products with one vector, six compares with another
+///       threshold and three with a cosine; the differences are the Normal Test's.
+/// Timing: one edge or vertex per interval; latency 9 plus the map read, interval 1 by default. A Highlight Test adds its
+///       own latency, 1 by default, and nothing to the interval.
 /// Waits for Calculate New U and the normal map; with three Tessellation Tests units an edge of a base triangle also
 /// for the corner that another unit bumps. Held back by the collection of the tests.
 class NormalTest : public TableStage<NormalTest, TableItem> {
@@ -53,6 +57,8 @@ class NormalTest : public TableStage<NormalTest, TableItem> {
                                std::uint64_t entry);
     void bump_corner(datapath::Vertex& vertex, std::uint64_t entry);
     void test_edge(Pass& pass, unsigned edge, std::uint64_t entry);
+    /// Apart from test_edge, which in a design without it would still pay for the registers it takes.
+    [[gnu::noinline]] void test_for_highlight(const Work& work) const;
 
     const datapath::Registers& registers_;
     std::vector<Clocked*> others_;

@@ -11,7 +11,7 @@ TessellationTests::TessellationTests(const sc_core::sc_module_name& name, Clock&
       summed_height_test("summed_height_test", clock, registers, timing, use_direct_memory),
       normal_test("normal_test", clock, registers, timing, use_direct_memory),
       view_test("view_test", clock, registers, timing, number),
-      collect_tests("collect_tests", clock, timing) {
+      collect_tests("collect_tests", clock, registers, timing) {
     calculate_new_u.to_tex_coord_test.bind(tex_coord_test.input);
     calculate_new_u.to_summed_height_test.bind(summed_height_test.input);
     calculate_new_u.to_normal_test.bind(normal_test.input);

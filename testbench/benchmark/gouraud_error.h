@@ -1,0 +1,35 @@
+#pragma once
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "testbench/check/golden_inputs.h"
+#include "testbench/host/emitted_mesh.h"
+#include "testbench/host/setup.h"
+
+namespace tessera {
+
+/// A Phong highlight: (N' . H)^exponent, light and viewer infinitely far.
+struct Highlight {
+    glm::dvec3 half_vector{0, 0, 1};  ///< unit length
+    double angle = 25;                ///< degrees from H within which a normal counts as in the highlight
+    int exponent = 32;                ///< at least 0
+};
+
+/// How far specular light interpolated over each emitted triangle from its three vertices (Gouraud) lies from that of
+/// each texel's own displaced normal. Full scale: the light's intensity where N' = H.
+struct GouraudError {
+    double rms = 0;  ///< over the base mesh's texels, all weighing alike
+    double highlight_rms =
+        0;  ///< over those of them whose own normal lies in the highlight; 0: there are none
+    double largest = 0;
+    std::uint64_t texels = 0, highlight_texels = 0;
+    double highlight_triangles = 0;  ///< emitted triangles a texel in the highlight: their density there
+    double other_triangles = 0;      ///< and elsewhere
+};
+
+/// Texel centres on the border of two triangles count in both; a triangle without a texel centre counts nowhere.
+/// The true normal: base normal and tangent interpolated over the base triangle, bumped in double precision.
+GouraudError measure_gouraud(const EmittedMesh& mesh, const Setup& setup, const GoldenInputs& inputs,
+                             const Highlight& highlight);
+
+}  // namespace tessera

@@ -1,0 +1,21 @@
+#pragma once
+#include <cstdint>
+
+#include "modules/datapath/vertex.h"
+
+namespace tessera {
+
+/// Which tests split a triangle's parent. NT and SHT as the bits of split_by; highlight: neither, the Highlight Test
+/// alone asked for it.
+enum class DecidingTest : std::uint8_t { base = 0, normal = 1, summed_height = 2, both = 3, highlight = 4 };
+inline constexpr unsigned deciding_tests = 5;
+
+/// From a triangle's split_by.
+constexpr DecidingTest deciding_test_of(std::uint8_t split_by) {
+    const unsigned tests = split_by & (datapath::normal_bit | datapath::summed_height_bit);
+    if (tests == 0 && (split_by & datapath::highlight_bit) != 0)
+        return DecidingTest::highlight;
+    return static_cast<DecidingTest>(tests);
+}
+
+}  // namespace tessera

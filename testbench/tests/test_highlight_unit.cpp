@@ -1,0 +1,129 @@
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <vector>
+
+#include "modules/datapath/map_entry.h"
+#include "modules/memory/table_memory.h"
+#include "modules/units/tessellation_tests/normal_test.h"
+#include "testbench/tests/timed_modules.h"
+
+// The Normal Test unit alone, through its sockets, with and without a Highlight Test.
+
+using namespace tessera;
+using namespace tessera::testing;
+
+namespace {
+
+datapath::Registers registers_of(bool highlight_test) {
+    datapath::Registers registers;
+    registers.map = {4, 1, datapath::AddressMode::clamp, datapath::AddressMode::clamp};
+    registers.normal_map = {4096, 4, 1, datapath::entry_bytes(3 * registers.formats.normal.bits)};
+    registers.tests.normal_threshold = 9000;
+    registers.tests.highlight_test = highlight_test;
+    registers.tests.half_vector = {9830, 0, 13107};  // (0.6, 0, 0.8)
+    registers.tests.highlight_cosine = 255'000'000;  // 0.95
+    registers.tests.highlight_normal_threshold = 2000;
+    return registers;
+}
+
+constexpr datapath::Direction up{0, 0, 1 << 14};
+constexpr datapath::Direction at_half{9830, 0, 13107};
+constexpr datapath::Direction tilted{3000, 0, 16107};  // 3000 from up, 0.90 from H: outside
+
+/// The unit, its memory full of normals straight up, and a pass of three edges whose midpoints so have N' = up:
+/// (at_half, up): both tests; (up, tilted): neither, it lies outside; (tilted, at_half): both.
+struct Bench {
+    datapath::Registers registers;
+    Clock clock{"clock", sc_core::sc_time(10, sc_core::SC_PS)};
+    NormalMap memory;
+    Sink<Work> sink{"sink", clock};
+    NormalTest unit;
+    Driver<Work> driver{"driver", clock};
+    Pass pass;
+
+    Bench(bool highlight_test, const Timing& timing)
+        : registers(registers_of(highlight_test)),
+          memory("memory", clock, registers.normal_map, timing.normal_map, timing.stalls),
+          unit("unit", clock, registers, timing, true) {
+        clock.attach(memory);
+        clock.attach(unit);
+        unit.normal_map.bind(memory);
+        unit.output.bind(sink.in);
+        driver.out.bind(unit.input);
+        const std::vector<datapath::Direction> ends{at_half, up, tilted};
+        for (std::size_t k = 0; k < 3; ++k) {
+            datapath::Vertex& v = pass.triangle.vertices[k];
+            v.normal = up;
+            v.tangent = {1 << 14, 0, 0};
+            v.displaced_normal = ends[k];
+            pass.edges[k].texture = {static_cast<std::uint32_t>(k) << 12, 0};
+        }
+        pass.tested = true;
+    }
+
+    void fill_memory() {
+        const std::uint64_t entry = datapath::pack_normal(up, registers.formats.normal.bits);
+        for (std::uint32_t x = 0; x < 4; ++x) {
+            std::vector<unsigned char> bytes;
+            for (std::uint32_t k = 0; k < registers.normal_map.entry_bytes; ++k)
+                bytes.push_back(static_cast<unsigned char>(entry >> (8 * k)));
+            tlm::tlm_generic_payload payload;
+            payload.set_command(tlm::TLM_WRITE_COMMAND);
+            payload.set_address(registers.normal_map.address(x, 0));
+            payload.set_data_ptr(bytes.data());
+            payload.set_data_length(static_cast<unsigned>(bytes.size()));
+            REQUIRE(unit.normal_map.socket->transport_dbg(payload) == bytes.size());
+        }
+    }
+
+    /// Timed: one edge after another, and the cycles in which they come out.
+    std::vector<std::uint64_t> run_timed() {
+        for (unsigned k = 0; k < 3; ++k)
+            driver.items.push_back({&pass, static_cast<Parts>(1u << (first_edge_part + k))});
+        sc_core::sc_start(sc_core::SC_ZERO_TIME);
+        fill_memory();
+        sc_core::sc_start();
+        REQUIRE(driver.offered.front() == 0);
+        return sink.cycles;
+    }
+
+    std::vector<int> tests() const { return {pass.edges[0].tests, pass.edges[1].tests, pass.edges[2].tests}; }
+};
+
+const std::vector<int> without_highlight{datapath::normal_bit, 0, datapath::normal_bit};
+
+}  // namespace
+
+// Taken in cycle 0, read in 1, the compare 9 later; another edge each cycle.
+TEST_CASE("Normal Test unit without a Highlight Test: 10 cycles with the read") {
+    Bench bench(false, {});
+    CHECK(bench.run_timed() == std::vector<std::uint64_t>{10, 11, 12});
+    CHECK(bench.tests() == without_highlight);
+}
+
+TEST_CASE("Normal Test unit with a Highlight Test: one cycle more, an edge a cycle still") {
+    Bench bench(true, {});
+    CHECK(bench.run_timed() == std::vector<std::uint64_t>{11, 12, 13});
+    const int both = datapath::normal_bit | datapath::highlight_bit;
+    CHECK(bench.tests() == std::vector<int>{both, 0, both});
+}
+
+TEST_CASE("Normal Test unit with a Highlight Test of 7 cycles") {
+    Timing timing;
+    timing.highlight_test_latency = 7;
+    Bench bench(true, timing);
+    CHECK(bench.run_timed() == std::vector<std::uint64_t>{17, 18, 19});
+}
+
+TEST_CASE("Normal Test unit with a Highlight Test, blocking transport: the same bits, one cycle more") {
+    Bench bench(true, {});
+    bench.registers.tests.normal_threshold = 16384;  // so that the Highlight Test is alone
+    sc_core::sc_start(sc_core::SC_ZERO_TIME);
+    bench.fill_memory();
+    Work work{&bench.pass, edge_parts};
+    sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
+    bench.driver.out->b_transport(work, delay);
+    CHECK(bench.tests() == std::vector<int>{datapath::highlight_bit, 0, datapath::highlight_bit});
+    REQUIRE(bench.sink.delays.size() == 1);
+    CHECK(bench.sink.delays.front() >= 10 * bench.clock.period());
+}
