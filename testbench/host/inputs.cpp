@@ -10,7 +10,7 @@ namespace tessera {
 
 BaseMesh load_mesh(const Job& job, const std::filesystem::path& data_folder) {
     std::string file;
-    if (job.mesh.source == MeshSource::file)
+    if (!job.mesh.file.empty())
         file = resolve_path(job.mesh.file, job.folder, data_folder).string();
     return make_base_mesh(job.mesh, file);
 }

@@ -7,7 +7,7 @@
 
 namespace tessera {
 
-enum class MeshSource { plane, cylinder, sphere, file };
+enum class MeshSource { plane, cylinder, sphere, file, run };
 enum class MapSource { half_donut, text, noise, constant, ramp, file };
 enum class Addressing { clamp, repeat };
 enum class Triangulation { shorter, first, second };
@@ -23,7 +23,7 @@ enum class Mode { functional, timed };
 struct Job {
     struct Mesh {
         MeshSource source = MeshSource::plane;
-        std::string file;          // OBJ, with source = "file"
+        std::string file;          // OBJ with source = "file", a run's folder with source = "run"
         std::int64_t columns = 0;  // quads along u; 0: the source's own (job_keys.cpp)
         std::int64_t rows = 0;     // quads along v; 0: likewise
         double width = 2;          // plane: size along x
@@ -49,6 +49,11 @@ struct Job {
         double scale = 0.25;  // model units for one unit of map value
         double bias = 0;      // model units
     } displacement;
+
+    struct Frames {
+        std::int64_t count = 1;  // 1: a plain run
+        double first_scale = 0;  // model units; the last frame's is displacement.scale
+    } frames;
 
     struct Camera {
         std::array<double, 3> eye{1.05, -2.9, 2.45};

@@ -19,6 +19,8 @@ constexpr std::string_view name_of(MeshSource value) {
             return "sphere";
         case MeshSource::file:
             return "file";
+        case MeshSource::run:
+            return "run";
     }
     return {};
 }

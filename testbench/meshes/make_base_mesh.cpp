@@ -5,6 +5,7 @@
 #include "testbench/common/error.h"
 #include "testbench/meshes/built_in.h"
 #include "testbench/meshes/obj_reader.h"
+#include "testbench/meshes/run_mesh.h"
 
 namespace tessera {
 
@@ -34,8 +35,14 @@ BaseMesh make_base_mesh(Job::Mesh const& job, std::string const& file) {
                 throw InputError("mesh.file is empty: with mesh.source = \"file\" it must name an OBJ file");
             }
             return read_obj(file);
+        case MeshSource::run:
+            if (file.empty()) {
+                throw InputError(
+                    "mesh.file is empty: with mesh.source = \"run\" it must name a run's folder");
+            }
+            return read_run_mesh(file);
     }
-    throw InputError("mesh.source is none of plane, cylinder, sphere, file");
+    throw InputError("mesh.source is none of plane, cylinder, sphere, file, run");
 }
 
 }  // namespace tessera

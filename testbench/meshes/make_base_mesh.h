@@ -7,7 +7,7 @@
 namespace tessera {
 
 /// The base mesh a job asks for, complete. `file` is job.file resolved to where it lies; it is looked at with
-/// source = "file" only. Errors as in built_in.h and obj_reader.h.
+/// source = "file" and "run" only. Errors as in built_in.h, obj_reader.h and run_mesh.h.
 BaseMesh make_base_mesh(Job::Mesh const& job, std::string const& file);
 
 }  // namespace tessera
