@@ -7,7 +7,7 @@
 
 namespace tessera {
 
-enum class MeshSource { plane, cylinder, sphere, file, patches };
+enum class MeshSource { plane, cylinder, sphere, file, patches, run };
 enum class MapSource { half_donut, text, noise, constant, ramp, file };
 enum class Addressing { clamp, repeat };
 enum class Triangulation { shorter, first, second };
@@ -17,9 +17,9 @@ enum class SummedHeightUnit { sum, area };
 enum class Overflow { spill, stall, error };
 enum class Mode { functional, timed };
 
-/// Whether a mesh of this source is in mesh.file.
+/// Whether a mesh of this source is what mesh.file names.
 constexpr bool reads_file(MeshSource source) {
-    return source == MeshSource::file || source == MeshSource::patches;
+    return source == MeshSource::file || source == MeshSource::patches || source == MeshSource::run;
 }
 
 /// One run of tessera: what a job file says. Every key's unit, default, range and description are declared
@@ -28,7 +28,7 @@ constexpr bool reads_file(MeshSource source) {
 struct Job {
     struct Mesh {
         MeshSource source = MeshSource::plane;
-        std::string file;          // OBJ, with source = "file"; Bezier patches, with "patches"
+        std::string file;          // OBJ, Bezier patches or a run's folder, by the source
         std::int64_t columns = 0;  // quads along u; 0: the source's own (job_keys.cpp)
         std::int64_t rows = 0;     // quads along v; 0: likewise
         double width = 2;          // plane: size along x
@@ -54,6 +54,11 @@ struct Job {
         double scale = 0.25;  // model units for one unit of map value
         double bias = 0;      // model units
     } displacement;
+
+    struct Frames {
+        std::int64_t count = 1;  // 1: a plain run
+        double first_scale = 0;  // model units; the last frame's is displacement.scale
+    } frames;
 
     struct Camera {
         std::array<double, 3> eye{1.05, -2.9, 2.45};

@@ -21,6 +21,8 @@ constexpr std::string_view name_of(MeshSource value) {
             return "file";
         case MeshSource::patches:
             return "patches";
+        case MeshSource::run:
+            return "run";
     }
     return {};
 }

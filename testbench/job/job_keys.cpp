@@ -260,8 +260,8 @@ std::vector<KeyTable> declare_keys() {
     });
     list.table("mesh", &Job::mesh, "The base mesh.", [](const auto& key) {
         using Mesh = Job::Mesh;
-        key.add("source", &Mesh::source, "Built-in shape, file for the mesh in mesh.file, or patches for the Bezier patches in it");
-        key.add("file", &Mesh::file, KeyKind::file, "OBJ file, with mesh.source = \"file\"; with \"patches\" one of bicubic Bezier patches as Newell's teapot has it");
+        key.add("source", &Mesh::source, "Built-in shape, file for the mesh in mesh.file, patches for the Bezier patches in it, or run for the mesh that an earlier run left");
+        key.add("file", &Mesh::file, KeyKind::file, "OBJ file, with mesh.source = \"file\"; with \"patches\" one of bicubic Bezier patches as Newell's teapot has it; with \"run\" the folder of an earlier run");
         key.add("columns", &Mesh::columns, "quads", between(0, 2048), "Quads along u; 0: 3 for the plane, 4 for each patch, 30 for cylinder and sphere, which need 3 or more");
         key.add("rows", &Mesh::rows, "quads", between(0, 2048), "Quads along v; 0: 3 for the plane, 4 for each patch, 30 for cylinder and sphere; a sphere needs 2 or more");
         key.add("width", &Mesh::width, "model units", length_range, "Size of the plane along x");
@@ -286,6 +286,11 @@ std::vector<KeyTable> declare_keys() {
         using Displacement = Job::Displacement;
         key.add("scale", &Displacement::scale, "model units", coordinate_range, "Height of a full-scale map value");
         key.add("bias", &Displacement::bias, "model units", coordinate_range, "Height of a map value of 0");
+    });
+    list.table("frames", &Job::frames, "Several frames that differ in the displacement's scale, each a run folder of its own: frame_000, ... in output.folder.", [](const auto& key) {
+        using Frames = Job::Frames;
+        key.add("count", &Frames::count, "frames", between(1, 1000), "Number of frames; frame k of n has the scale first_scale + (displacement.scale - first_scale) * k / (n - 1); 1: a plain run, of displacement.scale");
+        key.add("first_scale", &Frames::first_scale, "model units", coordinate_range, "displacement.scale of frame 0; the last frame has the job's own");
     });
     list.table("camera", &Job::camera, "The view, on which the View Test depends.", [](const auto& key) {
         using Camera = Job::Camera;

@@ -66,9 +66,9 @@ void check_ranges(const Job& job, Faults& faults) {
 void check_file(const std::string& table, bool wanted, const std::string& file, std::string_view source,
                 Faults& faults) {
     faults.unless(!wanted || !file.empty(),
-                  "`{0}.file` is empty, but `{0}.source` = \"{1}\": name the file, or choose "
+                  "`{0}.file` is empty, but `{0}.source` = \"{1}\": name the {2}, or choose "
                   "a built-in source",
-                  table, source);
+                  table, source, source == name_of(MeshSource::run) ? "folder of a run" : "file");
     faults.unless(wanted || file.empty(),
                   "`{0}.file` = {1}, but `{0}.source` = \"{2}\" reads no file: set "
                   "{0}.source = \"file\", or {0}.file = \"\"",

@@ -134,9 +134,8 @@ class Measurement {
         for (std::size_t k = 0; k < soup_.size(); ++k) {
             const RecordedMesh::Triangle& t = mesh_.triangles[k];
             const auto texture = [&](const glm::dvec3& b) {
-                return b.x * glm::dvec2(mesh_.textures[t.vertices[0]]) +
-                       b.y * glm::dvec2(mesh_.textures[t.vertices[1]]) +
-                       b.z * glm::dvec2(mesh_.textures[t.vertices[2]]);
+                return b.x * mesh_.textures[t.vertices[0]] + b.y * mesh_.textures[t.vertices[1]] +
+                       b.z * mesh_.textures[t.vertices[2]];
             };
             const auto position = [&](const glm::dvec3& b) {
                 return b.x * soup_[k][0] + b.y * soup_[k][1] + b.z * soup_[k][2];

@@ -19,8 +19,7 @@ MeshSamples::MeshSamples(const RecordedMesh& mesh, const glm::dvec2& map, double
         double longest = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t a = t.vertices[k], b = t.vertices[(k + 1) % 3];
-            const glm::dvec2 edge =
-                glm::abs(glm::dvec2(mesh.textures[b]) - glm::dvec2(mesh.textures[a])) * map;
+            const glm::dvec2 edge = glm::abs(mesh.textures[b] - mesh.textures[a]) * map;
             longest = std::max({longest, edge.x, edge.y});
             if (texel > 0)
                 longest = std::max(longest, glm::length(mesh.positions[b] - mesh.positions[a]) / texel);

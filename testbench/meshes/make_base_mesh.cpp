@@ -6,6 +6,7 @@
 #include "testbench/meshes/bezier_patches.h"
 #include "testbench/meshes/built_in.h"
 #include "testbench/meshes/obj_reader.h"
+#include "testbench/meshes/run_mesh.h"
 
 namespace tessera {
 
@@ -43,8 +44,14 @@ BaseMesh make_base_mesh(Job::Mesh const& job, std::string const& file) {
                     "patches");
             }
             return make_patch_mesh(read_bezier_patches(file), columns, rows, file);
+        case MeshSource::run:
+            if (file.empty()) {
+                throw InputError(
+                    "mesh.file is empty: with mesh.source = \"run\" it must name a run's folder");
+            }
+            return read_run_mesh(file);
     }
-    throw InputError("mesh.source is none of plane, cylinder, sphere, file, patches");
+    throw InputError("mesh.source is none of plane, cylinder, sphere, file, patches, run");
 }
 
 }  // namespace tessera

@@ -5,10 +5,14 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 namespace tessera {
 
-Progress::Progress() : terminal_(isatty(STDERR_FILENO) != 0), next_(std::chrono::steady_clock::now()) {}
+Progress::Progress(std::string before)
+    : before_(std::move(before)),
+      terminal_(isatty(STDERR_FILENO) != 0),
+      next_(std::chrono::steady_clock::now()) {}
 
 Progress::~Progress() {
     clear();
@@ -21,8 +25,8 @@ void Progress::show(const std::string& what, double part) {
     next_ = now + std::chrono::milliseconds(100);
     constexpr int width = 30;
     const int full = static_cast<int>(std::clamp(part, 0.0, 1.0) * width);
-    fmt::print(stderr, "\r\x1b[K[{:=<{}}{: <{}}] {:3.0f} %  {}", "", full, "", width - full, 100 * part,
-               what);
+    fmt::print(stderr, "\r\x1b[K[{:=<{}}{: <{}}] {:3.0f} %  {}{}", "", full, "", width - full, 100 * part,
+               before_, what);
     std::fflush(stderr);
     shown_ = true;
 }

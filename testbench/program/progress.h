@@ -7,7 +7,8 @@ namespace tessera {
 /// One line on a terminal that is overwritten as work goes on; silent where standard error is not a terminal.
 class Progress {
   public:
-    Progress();
+    /// `before`: what every line says first.
+    explicit Progress(std::string before = {});
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
@@ -17,6 +18,7 @@ class Progress {
     void clear();
 
   private:
+    std::string before_;
     bool terminal_;
     bool shown_ = false;
     std::chrono::steady_clock::time_point next_;

@@ -19,6 +19,8 @@
 #include "testbench/program/output_folder.h"
 #include "testbench/program/progress.h"
 #include "testbench/program/render_command.h"
+#include "testbench/program/run_files.h"
+#include "testbench/program/run_frames.h"
 #include "testbench/program/summary.h"
 #include "testbench/program/traces.h"
 #include "testbench/render/render_run.h"
@@ -66,6 +68,9 @@ class Stopwatch {
 
 void write_run_folder(const std::filesystem::path& folder, const Job& job, const Setup& setup,
                       const Simulation& simulation, const Checks& checks) {
+    remove_frames(folder);
+    // First, so that whoever is interrupted leaves no job beside the mesh of another.
+    remove_run_file(folder / "mesh.ply");
     write_file(folder / "job.toml", dump_job(job, folder));
     const std::vector<Figure> figures = collect_statistics(setup, simulation);
     write_file(folder / "statistics.json", statistics_json(figures));
@@ -102,15 +107,12 @@ void write_run_folder(const std::filesystem::path& folder, const Job& job, const
 
 /// What a run that got stuck leaves: its traces, the job, and nothing of a run before it.
 void write_stuck_run(const std::filesystem::path& folder, const Job& job) {
-    for (const char* const name :
-         {"statistics.json", "statistics.csv", "conformance.txt", "conformance.json", "timing.txt",
-          "queue_levels.csv", "mesh.ply", "mesh.obj", "picture.png", "error.json", "error.txt"})
-        std::filesystem::remove(folder / name);
-    remove_pictures(folder);
+    remove_frames(folder);
+    remove_results(folder);
     if (!job.output.vcd)
-        std::filesystem::remove(folder / "trace.vcd");
+        remove_run_file(folder / "trace.vcd");
     if (!job.output.timeline)
-        std::filesystem::remove(folder / "timeline.json");
+        remove_run_file(folder / "timeline.json");
     write_file(folder / "job.toml", dump_job(job, folder));
 }
 
@@ -134,22 +136,18 @@ const char* verdict(const Checks& checks) {
     return checks.conformance || checks.invariants ? "all checks passed" : "nothing was checked";
 }
 
-}  // namespace
+/// What a run came to, and what it has to say of it.
+struct Ending {
+    ExitCode code;
+    std::string text;
+};
 
-ExitCode run_job(const Command& command) {
-    const Job job = load_job(command);
-    if (command.dump_config) {
-        fmt::print("{}", dump_job(job));
-        return ExitCode::fine;
-    }
-    if (!command.trace_option.empty() && !Traces::wanted(job))
-        throw InputError(
-            fmt::format("{} chooses what to trace, and nothing is traced: add --vcd, --timeline or both",
-                        command.trace_option));
+/// `name` tells the run from others, on the line that shows its progress.
+Ending run_once(const Job& job, const Command& command, const std::string& name) {
     const std::filesystem::path folder = job.output.folder;
     check_output_folder(folder);
 
-    Progress progress;
+    Progress progress(name);
     progress.show("reading mesh and map", 0);
     const Setup setup = load_setup(job, command.data_folder);
 
@@ -191,7 +189,7 @@ ExitCode run_job(const Command& command) {
             fmt::print(stderr, "{}  in {}\n", traces_text,
                        std::filesystem::absolute(folder).lexically_normal().string());
         }
-        return ExitCode::deadlock;
+        return {ExitCode::deadlock, {}};
     }
 
     EmittedMesh& mesh = simulation.monitor.mesh;
@@ -214,10 +212,32 @@ ExitCode run_job(const Command& command) {
     write_run_folder(folder, job, setup, simulation, checks);
     progress.clear();
 
-    fmt::print("{}{}", summary(setup, simulation, checks, seconds), traces_text);
-    fmt::print("  {}\n  results in {}\n", verdict(checks),
-               std::filesystem::absolute(folder).lexically_normal().string());
-    return checks.passed() ? ExitCode::fine : ExitCode::check_failed;
+    return {
+        checks.passed() ? ExitCode::fine : ExitCode::check_failed,
+        fmt::format("{}{}  {}\n  results in {}\n", summary(setup, simulation, checks, seconds), traces_text,
+                    verdict(checks), std::filesystem::absolute(folder).lexically_normal().string())};
+}
+
+}  // namespace
+
+ExitCode run_job(const Command& command) {
+    const Job job = load_job(command);
+    if (command.dump_config) {
+        fmt::print("{}", dump_job(job));
+        return ExitCode::fine;
+    }
+    if (!command.trace_option.empty() && !Traces::wanted(job))
+        throw InputError(
+            fmt::format("{} chooses what to trace, and nothing is traced: add --vcd, --timeline or both",
+                        command.trace_option));
+    require_base_stays(job, command.data_folder);
+    if (job.frames.count > 1)
+        return run_frames(job, command.data_folder, [&](const Job& frame, const std::string& name) {
+            return run_once(frame, command, name).code;
+        });
+    const Ending ending = run_once(job, command, {});
+    fmt::print("{}", ending.text);
+    return ending.code;
 }
 
 }  // namespace tessera

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "modules/datapath/widths.h"
+#include "testbench/common/grouped_digits.h"
 #include "testbench/report/timing_report.h"
 
 namespace tessera {
@@ -13,12 +14,8 @@ std::string row(const char* name, const std::string& value) {
     return fmt::format("  {:<26}{}\n", name, value);
 }
 
-/// 1234567 as 1,234,567.
 std::string count(std::uint64_t value) {
-    std::string text = std::to_string(value);
-    for (std::size_t place = text.size(); place > 3; place -= 3)
-        text.insert(place - 3, ",");
-    return text;
+    return grouped_digits(value);
 }
 
 double percent(std::uint64_t part, std::uint64_t whole) {

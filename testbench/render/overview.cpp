@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "testbench/common/grouped_digits.h"
 #include "testbench/render/draw_text.h"
 #include "testbench/render/key_light.h"
 #include "testbench/render/legend.h"
@@ -24,17 +25,9 @@ double scale_of(const PictureOptions& options) {
     return options.height > 0 ? std::min(scale, options.height / (2 * caption_height)) : scale;
 }
 
-/// 13144 -> "13,144"
-std::string grouped(std::uint64_t number) {
-    std::string digits = std::to_string(number);
-    for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3)
-        digits.insert(static_cast<std::size_t>(at), ",");
-    return digits;
-}
-
 std::string caption(const RenderMesh& mesh) {
-    const std::string made = grouped(mesh.triangles.size()) + " triangles";
-    return mesh.base_triangles == 0 ? made : made + " from " + grouped(mesh.base_triangles);
+    const std::string made = grouped_digits(mesh.triangles.size()) + " triangles";
+    return mesh.base_triangles == 0 ? made : made + " from " + grouped_digits(mesh.base_triangles);
 }
 
 }  // namespace

@@ -27,9 +27,9 @@ struct MeshUnits {
     }
     /// 0..1 spans the map once; v = 0 is the bottom row. On an axis that repeats, perhaps whole periods off
     /// the file's.
-    glm::vec2 texture(const datapath::TexCoord& t) const {
+    glm::dvec2 texture(const datapath::TexCoord& t) const {
         const double texel = std::ldexp(1.0, -formats.texture.fraction);
-        return glm::vec2(glm::dvec2(t.u, t.v) * texel / glm::dvec2(map.width, map.height));
+        return glm::dvec2(t.u, t.v) * texel / glm::dvec2(map.width, map.height);
     }
 };
 

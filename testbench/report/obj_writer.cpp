@@ -75,7 +75,7 @@ void write_obj(const std::filesystem::path& path, const EmittedMesh& mesh, const
         put(FMT_COMPILE("v {} {} {}\n"), p.x, p.y, p.z);
     }
     for (const auto& v : indexed.vertices) {
-        const glm::vec2 t = units.texture(corner(v).texture);
+        const glm::vec2 t(units.texture(corner(v).texture));
         put(FMT_COMPILE("vt {} {}\n"), t.x, t.y);
     }
     for (const auto& v : indexed.vertices) {

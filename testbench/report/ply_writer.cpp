@@ -69,8 +69,8 @@ void write_ply(const std::filesystem::path& path, const EmittedMesh& mesh, const
         "property float nx\n"
         "property float ny\n"
         "property float nz\n"
-        "property float s\n"
-        "property float t\n"
+        "property double s\n"
+        "property double t\n"
         "element face {}\n"
         "property list uchar int vertex_indices\n"
         "property uchar generation\n"
@@ -85,7 +85,7 @@ void write_ply(const std::filesystem::path& path, const EmittedMesh& mesh, const
         const auto& corner = mesh.triangles[v.triangle].corners[v.corner];
         const glm::dvec3 position = units.position(corner.displaced);
         const glm::vec3 normal = units.normal(corner.displaced_normal);
-        const glm::vec2 texture = units.texture(corner.texture);
+        const glm::dvec2 texture = units.texture(corner.texture);
         for (int k = 0; k < 3; ++k)
             record.put(position[k]);
         for (int k = 0; k < 3; ++k)

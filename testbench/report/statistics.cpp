@@ -8,6 +8,7 @@
 
 #include "modules/datapath/reciprocal.h"
 #include "modules/datapath/widths.h"
+#include "testbench/host/host_traffic.h"
 #include "testbench/report/timing_statistics.h"
 
 namespace tessera {
@@ -103,7 +104,7 @@ Collector host_figures(const Setup& setup, const EmittedMesh& mesh) {
     const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
     const auto bytes = [](std::uint64_t bits) { return (bits + 7) / 8; };
     const std::uint64_t finished = mesh.triangles.size();
-    const std::uint64_t base = bytes(setup.base_triangles.size() * 3 * widths.base_vertex);
+    const std::uint64_t base = base_mesh_bytes(setup);
     const std::uint64_t tables = setup.registers.displacement_map.bytes() +
                                  setup.registers.normal_map.bytes() +
                                  setup.registers.summed_height_table.bytes();

@@ -15,7 +15,7 @@
 namespace tessera {
 namespace {
 
-constexpr std::uint64_t vertex_bytes = 44, face_bytes = 20;
+constexpr std::uint64_t vertex_bytes = 52, face_bytes = 20;
 constexpr double largest_number =
     1e40;  // base meshes reach to 3.4e38 (mesh_limits.h), displaced ones not much beyond
 constexpr std::size_t longest_line = 256, most_lines = 64;
@@ -147,7 +147,7 @@ Counts read_header(PlyFile& file) {
     Counts counts{};
     counts.vertices = file.expect_count(line, "element vertex ");
     for (const char* const property :
-         {"double x", "double y", "double z", "float nx", "float ny", "float nz", "float s", "float t"})
+         {"double x", "double y", "double z", "float nx", "float ny", "float nz", "double s", "double t"})
         file.expect(file.line(), fmt::format("property {}", property));
     counts.faces = file.expect_count(file.line(), "element face ");
     for (const char* const property : {"list uchar int vertex_indices", "uchar generation", "uchar split_by",
@@ -176,7 +176,7 @@ RecordedMesh read_ply(const std::filesystem::path& path) {
         for (int k = 0; k < 3; ++k)
             mesh.normals[v][k] = file.take_finite<float>("normal", v);
         for (int k = 0; k < 2; ++k)
-            mesh.textures[v][k] = file.take_finite<float>("texture coordinate", v);
+            mesh.textures[v][k] = file.take_finite<double>("texture coordinate", v);
     }
     for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
         RecordedMesh::Triangle& t = mesh.triangles[f];

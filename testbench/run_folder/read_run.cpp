@@ -31,35 +31,59 @@ void find_input(const char* key, const std::string& text, const Job& job, const 
             : "put it back where it was when the job ran, or run the job again with the file's new place"));
 }
 
-}  // namespace
-
-RecordedRun read_run(const fs::path& folder, const fs::path& data_folder) {
+Job read_run_job(const fs::path& folder) {
     std::error_code failed;
-    if (!fs::is_directory(folder, failed))
+    const fs::file_status status = fs::status(folder, failed);
+    if (fs::is_regular_file(status))
+        throw InputError(
+            fmt::format("{}: is a file; name the folder of a run that it lies in", folder.string()));
+    if (!fs::is_directory(status))
         throw InputError(fmt::format(
             "{}: no such folder; name the folder of a run, as `tessera run` prints it", folder.string()));
-    const fs::path job_file = folder / "job.toml", mesh_file = folder / "mesh.ply";
+    const fs::path job_file = folder / "job.toml";
     if (!is_there(job_file))
-        throw InputError(
-            fmt::format("{}: there is no job.toml, so this is no run's folder; name one as `tessera run` "
-                        "prints it",
-                        folder.string()));
-    RecordedRun run;
-    run.folder = folder;
-    run.job = read_job(job_file);
-    validate(run.job);
-    if (reads_file(run.job.mesh.source))
-        find_input("mesh.file", run.job.mesh.file, run.job, data_folder);
-    if (run.job.map.source == MapSource::file)
-        find_input("map.file", run.job.map.file, run.job, data_folder);
+        throw InputError(fmt::format(
+            "{}: there is no job.toml, so this is no run's folder, or the run was interrupted; name one as "
+            "`tessera run` prints it",
+            folder.string()));
+    Job job = read_job(job_file);
+    validate(job);
+    if (job.frames.count > 1)
+        throw InputError(fmt::format("{}: holds {} frames, each a run's folder; name one of them, from {} on",
+                                     folder.string(), job.frames.count, (folder / "frame_000").string()));
+    return job;
+}
+
+RecordedMesh read_mesh(const fs::path& folder, const Job& job) {
+    const fs::path mesh_file = folder / "mesh.ply";
     if (!is_there(mesh_file))
         throw InputError(fmt::format(
             "{}: the run left no mesh: {}", mesh_file.string(),
-            run.job.output.ply
-                ? "it got stuck (exit code 3) or the file was taken away; run a job that ends, without "
-                  "output.ply=false"
-                : "its job.toml has output.ply = false; run it again with --set output.ply=true"));
-    run.mesh = read_ply(mesh_file);
+            job.output.ply ? "it got stuck (exit code 3), was interrupted, or the file was taken away; run a "
+                             "job that ends, without output.ply=false"
+                           : "its job.toml has output.ply = false; run it again with --set output.ply=true"));
+    return read_ply(mesh_file);
+}
+
+}  // namespace
+
+RecordedRun read_run(const fs::path& folder) {
+    RecordedRun run;
+    run.folder = folder;
+    run.job = read_run_job(folder);
+    run.mesh = read_mesh(folder, run.job);
+    return run;
+}
+
+RecordedRun read_run(const fs::path& folder, const fs::path& data_folder) {
+    RecordedRun run;
+    run.folder = folder;
+    run.job = read_run_job(folder);
+    if (!run.job.mesh.file.empty())
+        find_input("mesh.file", run.job.mesh.file, run.job, data_folder);
+    if (!run.job.map.file.empty())
+        find_input("map.file", run.job.map.file, run.job, data_folder);
+    run.mesh = read_mesh(folder, run.job);
     return run;
 }
 

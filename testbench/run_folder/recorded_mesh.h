@@ -20,7 +20,7 @@ struct RecordedMesh {
 
     std::vector<glm::dvec3> positions;  ///< P', finite
     std::vector<glm::vec3> normals;     ///< N', about unit length; zero where the hardware had none
-    std::vector<glm::vec2> textures;    ///< s, t: 0..1 spans the map once, t = 0 its bottom row
+    std::vector<glm::dvec2> textures;   ///< s, t: 0..1 spans the map once, t = 0 its bottom row
     std::vector<Triangle> triangles;
 
     std::array<glm::dvec3, 3> corners(const Triangle& t) const {

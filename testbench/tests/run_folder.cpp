@@ -63,7 +63,7 @@ std::map<int, std::uint64_t> RunFolder::by_generation() const {
 }
 
 PlyFacts RunFolder::read_ply() const {
-    constexpr std::size_t vertex_bytes = 44, face_bytes = 20;
+    constexpr std::size_t vertex_bytes = 52, face_bytes = 20;
     const std::string ply = read_all(folder_ / "mesh.ply");
     const std::string end = "end_header\n";
     const std::size_t header = ply.find(end);

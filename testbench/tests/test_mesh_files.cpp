@@ -151,12 +151,12 @@ TEST_CASE("a PLY file read back holds the mesh, in model units") {
     CHECK(header.find("comment split_by: tests that split the parent: 0 none") != std::string::npos);
     const std::size_t vertices = number_after(header, "element vertex "),
                       faces = number_after(header, "element face ");
-    CHECK(bytes.size() == header.size() + 44 * vertices + 20 * faces);
+    CHECK(bytes.size() == header.size() + 52 * vertices + 20 * faces);
     CHECK(vertices == distinct_vertices(sample.mesh));
 
     struct Read {
-        double p[3];
-        float n[3], t[2];
+        double p[3], t[2];
+        float n[3];
     };
     std::vector<Read> read(vertices);
     std::size_t at = header.size();
@@ -165,8 +165,8 @@ TEST_CASE("a PLY file read back holds the mesh, in model units") {
             x = take<double>(bytes, at);
         for (float& x : v.n)
             x = take<float>(bytes, at);
-        for (float& x : v.t)
-            x = take<float>(bytes, at);
+        for (double& x : v.t)
+            x = take<double>(bytes, at);
     }
     std::uint32_t next = 0;
     std::size_t read_faces = 0;
@@ -186,8 +186,8 @@ TEST_CASE("a PLY file read back holds the mesh, in model units") {
             CHECK(v.p[2] == c.displaced.z / 8192.0 + 1000.0625);
             CHECK(v.n[0] == static_cast<float>(c.displaced_normal.x / 16384.0));
             CHECK(v.n[2] == static_cast<float>(c.displaced_normal.z / 16384.0));
-            CHECK(v.t[0] == static_cast<float>(c.texture.u / 4096.0 / 64));
-            CHECK(v.t[1] == static_cast<float>(c.texture.v / 4096.0 / 32));
+            CHECK(v.t[0] == c.texture.u / 4096.0 / 64);
+            CHECK(v.t[1] == c.texture.v / 4096.0 / 32);
         }
         CHECK(take<std::uint8_t>(bytes, at) == generation(t));
         CHECK(take<std::uint8_t>(bytes, at) == t.split_by);
@@ -225,7 +225,7 @@ TEST_CASE("an OBJ file read back holds the mesh, grouped by generation and test"
         for (const auto& c : t.corners) {
             const glm::dvec3 p = sample.units.position(c.displaced);
             const glm::vec3 n = sample.units.normal(c.displaced_normal);
-            const glm::vec2 uv = sample.units.texture(c.texture);
+            const glm::vec2 uv(sample.units.texture(c.texture));
             for (const double x :
                  {p.x, p.y, p.z, double(n.x), double(n.y), double(n.z), double(uv.x), double(uv.y)})
                 numbers.push_back(x);

@@ -1,0 +1,25 @@
+#pragma once
+#include <filesystem>
+
+#include "testbench/job/job.h"
+
+namespace tessera {
+
+/// Takes away the file that a run left under this name. What is no plain file stays.
+void remove_run_file(const std::filesystem::path& file);
+
+/// Takes away what `tessera run`, `tessera compare` and `tessera render` leave in a run's folder, but for its traces.
+/// Other files stay.
+void remove_results(const std::filesystem::path& folder);
+/// The traces too.
+void remove_run_files(const std::filesystem::path& folder);
+
+/// Takes away what a run of several frames left in its folder: the table of frames, and every frame's run. A frame's
+/// folder that holds other files keeps those; a folder called like a frame's that is no run's is left alone.
+void remove_frames(const std::filesystem::path& folder);
+
+/// With mesh.source = "run": throws InputError if this run would take its own base mesh away, that is, if the earlier
+/// run lies in output.folder itself or is a frame in it.
+void require_base_stays(const Job& job, const std::filesystem::path& data_folder);
+
+}  // namespace tessera
