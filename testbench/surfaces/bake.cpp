@@ -54,6 +54,7 @@ double centre_of(int part, int parts, double low, double high) {
 
 std::vector<BasisFunctions> at_centres(const std::vector<double>& knots, std::size_t degree, int texels) {
     std::vector<BasisFunctions> basis;
+    basis.reserve(static_cast<std::size_t>(texels));
     for (int k = 0; k < texels; ++k)
         basis.push_back(
             basis_functions(knots, degree, parameter_at(knots, degree, centre_of(k, texels, 0, 1))));

@@ -36,6 +36,9 @@ BakedMap bake_heights(const Surface& surface, int width, int height);
 /// - A texel whose centre no triangle covers gets the value of the covered one that is nearest in steps from texel to
 ///   texel, along u first: vertices on a border of the covered part may read it.
 ///
+/// The displaced points lie on the quadric whatever the base mesh. The normal map takes the base surface for as smooth as
+/// its normals, so a coarse round base shows its facets in the shading: half the angle between two of them at most.
+///
 /// Throws InputError where no triangle covers any texel's centre, and where the quadric is nowhere; ResourceError for
 /// triangles that span more than 2^31 texels together.
 BakedMap bake_over_mesh(const QuadricSurface& surface, const BaseMesh& mesh, const Job::Map& map, int width,

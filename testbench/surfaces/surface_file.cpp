@@ -195,7 +195,7 @@ void read_domain(TomlFields& fields, Surface& surface) {
 
 Surface parse_surface(std::string_view text, const std::string& name) {
     const toml::table document = parse_toml(text, name, "a surface file");
-    TomlFields top(document, "the file", name);
+    TomlFields top(document, "", name);
     Surface surface;
     std::string shape;
     for (const char* const table : {"domain", "quadric", "nurbs", "bezier"}) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "testbench/common/error.h"
 #include "testbench/job/nearest_name.h"
@@ -22,8 +23,8 @@ std::string listed(const Names& names) {
 
 }  // namespace
 
-TomlFields::TomlFields(const toml::table& table, const std::string& name, const std::string& file)
-    : table_(table), name_(name), file_(file) {}
+TomlFields::TomlFields(const toml::table& table, std::string name, std::string file)
+    : table_(table), name_(std::move(name)), file_(std::move(file)) {}
 
 bool TomlFields::has(const char* key) {
     asked_.insert(key);
@@ -110,9 +111,11 @@ void TomlFields::finish() const {
         if (asked_.count(name) > 0)
             continue;
         const std::string near = nearest_name(name, {asked_.begin(), asked_.end()});
-        fail_at(key.source(), fmt::format("unknown key `{}` of [{}]; {}", printable(name), name_,
-                                          near.empty() ? fmt::format("it takes {}", listed(asked_))
-                                                       : fmt::format("did you mean `{}`?", near)));
+        fail_at(key.source(),
+                fmt::format("unknown {} `{}`{}; {}", node.is_table() ? "table" : "key", printable(name),
+                            name_.empty() ? "" : fmt::format(" of [{}]", name_),
+                            near.empty() ? fmt::format("it takes {}", listed(asked_))
+                                         : fmt::format("did you mean `{}`?", near)));
     }
 }
 

@@ -11,8 +11,8 @@ namespace tessera {
 /// All errors are InputErrors with file, line and column.
 class TomlFields {
   public:
-    /// `file` for messages. Both must outlive this.
-    TomlFields(const toml::table& table, const std::string& name, const std::string& file);
+    /// `name` of the table, empty for the file's top level, and `file` for messages. The table must outlive this.
+    TomlFields(const toml::table& table, std::string name, std::string file);
 
     bool has(const char* key);
 
@@ -49,8 +49,7 @@ class TomlFields {
     double number_of(const toml::node& node, const char* key, const Range& range) const;
 
     const toml::table& table_;
-    const std::string& name_;
-    const std::string& file_;
+    std::string name_, file_;
     std::set<std::string> asked_;
 };
 

@@ -108,7 +108,8 @@ TEST_CASE("surface file: faults of a quadric are told with file and line") {
     CHECK_THAT(error_of("[domain]\nx = [0, 1]\n"), Contains("there is no surface"));
     CHECK_THAT(error_of("quadric = 3\n"),
                Contains("s.toml:1:11: `quadric` is 3, an integer; write [quadric]"));
-    CHECK_THAT(error_of("[quadrics]\n"), Contains("s.toml:1:") && Contains("did you mean `quadric`?"));
+    CHECK_THAT(error_of("[quadrics]\n"),
+               Contains("s.toml:1:") && Contains("unknown table `quadrics`; did you mean `quadric`?"));
     CHECK_THAT(error_of("[quadric\n"), Contains("s.toml:1:") && Contains("not TOML"));
     CHECK_THAT(error_of(quadric("shape = \"sphere\"\nradius = 1\n[bezier]\nheights = [[0, 1], [2, 3]]\n")),
                Contains("s.toml:4:") && Contains("[quadric] and [bezier] are both there"));
