@@ -3,8 +3,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-VERTEX = np.dtype([(name, "<f8") for name in ("x", "y", "z")]
-                  + [(name, "<f4") for name in ("nx", "ny", "nz", "s", "t")])
+TYPES = {"double": "<f8", "float": "<f4", "uchar": "u1", "ushort": "<u2", "int": "<i4", "uint": "<u4"}
 
 
 @dataclass
@@ -36,17 +35,16 @@ class EmittedMesh:
 def read_mesh(path):
     content = path.read_bytes()
     header_end = content.index(b"end_header\n") + len(b"end_header\n")
-    counts, face_fields, element = {}, [], ""
-    types = {"uchar": "u1", "int": "<i4", "uint": "<u4", "ushort": "<u2"}
+    counts, fields, element = {}, {}, ""
     for line in content[:header_end].decode().splitlines():
         words = line.split()
         if words[0] == "element":
             element = words[1]
-            counts[element] = int(words[2])
-        elif words[0] == "property" and element == "face" and words[1] != "list":
-            face_fields.append((words[2], types[words[1]]))
-    vertices = np.frombuffer(content, VERTEX, counts["vertex"], header_end)
-    face = np.dtype([("corners", "u1"), ("vertices", "<i4", 3), *face_fields])
+            counts[element], fields[element] = int(words[2]), []
+        elif words[0] == "property" and words[1] != "list":
+            fields[element].append((words[2], TYPES[words[1]]))
+    vertices = np.frombuffer(content, np.dtype(fields["vertex"]), counts["vertex"], header_end)
+    face = np.dtype([("corners", "u1"), ("vertices", "<i4", 3), *fields["face"]])
     faces = np.frombuffer(content, face, counts["face"], header_end + vertices.nbytes)
     return EmittedMesh(
         positions=np.stack([vertices[name] for name in "xyz"], axis=1),

@@ -113,8 +113,8 @@ TEST_CASE("round trip: on the default plane a vertex lies on the dome at the tex
           here.path());
     const RecordedMesh mesh = mesh_of_run("dome.job.toml", {}, here.path());
     CHECK(mesh.triangles.size() > 1000);
-    const auto centre = [](float t) {  // of the texel that t reads, in the plane -1..1
-        return (std::min(255.0, std::floor(256 * static_cast<double>(t))) + 0.5) / 128 - 1;
+    const auto centre = [](double t) {  // of the texel that t reads, in the plane -1..1
+        return (std::min(255.0, std::floor(256 * t)) + 0.5) / 128 - 1;
     };
     double worst = 0, highest = 0;
     for (std::size_t k = 0; k < mesh.positions.size(); ++k) {

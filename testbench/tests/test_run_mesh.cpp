@@ -1,5 +1,5 @@
 #include <catch2/catch.hpp>
-#include <cstring>
+#include <cmath>
 
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/error.h"
@@ -37,12 +37,13 @@ EmittedTriangle triangle(const Corner& a, const Corner& b, const Corner& c) {
     return t;
 }
 
-BaseMesh read_back(const std::vector<EmittedTriangle>& triangles, const Job& job = {}) {
+BaseMesh read_back(const std::vector<EmittedTriangle>& triangles, const Job& job = {},
+                   std::uint32_t map_size = 8) {
     const TestFolder run;
     EmittedMesh mesh;
     mesh.triangles = triangles;
     MeshUnits units;
-    units.map.width = units.map.height = 8;
+    units.map.width = units.map.height = map_size;
     write_ply(run.path() / "mesh.ply", mesh, units);
     write_file(run.path() / "job.toml", dump_job(job, run.path()));
     return read_run_mesh(run.path());
@@ -78,6 +79,16 @@ TEST_CASE("a run's mesh as a base: displaced vertices, shared, complete") {
     CHECK(far.handedness == 1);
     CHECK(far.texture == glm::dvec2(1, 1));
     CHECK(mesh.texture_scale.mean_u == 4);
+}
+
+TEST_CASE("texture coordinates keep every bit, whatever the map's size") {
+    // as a float, 2999 + 1/4096 of 3000 texels is a third of a step off: two sides of a seam would round apart
+    Corner fine = corner(4, 4);
+    fine.texture = {2999 * texel + 1, 1001 * texel + 4095};
+    const BaseMesh mesh = read_back({triangle(corner(0, 0), corner(4, 0), fine)}, {}, 3000);
+    const glm::dvec2 steps = mesh.vertices[2].texture * (3000.0 * texel);
+    CHECK(std::abs(steps.x - fine.texture.u) < 1e-6);
+    CHECK(std::abs(steps.y - fine.texture.v) < 1e-6);
 }
 
 TEST_CASE(
