@@ -47,8 +47,13 @@ def perform(experiment, options):
         return Section(claims=[Claim(experiment.shows, experiment.figure, str(error), verdict)]), []
     print(f"  {experiment.name}: done", file=sys.stderr, flush=True)
     # The page names no place of this machine.
-    return section, [command.replace(f"{folder}/", f"runs/figures/runs/{experiment.name}/").replace(f"{ROOT}/", "")
-                     for command in study.commands]
+    names = ((f"{folder}/", f"runs/figures/runs/{experiment.name}/"), (str(study.data), "DATA"), (f"{ROOT}/", ""))
+    commands = []
+    for command in study.commands:
+        for place, name in names:
+            command = command.replace(place, name)
+        commands.append(command)
+    return section, commands
 
 
 def main():
@@ -60,7 +65,7 @@ def main():
     names = [name for name in NAMES if not options.only or name in options.only]
     order = sorted(names, key=lambda name: LONGEST_FIRST.index(name) if name in LONGEST_FIRST else len(LONGEST_FIRST))
     options.output.mkdir(parents=True, exist_ok=True)
-    print(f"{len(names)} experiments, {options.jobs} at a time", file=sys.stderr)
+    print(f"{len(names)} experiments, {options.jobs} at a time; data folder {options.data}", file=sys.stderr)
     with ThreadPoolExecutor(options.jobs) as pool:
         pending = {name: pool.submit(perform, load(name), options) for name in order}
         results = {name: pending[name].result() for name in names}

@@ -12,6 +12,7 @@ class EmittedMesh:
     texture: np.ndarray  # n x 2, 0..1 over the map, t from its bottom row
     triangles: np.ndarray  # m x 3 vertex numbers
     generation: np.ndarray  # m
+    stopped_by: np.ndarray  # m, bits as the file's header explains them
 
     def texture_areas(self):
         a, b, c = (self.texture[self.triangles[:, k]] for k in range(3))
@@ -50,15 +51,21 @@ def read_mesh(path):
         positions=np.stack([vertices[name] for name in "xyz"], axis=1),
         texture=np.stack([vertices[name] for name in "st"], axis=1).astype(float),
         triangles=faces["vertices"],
-        generation=faces["generation"].astype(int))
+        generation=faces["generation"].astype(int),
+        stopped_by=faces["stopped_by"].astype(int))
+
+
+def values_at(mesh, image):
+    """The values that an image of the map, top row first, has at the triangles' centres."""
+    rows, columns = image.shape
+    centres = mesh.centres()
+    column = np.clip((centres[:, 0] * columns).astype(int), 0, columns - 1)
+    row = np.clip(((1 - centres[:, 1]) * rows).astype(int), 0, rows - 1)
+    return image[row, column]
 
 
 def density_in(mesh, region):
     """Triangles per unit of texture area where `region` (a boolean image of the map, top row first) is true: by the
     triangles' centres. Of several regions the quotients say where the detail is."""
-    rows, columns = region.shape
-    centres = mesh.centres()
-    column = np.clip((centres[:, 0] * columns).astype(int), 0, columns - 1)
-    row = np.clip(((1 - centres[:, 1]) * rows).astype(int), 0, rows - 1)
     share = region.mean()
-    return region[row, column].sum() / share if share > 0 else 0.0
+    return float(values_at(mesh, region).sum() / share) if share > 0 else 0.0

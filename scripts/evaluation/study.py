@@ -50,7 +50,7 @@ class Study:
     def data_file(self, name):
         path = self.data / name
         if not path.is_file():
-            raise MissingData(f"{name} is not in {self.data} (choose the folder with --data)")
+            raise MissingData(f"{name} is not in the data folder (scripts/figures --data FOLDER)")
         return path
 
     def call(self, *arguments, exit_codes=(0,)):
@@ -60,6 +60,21 @@ class Study:
         if done.returncode not in exit_codes:
             raise ProgramError(f"exit code {done.returncode} of {shlex.join(command)}\n{done.stderr.strip()}")
         return done
+
+    def tune(self, name, triangles, job=None, tests="normal,summed_height", settings=None, grid=None):
+        """A run with the thresholds (and, with `grid`, the base mesh) of least RMS error for so many triangles."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+        tuned = self.folder / f"{name}.toml"
+        arguments = ["tune"] + ([] if job is None else [JOBS / f"{job}.toml"])
+        arguments += ["--triangles", triangles, "--tests", tests, "--output", tuned, "--data", self.data]
+        if grid is not None:
+            arguments += ["--grid", grid]
+        for key, value in (settings or {}).items():
+            arguments += ["--set", f"{key}={toml(value)}"]
+        self.call(*arguments)
+        run = self.run(name, tuned)
+        run.tuned = json.loads(tuned.with_suffix(".json").read_text())
+        return run
 
     def run(self, name, job=None, settings=None, exit_codes=(0,)):
         """job: a name in testbench/jobs, a path, or None for the half donut."""
@@ -81,6 +96,7 @@ class Run:
         self.study = study
         self.folder = folder
         self.exit_code = exit_code
+        self.tuned = None  # what `tessera tune` found, as its JSON says
 
     @cached_property
     def figures(self):

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <regex>
 
+#include "testbench/tests/checkout.h"
 #include "testbench/tests/program_runner.h"
 
 using namespace tessera;
@@ -37,42 +38,6 @@ std::vector<std::string> commands_in(const std::string& markdown) {
     return commands;
 }
 
-/// A checkout to run commands in: the project's own scripts, everything else by link, the program of this build where
-/// scripts/run puts it. cmake and ctest do nothing there, so that nothing is built and no test runs tests; nor does
-/// gtkwave, which would wait for its user.
-class Checkout {
-  public:
-    Checkout() {
-        fs::create_directories(root() / "tools");
-        for (const char* const tool : {"cmake", "ctest", "gtkwave"}) {
-            write_all(root() / "tools" / tool, "#!/bin/sh\nexit 0\n");
-            fs::permissions(root() / "tools" / tool, fs::perms::owner_all);
-        }
-        for (const auto& entry : fs::directory_iterator(source_folder())) {
-            const std::string name = entry.path().filename().string();
-            if (name.rfind("build", 0) != 0 && name != ".git" && name != "scripts" && name != "runs")
-                fs::create_symlink(entry.path(), root() / name);
-        }
-        // Copied: a linked script would find its way back to the original.
-        fs::copy(source_folder() / "scripts", root() / "scripts");
-        for (const char* const preset : {"release", "debug", "asan"}) {
-            fs::create_directories(root() / "build" / preset / "testbench/program");
-            fs::create_symlink(TESSERA_PROGRAM, root() / "build" / preset / "testbench/program/tessera");
-        }
-    }
-
-    fs::path root() const { return folder_.path() / "tessera"; }
-
-    ProgramEnd run(const std::string& command) const {
-        const std::string path = (root() / "tools").string() + ":" + std::getenv("PATH");
-        return run_program({"bash", "-euo", "pipefail", "-c", command}, root(), {},
-                           {{"PATH", path}, {"DISPLAY", ":0"}, {"TESSERA_SKIP_INSTALL", "1"}});
-    }
-
-  private:
-    TestFolder folder_;
-};
-
 /// What a command is to be held to.
 enum class Trial {
     run,    ///< run it, exit code 0
@@ -86,7 +51,7 @@ Trial trial_of(const std::string& command) {
     const auto says = [&](const char* words) { return std::regex_search(command, std::regex(words)); };
     if (says("^(git|sudo|apt|apt-get|docker|cd) "))
         return Trial::foreign;
-    if (says("^(\\.ci/|scripts/(check_|install))"))
+    if (says("^(\\.ci/|scripts/(check_|install)|scripts/figures$)"))
         return Trial::parse;
     if (says("^cmake .*--target "))
         return Trial::build;
