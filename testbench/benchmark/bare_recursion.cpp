@@ -22,12 +22,12 @@ TableLayout as_indices(const TableLayout& layout) {
     return {0, layout.columns, layout.rows, 1};
 }
 
-/// Not inline, as in the unit (normal_test.h): a design without it pays for no register it takes.
-[[gnu::noinline]] unsigned highlight_bit_of(const Vertex& i, const Vertex& j, const EdgeTests& edge,
-                                            const TestParameters& tests) {
-    return highlight_test(i.displaced_normal, j.displaced_normal, edge.displaced_normal, tests)
-               ? unsigned{highlight_bit}
-               : 0U;
+/// Apart from evaluate_edge and not inline, as in the unit (normal_test.h): a design without it pays for no register.
+[[gnu::noinline]] void test_for_highlight(TrianglePass& pass, int k, const TestParameters& tests) {
+    EdgeTests& edge = pass.edges[static_cast<std::size_t>(k)];
+    if (highlight_test(pass.edge_begin(k).displaced_normal, pass.edge_end(k).displaced_normal,
+                       edge.displaced_normal, tests))
+        edge.tests |= highlight_bit;
 }
 
 }  // namespace
@@ -123,8 +123,6 @@ void BareRecursion::evaluate_edge(TrianglePass& pass, int k) {
         tests |= tex_coord_bit;
     if (!r.tests.generation_test || generation_test(i, j, r.tests))
         tests |= generation_bit;
-    if (r.tests.highlight_test)
-        tests |= highlight_bit_of(i, j, edge, r.tests);
     edge.tests = static_cast<std::uint8_t>(tests);
 }
 
@@ -142,6 +140,8 @@ std::uint64_t BareRecursion::run(EmittedMesh& mesh) {
             unsigned stopped_by = 0;
             for (int k = 0; k < 3; ++k) {
                 evaluate_edge(pass, k);
+                if (setup_.registers.tests.highlight_test)
+                    test_for_highlight(pass, k, setup_.registers.tests);
                 const std::uint8_t tests = pass.edges[static_cast<std::size_t>(k)].tests;
                 if (split_decision(tests))
                     split |= 1u << k;
