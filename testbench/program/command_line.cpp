@@ -7,6 +7,7 @@
 
 #include "testbench/common/error.h"
 #include "testbench/program/render_options.h"
+#include "testbench/program/tune_options.h"
 
 namespace tessera {
 
@@ -107,6 +108,12 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     render_options.add_to(*render);
     render->add_option("--data", data, "folder that `data:` paths of the run's job begin at");
 
+    CLI::App* const tune = app.add_subcommand(
+        "tune", "find a job's thresholds for a number of triangles or a bound on the error");
+    TuneOptions tune_options;
+    tune_options.add_to(*tune);
+    tune->add_option("--data", data, "folder that `data:` paths of the job begin at; $TESSERA_DATA likewise");
+
     CLI::App* const keys =
         app.add_subcommand("keys", "print every key of a job file: unit, default, range, meaning");
 
@@ -122,8 +129,9 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     }
     if (app.get_subcommands().empty())
         throw InputError(
-            "say what to do: `tessera run`, `tessera compare`, `tessera render` or `tessera keys`; see "
-            "`tessera --help`");
+            "say what to do: `tessera run`, `tessera compare`, `tessera render`, `tessera tune` or `tessera "
+            "keys`; "
+            "see `tessera --help`");
     if (job->count() > 0 && command.job_file.empty())
         throw InputError("JOB is empty: name a job file, or leave it out for the default job");
     command.verb = keys->parsed()      ? Command::Verb::keys
@@ -133,6 +141,10 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     if (render->parsed()) {
         command.verb = Command::Verb::render;
         command.render = render_options.request();
+    }
+    if (tune->parsed()) {
+        command.verb = Command::Verb::tune;
+        command.tune = tune_options.order();
     }
     traces.apply_to(command);
     return command;

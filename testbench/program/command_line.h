@@ -5,12 +5,13 @@
 #include <vector>
 
 #include "testbench/program/render_command.h"
+#include "testbench/program/tune_command.h"
 
 namespace tessera {
 
 /// What the user asked for.
 struct Command {
-    enum class Verb { run, compare, render, keys } verb = Verb::run;
+    enum class Verb { run, compare, render, tune, keys } verb = Verb::run;
     std::string job_file;               ///< empty: the default job
     std::string run_folder;             ///< compare: what a run left
     std::vector<std::string> settings;  ///< --set a.b=value, in order
@@ -18,6 +19,7 @@ struct Command {
     bool dump_config = false;           ///< print the effective job and stop
     bool fst = false;                   ///< waveforms also as FST
     RenderRequest render;               ///< Verb::render
+    TuneOrder tune;                     ///< Verb::tune
     std::string trace_option;           ///< --trace or --trace-units, if given: it wants something to trace
 };
 

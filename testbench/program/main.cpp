@@ -15,6 +15,7 @@
 #include "testbench/program/compare_run.h"
 #include "testbench/program/render_command.h"
 #include "testbench/program/run_job.h"
+#include "testbench/program/tune_command.h"
 
 namespace {
 
@@ -33,6 +34,8 @@ tessera::ExitCode obey(const std::optional<tessera::Command>& command) {
         return tessera::render_command(command->render, command->data_folder);
     if (command->verb == tessera::Command::Verb::compare)
         return tessera::compare_run(*command);
+    if (command->verb == tessera::Command::Verb::tune)
+        return tessera::tune_command(command->tune, command->data_folder);
     fmt::print("{}", tessera::document_keys());
     return tessera::ExitCode::fine;
 }

@@ -96,14 +96,14 @@ RefinementForest::Edge RefinementForest::make_edge(const Vertex& i, const Vertex
     return edge;
 }
 
-std::uint32_t RefinementForest::edge_between(std::uint32_t i, std::uint32_t j) {
+const RefinementForest::Edge& RefinementForest::edge_between(std::uint32_t i, std::uint32_t j) {
     const std::uint64_t key = (std::uint64_t{std::min(i, j)} << 32) | std::max(i, j);
     const auto [at, is_new] = edge_of_.emplace(key, static_cast<std::uint32_t>(edges_.size()));
     if (is_new) {
         const Vertex from = vertices_[i], to = vertices_[j];  // make_edge() moves them
         edges_.push_back(make_edge(from, to));
     }
-    return at->second;
+    return edges_[at->second];
 }
 
 std::uint32_t RefinementForest::make_node(const std::array<std::uint32_t, 3>& vertices, std::uint32_t base) {
@@ -113,7 +113,7 @@ std::uint32_t RefinementForest::make_node(const std::array<std::uint32_t, 3>& ve
     for (std::size_t k = 0; k < 3; ++k)
         node.edges[k] = edge_between(vertices[k], vertices[(k + 1) % 3]);
     const auto position = [&](std::uint8_t index) -> const datapath::Position& {
-        return vertices_[index < 3 ? node.vertices[index] : edges_[node.edges[index - 3u]].middle].displaced;
+        return vertices_[index < 3 ? node.vertices[index] : node.edges[index - 3u].middle].displaced;
     };
     for (unsigned whole = 0; whole < 3; ++whole)
         if (datapath::choose_second_diagonal(7u & ~(1u << whole), datapath::Triangulation::shorter, position))
@@ -130,7 +130,7 @@ std::uint32_t RefinementForest::children_of(std::uint32_t number, unsigned split
     const datapath::ChildIndices indices = datapath::triangulate(split, second);
     const auto first = static_cast<std::uint32_t>(nodes_.size());
     const auto vertex = [&](std::uint8_t index) {
-        return index < 3 ? parent.vertices[index] : edges_[parent.edges[index - 3u]].middle;
+        return index < 3 ? parent.vertices[index] : parent.edges[index - 3u].middle;
     };
     for (int k = 0; k < indices.count; ++k) {
         const auto& corners = indices.children[static_cast<std::size_t>(k)];
@@ -163,7 +163,7 @@ Outcome RefinementForest::walk(const datapath::TestParameters& tests, datapath::
             const Node& node = nodes_[number];
             unsigned split = 0;
             for (unsigned k = 0; k < 3; ++k)
-                if (splits(edges_[node.edges[k]], tests))
+                if (splits(node.edges[k], tests))
                     split |= 1u << k;
             if (split == 0) {
                 if (++outcome.triangles > limit) {
@@ -194,6 +194,7 @@ Outcome RefinementForest::count(const datapath::TestParameters& tests, datapath:
 Outcome RefinementForest::measure(const datapath::TestParameters& tests,
                                   datapath::Triangulation triangulation, std::uint64_t limit) {
     TexelError::Sum sum;
+    std::uint8_t inserted = 1;  // the generation its edges would insert, were they split
     Outcome outcome = walk(tests, triangulation, limit, [&](Node& node) {
         if (!node.measured) {
             node.error = errors_->of(
@@ -202,7 +203,10 @@ Outcome RefinementForest::measure(const datapath::TestParameters& tests,
             node.measured = true;
         }
         sum.add(node.error);
+        for (const Edge& edge : node.edges)
+            inserted = std::max(inserted, edge.generation);
     });
+    outcome.generation = static_cast<std::uint8_t>(inserted - 1);
     outcome.rms = sum.weight > 0 ? std::sqrt(sum.squares / sum.weight) : 0;
     outcome.max = sum.max;
     return outcome;

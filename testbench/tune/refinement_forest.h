@@ -15,9 +15,10 @@ namespace tessera {
 /// What one set of thresholds makes of the base mesh.
 struct Outcome {
     std::uint64_t triangles = 0;
-    bool complete = true;  ///< false: given up beyond the limit; the rest then tells nothing
-    double rms = 0;        ///< of TexelError, weighted; model units
-    double max = 0;        ///< model units
+    bool complete = true;         ///< false: given up beyond the limit; the rest then tells nothing
+    double rms = 0;               ///< of TexelError, weighted; model units
+    double max = 0;               ///< model units
+    std::uint8_t generation = 0;  ///< the highest of a vertex; counted where it is measured
 };
 
 /// All triangles the datapath makes of a job, whatever the thresholds: each is made once, when first met, and each edge
@@ -25,7 +26,7 @@ struct Outcome {
 /// decided. New thresholds so cost three compares an edge, about a thirtieth of the datapath's work. The mesh is the
 /// datapath's, bit for bit (tested).
 ///
-/// About 100 bytes a triangle and 200 an edge ever met. Registers other than the tests' thresholds, and the
+/// About 200 bytes a triangle and 200 an edge ever met. Registers other than the tests' thresholds, and the
 /// triangulation, are the setup's and must not change.
 class RefinementForest {
   public:
@@ -55,7 +56,8 @@ class RefinementForest {
         std::uint8_t generation = 0;  ///< of the vertex inserted
     };
     struct Node {
-        std::array<std::uint32_t, 3> vertices, edges;
+        std::array<Edge, 3> edges;  ///< copies: a walk reads them one after another
+        std::array<std::uint32_t, 3> vertices;
         std::array<std::uint32_t, 10> children;  ///< first child, by how it was split; 0: not made yet
         std::uint32_t base;
         std::uint8_t shorter_is_second = 0;  ///< bit k: with edge k alone whole
@@ -69,7 +71,7 @@ class RefinementForest {
     bool splits(const Edge& edge, const datapath::TestParameters& tests) const;
     std::uint32_t make_node(const std::array<std::uint32_t, 3>& vertices, std::uint32_t base);
     std::uint32_t children_of(std::uint32_t node, unsigned split, bool second);
-    std::uint32_t edge_between(std::uint32_t i, std::uint32_t j);
+    const Edge& edge_between(std::uint32_t i, std::uint32_t j);
     Edge make_edge(const datapath::Vertex& i, const datapath::Vertex& j);
 
     BareRecursion datapath_;
