@@ -78,20 +78,15 @@ void choose_tests(const TuneOrder& order, TuneRequest& request) {
     const auto listed = [&](const char* name) {
         return std::find(order.tests.begin(), order.tests.end(), name) != order.tests.end();
     };
+    const bool by_job = order.tests.empty();
     request.space = order.vary;
-    if (order.tests.empty()) {
-        request.space.normal = tests.normal;
-        request.space.summed_height = tests.summed_height;
-        request.space.view = tests.view;
-    } else {
-        // a test whose threshold is looked for is on
-        tests.normal = tests.normal || (request.space.normal = listed("normal"));
-        tests.summed_height = tests.summed_height || (request.space.summed_height = listed("summed_height"));
-        tests.view = tests.view || (request.space.view = listed("view"));
-        request.space.normal = listed("normal");
-        request.space.summed_height = listed("summed_height");
-        request.space.view = listed("view");
-    }
+    request.space.normal = by_job ? tests.normal : listed("normal");
+    request.space.summed_height = by_job ? tests.summed_height : listed("summed_height");
+    request.space.view = by_job ? tests.view : listed("view");
+    // a test whose threshold is looked for is on
+    tests.normal = tests.normal || request.space.normal;
+    tests.summed_height = tests.summed_height || request.space.summed_height;
+    tests.view = tests.view || request.space.view;
     if (!tests.normal && !tests.summed_height)
         throw InputError(
             "tests.normal and tests.summed_height are both off: no edge is ever split; switch one on, or "

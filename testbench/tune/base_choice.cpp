@@ -25,9 +25,9 @@ std::vector<double> lattice_lines(std::int64_t texels, std::int64_t spacing) {
     std::vector<double> lines{0};
     const std::int64_t cells = texels / spacing - 1;  // between the first and the last inner line
     if (cells >= 0) {
-        const std::int64_t rest = texels - cells * spacing;
+        const std::int64_t before = (texels - cells * spacing) / 2;
         for (std::int64_t k = 0; k <= cells; ++k)
-            lines.push_back(static_cast<double>(rest / 2 + k * spacing) + 0.5);
+            lines.push_back(static_cast<double>(before + k * spacing) + 0.5);
     }
     lines.push_back(static_cast<double>(texels));
     return lines;

@@ -127,21 +127,22 @@ void refuse_beyond_finest(const TuneRequest& request, const std::vector<Explored
 
 [[noreturn]] void refuse_error(const TuneRequest& request, const std::vector<Explored>& explored, double unit,
                                const std::string& unit_name) {
-    const Explored* least = &explored.front();
+    const Outcome* least = nullptr;
     for (const Explored& e : explored)
-        if (request.goal.error_of(e.finest) < request.goal.error_of(least->finest))
-            least = &e;
-    if (!least->finest.complete)
+        if (e.found.least_error &&
+            (least == nullptr || request.goal.error_of(*e.found.least_error) < request.goal.error_of(*least)))
+            least = &*e.found.least_error;
+    if (least == nullptr)
         throw InputError(fmt::format(
-            "--error {:.6g}: needs more than {} triangles, and larger meshes are not searched: ask "
-            "for a larger error, or raise limits.triangles",
+            "--error {:.6g}: no mesh has at most {} triangles, and larger ones are not searched: take a "
+            "coarser base mesh, or raise limits.triangles",
             request.goal.error / unit, request.goal.most_triangles));
     throw InputError(
-        fmt::format("--error {:.6g}: with every threshold at 0 the {} error is {:.6g} {} at {} triangles, "
-                    "and no less can "
-                    "be had: ask for at least that",
+        fmt::format("--error {:.6g}: the least {} error that was found is {:.6g} {}, with {} triangles: ask "
+                    "for at least that, "
+                    "or try other base meshes (--grid auto)",
                     request.goal.error / unit, request.goal.largest ? "largest" : "RMS",
-                    request.goal.error_of(least->finest) / unit, unit_name, least->finest.triangles));
+                    request.goal.error_of(*least) / unit, unit_name, least->triangles));
 }
 
 }  // namespace
@@ -187,8 +188,6 @@ TuneResult tune(const TuneRequest& request, const HeightMap& map, const std::fil
             e.finest = ground.forest.count(search.finest(), triangulation, goal.triangles);
         search.explore();
         e.found = search.found();
-        if (goal.triangles == 0 && !e.found.best)
-            e.finest = ground.forest.measure(search.finest(), triangulation, goal.most_triangles);
     });
     if (goal.triangles > 0)
         refuse_beyond_finest(request, explored);
@@ -206,7 +205,7 @@ TuneResult tune(const TuneRequest& request, const HeightMap& map, const std::fil
         refuse_error(request, explored, unit.model_units, unit.map_units ? "map units" : "model units");
     }
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return better(*explored[a].found.best, *explored[b].found.best, goal);
+        return better(explored[a].found.best->point, explored[b].found.best->point, goal);
     });
     order.resize(std::min(order.size(), most_refined));
     SharedProgress refining(order.size(), on_progress);
@@ -226,15 +225,15 @@ TuneResult tune(const TuneRequest& request, const HeightMap& map, const std::fil
 
     TuneResult result;
     for (std::size_t k = 0; k < bases; ++k) {
-        for (const TunedPoint& point : explored[k].found.tried)
-            result.tried.push_back({k, point});
+        for (const ThresholdSearch::Candidate& candidate : explored[k].found.tried)
+            result.tried.push_back({k, candidate.point});
         result.evaluations += explored[k].found.evaluations;
     }
     result.base = order.front();
     for (const std::size_t k : order)
-        if (better(*explored[k].found.best, *explored[result.base].found.best, goal))
+        if (better(explored[k].found.best->point, explored[result.base].found.best->point, goal))
             result.base = k;
-    result.point = *explored[result.base].found.best;
+    result.point = explored[result.base].found.best->point;
     const BaseChoice& base = request.bases[result.base];
     result.job = job_with_base(request.job, base);
     result.job.tests = result.point.tests;
