@@ -18,10 +18,14 @@ class BareRecursion {
     /// Tessellates every base triangle; returns the edges evaluated. `mesh` is cleared first, its memory kept.
     std::uint64_t run(EmittedMesh& mesh);
 
-  private:
+    /// Its parts, for who walks in another way. What the machine does to a base triangle's vertices on its first pass:
     void complete_base(datapath::Triangle& triangle);
+    /// All that a pass finds out about edge k, and decides by the setup's registers.
     void evaluate_edge(datapath::TrianglePass& pass, int k);
+    /// The Summed Height Test's sum of the map's codes.
     std::uint64_t sum_around(const datapath::TexCoord& t, const datapath::RectangleSize& size) const;
+
+  private:
     datapath::Direction map_normal_at(const datapath::TexCoord& t) const;
     std::uint32_t code_at(const datapath::TexCoord& t) const;
 

@@ -228,39 +228,6 @@ void lay_out_tables(Setup& setup) {
                                      registers.map.height + 1, entry(registers.formats.summed_height.bits)};
 }
 
-datapath::TestParameters make_tests(const Job& job, const Setup& setup) {
-    const datapath::Formats& formats = setup.registers.formats;
-    const auto threshold = [](const char* key, double value, double scale, double limit) {
-        const double fixed = std::floor(value * scale);
-        if (fixed > limit)
-            throw InputError(fmt::format("{} = {} does not fit its register; the largest is {}", key, value,
-                                         limit / scale));
-        return static_cast<std::uint64_t>(fixed);
-    };
-    const auto& tests = job.tests;
-    datapath::TestParameters result;
-    result.normal_test = tests.normal;
-    result.summed_height_test = tests.summed_height;
-    result.view_test = tests.view;
-    result.tex_coord_test = tests.tex_coord;
-    result.generation_test = tests.generation;
-    result.normal_threshold = static_cast<std::uint32_t>(
-        threshold("tests.normal_threshold", tests.normal_threshold, std::ldexp(1.0, formats.normal.fraction),
-                  static_cast<double>(2 * formats.normal.highest + 1)));
-    const bool area = tests.summed_height_unit == SummedHeightUnit::area;
-    const double highest_code = static_cast<double>(formats.displacement.highest);
-    result.summed_height_unit = area ? datapath::SummedHeightUnit::area : datapath::SummedHeightUnit::sum;
-    // sum: compared with |2 S_ij - S_i - S_j|, four times the paper's difference
-    result.summed_height_threshold =
-        threshold("tests.summed_height_threshold", tests.summed_height_threshold,
-                  highest_code * (area ? 1 : 4), area ? std::ldexp(1.0, 18) : std::ldexp(1.0, 50));
-    result.view_threshold = static_cast<std::uint32_t>(threshold("tests.view_threshold", tests.view_threshold,
-                                                                 std::ldexp(1.0, formats.screen.fraction),
-                                                                 std::ldexp(1.0, formats.screen.bits)));
-    result.generation_limit = static_cast<std::uint32_t>(tests.generation_limit);
-    return result;
-}
-
 /// View space: x right, y up, z towards the viewer. Pixels: x right, y up, (0, 0) the viewport's lower left corner.
 struct View {
     glm::dvec3 right, up, backward;
@@ -410,6 +377,38 @@ Design make_design(const Job& job) {
 
 }  // namespace
 
+datapath::TestParameters make_tests(const Job& job, const datapath::Formats& formats) {
+    const auto threshold = [](const char* key, double value, double scale, double limit) {
+        const double fixed = std::floor(value * scale);
+        if (fixed > limit)
+            throw InputError(fmt::format("{} = {} does not fit its register; the largest is {}", key, value,
+                                         limit / scale));
+        return static_cast<std::uint64_t>(fixed);
+    };
+    const auto& tests = job.tests;
+    datapath::TestParameters result;
+    result.normal_test = tests.normal;
+    result.summed_height_test = tests.summed_height;
+    result.view_test = tests.view;
+    result.tex_coord_test = tests.tex_coord;
+    result.generation_test = tests.generation;
+    result.normal_threshold = static_cast<std::uint32_t>(
+        threshold("tests.normal_threshold", tests.normal_threshold, std::ldexp(1.0, formats.normal.fraction),
+                  static_cast<double>(2 * formats.normal.highest + 1)));
+    const bool area = tests.summed_height_unit == SummedHeightUnit::area;
+    const double highest_code = static_cast<double>(formats.displacement.highest);
+    result.summed_height_unit = area ? datapath::SummedHeightUnit::area : datapath::SummedHeightUnit::sum;
+    // sum: compared with |2 S_ij - S_i - S_j|, four times the paper's difference
+    result.summed_height_threshold =
+        threshold("tests.summed_height_threshold", tests.summed_height_threshold,
+                  highest_code * (area ? 1 : 4), area ? std::ldexp(1.0, 18) : std::ldexp(1.0, 50));
+    result.view_threshold = static_cast<std::uint32_t>(threshold("tests.view_threshold", tests.view_threshold,
+                                                                 std::ldexp(1.0, formats.screen.fraction),
+                                                                 std::ldexp(1.0, formats.screen.bits)));
+    result.generation_limit = static_cast<std::uint32_t>(tests.generation_limit);
+    return result;
+}
+
 Setup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& map) {
     Setup setup;
     datapath::Registers& registers = setup.registers;
@@ -430,7 +429,7 @@ Setup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& map) {
     make_base_triangles(mesh, setup);
     choose_summed_height_bits(job, setup);
     lay_out_tables(setup);
-    registers.tests = make_tests(job, setup);
+    registers.tests = make_tests(job, registers.formats);
     set_highlight_test(job, setup);
     registers.transform = make_transform(job, setup);
     registers.formats.view_distance = view_distance_format(registers.transform, registers.formats.position);

@@ -47,4 +47,7 @@ struct Setup {
 /// beyond the format, a threshold beyond its register), with value, limit and what to do.
 Setup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& map);
 
+/// The tests' part of it alone: the registers a job's [tests] are rounded to. InputError as above.
+datapath::TestParameters make_tests(const Job& job, const datapath::Formats& formats);
+
 }  // namespace tessera

@@ -8,6 +8,7 @@
 #include "testbench/common/error.h"
 #include "testbench/program/bake_options.h"
 #include "testbench/program/render_options.h"
+#include "testbench/program/tune_options.h"
 
 namespace tessera {
 
@@ -114,6 +115,12 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     bake_options.add_to(*bake);
     bake->add_option("--data", data, "folder that `data:` paths of the base mesh's job begin at");
 
+    CLI::App* const tune = app.add_subcommand(
+        "tune", "find a job's thresholds for a number of triangles or a bound on the error");
+    TuneOptions tune_options;
+    tune_options.add_to(*tune);
+    tune->add_option("--data", data, "folder that `data:` paths of the job begin at; $TESSERA_DATA likewise");
+
     CLI::App* const keys =
         app.add_subcommand("keys", "print every key of a job file: unit, default, range, meaning");
 
@@ -129,7 +136,8 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     }
     if (app.get_subcommands().empty())
         throw InputError(
-            "say what to do: `tessera run`, `tessera compare`, `tessera render`, `tessera bake` or `tessera "
+            "say what to do: `tessera run`, `tessera compare`, `tessera render`, `tessera bake`, `tessera "
+            "tune` or `tessera "
             "keys`; "
             "see `tessera --help`");
     if (job->count() > 0 && command.job_file.empty())
@@ -145,6 +153,10 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     if (bake->parsed()) {
         command.verb = Command::Verb::bake;
         command.bake = bake_options.request();
+    }
+    if (tune->parsed()) {
+        command.verb = Command::Verb::tune;
+        command.tune = tune_options.order();
     }
     traces.apply_to(command);
     return command;

@@ -16,6 +16,7 @@
 #include "testbench/program/compare_run.h"
 #include "testbench/program/render_command.h"
 #include "testbench/program/run_job.h"
+#include "testbench/program/tune_command.h"
 
 namespace {
 
@@ -36,6 +37,8 @@ tessera::ExitCode obey(const std::optional<tessera::Command>& command) {
         return tessera::bake_command(command->bake, command->data_folder);
     if (command->verb == tessera::Command::Verb::compare)
         return tessera::compare_run(*command);
+    if (command->verb == tessera::Command::Verb::tune)
+        return tessera::tune_command(command->tune, command->data_folder);
     fmt::print("{}", tessera::document_keys());
     return tessera::ExitCode::fine;
 }

@@ -14,8 +14,7 @@
 #include "testbench/host/inputs.h"
 #include "testbench/host/simulation.h"
 #include "testbench/job/dump_job.h"
-#include "testbench/job/read_job.h"
-#include "testbench/job/validate_job.h"
+#include "testbench/program/load_job.h"
 #include "testbench/program/output_folder.h"
 #include "testbench/program/progress.h"
 #include "testbench/program/render_command.h"
@@ -33,14 +32,6 @@
 namespace tessera {
 
 namespace {
-
-Job load_job(const Command& command) {
-    Job job = command.job_file.empty() ? Job{} : read_job(command.job_file);
-    for (const std::string& setting : command.settings)
-        apply_setting(job, setting);
-    validate(job);
-    return job;
-}
 
 /// What was mended in the job's mesh and map on the way in joins the setup's own remarks.
 Setup load_setup(const Job& job, const std::filesystem::path& data_folder) {
@@ -221,7 +212,7 @@ Ending run_once(const Job& job, const Command& command, const std::string& name)
 }  // namespace
 
 ExitCode run_job(const Command& command) {
-    const Job job = load_job(command);
+    const Job job = load_job(command.job_file, command.settings);
     if (command.dump_config) {
         fmt::print("{}", dump_job(job));
         return ExitCode::fine;

@@ -1,0 +1,351 @@
+#include <algorithm>
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+#include <set>
+#include <tuple>
+
+#include "testbench/benchmark/bare_recursion.h"
+#include "testbench/common/error.h"
+#include "testbench/host/inputs.h"
+#include "testbench/measure/height_field.h"
+#include "testbench/meshes/obj_reader.h"
+#include "testbench/tune/threshold_level.h"
+#include "testbench/tune/tune.h"
+#include "testbench/tune/tune_report.h"
+
+using namespace tessera;
+using Catch::Contains;
+
+namespace {
+
+/// Half a donut on 18 triangles, small enough to try thousands of thresholds.
+Job small_job() {
+    Job job;
+    job.map.width = 48;
+    job.map.height = 40;
+    job.tests.view = false;
+    return job;
+}
+
+TuneRequest request_for(const Job& job) {
+    TuneRequest request;
+    request.job = job;
+    request.bases.emplace_back();
+    request.goal.most_triangles = 100000;
+    return request;
+}
+
+TuneResult tuned(const TuneRequest& request) {
+    return tune(request, load_map(request.job, {}), {}, [](const std::string&, double) {});
+}
+
+/// A job's tests and what measures them.
+struct Ground {
+    Job job;
+    HeightMap map;
+    BaseMesh base;
+    Setup setup;
+    TexelError errors;
+    RefinementForest forest;
+
+    explicit Ground(const Job& the_job)
+        : job(the_job),
+          map(load_map(job, {})),
+          base(load_mesh(job, {})),
+          setup(make_setup(job, base, map)),
+          errors(setup, map, DisplacementOf::from(job)),
+          forest(setup, &errors) {}
+
+    Outcome measure(const Job& of) {
+        return forest.measure(make_tests(of, setup.registers.formats), setup.registers.triangulation,
+                              1000000);
+    }
+};
+
+using Corners = std::array<std::array<std::int64_t, 5>, 3>;
+
+Corners corners_of(const std::array<datapath::Vertex, 3>& vertices) {
+    Corners corners{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const datapath::Vertex& v = vertices[k];
+        corners[k] = {v.texture.u, v.texture.v, v.displaced.x, v.displaced.y, v.displaced.z};
+    }
+    return corners;
+}
+
+std::multiset<Corners> bare_mesh(const Setup& setup) {
+    EmittedMesh mesh;
+    BareRecursion(setup).run(mesh);
+    std::multiset<Corners> result;
+    for (const EmittedTriangle& t : mesh.triangles) {
+        std::array<datapath::Vertex, 3> vertices;
+        for (std::size_t k = 0; k < 3; ++k) {
+            vertices[k].texture = t.corners[k].texture;
+            vertices[k].displaced = t.corners[k].displaced;
+        }
+        result.insert(corners_of(vertices));
+    }
+    return result;
+}
+
+/// The best of a dense grid of both thresholds, each test also alone.
+TunedPoint brute_force(const Job& job, const TuneGoal& goal) {
+    Ground ground(job);
+    TunedPoint best;
+    bool found = false;
+    constexpr int step = levels_per_octave / 8;
+    const auto attempt = [&](const Job& trial) {
+        TunedPoint point;
+        point.tests = trial.tests;
+        point.outcome = ground.measure(trial);
+        const bool meets = goal.triangles > 0 ? point.outcome.triangles <= goal.triangles
+                                              : goal.error_of(point.outcome) <= goal.error;
+        if (meets && (!found || better(point, best, goal))) {
+            best = point;
+            found = true;
+        }
+    };
+    for (int normal = -8 * levels_per_octave; normal <= levels_per_octave + step; normal += step)
+        for (int sum = -8 * levels_per_octave; sum <= 5 * levels_per_octave + step; sum += step) {
+            Job trial = job;
+            trial.tests.normal = normal <= levels_per_octave;
+            trial.tests.summed_height = sum <= 5 * levels_per_octave;
+            if (trial.tests.normal)
+                trial.tests.normal_threshold = threshold_at(normal);
+            if (trial.tests.summed_height)
+                trial.tests.summed_height_threshold = threshold_at(sum);
+            if (trial.tests.normal || trial.tests.summed_height)
+                attempt(trial);
+        }
+    REQUIRE(found);
+    return best;
+}
+
+}  // namespace
+
+TEST_CASE("threshold levels rise, and are undone") {
+    CHECK(threshold_at(0) == 1);
+    CHECK(threshold_at(levels_per_octave) == 2);
+    CHECK(threshold_at(-3 * levels_per_octave) == 0.125);
+    CHECK(threshold_at(levels_per_octave / 2) == 1.4142);
+    for (int level = -20000; level < 20000; level += 37) {
+        const double threshold = threshold_at(level);
+        CHECK(threshold < threshold_at(level + 1));
+        CHECK(level_of(threshold) == level);
+        CHECK(level_of(threshold * 1.00001) == level + 1);
+    }
+}
+
+TEST_CASE("the forest's mesh is the datapath's, whatever the thresholds") {
+    std::mt19937 random(7);
+    const auto between = [&](double low, double high) {
+        return low * std::pow(high / low, static_cast<double>(random()) / 4294967295.0);
+    };
+    for (const MeshSource source : {MeshSource::plane, MeshSource::cylinder}) {
+        Job job = small_job();
+        job.mesh.source = source;
+        if (source == MeshSource::cylinder) {
+            job.map.address_u = Addressing::repeat;
+            job.displacement.scale = 0.1;
+        }
+        job.tests.view = true;
+        Ground ground(job);
+        for (int round = 0; round < 60; ++round) {
+            Job::Tests& tests = job.tests;
+            tests.normal = round % 7 != 1;
+            tests.summed_height = round % 7 != 2;
+            tests.tex_coord = round % 7 != 3;
+            tests.view = round % 2 == 0;
+            tests.normal_threshold = between(0.01, 1);
+            tests.summed_height_unit = round % 3 == 0 ? SummedHeightUnit::area : SummedHeightUnit::sum;
+            tests.summed_height_threshold =
+                tests.summed_height_unit == SummedHeightUnit::area ? between(0.002, 0.5) : between(0.02, 10);
+            tests.view_threshold = between(1, 200);
+            tests.generation_limit = 1 + round % 9;
+            job.hardware.triangulation = static_cast<Triangulation>(round % 3);
+            const Setup setup = make_setup(job, ground.base, ground.map);
+            std::multiset<Corners> mesh;
+            for (const auto& vertices :
+                 ground.forest.mesh(setup.registers.tests, setup.registers.triangulation))
+                mesh.insert(corners_of(vertices));
+            INFO("round " << round << ", " << mesh.size() << " triangles");
+            CHECK(mesh == bare_mesh(setup));
+            CHECK(ground.forest.count(setup.registers.tests, setup.registers.triangulation, mesh.size())
+                      .complete);
+            CHECK_FALSE(
+                ground.forest.count(setup.registers.tests, setup.registers.triangulation, mesh.size() - 1)
+                    .complete);
+        }
+    }
+}
+
+TEST_CASE("the search's error on a height field is the vertical error") {
+    Job job = small_job();
+    job.mesh.columns = 5;  // vertices off the texel grid, and on it
+    job.mesh.rows = 4;
+    for (const double threshold : {2.0, 0.3, 0.05}) {
+        job.tests.normal_threshold = threshold;
+        Ground ground(job);
+        EmittedMesh mesh;
+        BareRecursion(ground.setup).run(mesh);
+        const Outcome outcome = ground.measure(job);
+        const TunedFigures figures = measure_tuned(job, ground.base, ground.map, ground.setup, mesh);
+        CHECK(figures.what == "vertical error");
+        CHECK(outcome.triangles == figures.triangles);
+        CHECK(outcome.rms == Approx(figures.rms_model).epsilon(1e-3));
+        CHECK(outcome.max == Approx(figures.max_model).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("no budget is exceeded, and no dense grid of thresholds does better") {
+    Job job = small_job();
+    for (const bool largest : {false, true})
+        for (const std::uint64_t budget : {18u, 60u, 200u, 700u, 1500u}) {
+            TuneRequest request = request_for(job);
+            request.space.summed_height_unit = request.space.triangulation = request.space.generation_limit =
+                false;
+            request.goal.triangles = budget;
+            request.goal.largest = largest;
+            const TunedPoint point = tuned(request).point;
+            const TunedPoint brute = brute_force(job, request.goal);
+            INFO("budget " << budget << ", largest " << largest << ": " << point.outcome.triangles
+                           << " triangles " << request.goal.error_of(point.outcome) << ", brute force "
+                           << brute.outcome.triangles << " triangles " << request.goal.error_of(brute.outcome)
+                           << " at " << brute.tests.normal_threshold << " "
+                           << brute.tests.summed_height_threshold << " against " << point.tests.normal
+                           << point.tests.normal_threshold << " " << point.tests.summed_height_threshold);
+            CHECK(point.outcome.triangles <= budget);
+            CHECK(request.goal.error_of(point.outcome) <= 1.03 * request.goal.error_of(brute.outcome));
+        }
+}
+
+TEST_CASE("an error's bound is kept with about as few triangles as a dense grid finds") {
+    const Job job = small_job();
+    for (const double bound : {0.03, 0.015, 0.011}) {
+        TuneRequest request = request_for(job);
+        request.space.summed_height_unit = request.space.triangulation = request.space.generation_limit =
+            false;
+        request.goal.error = bound;
+        const TunedPoint point = tuned(request).point;
+        const TunedPoint brute = brute_force(job, request.goal);
+        INFO("bound " << bound << ": " << point.outcome.triangles << " triangles, brute force "
+                      << brute.outcome.triangles);
+        CHECK(point.outcome.rms <= bound);
+        CHECK(static_cast<double>(point.outcome.triangles) <=
+              1.03 * static_cast<double>(brute.outcome.triangles));
+    }
+}
+
+TEST_CASE("a View Test that is searched is used, and alone too") {
+    TuneRequest request = request_for(small_job());
+    request.job.tests.view = true;
+    request.goal.triangles = 400;
+    request.space.view = true;
+    const TuneResult all = tuned(request);
+    CHECK(all.point.outcome.triangles <= 400);
+    request.space.view = false;
+    const TuneResult fixed = tuned(request);
+    CHECK(fixed.point.tests.view_threshold == request.job.tests.view_threshold);
+    CHECK(all.point.outcome.rms <= fixed.point.outcome.rms);
+    request.space.view = true;
+    request.space.normal = request.space.summed_height = request.space.generation_limit = false;
+    request.job.tests.normal_threshold = request.job.tests.summed_height_threshold = 0.05;
+    const TuneResult alone = tuned(request);
+    CHECK(alone.point.tests.normal_threshold == request.job.tests.normal_threshold);
+    CHECK(alone.point.tests.view_threshold > 0);
+    CHECK(alone.point.outcome.triangles <= 400);
+    CHECK(alone.point.outcome.triangles > 300);
+}
+
+TEST_CASE("the result does not depend on the number of threads") {
+    TuneRequest request = request_for(small_job());
+    request.goal.triangles = 500;
+    const HeightMap map = load_map(request.job, {});
+    for (const BaseChoice& base : usual_bases(request.job.mesh, map.width, map.height, 250))
+        request.bases.push_back(base);
+    REQUIRE(request.bases.size() > 4);
+    const auto text = [&](unsigned threads) {
+        request.threads = threads;
+        const TuneResult result = tuned(request);
+        TunedFigures figures;
+        figures.triangles = result.point.outcome.triangles;
+        figures.rms = result.point.outcome.rms;
+        return tune_json(request, result, figures, {}) + tried_csv(request, result, {});
+    };
+    const std::string one = text(1);
+    CHECK(text(3) == one);
+    CHECK(text(16) == one);
+}
+
+TEST_CASE("a lattice has its inner vertices at texel centres and covers the map") {
+    for (const std::int64_t texels : {1, 5, 31, 32, 33, 336, 459})
+        for (const std::int64_t spacing : {1, 4, 32}) {
+            const std::vector<double> lines = lattice_lines(texels, spacing);
+            INFO(texels << " texels, spacing " << spacing);
+            REQUIRE(lines.size() >= 2);
+            CHECK(lines.front() == 0);
+            CHECK(lines.back() == static_cast<double>(texels));
+            for (std::size_t k = 1; k < lines.size(); ++k) {
+                const double cell = lines[k] - lines[k - 1];
+                const bool inner = k > 1 && k + 1 < lines.size();
+                CHECK((inner ? cell == static_cast<double>(spacing) : cell > 0));
+                if (k + 1 < lines.size())
+                    CHECK(lines[k] - std::floor(lines[k]) == 0.5);
+            }
+        }
+    Job::Mesh mesh;
+    mesh.width = 3;
+    mesh.depth = 4;
+    for (const bool alternate : {false, true}) {
+        const BaseChoice choice = lattice_choice(8, alternate, 48, 40);
+        const BaseMesh base = parse_obj(lattice_obj(choice, mesh, 48, 40), "lattice");
+        CHECK(base.triangles.size() == choice.triangles());
+        CHECK(base.repairs.empty());
+        double area = 0;
+        for (const auto& t : base.triangles) {
+            const glm::dvec3 a = base.vertices[t[0]].position, b = base.vertices[t[1]].position,
+                             c = base.vertices[t[2]].position;
+            const double signed_area = glm::cross(b - a, c - a).z / 2;
+            CHECK(signed_area > 0);
+            area += signed_area;
+        }
+        CHECK(area == Approx(12));
+        HeightMap map;
+        map.width = 48;
+        map.height = 40;
+        std::string why;
+        CHECK(find_height_field(base, map, {}, why));
+    }
+}
+
+TEST_CASE("goals that cannot be met end in what can be had") {
+    TuneRequest request = request_for(small_job());
+    const auto refused = [&] {
+        try {
+            tuned(request);
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    request.goal.triangles = 17;
+    CHECK_THAT(refused(), Contains("--triangles 17") && Contains("18 triangles"));
+    Job finest = request.job;
+    finest.tests.normal_threshold = finest.tests.summed_height_threshold = 0;
+    const Outcome most = Ground(finest).measure(finest);
+    request.goal.triangles = most.triangles;
+    CHECK(refused().empty());
+    request.goal.triangles = most.triangles + 1;
+    CHECK_THAT(refused(), Contains("at most " + std::to_string(most.triangles)));
+    request.goal.triangles = 0;
+    request.goal.error = 1e-6;
+    CHECK_THAT(refused(), Contains("--error") && Contains("the least RMS error"));
+    // Tests that are not searched leave no way down.
+    request.goal.error = 0;
+    request.goal.triangles = 100;
+    request.space.summed_height = false;
+    request.job.tests.summed_height_threshold = 0;
+    CHECK_THAT(refused(), Contains("--triangles 100") && Contains("whatever the thresholds"));
+}

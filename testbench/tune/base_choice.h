@@ -1,0 +1,41 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "testbench/job/job.h"
+
+namespace tessera {
+
+/// A base mesh the tuner may choose: the job's own, a plane of other columns and rows, or a lattice.
+///
+/// A lattice is a plane's base mesh whose inner grid lines lie at texel centres a power of two apart, so that midpoints
+/// lie at texel centres too, down to the spacing of one texel. The hardware reads the texel that holds t: a vertex at a
+/// texel's border takes its height from up to half a texel away, one at its centre from where it is. The lines next to
+/// the border are half a spacing to a whole one away from it. It is written as OBJ.
+struct BaseChoice {
+    enum class Kind { job, plane, lattice } kind = Kind::job;
+    std::int64_t columns = 0, rows = 0;  ///< quads
+    std::int64_t spacing = 0;            ///< lattice: texels
+    bool alternate = false;  ///< lattice: the quads' diagonals alternate, like a chessboard's colours
+
+    std::uint64_t triangles() const { return 2 * static_cast<std::uint64_t>(columns * rows); }
+    std::string name() const;  ///< "16 x 22", "lattice of 32 texels, 11 x 15"
+};
+
+/// Kind::lattice of that spacing for a map of these texels.
+BaseChoice lattice_choice(std::int64_t spacing, bool alternate, std::int64_t map_width,
+                          std::int64_t map_height);
+
+/// Grid lines across `texels`: 0, texel centres `spacing` apart, `texels`.
+std::vector<double> lattice_lines(std::int64_t texels, std::int64_t spacing);
+
+/// The lattice as OBJ text, of the job's mesh.width and mesh.depth.
+std::string lattice_obj(const BaseChoice& choice, const Job::Mesh& mesh, std::int64_t map_width,
+                        std::int64_t map_height);
+
+/// Planes of about square cells and lattices, of 2 to `most_triangles` triangles.
+std::vector<BaseChoice> usual_bases(const Job::Mesh& mesh, std::int64_t map_width, std::int64_t map_height,
+                                    std::uint64_t most_triangles);
+
+}  // namespace tessera
