@@ -53,9 +53,13 @@ class Study:
             raise MissingData(f"{name} is not in the data folder (scripts/figures --data FOLDER)")
         return path
 
-    def call(self, *arguments, exit_codes=(0,)):
-        command = [str(self.program), *(str(argument) for argument in arguments)]
-        self.commands.append(shlex.join(["tessera", *command[1:]]))
+    def call_highlight_study(self):
+        """The program beside `tessera` that measures per-vertex light, on the half donut."""
+        return self.call(program=self.program.parent.parent / "benchmark/tessera_highlight_study")
+
+    def call(self, *arguments, exit_codes=(0,), program=None):
+        command = [str(program or self.program), *(str(argument) for argument in arguments)]
+        self.commands.append(shlex.join([Path(command[0]).name, *command[1:]]))
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode not in exit_codes:
             raise ProgramError(f"exit code {done.returncode} of {shlex.join(command)}\n{done.stderr.strip()}")

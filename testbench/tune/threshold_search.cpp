@@ -254,11 +254,16 @@ void ThresholdSearch::step_done() {
         on_progress_(std::min(1.0, static_cast<double>(steps_) / expected_steps_));
 }
 
+/// To be searched, the job's own first.
+std::vector<SummedHeightUnit> ThresholdSearch::units() const {
+    const SummedHeightUnit own = job_.tests.summed_height_unit;
+    if (!space_.summed_height || !space_.summed_height_unit)
+        return {own};
+    return {own, own == SummedHeightUnit::sum ? SummedHeightUnit::area : SummedHeightUnit::sum};
+}
+
 void ThresholdSearch::explore() {
-    std::vector<SummedHeightUnit> units{job_.tests.summed_height_unit};
-    if (space_.summed_height && space_.summed_height_unit)
-        units.push_back(units.front() == SummedHeightUnit::sum ? SummedHeightUnit::area
-                                                               : SummedHeightUnit::sum);
+    const std::vector<SummedHeightUnit> units = this->units();
     std::vector<int> ratios{0};
     if (space_.normal && space_.summed_height) {
         ratios = {normal_alone, summed_height_alone};
@@ -274,8 +279,16 @@ void ThresholdSearch::explore() {
             shape.ratio = ratio;
             attempt(shape);
         }
-    if (space_.generation_limit && job_.tests.generation && found_.best)
-        refine_generation_limit();
+    if (!space_.generation_limit || !job_.tests.generation || !found_.best)
+        return;
+    // Each test alone too: what it does best it may do at another limit than the best so far.
+    for (const int ratio : ratios)
+        if (ratio == normal_alone || ratio == summed_height_alone) {
+            shape = found_.best->shape;
+            shape.ratio = ratio;
+            try_generation_limits(shape);
+        }
+    refine_generation_limit();
 }
 
 bool ThresholdSearch::refine_triangulation() {
@@ -289,10 +302,13 @@ bool ThresholdSearch::refine_triangulation() {
 }
 
 bool ThresholdSearch::refine_generation_limit() {
+    return try_generation_limits(found_.best->shape);
+}
+
+bool ThresholdSearch::try_generation_limits(Shape shape) {
     // A limit that no vertex reaches changes nothing.
     const std::int64_t reached = found_.best->point.outcome.generation;
     bool found = false;
-    Shape shape = found_.best->shape;
     for (std::int64_t limit = std::min(job_.tests.generation_limit, reached + 2); limit > 0; --limit) {
         shape.generation_limit = limit;
         found = attempt(shape) || found;
@@ -328,8 +344,9 @@ bool ThresholdSearch::refine_ratio() {
 
 /// A coarse grid of both thresholds, from an octave below where each meets the goal alone: neither counts nor errors are
 /// quite regular, and there are islands that lie on no line of just met goals.
-void ThresholdSearch::sweep() {
+void ThresholdSearch::sweep(SummedHeightUnit unit) {
     Shape shape = found_.best->shape;
+    shape.unit = unit;
     const auto lowest = [&](int which, const Levels& levels) {
         const int level = alone(shape, which).value_or(levels.finest);
         return std::max(levels.finest, level - octave);
@@ -438,7 +455,8 @@ void ThresholdSearch::refine() {
         found = (view_besides && refine_view()) || found;
     }
     if (both)
-        sweep();
+        for (const SummedHeightUnit unit : units())
+            sweep(unit);
     std::vector<Candidate> starts = found_.tried;
     starts.push_back(*found_.best);
     std::stable_sort(starts.begin(), starts.end(),

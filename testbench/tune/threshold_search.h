@@ -52,8 +52,8 @@ bool better(const TunedPoint& a, const TunedPoint& b, const TuneGoal& goal);
 /// carry alike, at +-4 octaves one does nearly all.
 ///
 /// explore() tries each test alone and ratios two octaves apart, in both units of the Summed Height Test, and generation
-/// limits. refine() betters the best: triangulation, ratios, generation limit, View Test's threshold, one after the
-/// other until none helps; then tries a coarse grid of both thresholds, and moves those of the best few in ever smaller
+/// limits for each test alone and for the best. refine() betters the best: triangulation, ratios, generation limit, View Test's threshold, one after the
+/// other until none helps; then tries a coarse grid of both thresholds in both units, and moves those of the best few in ever smaller
 /// steps; and last sets each in the middle of those that give the same mesh, so that no edge's decision hangs by a rounding. Nothing is
 /// random: the same job, goal and space end in the same thresholds.
 class ThresholdSearch {
@@ -110,6 +110,7 @@ class ThresholdSearch {
     using Key = std::tuple<SummedHeightUnit, Triangulation, std::int64_t, int, int>;
     using PlaceAt = std::function<Place(int)>;
 
+    std::vector<SummedHeightUnit> units() const;
     Levels normal_levels() const;
     Levels summed_height_levels(SummedHeightUnit unit) const;
     Levels view_levels() const;
@@ -129,10 +130,11 @@ class ThresholdSearch {
     bool attempt(const Shape& shape);
     bool refine_triangulation();
     bool refine_generation_limit();
+    bool try_generation_limits(Shape shape);
     bool refine_view();
     bool refine_ratio();
     std::vector<int Place::*> axes(const Shape& shape) const;
-    void sweep();
+    void sweep(SummedHeightUnit unit);
     void polish(Candidate from);
     void settle();
     void step_done();
