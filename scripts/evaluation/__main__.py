@@ -13,7 +13,7 @@ from study import ROOT, MissingData, ProgramError, Study
 # In the order of the page.
 NAMES = ["text_plane", "two_tests", "view_distances", "crater_lake", "teapot", "tex_coord_test", "generation_limit",
          "triangulation", "tests_units", "host_bandwidth", "highlight_test", "curved_surfaces", "displacement_scale"]
-LONGEST_FIRST = ["crater_lake", "view_distances", "two_tests", "tests_units"]
+LONGEST_FIRST = ["crater_lake", "view_distances", "tests_units", "two_tests", "teapot", "tex_coord_test"]
 
 
 def options_from(arguments):
@@ -24,7 +24,7 @@ def options_from(arguments):
     parser.add_argument("--only", action="append", choices=NAMES, metavar="NAME", help="this experiment; may be repeated")
     parser.add_argument("--list", action="store_true", help="name the experiments and stop")
     parser.add_argument("--jobs", type=int, default=2, help="experiments at a time (%(default)s)")
-    parser.add_argument("--picture-width", type=int, default=1000, help="pixels (%(default)s)")
+    parser.add_argument("--picture-width", type=int, default=800, help="pixels (%(default)s)")
     parser.add_argument("--program", type=Path, default=ROOT / "build/release/testbench/program/tessera",
                         help=argparse.SUPPRESS)
     return parser.parse_args(arguments)

@@ -3,7 +3,7 @@ from section import Chart, Claim, Experiment, Section, Table, PARTLY, REPRODUCED
 import charts
 
 QUIET = {"mode": "timed", "check.golden": False, "check.invariants": False, "output.ply": False}
-LATENCIES = (1, 10, 20, 40, 80)
+LATENCIES = (1, 10, 20, 40, 80, 120)
 
 
 def timed(study, units, ports, latency=None):

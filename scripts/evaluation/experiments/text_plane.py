@@ -22,8 +22,8 @@ def measure(study):
             f"{run.figures['host.base_triangles']} flat triangles became {run.triangles:,}; the letters' tops stand at "
             f"{100 * above:.1f} % of the displacement's height, the surface lies {rms:.2f} texels RMS from the exact one.",
             reproduced_if(above > 0.98 and rms < 1))],
-        pictures=[Picture(run.render("shaded", size="1000x460"), "The displaced surface"),
-                  Picture(run.render("wireframe", size="1000x460"), "Its triangles: flat letters' tops and the plane stay coarse")],
+        pictures=[Picture(run.render("shaded", size=f"{study.picture_width}x{study.picture_width * 46 // 100}"), "The displaced surface"),
+                  Picture(run.render("wireframe", size=f"{study.picture_width}x{study.picture_width * 46 // 100}"), "Its triangles: flat letters' tops and the plane stay coarse")],
         tables=[Table("text_plane", "The run", [("base triangles", ""), ("triangles", ""), ("edges tested", ""),
                                                 ("RMS error", "texel"), ("maximum error", "texel")],
                       [[run.figures["host.base_triangles"], run.triangles, run.figures["run.edges_tested"], rms,

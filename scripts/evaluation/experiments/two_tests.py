@@ -57,9 +57,10 @@ def measure(study):
 
     def against(title):
         texel = both.error["measurement.texel"]
-        return ("vertical error at equal triangles, each tuned, against both tests, in texels: " + "; ".join(
-            f"{budget:,}: RMS {runs[title, budget].error[RMS] / texel:.3f} to {runs['both', budget].error[RMS] / texel:.3f}, "
-            f"maximum {runs[title, budget].error[MAXIMUM] / texel:.2f} to {runs['both', budget].error[MAXIMUM] / texel:.2f}"
+        return ("vertical error at equal triangles, each tuned, in texels: " + "; ".join(
+            f"{budget:,} triangles: RMS {runs[title, budget].error[RMS] / texel:.3f} alone, "
+            f"{runs['both', budget].error[RMS] / texel:.3f} with both, "
+            f"maximum {runs[title, budget].error[MAXIMUM] / texel:.2f} and {runs['both', budget].error[MAXIMUM] / texel:.2f}"
             for budget in BUDGETS))
 
     section.claims = [
