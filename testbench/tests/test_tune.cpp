@@ -221,6 +221,39 @@ TEST_CASE("no budget is exceeded, and no dense grid of thresholds does better") 
         }
 }
 
+TEST_CASE("tuned thresholds stand clear of every edge's own value") {
+    for (const bool both : {true, false})
+        for (const std::uint64_t budget : {100u, 300u, 600u, 900u}) {
+            TuneRequest request = request_for(small_job());
+            request.space.summed_height = both;
+            request.job.tests.summed_height = both;
+            request.goal.triangles = budget;
+            const TuneResult result = tuned(request);
+            const Outcome& outcome = result.point.outcome;
+            Ground ground(result.job);
+            INFO("budget " << budget << ", both " << both);
+            for (double Job::Tests::*threshold :
+                 {&Job::Tests::normal_threshold, &Job::Tests::summed_height_threshold})
+                if (result.job.tests.*threshold > 0) {
+                    const int level = level_of(result.job.tests.*threshold);
+                    // levels on one side that give the same mesh
+                    const auto room = [&](int direction) {
+                        int steps = 0;
+                        for (Job job = result.job; steps < 8; ++steps) {
+                            job.tests.*threshold = threshold_at(level + direction * (steps + 1));
+                            const Outcome moved = ground.measure(job);
+                            if (moved.triangles != outcome.triangles || moved.rms != outcome.rms)
+                                break;
+                        }
+                        return steps;
+                    };
+                    const int below = room(-1), above = room(1);
+                    INFO(below << " levels below, " << above << " above");
+                    CHECK(std::abs(below - above) <= 1);
+                }
+        }
+}
+
 TEST_CASE("an error's bound is kept with about as few triangles as a dense grid finds") {
     const Job job = small_job();
     for (const double bound : {0.03, 0.015, 0.011}) {
