@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t largest_mesh = std::uint64_t{1} << 22;  // some gigabytes of a forest
 constexpr std::uint64_t largest_base_for_error = 2048;
-constexpr int most_rounds = 5;
+constexpr int most_rounds = 20;
 
 /// A positive whole number; 0 if it is none.
 std::int64_t number_in(const std::string& text) {
@@ -191,7 +191,13 @@ ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
         const double measured = request.goal.largest ? figures.max_model : figures.rms_model;
         if (order.error == 0 || !unit.height_field || measured <= bound)
             break;
-        request.goal.error *= bound / measured * (1 - 1e-9);
+        // Not this mesh again.
+        request.goal.error = std::min(bound, request.goal.error_of(result.point.outcome)) * (1 - 1e-9);
+        if (round + 1 == most_rounds)
+            throw InputError(
+                fmt::format("--error {}: the meshes found miss it by rounding only, the last with {:.17g}: "
+                            "ask for a little more",
+                            order.error, measured / unit.model_units));
     }
 
     // The figures of record: functional mode's own mesh, of the job as it will be written.

@@ -171,7 +171,7 @@ TEST_CASE("the forest's mesh is the datapath's, whatever the thresholds") {
                  ground.forest.mesh(setup.registers.tests, setup.registers.triangulation))
                 mesh.insert(corners_of(vertices));
             INFO("round " << round << ", " << mesh.size() << " triangles");
-            CHECK(mesh == bare_mesh(setup));
+            CHECK((mesh == bare_mesh(setup)));  // not worth printing
             CHECK(ground.forest.count(setup.registers.tests, setup.registers.triangulation, mesh.size())
                       .complete);
             CHECK_FALSE(
@@ -218,6 +218,39 @@ TEST_CASE("no budget is exceeded, and no dense grid of thresholds does better") 
                            << point.tests.normal_threshold << " " << point.tests.summed_height_threshold);
             CHECK(point.outcome.triangles <= budget);
             CHECK(request.goal.error_of(point.outcome) <= 1.03 * request.goal.error_of(brute.outcome));
+        }
+}
+
+TEST_CASE("tuned thresholds stand clear of every edge's own value") {
+    for (const bool both : {true, false})
+        for (const std::uint64_t budget : {100u, 300u, 600u, 900u}) {
+            TuneRequest request = request_for(small_job());
+            request.space.summed_height = both;
+            request.job.tests.summed_height = both;
+            request.goal.triangles = budget;
+            const TuneResult result = tuned(request);
+            const Outcome& outcome = result.point.outcome;
+            Ground ground(result.job);
+            INFO("budget " << budget << ", both " << both);
+            for (double Job::Tests::*threshold :
+                 {&Job::Tests::normal_threshold, &Job::Tests::summed_height_threshold})
+                if (result.job.tests.*threshold > 0) {
+                    const int level = level_of(result.job.tests.*threshold);
+                    // levels on one side that give the same mesh
+                    const auto room = [&](int direction) {
+                        int steps = 0;
+                        for (Job job = result.job; steps < 8; ++steps) {
+                            job.tests.*threshold = threshold_at(level + direction * (steps + 1));
+                            const Outcome moved = ground.measure(job);
+                            if (moved.triangles != outcome.triangles || moved.rms != outcome.rms)
+                                break;
+                        }
+                        return steps;
+                    };
+                    const int below = room(-1), above = room(1);
+                    INFO(below << " levels below, " << above << " above");
+                    CHECK(std::abs(below - above) <= 1);
+                }
         }
 }
 

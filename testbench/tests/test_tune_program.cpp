@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "testbench/tests/program_runner.h"
@@ -101,6 +102,22 @@ TEST_CASE("tune chooses a base mesh, writes a lattice beside the job, and keeps 
     CHECK(bound.at("error").at("rms") <= 0.02);
     CHECK(bound.at("error").at("rms") > 0.015);
     check_by_run_and_compare(here.path(), "bound");
+}
+
+TEST_CASE("a bound on the error holds for the error that compare measures, to the last bit") {
+    const TestFolder here;
+    const auto error_for = [&](const char* option, const std::string& value) {
+        succeed(
+            Arguments{"tune", option, value, "--vary", "none", "--grid", "5x7", "--set", "tests.view=false"} +
+                small_map,
+            here.path());
+        return read_json(here.path() / "tuned.json").at("error").at("rms").get<double>();
+    };
+    for (int triangles = 100; triangles <= 800; triangles += 100) {
+        const double bound = std::nextafter(error_for("--triangles", std::to_string(triangles)), 0.0);
+        INFO(triangles);
+        CHECK(error_for("--error", json(bound).dump()) <= bound);
+    }
 }
 
 TEST_CASE("tune works where the surface is no height field") {

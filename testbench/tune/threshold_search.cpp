@@ -342,8 +342,8 @@ bool ThresholdSearch::refine_ratio() {
     return found;
 }
 
-/// A coarse grid of both thresholds, from an octave below where each meets the goal alone: neither counts nor errors are
-/// quite regular, and there are islands that lie on no line of just met goals.
+/// A coarse grid of both thresholds, from an octave below where each meets the goal alone: neither counts nor
+/// errors are quite regular, and there are islands that lie on no line of just met goals.
 void ThresholdSearch::sweep(SummedHeightUnit unit) {
     Shape shape = found_.best->shape;
     shape.unit = unit;

@@ -45,17 +45,18 @@ bool better(const TunedPoint& a, const TunedPoint& b, const TuneGoal& goal);
 
 /// Looks for the best thresholds on one base mesh.
 ///
-/// A threshold that falls gives more triangles, nearly without exception, and mostly less error. So for one ratio of the
-/// Normal Test's threshold to the Summed Height Test's there is one level at which the goal is just met: of a budget
-/// found by bisection, of a bound on the error by going down from the coarsest mesh, since errors are less regular. A
-/// ratio counts from that of the two thresholds which meet the goal alone, each with the other test off: at 0 both tests
-/// carry alike, at +-4 octaves one does nearly all.
+/// A threshold that falls gives more triangles, nearly without exception, and mostly less error. So for one
+/// ratio of the Normal Test's threshold to the Summed Height Test's there is one level at which the goal is just
+/// met: of a budget found by bisection, of a bound on the error by going down from the coarsest mesh, since
+/// errors are less regular. A ratio counts from that of the two thresholds which meet the goal alone, each with
+/// the other test off: at 0 both tests carry alike, at +-4 octaves one does nearly all.
 ///
-/// explore() tries each test alone and ratios two octaves apart, in both units of the Summed Height Test, and generation
-/// limits for each test alone and for the best. refine() betters the best: triangulation, ratios, generation limit, View Test's threshold, one after the
-/// other until none helps; then tries a coarse grid of both thresholds in both units, and moves those of the best few in ever smaller
-/// steps; and last sets each in the middle of those that give the same mesh, so that no edge's decision hangs by a rounding. Nothing is
-/// random: the same job, goal and space end in the same thresholds.
+/// explore() tries each test alone and ratios two octaves apart, in both units of the Summed Height Test, and
+/// generation limits, for each test alone and for the best. refine() betters the best: triangulation, ratios,
+/// generation limit, View Test's threshold, one after the other until none helps; then tries a coarse grid of both
+/// thresholds in both units, and moves those of the best few in ever smaller steps; and last sets each in the middle
+/// of those that give the same mesh, so that no edge's decision hangs by a rounding. Nothing is random: the same job,
+/// goal and space end in the same thresholds.
 class ThresholdSearch {
   public:
     /// Two searched thresholds: their ratio in levels, or one test alone. One or none: 0.
