@@ -97,6 +97,10 @@ void choose_tests(const TuneOrder& order, TuneRequest& request) {
             "tests.generation and tests.tex_coord are both off: low thresholds would split without end; "
             "switch "
             "one on");
+    if (tests.highlight)
+        throw InputError(
+            "tests.highlight = true: the search knows nothing of highlights; tune with --set "
+            "tests.highlight=false and set it in the tuned job, which then has more triangles");
     if (request.job.hardware.culling != Culling::none)
         throw InputError(
             "hardware.culling = \"back\": culled triangles cannot be measured; tune with --set "

@@ -24,7 +24,8 @@ class Checkout {
                 std::filesystem::create_symlink(entry.path(), root() / name);
         }
         // Copied: a linked script would find its way back to the original.
-        std::filesystem::copy(source_folder() / "scripts", root() / "scripts");
+        std::filesystem::copy(source_folder() / "scripts", root() / "scripts",
+                              std::filesystem::copy_options::recursive);
         for (const char* const preset : {"release", "debug", "asan"}) {
             std::filesystem::create_directories(root() / "build" / preset / "testbench/program");
             std::filesystem::create_symlink(TESSERA_PROGRAM,
