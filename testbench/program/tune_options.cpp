@@ -29,16 +29,19 @@ void TuneOptions::add_to(CLI::App& tune) {
     tune.add_option(
             "--tests", order_.tests,
             "thresholds to search: normal, summed_height, view; default: of the tests the job enables")
-        ->delimiter(',');
+        ->delimiter(',')
+        ->allow_extra_args(false);
     vary_given_ = tune.add_option("--vary", vary_,
                                   "what else to search: unit (tests.summed_height_unit), generation "
                                   "(tests.generation_limit), triangulation, or none; default: all three")
-                      ->delimiter(',');
+                      ->delimiter(',')
+                      ->allow_extra_args(false);
     tune.add_option(
             "--grid", order_.grids,
             "of a plane, base meshes to try: COLUMNSxROWS, latticeSPACING (vertices at texel centres, so "
             "many texels apart, written as OBJ), or auto; default: the job's own")
-        ->delimiter(',');
+        ->delimiter(',')
+        ->allow_extra_args(false);
     tune.add_option("--output", order_.output,
                     "the tuned job; its figures beside it as .json, a lattice as .obj");
     tune.add_option("--tried", order_.tried, "write a table of all that was tried, CSV");

@@ -167,6 +167,7 @@ TEST_CASE("tune refuses wrong usage and goals out of reach, and leaves nothing")
     CHECK_THAT(tune({"--triangles", "500", "--tests", "normals"}), Contains("normals"));
     CHECK_THAT(tune({"--triangles", "500", "--vary", "grid"}), Contains("grid"));
     CHECK_THAT(tune({"--triangles", "500", "--jobs", "0"}), Contains("--jobs"));
+    CHECK_THAT(tune({"--triangles", "500", "--grid", "3x3", "absent.toml"}), Contains("no such job file"));
     CHECK_THAT(tune({"--triangles", "500", "--grid", "big"}), Contains("--grid big"));
     CHECK_THAT(tune({"--triangles", "500", "--grid", "0x4"}), Contains("--grid 0x4"));
     CHECK_THAT(tune({"--triangles", "500", "--grid", "lattice24"}), Contains("power of two"));
