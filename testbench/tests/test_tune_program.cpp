@@ -177,6 +177,7 @@ TEST_CASE("tune refuses wrong usage and goals out of reach, and leaves nothing")
     CHECK_THAT(tune({"--triangles", "500", "--output", "tuned.json"}), Contains("tuned.json"));
     CHECK_THAT(tune({"--triangles", "500", "--output", ""}), Contains("--output"));
     CHECK_THAT(tune({"--triangles", "500", "--set", "hardware.culling=back"}), Contains("culling"));
+    CHECK_THAT(tune({"--triangles", "500", "--set", "tests.highlight=true"}), Contains("tests.highlight"));
     CHECK_THAT(
         tune({"--triangles", "500", "--set", "tests.normal=false", "--set", "tests.summed_height=false"}),
         Contains("both off"));
