@@ -3,6 +3,7 @@ import argparse
 import importlib
 import os
 import sys
+import traceback
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -18,7 +19,7 @@ LONGEST_FIRST = ["crater_lake", "view_distances", "tests_units", "two_tests", "t
 
 def options_from(arguments):
     parser = argparse.ArgumentParser(prog="scripts/figures", description="Runs the paper's evaluation on tessera.")
-    parser.add_argument("--output", type=Path, default=Path("runs/figures"), help="folder to leave (%(default)s)")
+    parser.add_argument("--output", type=Path, help="folder to leave (runs/figures; with --only runs/figures_only, so that the whole page stays)")
     parser.add_argument("--data", type=Path, default=Path(os.environ.get("TESSERA_DATA", ROOT.parent / "shared/data")),
                         help="folder of the inputs that are not part of the project (%(default)s)")
     parser.add_argument("--only", action="append", choices=NAMES, metavar="NAME", help="this experiment; may be repeated")
@@ -27,7 +28,9 @@ def options_from(arguments):
     parser.add_argument("--picture-width", type=int, default=800, help="pixels (%(default)s)")
     parser.add_argument("--program", type=Path, default=ROOT / "build/release/testbench/program/tessera",
                         help=argparse.SUPPRESS)
-    return parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
+    options.output = options.output or Path("runs/figures_only" if options.only else "runs/figures")
+    return options
 
 
 def load(name):
@@ -38,22 +41,27 @@ def perform(experiment, options):
     """(Section, commands). Missing data and a failed command become claims, so that the rest still has its page."""
     folder = (options.output / "runs" / experiment.name).resolve()
     study = Study(options.program, options.data.resolve(), folder, options.picture_width)
+
+    def nameless(text):
+        """The page names no place of this machine."""
+        for place, name in ((f"{folder}/", f"runs/figures/runs/{experiment.name}/"), (str(study.data), "DATA"),
+                            (f"{ROOT}/", ""), (str(options.program), "tessera")):
+            text = text.replace(place, name)
+        return text
+
     print(f"  {experiment.name}: begun", file=sys.stderr, flush=True)
     try:
         section = experiment.measure(study)
-    except (MissingData, ProgramError) as error:
+    except Exception as error:  # whatever it is, the other experiments' page is wanted
         verdict = NOT_RUN if isinstance(error, MissingData) else FAILED
         print(f"  {experiment.name}: {verdict}: {error}", file=sys.stderr, flush=True)
-        return Section(claims=[Claim(experiment.shows, experiment.figure, str(error), verdict)]), []
-    print(f"  {experiment.name}: done", file=sys.stderr, flush=True)
-    # The page names no place of this machine.
-    names = ((f"{folder}/", f"runs/figures/runs/{experiment.name}/"), (str(study.data), "DATA"), (f"{ROOT}/", ""))
-    commands = []
-    for command in study.commands:
-        for place, name in names:
-            command = command.replace(place, name)
-        commands.append(command)
-    return section, commands
+        if not isinstance(error, (MissingData, ProgramError)):
+            traceback.print_exc()
+        section = Section(claims=[Claim(f"{experiment.figure}: {experiment.title}", experiment.figure,
+                                        nameless(f"{type(error).__name__}: {error}"), verdict)])
+    else:
+        print(f"  {experiment.name}: done", file=sys.stderr, flush=True)
+    return section, [nameless(command) for command in study.commands]
 
 
 def main():

@@ -106,6 +106,10 @@ class Run:
     def figures(self):
         return figures_of(self.folder / "statistics.json")
 
+    @cached_property
+    def conformance(self):
+        return figures_of(self.folder / "conformance.json")
+
     @property
     def triangles(self):
         return self.figures["mesh.triangles"]

@@ -17,7 +17,7 @@ def measure(study):
             "Tests on the normals could find the triangles near the Phong highlight and improve per-vertex lighting there.",
             "section 5.1",
             f"at {on[2]:,} triangles the error of per-vertex light in the highlight is {on[4]:.4f} of full scale RMS with the "
-            f"Highlight Test, {equal[4]:.4f} with a finer Normal Test and as many triangles ({equal[2]:,}), {off[4]:.4f} with "
+            f"Highlight Test, {equal[4]:.4f} with a finer Normal Test ({equal[0]}: {equal[2]:,}), {off[4]:.4f} with "
             f"neither ({off[2]:,})",
             REPRODUCED if on[4] < 0.8 * equal[4] else NOT_REPRODUCED)],
         pictures=[Picture(run.render("wireframe"), f"The half donut with the Highlight Test: {run.triangles:,} triangles"),

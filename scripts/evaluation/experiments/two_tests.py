@@ -10,9 +10,9 @@ RMS, MAXIMUM = "vertical.rms", "vertical.max"
 
 
 def on_the_donut(side=512):
-    """The built-in map's ring: where the half donut is."""
+    """The built-in map's ring, and the foot around it: where the half donut is."""
     x, y = np.meshgrid((np.arange(side) + 0.5) / side * 2 - 1, (np.arange(side) + 0.5) / side * 2 - 1)
-    return np.abs(np.hypot(x, y) - 0.55) < 0.25
+    return np.abs(np.hypot(x, y) - 0.55) < 0.30
 
 
 def only(tests):
@@ -20,8 +20,8 @@ def only(tests):
 
 
 def verdict(runs, alone):
-    """Worse than both tests in RMS at every budget, at some, at none."""
-    worse = sum(runs[alone, budget].error[RMS] > runs["both", budget].error[RMS] for budget in BUDGETS)
+    """Worse than both tests at every budget, at some, at none: in RMS, and by more than the search's own roughness."""
+    worse = sum(runs[alone, budget].error[RMS] > 1.05 * runs["both", budget].error[RMS] for budget in BUDGETS)
     return REPRODUCED if worse == len(BUDGETS) else PARTLY if worse else NOT_REPRODUCED
 
 
@@ -53,12 +53,14 @@ def measure(study):
             Picture(run.render("wireframe"), f"{title}: {run.triangles:,} triangles"),
             Picture(run.render("error", error_scale=scale), f"{title}: distance from the exact surface, one scale for all three")]
     both = runs["both", SHOWN]
-    inside, outside = density_in(both.mesh, ring), density_in(both.mesh, ~ring)
+    meshes = {f"{budget:,} triangles": runs["both", budget].mesh for budget in BUDGETS}
+    meshes["the default thresholds"] = switched["both"].mesh
+    quotients = {name: density_in(mesh, ring) / max(density_in(mesh, ~ring), 1) for name, mesh in meshes.items()}
 
     def against(title):
         texel = both.error["measurement.texel"]
         return ("vertical error at equal triangles, each tuned, in texels: " + "; ".join(
-            f"{budget:,} triangles: RMS {runs[title, budget].error[RMS] / texel:.3f} alone, "
+            f"{runs[title, budget].triangles:,} and {runs['both', budget].triangles:,} triangles: RMS {runs[title, budget].error[RMS] / texel:.3f} alone, "
             f"{runs['both', budget].error[RMS] / texel:.3f} with both, "
             f"maximum {runs[title, budget].error[MAXIMUM] / texel:.2f} and {runs['both', budget].error[MAXIMUM] / texel:.2f}"
             for budget in BUDGETS))
@@ -69,10 +71,11 @@ def measure(study):
         Claim("The Summed Height Test alone misses local changes of the surface's orientation.",
               "section 4, figure 10 (b)", against("Summed Height Test alone"), verdict(runs, "Summed Height Test alone")),
         Claim("Detail appears where the map has it.", "section 4, figure 10 (c)",
-              f"triangles per area of the map: {inside / max(outside, 1):.1f} times as many on the donut as beside it",
-              REPRODUCED if inside > 2 * outside else NOT_REPRODUCED)]
+              "triangles per area of the map, on the donut against beside it: "
+              + "; ".join(f"{quotient:.1f} with {name}" for name, quotient in quotients.items()),
+              REPRODUCED if min(quotients.values()) > 2 else PARTLY if max(quotients.values()) > 2 else NOT_REPRODUCED)]
     section.notes.append("A threshold that never fires is a test switched off: tuned, both tests can only be as good as the "
-                         "better one, or better. Where they are alike, one test did all of the work.")
+                         "better one, or better. Where they are alike, one test did all of the work. A difference of RMS below 5 % counts as none.")
     section.tables = [
         Table("two_tests", "Thresholds tuned for a number of triangles, least RMS vertical error",
               [*COLUMNS, ("Normal Test threshold", ""), ("Summed Height Test threshold", ""), ("generation limit", "")],
@@ -83,4 +86,4 @@ def measure(study):
 
 
 EXPERIMENT = Experiment("two_tests", "Normal Test, Summed Height Test, both", "Figures 5 and 10",
-                        "Half a donut on 18 triangles: each test has its weakness, together they find the shape.", measure)
+                        "Half a donut on 18 triangles: what each test finds alone, and both together.", measure)
