@@ -13,6 +13,7 @@
 #include "testbench/job/validate_job.h"
 #include "testbench/program/output_folder.h"
 #include "testbench/program/progress.h"
+#include "testbench/program/run_files.h"
 #include "testbench/surfaces/bake.h"
 
 namespace tessera {
@@ -106,6 +107,7 @@ ExitCode bake_command(const BakeRequest& request, const fs::path& data_folder) {
     job.displacement = {file.scale, file.bias};
     job.output.folder = "runs/" + name;
     validate(job);
+    require_inputs_stay(job, data_folder);
     const std::string job_text = dump_short_job(
         job, folder,
         fmt::format("What `tessera bake` made of {}.", printable(request.surface.filename().string())));

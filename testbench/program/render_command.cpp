@@ -176,10 +176,17 @@ ExitCode render_command(const RenderRequest& asked, const fs::path& data_folder)
     return ExitCode::fine;
 }
 
-void remove_pictures(const fs::path& run) {
+std::vector<std::string> picture_names() {
+    std::vector<std::string> names;
     for (const PictureView view : picture_views)
         for (const char* const ending : {".png", ".exr"})
-            fs::remove(run / (std::string(name_of(view)) + ending));
+            names.push_back(std::string(name_of(view)) + ending);
+    return names;
+}
+
+void remove_pictures(const fs::path& run) {
+    for (const std::string& name : picture_names())
+        fs::remove(run / name);
 }
 
 }  // namespace tessera

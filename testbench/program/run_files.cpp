@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+#include <string>
 #include <system_error>
 #include <vector>
 
@@ -25,6 +28,26 @@ fs::path real_place(const fs::path& folder) {
     return result.has_filename() ? result : result.parent_path();
 }
 
+constexpr const char* result_names[] = {"job.toml",         "mesh.ply",       "mesh.obj",
+                                        "statistics.json",  "statistics.csv", "conformance.txt",
+                                        "conformance.json", "timing.txt",     "queue_levels.csv",
+                                        "picture.png",      "error.json",     "error.txt"};
+constexpr const char* trace_names[] = {"trace.vcd", "trace.fst", "timeline.json"};
+
+/// Whether a run, or what is done with it, writes or takes away a file of this name.
+bool is_run_file(const std::string& name) {
+    const std::vector<std::string> pictures = picture_names();
+    const auto among = [&](const auto& names) {
+        return std::find(std::begin(names), std::end(names), name) != std::end(names);
+    };
+    return among(result_names) || among(trace_names) || among(pictures);
+}
+
+/// Whether a run into `output` has `folder` to itself: it is that, or a frame in it.
+bool is_of(const fs::path& folder, const fs::path& output) {
+    return folder == output || (folder.parent_path() == output && is_frame_name(folder.filename().string()));
+}
+
 }  // namespace
 
 void remove_run_file(const fs::path& file) {
@@ -34,16 +57,14 @@ void remove_run_file(const fs::path& file) {
 }
 
 void remove_results(const fs::path& folder) {
-    for (const char* const name :
-         {"job.toml", "mesh.ply", "mesh.obj", "statistics.json", "statistics.csv", "conformance.txt",
-          "conformance.json", "timing.txt", "queue_levels.csv", "picture.png", "error.json", "error.txt"})
+    for (const char* const name : result_names)
         remove_run_file(folder / name);
     remove_pictures(folder);
 }
 
 void remove_run_files(const fs::path& folder) {
     remove_results(folder);
-    for (const char* const name : {"trace.vcd", "trace.fst", "timeline.json"})
+    for (const char* const name : trace_names)
         remove_run_file(folder / name);
 }
 
@@ -63,16 +84,26 @@ void remove_frames(const fs::path& folder) {
     }
 }
 
-void require_base_stays(const Job& job, const fs::path& data_folder) {
-    if (job.mesh.source != MeshSource::run)
-        return;
-    const fs::path base = real_place(resolve_path(job.mesh.file, job.folder, data_folder));
+void require_inputs_stay(const Job& job, const fs::path& data_folder) {
     const fs::path output = real_place(job.output.folder);
-    if (base == output || (base.parent_path() == output && is_frame_name(base.filename().string())))
-        throw InputError(fmt::format(
-            "output.folder = \"{}\": the run would take away its own base mesh, that of mesh.file "
-            "= \"{}\"; choose another output.folder",
-            job.output.folder, job.mesh.file));
+    const auto refuse = [&](const char* what, const char* key, const std::string& file) {
+        throw InputError(
+            fmt::format("output.folder = \"{}\": the run would take away its own {}, that of {} = \"{}\"; "
+                        "choose another output.folder",
+                        job.output.folder, what, key, file));
+    };
+    const auto place_of = [&](const std::string& file) {
+        return real_place(resolve_path(file, job.folder, data_folder));
+    };
+    const auto taken = [&](const std::string& file) {
+        const fs::path place = place_of(file);
+        return is_of(place.parent_path(), output) && is_run_file(place.filename().string());
+    };
+    if (job.mesh.source == MeshSource::run ? is_of(place_of(job.mesh.file), output)
+                                           : reads_file(job.mesh.source) && taken(job.mesh.file))
+        refuse("base mesh", "mesh.file", job.mesh.file);
+    if (job.map.source == MapSource::file && taken(job.map.file))
+        refuse("map", "map.file", job.map.file);
 }
 
 }  // namespace tessera

@@ -18,8 +18,8 @@ void remove_run_files(const std::filesystem::path& folder);
 /// folder that holds other files keeps those; a folder called like a frame's that is no run's is left alone.
 void remove_frames(const std::filesystem::path& folder);
 
-/// With mesh.source = "run": throws InputError if this run would take its own base mesh away, that is, if the earlier
-/// run lies in output.folder itself or is a frame in it.
-void require_base_stays(const Job& job, const std::filesystem::path& data_folder);
+/// Throws InputError if this run would take away what it reads: the run of mesh.source = "run" lies in output.folder or
+/// is a frame in it, or a mesh or map file there has the name of one that a run leaves.
+void require_inputs_stay(const Job& job, const std::filesystem::path& data_folder);
 
 }  // namespace tessera

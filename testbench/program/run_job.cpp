@@ -57,11 +57,21 @@ class Stopwatch {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// Those of a run before; this run's are there already.
+void remove_other_traces(const std::filesystem::path& folder, const Job& job) {
+    if (!job.output.vcd) {
+        remove_run_file(folder / "trace.vcd");
+        remove_run_file(folder / "trace.fst");
+    }
+    if (!job.output.timeline)
+        remove_run_file(folder / "timeline.json");
+}
+
 void write_run_folder(const std::filesystem::path& folder, const Job& job, const Setup& setup,
                       const Simulation& simulation, const Checks& checks) {
     remove_frames(folder);
-    // First, so that whoever is interrupted leaves no job beside the mesh of another.
-    remove_run_file(folder / "mesh.ply");
+    // First, so that whoever is interrupted leaves no job beside the mesh or picture of another: it would be believed.
+    remove_results(folder);
     write_file(folder / "job.toml", dump_job(job, folder));
     const std::vector<Figure> figures = collect_statistics(setup, simulation);
     write_file(folder / "statistics.json", statistics_json(figures));
@@ -70,29 +80,17 @@ void write_run_folder(const std::filesystem::path& folder, const Job& job, const
     write_file(folder / "conformance.json", conformance_json(checks));
     const MeshUnits units{setup.registers.formats, setup.registers.map, setup.model_scale.scale,
                           setup.model_scale.centre};
-    // A mesh or picture of another job beside this one's figures would be believed.
-    const auto wanted = [&](bool wanted_now, const char* name) {
-        if (!wanted_now)
-            std::filesystem::remove(folder / name);
-        return wanted_now;
-    };
-    wanted(false, "error.json");  // `tessera compare` measured the mesh before this one
-    wanted(false, "error.txt");
-    remove_pictures(folder);  // and `tessera render` drew it
-    const bool timed = job.mode == Mode::timed;
-    if (wanted(timed, "timing.txt"))
+    if (job.mode == Mode::timed) {
         write_file(folder / "timing.txt", timing_text(simulation));
-    if (wanted(timed, "queue_levels.csv"))
         write_file(folder / "queue_levels.csv",
                    queue_levels_csv(simulation.pipeline.triangle_queue.history()));
-    wanted(job.output.vcd, "trace.vcd");  // these are there already
-    wanted(job.output.vcd, "trace.fst");
-    wanted(job.output.timeline, "timeline.json");
-    if (wanted(job.output.ply, "mesh.ply"))
+    }
+    remove_other_traces(folder, job);
+    if (job.output.ply)
         write_ply(folder / "mesh.ply", simulation.monitor.mesh, units);
-    if (wanted(job.output.obj, "mesh.obj"))
+    if (job.output.obj)
         write_obj(folder / "mesh.obj", simulation.monitor.mesh, units);
-    if (wanted(job.output.picture, "picture.png"))
+    if (job.output.picture)
         write_picture(folder / "picture.png", simulation.monitor.mesh, setup, job);
 }
 
@@ -100,10 +98,7 @@ void write_run_folder(const std::filesystem::path& folder, const Job& job, const
 void write_stuck_run(const std::filesystem::path& folder, const Job& job) {
     remove_frames(folder);
     remove_results(folder);
-    if (!job.output.vcd)
-        remove_run_file(folder / "trace.vcd");
-    if (!job.output.timeline)
-        remove_run_file(folder / "timeline.json");
+    remove_other_traces(folder, job);
     write_file(folder / "job.toml", dump_job(job, folder));
 }
 
@@ -221,7 +216,7 @@ ExitCode run_job(const Command& command) {
         throw InputError(
             fmt::format("{} chooses what to trace, and nothing is traced: add --vcd, --timeline or both",
                         command.trace_option));
-    require_base_stays(job, command.data_folder);
+    require_inputs_stay(job, command.data_folder);
     if (job.frames.count > 1)
         return run_frames(job, command.data_folder, [&](const Job& frame, const std::string& name) {
             return run_once(frame, command, name).code;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <fstream>
 
 #include "testbench/benchmark/bare_recursion.h"
 #include "testbench/common/atomic_file.h"
@@ -14,6 +15,7 @@
 #include "testbench/program/load_job.h"
 #include "testbench/program/output_folder.h"
 #include "testbench/program/progress.h"
+#include "testbench/program/run_files.h"
 #include "testbench/tune/tune.h"
 #include "testbench/tune/tune_report.h"
 
@@ -97,6 +99,11 @@ void choose_tests(const TuneOrder& order, TuneRequest& request) {
             "tests.generation and tests.tex_coord are both off: low thresholds would split without end; "
             "switch "
             "one on");
+    if (request.job.frames.count > 1)
+        throw InputError(fmt::format(
+            "frames.count = {}: thresholds are tuned for one frame; tune with --set frames.count=1 and "
+            "set it in the tuned job, whose other frames may have more triangles",
+            request.job.frames.count));
     if (tests.highlight)
         throw InputError(
             "tests.highlight = true: the search knows nothing of highlights; tune with --set "
@@ -135,12 +142,54 @@ void check_output(const std::string& option, const fs::path& file) {
         throw InputError(fmt::format("{} {}: is a folder; name a file", option, file.string()));
 }
 
+std::string own_run_folder(const fs::path& job_file) {
+    return (fs::path("runs") / job_file.stem()).generic_string();
+}
+
+bool same_place(const fs::path& a, const fs::path& b) {
+    std::error_code ignored;
+    return fs::weakly_canonical(fs::absolute(a), ignored) == fs::weakly_canonical(fs::absolute(b), ignored);
+}
+
+/// Nothing that is written may take the place of something read, of another file written, or of somebody's mesh.
+void check_places(const TuneOrder& order, const Job& job, const fs::path& data_folder,
+                  const std::vector<fs::path>& written, const fs::path& obj_file) {
+    std::vector<fs::path> read;
+    if (!order.job_file.empty())
+        read.emplace_back(order.job_file);
+    if (reads_file(job.mesh.source))
+        read.push_back(resolve_path(job.mesh.file, job.folder, data_folder));
+    if (job.map.source == MapSource::file)
+        read.push_back(resolve_path(job.map.file, job.folder, data_folder));
+    for (std::size_t k = 0; k < written.size(); ++k) {
+        for (const fs::path& file : read)
+            if (same_place(written[k], file))
+                throw InputError(
+                    fmt::format("--output {}: {} would overwrite {}, which is read; choose another name",
+                                order.output, written[k].string(), file.string()));
+        for (std::size_t other = 0; other < k; ++other)
+            if (same_place(written[k], written[other]))
+                throw InputError(fmt::format("--tried {}: is written with the tuned job; choose another name",
+                                             order.tried));
+    }
+    std::ifstream mesh(obj_file);
+    std::string first;
+    if (!order.grids.empty() && std::getline(mesh, first) && first.rfind("# tessera tune:", 0) != 0)
+        throw InputError(
+            fmt::format("--output {}: a lattice would overwrite {}, which tessera tune has not made; choose "
+                        "another name",
+                        order.output, obj_file.string()));
+    Job tuned = job;
+    tuned.output.folder = own_run_folder(order.output);
+    require_inputs_stay(tuned, data_folder);
+}
+
 /// The job as it will be written: its lattice beside it, a run folder of its own.
 Job finished_job(const TuneResult& result, const fs::path& job_file, const fs::path& obj_file) {
     Job job = result.job;
     if (!result.base_obj.empty())
         job.mesh.file = rebase_path(obj_file.filename().string(), job_file.parent_path(), job.folder);
-    job.output.folder = (fs::path("runs") / job_file.stem()).generic_string();
+    job.output.folder = own_run_folder(job_file);
     return job;
 }
 
@@ -153,14 +202,18 @@ ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
         return fs::path(job_file).replace_extension(extension);
     };
     const fs::path json_file = beside(".json"), obj_file = beside(".obj");
-    if (job_file == json_file || job_file == obj_file)
-        throw InputError(
-            fmt::format("--output {}: the figures and a lattice go beside it as .json and .obj; "
-                        "name a job, as in tuned.toml",
-                        job_file.string()));
+    if (job_file.extension() != ".toml")
+        throw InputError(fmt::format(
+            "--output {}: is the tuned job, with figures and a lattice beside it as .json and .obj: name a "
+            ".toml, as in tuned.toml",
+            job_file.string()));
     check_output("--output", job_file);
     if (!order.tried.empty())
         check_output("--tried", order.tried);
+    std::vector<fs::path> written{job_file, json_file, obj_file};
+    if (!order.tried.empty())
+        written.emplace_back(order.tried);
+    check_places(order, request.job, data_folder, written, obj_file);
 
     Progress progress;
     progress.show("reading mesh and map", 0);

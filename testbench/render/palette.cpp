@@ -16,9 +16,10 @@ constexpr Colour error_scale[] = {{255, 255, 214}, {255, 237, 160}, {254, 217, 1
                                   {227, 26, 28},   {189, 0, 38},    {112, 0, 34}};
 
 /// Between the colours of a scale; `fraction` from 0 to 1.
-template <std::size_t count>
-Colour between(const Colour (&scale)[count], double fraction) {
-    const double at = fraction * (count - 1);
+template <class Scale>
+Colour between(const Scale& scale, double fraction) {
+    const std::size_t count = std::size(scale);
+    const double at = fraction * static_cast<double>(count - 1);
     const std::size_t i = std::min(static_cast<std::size_t>(at), count - 2);
     Colour result{};
     for (std::size_t k = 0; k < 3; ++k) {

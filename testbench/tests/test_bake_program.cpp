@@ -45,7 +45,7 @@ void refused(const std::vector<std::string>& arguments, const TestFolder& here,
 
 TEST_CASE("bake: the examples in all formats, the same twice, and jobs that run") {
     const TestFolder here;
-    for (const char* const name : {"dome", "saddle", "hills"}) {
+    for (const char* const name : {"dome", "saddle", "hills", "pillow"}) {
         INFO(name);
         const std::string surface = example((std::string(name) + ".toml").c_str()).string();
         const std::string map = name;

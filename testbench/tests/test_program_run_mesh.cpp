@@ -211,6 +211,26 @@ TEST_CASE("a base mesh that is no finished run's is refused with what it is") {
     CHECK_THAT(refused(here.path(), on("first", {})), Contains("--set output.ply=true"));
 }
 
+TEST_CASE("a run takes away neither the mesh file nor the map file that it reads") {
+    const TestFolder here;
+    run(here.path(), "first", {"tests.generation_limit=1"});
+    const std::string mesh = read_all(here.path() / "runs/first/mesh.obj");
+    for (const char* const frames : {"frames.count=1", "frames.count=2"}) {
+        CHECK_THAT(refused(here.path(), {"mesh.source=file", "mesh.file=runs/first/mesh.obj",
+                                         "output.folder=runs/first", frames}),
+                   Contains("its own base mesh") && Contains("mesh.obj"));
+        CHECK_THAT(refused(here.path(), {"map.source=file", "map.file=runs/first/picture.png",
+                                         "output.folder=runs/first", frames}),
+                   Contains("its own map") && Contains("picture.png"));
+    }
+    CHECK(read_all(here.path() / "runs/first/mesh.obj") == mesh);
+    // A file of another name may lie there.
+    fs::copy(here.path() / "runs/first/mesh.obj", here.path() / "runs/first/base.obj");
+    run(here.path(), "first",
+        {"mesh.source=file", "mesh.file=runs/first/base.obj", "tests.generation_limit=1"});
+    CHECK(fs::exists(here.path() / "runs/first/base.obj"));
+}
+
 TEST_CASE("a run that is cut short in its folder leaves no job beside another's mesh") {
     const TestFolder here;
     run(here.path(), "one", {"tests.generation_limit=3"});

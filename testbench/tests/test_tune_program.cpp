@@ -182,5 +182,32 @@ TEST_CASE("tune refuses wrong usage and goals out of reach, and leaves nothing")
         tune({"--triangles", "500", "--set", "tests.normal=false", "--set", "tests.summed_height=false"}),
         Contains("both off"));
     CHECK_THAT(tune({"--triangles", "500", "--set", "tests.view_treshold=1"}), Contains("view_threshold"));
+    CHECK_THAT(tune({"--triangles", "500", "--set", "frames.count=3"}), Contains("frames.count"));
+    CHECK_THAT(tune({"--triangles", "500", "--output", "map.exr"}), Contains(".toml"));
+    CHECK_THAT(tune({"--triangles", "500", "--output", "a.toml", "--tried", "a.json"}), Contains("--tried"));
+    CHECK_THAT(tune({"--triangles", "500", "--output", "a.toml", "--tried", "./a.toml"}),
+               Contains("--tried"));
     CHECK(here.names().empty());
+}
+
+TEST_CASE("tune overwrites nothing that it reads and nobody's mesh") {
+    const TestFolder here;
+    write_all(here.path() / "mine.toml", "[map]\nwidth = 32\nheight = 32\n");
+    write_all(here.path() / "own.obj", "# mine\nv 0 0 0\n");
+    CHECK_THAT(refused({"tune", "mine.toml", "--triangles", "300", "--output", "mine.toml"}, here.path()),
+               Contains("would overwrite mine.toml"));
+    CHECK_THAT(
+        refused(Arguments{"tune", "--triangles", "300", "--grid", "lattice16", "--output", "own.toml"} +
+                    small_map,
+                here.path()),
+        Contains("own.obj"));
+    CHECK(read_all(here.path() / "own.obj") == "# mine\nv 0 0 0\n");
+    REQUIRE(run_tessera({"run", "--set", "mode=functional", "--set", "map.width=32", "--set", "map.height=32",
+                         "--set", "output.folder=runs/tuned"},
+                        here.path())
+                .exit_code == 0);
+    CHECK_THAT(
+        refused({"tune", "--triangles", "30000", "--set", "mesh.source=run", "--set", "mesh.file=runs/tuned"},
+                here.path()),
+        Contains("take away its own base mesh"));
 }

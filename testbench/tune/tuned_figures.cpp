@@ -61,7 +61,8 @@ TunedFigures measure_tuned(const Job& job, const BaseMesh& base, const HeightMap
     }
     const DirectedError error =
         measure_surface_error(base, map, displacement, recorded, Sampling::interpolated).reference_to_mesh;
-    figures.what = "distance from the surface to the mesh";
+    figures.what =
+        "distance from the surface to the mesh (searched: at equal texture coordinates, an upper bound)";
     figures.rms = figures.rms_model = error.rms;
     figures.max = figures.max_model = error.max;
     return figures;
