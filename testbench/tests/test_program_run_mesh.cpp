@@ -226,8 +226,11 @@ TEST_CASE("a run takes away neither the mesh file nor the map file that it reads
     CHECK(read_all(here.path() / "runs/first/mesh.obj") == mesh);
     // A file of another name may lie there.
     fs::copy(here.path() / "runs/first/mesh.obj", here.path() / "runs/first/base.obj");
-    run(here.path(), "first",
-        {"mesh.source=file", "mesh.file=runs/first/base.obj", "tests.generation_limit=1"});
+    const ProgramEnd end = run_tessera(arguments_of({"mesh.source=file", "mesh.file=runs/first/base.obj",
+                                                     "tests.generation_limit=1", "output.folder=runs/first"}),
+                                       here.path());
+    INFO(end.text());
+    CHECK(end.exit_code == 0);
     CHECK(fs::exists(here.path() / "runs/first/base.obj"));
 }
 
