@@ -20,7 +20,10 @@ void refuse(const std::string& what) {
 void TuneOptions::add_to(CLI::App& tune) {
     job_given_ = tune.add_option("JOB", order_.job_file, "job file (TOML); without one, the default job");
     triangles_given_ = tune.add_option("--triangles", order_.triangles,
-                                       "find the least error with at most so many triangles");
+                                       "find the least error with at most so many triangles")
+                           ->check([](const std::string& text) {
+                               return text.rfind('-', 0) == 0 ? text + " is negative" : std::string{};
+                           });
     error_given_ =
         tune.add_option("--error", order_.error,
                         "find the fewest triangles with at most this error: units of the map's file on "
