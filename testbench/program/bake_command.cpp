@@ -8,9 +8,9 @@
 #include "testbench/host/inputs.h"
 #include "testbench/job/dump_job.h"
 #include "testbench/job/job_paths.h"
-#include "testbench/job/read_job.h"
 #include "testbench/job/toml_text.h"
 #include "testbench/job/validate_job.h"
+#include "testbench/program/load_job.h"
 #include "testbench/program/output_folder.h"
 #include "testbench/program/progress.h"
 #include "testbench/program/run_files.h"
@@ -30,9 +30,7 @@ Job base_job(const BakeRequest& request, const Surface& surface) {
         job.mesh.depth = surface.high.y - surface.low.y;
         return job;
     }
-    job = read_job(request.mesh_job);
-    validate(job);
-    return job;
+    return load_job(request.mesh_job.string(), {});
 }
 
 BakedMap bake(const BakeRequest& request, const Surface& surface, const Job& job,

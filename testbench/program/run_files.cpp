@@ -19,15 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A path that names one place in one way; without a slash at its end.
-fs::path real_place(const fs::path& folder) {
-    std::error_code failed;
-    const fs::path absolute = fs::absolute(folder).lexically_normal();
-    const fs::path path = fs::weakly_canonical(absolute, failed);
-    const fs::path& result = failed ? absolute : path;
-    return result.has_filename() ? result : result.parent_path();
-}
-
 constexpr const char* result_names[] = {"job.toml",         "mesh.ply",       "mesh.obj",
                                         "statistics.json",  "statistics.csv", "conformance.txt",
                                         "conformance.json", "timing.txt",     "queue_levels.csv",
@@ -49,6 +40,14 @@ bool is_of(const fs::path& folder, const fs::path& output) {
 }
 
 }  // namespace
+
+fs::path real_place(const fs::path& path) {
+    std::error_code failed;
+    const fs::path absolute = fs::absolute(path).lexically_normal();
+    const fs::path canonical = fs::weakly_canonical(absolute, failed);
+    const fs::path& result = failed ? absolute : canonical;
+    return result.has_filename() ? result : result.parent_path();
+}
 
 void remove_run_file(const fs::path& file) {
     std::error_code absent;

@@ -5,6 +5,9 @@
 
 namespace tessera {
 
+/// A path that names one place in one way, whether or not it is there; without a slash at its end.
+std::filesystem::path real_place(const std::filesystem::path& path);
+
 /// Takes away the file that a run left under this name. What is no plain file stays.
 void remove_run_file(const std::filesystem::path& file);
 

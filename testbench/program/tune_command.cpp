@@ -146,11 +146,6 @@ std::string own_run_folder(const fs::path& job_file) {
     return (fs::path("runs") / job_file.stem()).generic_string();
 }
 
-bool same_place(const fs::path& a, const fs::path& b) {
-    std::error_code ignored;
-    return fs::weakly_canonical(fs::absolute(a), ignored) == fs::weakly_canonical(fs::absolute(b), ignored);
-}
-
 /// Nothing that is written may take the place of something read, of another file written, or of somebody's mesh.
 void check_places(const TuneOrder& order, const Job& job, const fs::path& data_folder,
                   const std::vector<fs::path>& written, const fs::path& obj_file) {
@@ -163,12 +158,12 @@ void check_places(const TuneOrder& order, const Job& job, const fs::path& data_f
         read.push_back(resolve_path(job.map.file, job.folder, data_folder));
     for (std::size_t k = 0; k < written.size(); ++k) {
         for (const fs::path& file : read)
-            if (same_place(written[k], file))
+            if (real_place(written[k]) == real_place(file))
                 throw InputError(
                     fmt::format("--output {}: {} would overwrite {}, which is read; choose another name",
                                 order.output, written[k].string(), file.string()));
         for (std::size_t other = 0; other < k; ++other)
-            if (same_place(written[k], written[other]))
+            if (real_place(written[k]) == real_place(written[other]))
                 throw InputError(fmt::format("--tried {}: is written with the tuned job; choose another name",
                                              order.tried));
     }

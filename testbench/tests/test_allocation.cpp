@@ -26,6 +26,15 @@ void expect_no_allocation(const Setup& setup, Simulation& simulation) {
     CHECK(used < edges / 1000);
 }
 
+void expect_no_allocation_checked(const Job& job) {
+    const Setup setup = make_setup(job, load_mesh(job, {}), load_map(job, {}));
+    Simulation simulation(setup, 1'000'000);
+    const GoldenInputs golden(setup);
+    Scoreboard scoreboard(setup.registers, golden);
+    simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
+    expect_no_allocation(setup, simulation);
+}
+
 }  // namespace
 
 TEST_CASE("functional mode allocates nothing per edge") {
@@ -36,24 +45,13 @@ TEST_CASE("functional mode allocates nothing per edge") {
 }
 
 TEST_CASE("functional mode with the scoreboard allocates nothing per edge") {
-    const Job job;
-    const Setup setup = make_setup(job, load_mesh(job, {}), load_map(job, {}));
-    Simulation simulation(setup, 1'000'000);
-    const GoldenInputs golden(setup);
-    Scoreboard scoreboard(setup.registers, golden);
-    simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
-    expect_no_allocation(setup, simulation);
+    expect_no_allocation_checked({});
 }
 
 TEST_CASE("functional mode with a Highlight Test and the scoreboard allocates nothing per edge") {
     Job job;
     job.tests.highlight = true;
-    const Setup setup = make_setup(job, load_mesh(job, {}), load_map(job, {}));
-    Simulation simulation(setup, 1'000'000);
-    const GoldenInputs golden(setup);
-    Scoreboard scoreboard(setup.registers, golden);
-    simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
-    expect_no_allocation(setup, simulation);
+    expect_no_allocation_checked(job);
 }
 
 TEST_CASE("timed mode allocates nothing per edge") {

@@ -5,6 +5,7 @@
 #include "modules/datapath/light.h"
 #include "testbench/tests/datapath_edge.h"
 #include "testbench/tests/datapath_random.h"
+#include "testbench/tests/datapath_random_tables.h"
 
 /// The same bits from every compiler at every optimisation level: integer arithmetic only, here as there.
 using namespace tessera::datapath;
@@ -48,19 +49,7 @@ TEST_CASE("fingerprint: a hundred thousand random triangles give the recorded bi
     Random random(33);
     Registers registers;
     registers.map = {97, 61, AddressMode::repeat, AddressMode::clamp};
-    const auto unit = [&] {
-        Saturations unused;
-        const Direction any{random.integer32(-999, 999), random.integer32(-999, 999),
-                            random.integer32(1, 999)};
-        return normalise(any, registers.formats, unused);
-    };
-    std::vector<std::uint32_t> codes;
-    std::vector<Direction> normals;
-    for (int k = 0; k < 97 * 61; ++k) {
-        codes.push_back(random.natural(0, 65535));
-        normals.push_back(unit());
-    }
-    const Tables tables = make_tables(registers, codes, normals);
+    const Tables tables = random_tables(random, registers);
     registers.tests.normal_threshold = 9000;
     registers.tests.summed_height_threshold = 90000;
     registers.tests.view_threshold = 30 << 8;
@@ -81,8 +70,8 @@ TEST_CASE("fingerprint: a hundred thousand random triangles give the recorded bi
         for (Vertex& v : triangle.vertices) {
             const auto position = [&] { return random.integer32(-200000, 200000); };
             v.position = {position(), position(), position()};
-            v.normal = unit();
-            v.tangent = unit();
+            v.normal = random_normal(random, registers.formats);
+            v.tangent = random_normal(random, registers.formats);
             v.texture = {random.natural(0, 2 * 97 << 12), random.natural(0, 61 << 12)};
             v.handedness = random.coin() ? std::int8_t{1} : std::int8_t{-1};
             v.generation = static_cast<std::uint8_t>(random.integer(0, 12));

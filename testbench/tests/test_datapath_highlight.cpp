@@ -11,6 +11,7 @@
 #include "modules/datapath/pack_triangle.h"
 #include "testbench/tests/datapath_edge.h"
 #include "testbench/tests/datapath_random.h"
+#include "testbench/tests/datapath_random_tables.h"
 
 /// The Highlight Test: one of three normals in the highlight, and a difference above its threshold.
 using namespace tessera::datapath;
@@ -147,19 +148,7 @@ TEST_CASE("symmetry: with a Highlight Test, decision and inserted vertex are the
     Random random(53);
     Registers registers;
     registers.map = {64, 48, AddressMode::clamp, AddressMode::repeat};
-    const auto unit = [&] {
-        Saturations unused;
-        const Direction any{random.integer32(-999, 999), random.integer32(-999, 999),
-                            random.integer32(1, 999)};
-        return normalise(any, registers.formats, unused);
-    };
-    std::vector<std::uint32_t> codes;
-    std::vector<Direction> normals;
-    for (int k = 0; k < 64 * 48; ++k) {
-        codes.push_back(random.natural(0, 65535));
-        normals.push_back(unit());
-    }
-    Tables tables = make_tables(registers, codes, normals);
+    Tables tables = random_tables(random, registers);
     registers.tests = parameters_of({0, 0, 1 << 14}, 200'000'000, 9000);
     registers.tests.normal_threshold = 30000;
     registers.tests.summed_height_threshold = ~0U;
@@ -170,8 +159,8 @@ TEST_CASE("symmetry: with a Highlight Test, decision and inserted vertex are the
         const auto vertex = [&] {
             Vertex v;
             v.texture = {random.natural(0, 64 << 12), random.natural(0, 96 << 12)};
-            v.normal = unit();
-            v.tangent = unit();
+            v.normal = random_normal(random, registers.formats);
+            v.tangent = random_normal(random, registers.formats);
             v.position = {random.integer32(-99999, 99999), random.integer32(-99999, 99999), 0};
             machine.complete(v);
             return v;

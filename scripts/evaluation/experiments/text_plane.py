@@ -36,6 +36,7 @@ def beyond_the_plane(positions):
 
 def measure(study):
     run = study.run("text", settings=SETTINGS)
+    size = f"{study.picture_width}x{study.picture_width * 46 // 100}"
     outside = beyond_the_plane(run.mesh.positions)
     rms = run.error["interpolated.reference_to_mesh_rms_texels"]
     return Section(
@@ -45,8 +46,8 @@ def measure(study):
             f"{run.figures['host.base_triangles']} flat triangles became {run.triangles:,}; the camera sees {100 * outside:.1f} % "
             f"of the vertices outside the flat plane's outline; the surface lies {rms:.2f} texels RMS from the exact one.",
             reproduced_if(outside > 0.005 and rms < 1))],
-        pictures=[Picture(run.render("shaded", size=f"{study.picture_width}x{study.picture_width * 46 // 100}"), "The displaced surface"),
-                  Picture(run.render("wireframe", size=f"{study.picture_width}x{study.picture_width * 46 // 100}"), "Its triangles: flat letters' tops and the plane stay coarse")],
+        pictures=[Picture(run.render("shaded", size=size), "The displaced surface"),
+                  Picture(run.render("wireframe", size=size), "Its triangles: flat letters' tops and the plane stay coarse")],
         tables=[Table("text_plane", "The run", [("base triangles", ""), ("triangles", ""), ("edges tested", ""),
                                                 ("RMS error", "texel"), ("maximum error", "texel")],
                       [[run.figures["host.base_triangles"], run.triangles, run.figures["run.edges_tested"], rms,
