@@ -28,10 +28,10 @@ def toml(value):
 
 
 def figures_of(path):
-    """{"group.name": value} of a JSON report of tessera."""
-    groups = json.loads(path.read_text())
+    """{"group.name": value} of a JSON report of tessera; what is no figure (a verdict, remarks) is left out."""
+    groups = {name: group for name, group in json.loads(path.read_text()).items() if isinstance(group, dict)}
     return {f"{group}.{name}": figure["value"] for group, figures in groups.items()
-            for name, figure in figures.items() if "value" in figure}
+            for name, figure in figures.items() if isinstance(figure, dict) and "value" in figure}
 
 
 class Study:
