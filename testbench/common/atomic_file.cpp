@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <system_error>
 
+#include "testbench/common/atomic_set.h"
 #include "testbench/common/error.h"
 
 namespace tessera {
@@ -49,11 +50,13 @@ AtomicFile::AtomicFile(const fs::path& path) : path_(path), target_(path) {
     do {
         unfinished_ = target_;
         unfinished_.replace_filename(fmt::format(".tessera-{}-{}.part", ::getpid(), number++));
+        looked_after_.emplace(unfinished_);
         file_ = ::open(unfinished_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     } while (file_ < 0 && (errno == EEXIST || errno == EINTR));
     if (file_ < 0) {
         const int error = errno;
         unfinished_.clear();  // not ours to remove
+        looked_after_.reset();
         fail("cannot write", error);
     }
     buffer_.reserve(buffer_size);
@@ -90,17 +93,13 @@ void AtomicFile::commit() {
     file_ = -1;  // closed even if close complains
     if (::close(file) != 0 && errno != EINTR)
         fail("writing failed", errno);
-    if (::rename(unfinished_.c_str(), target_.c_str()) != 0)
-        fail("cannot write", errno);
+    AtomicSet* const set = AtomicSet::current();
+    std::optional<AtomicSet> alone;
+    (set != nullptr ? *set : alone.emplace()).add(unfinished_, target_);
     unfinished_.clear();
-
-    // so that the name outlives a power cut too; file systems that cannot do this keep the file all the same
-    const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
-    const int handle = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (handle >= 0) {
-        ::fsync(handle);
-        ::close(handle);
-    }
+    looked_after_.reset();
+    if (alone)
+        alone->commit();
 }
 
 void AtomicFile::fail(const char* what, int error) {
@@ -119,6 +118,7 @@ void AtomicFile::discard() noexcept {
     if (!unfinished_.empty())
         ::unlink(unfinished_.c_str());
     unfinished_.clear();
+    looked_after_.reset();
 }
 
 void write_file(const fs::path& path, std::string_view content) {

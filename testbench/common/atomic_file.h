@@ -1,8 +1,11 @@
 #pragma once
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+
+#include "testbench/common/interruption.h"
 
 namespace tessera {
 
@@ -10,8 +13,9 @@ namespace tessera {
 /// (".tessera-<process>-<number>.part"), and renamed by commit() once every byte is on the disk. An older
 /// file of the name stays as it was until then.
 ///
-/// Destroyed without commit(), or after an error, it leaves nothing. Only a process that is killed can leave
-/// the unfinished file: a program that wants to live with `ulimit -f` must ignore SIGXFSZ. A link to a file
+/// Destroyed without commit(), after an error or an Interruption it leaves nothing. Only a process that is killed can
+/// leave the unfinished file: a program that wants to live with `ulimit -f` must ignore SIGXFSZ. While an AtomicSet
+/// lives, commit() hands the complete file to it instead of renaming it. A link to a file
 /// is followed; what is neither file nor absent (a folder, a device) is refused. Errors, with file and the
 /// system's reason: ResourceError if disk, quota, file size or memory ran out or the disk failed, else
 /// InputError (no such folder, not writable).
@@ -35,6 +39,7 @@ class AtomicFile {
     std::filesystem::path path_;    // as the user knows it, for messages
     std::filesystem::path target_;  // where it leads
     std::filesystem::path unfinished_;
+    std::optional<Unfinished> looked_after_;
     int file_ = -1;
     std::string buffer_;
 };

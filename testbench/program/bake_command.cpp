@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "testbench/common/atomic_file.h"
+#include "testbench/common/atomic_set.h"
 #include "testbench/host/inputs.h"
 #include "testbench/job/dump_job.h"
 #include "testbench/job/job_paths.h"
@@ -111,8 +112,10 @@ ExitCode bake_command(const BakeRequest& request, const fs::path& data_folder) {
         fmt::format("What `tessera bake` made of {}.", printable(request.surface.filename().string())));
 
     OutputFolder output(folder, "--output");
+    AtomicSet files;
     write_file(request.output, file.bytes);
     write_file(job_file, job_text);
+    files.commit();
     output.keep();
     fmt::print("{}  {} and {}: tessera run {}\n", summary(map, file),
                request.output.lexically_normal().string(), job_file.filename().string(),

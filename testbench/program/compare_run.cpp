@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "testbench/common/atomic_file.h"
+#include "testbench/common/atomic_set.h"
 #include "testbench/host/inputs.h"
 #include "testbench/measure/measure_error.h"
 #include "testbench/program/progress.h"
@@ -22,8 +23,10 @@ ExitCode compare_run(const Command& command) {
     progress.clear();
 
     const std::string text = error_text(run.job, run.mesh, error);
+    AtomicSet files;
     write_file(run.folder / "error.json", statistics_json(error_figures(run.mesh, error)));
     write_file(run.folder / "error.txt", text);
+    files.commit();
     fmt::print("{}\n  error.json and error.txt in {}\n", text,
                std::filesystem::absolute(run.folder).lexically_normal().string());
     return ExitCode::fine;

@@ -10,6 +10,7 @@
 #include <systemc>
 
 #include "testbench/common/error.h"
+#include "testbench/common/interruption.h"
 #include "testbench/job/document_keys.h"
 #include "testbench/program/bake_command.h"
 #include "testbench/program/command_line.h"
@@ -77,5 +78,6 @@ int main(int argc, char** argv) {
     setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 0);
     // A file beyond `ulimit -f` is then an error of write(), which is reported and cleaned up after.
     std::signal(SIGXFSZ, SIG_IGN);
+    tessera::Interruption::expect();
     return sc_core::sc_elab_and_sim(argc, argv);
 }

@@ -1,11 +1,14 @@
 #include "testbench/program/progress.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <utility>
+
+#include "testbench/common/interruption.h"
 
 namespace tessera {
 
@@ -19,6 +22,10 @@ Progress::~Progress() {
 }
 
 void Progress::show(const std::string& what, double part) {
+    std::array<char, 400> text{};
+    const auto end =
+        fmt::format_to_n(text.data(), text.size(), "at {:.0f} %, {}{}", 100 * part, before_, what);
+    Interruption::note({text.data(), std::min(end.size, text.size())});
     const auto now = std::chrono::steady_clock::now();
     if (!terminal_ || now < next_)
         return;
@@ -32,6 +39,7 @@ void Progress::show(const std::string& what, double part) {
 }
 
 void Progress::clear() {
+    Interruption::note({});
     if (!shown_)
         return;
     fmt::print(stderr, "\r\x1b[K");

@@ -4,7 +4,8 @@
 
 namespace tessera {
 
-/// One line on a terminal that is overwritten as work goes on; silent where standard error is not a terminal.
+/// One line on a terminal that is overwritten as work goes on; silent where standard error is not a terminal. An
+/// Interruption says it too.
 class Progress {
   public:
     /// `before`: what every line says first.

@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "testbench/common/atomic_file.h"
+#include "testbench/common/atomic_set.h"
 #include "testbench/job/validate_job.h"
 #include "testbench/program/output_folder.h"
 #include "testbench/program/progress.h"
@@ -160,8 +161,10 @@ ExitCode render_command(const RenderRequest& asked, const fs::path& data_folder)
     progress.show("rendering", 0);
     const std::vector<Picture> pictures = draw(request, mesh, camera);
     OutputFolder folder(output.folder, "--output");
+    AtomicSet files;
     for (std::size_t i = 0; i < pictures.size(); ++i)
         write(output.path_of(request.views[i]), pictures[i], output.exr);
+    files.commit();
     folder.keep();
     progress.clear();
 

@@ -19,11 +19,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* result_names[] = {"job.toml",         "mesh.ply",       "mesh.obj",
-                                        "statistics.json",  "statistics.csv", "conformance.txt",
-                                        "conformance.json", "timing.txt",     "queue_levels.csv",
-                                        "picture.png",      "error.json",     "error.txt"};
-constexpr const char* trace_names[] = {"trace.vcd", "trace.fst", "timeline.json"};
+constexpr const char* run_file_names[] = {
+    "job.toml",        "mesh.ply",         "mesh.obj",   "statistics.json",  "statistics.csv",
+    "conformance.txt", "conformance.json", "timing.txt", "queue_levels.csv", "picture.png",
+    "error.json",      "error.txt",        "trace.vcd",  "trace.fst",        "timeline.json"};
 
 /// Whether a run, or what is done with it, writes or takes away a file of this name.
 bool is_run_file(const std::string& name) {
@@ -31,7 +30,7 @@ bool is_run_file(const std::string& name) {
     const auto among = [&](const auto& names) {
         return std::find(std::begin(names), std::end(names), name) != std::end(names);
     };
-    return among(result_names) || among(trace_names) || among(pictures);
+    return among(run_file_names) || among(pictures);
 }
 
 /// Whether a run into `output` has `folder` to itself: it is that, or a frame in it.
@@ -55,16 +54,10 @@ void remove_run_file(const fs::path& file) {
         fs::remove(file);
 }
 
-void remove_results(const fs::path& folder) {
-    for (const char* const name : result_names)
+void remove_run_files(const fs::path& folder) {
+    for (const char* const name : run_file_names)
         remove_run_file(folder / name);
     remove_pictures(folder);
-}
-
-void remove_run_files(const fs::path& folder) {
-    remove_results(folder);
-    for (const char* const name : trace_names)
-        remove_run_file(folder / name);
 }
 
 void remove_frames(const fs::path& folder) {

@@ -11,10 +11,7 @@ std::filesystem::path real_place(const std::filesystem::path& path);
 /// Takes away the file that a run left under this name. What is no plain file stays.
 void remove_run_file(const std::filesystem::path& file);
 
-/// Takes away what `tessera run`, `tessera compare` and `tessera render` leave in a run's folder, but for its traces.
-/// Other files stay.
-void remove_results(const std::filesystem::path& folder);
-/// The traces too.
+/// Takes away what `tessera run`, `tessera compare` and `tessera render` leave in a run's folder. Other files stay.
 void remove_run_files(const std::filesystem::path& folder);
 
 /// Takes away what a run of several frames left in its folder: the table of frames, and every frame's run. A frame's

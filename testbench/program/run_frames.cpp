@@ -15,6 +15,8 @@
 #include <vector>
 
 #include "testbench/common/atomic_file.h"
+#include "testbench/common/atomic_set.h"
+#include "testbench/common/interruption.h"
 #include "testbench/host/inputs.h"
 #include "testbench/host/setup.h"
 #include "testbench/job/dump_job.h"
@@ -130,6 +132,8 @@ ExitCode run_frames(const Job& job, const fs::path& data_folder, const RunFrame&
     ExitCode worst = ExitCode::fine;
     std::vector<FrameRow> rows;
     for (Frame& frame : frames) {
+        Interruption::note(
+            fmt::format("at {} of {} frames, complete in {}", rows.size(), frames.size(), folder.string()));
         const End end = run_in_process(frame, run);
         if (end.in_frame)
             return end.code;
@@ -158,9 +162,11 @@ ExitCode run_frames(const Job& job, const fs::path& data_folder, const RunFrame&
     }
 
     const std::string traffic = frames_traffic(rows);
+    AtomicSet files;
     write_file(folder / "frames.csv", frames_csv(rows));
     write_file(folder / "frames.txt", text + traffic);
     write_file(folder / "job.toml", dump_job(job, folder));
+    files.commit();
     fmt::print("{}  {}\n  results in {}\n", traffic,
                worst == ExitCode::fine ? "no frame failed" : "FRAMES FAILED, see above",
                fs::absolute(folder).lexically_normal().string());

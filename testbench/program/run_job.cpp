@@ -11,6 +11,7 @@
 
 #include "testbench/check/scoreboard.h"
 #include "testbench/common/atomic_file.h"
+#include "testbench/common/atomic_set.h"
 #include "testbench/host/inputs.h"
 #include "testbench/host/simulation.h"
 #include "testbench/job/dump_job.h"
@@ -57,21 +58,8 @@ class Stopwatch {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Those of a run before; this run's are there already.
-void remove_other_traces(const std::filesystem::path& folder, const Job& job) {
-    if (!job.output.vcd) {
-        remove_run_file(folder / "trace.vcd");
-        remove_run_file(folder / "trace.fst");
-    }
-    if (!job.output.timeline)
-        remove_run_file(folder / "timeline.json");
-}
-
 void write_run_folder(const std::filesystem::path& folder, const Job& job, const Setup& setup,
                       const Simulation& simulation, const Checks& checks) {
-    remove_frames(folder);
-    // First, so that whoever is interrupted leaves no job beside the mesh or picture of another: it would be believed.
-    remove_results(folder);
     write_file(folder / "job.toml", dump_job(job, folder));
     const std::vector<Figure> figures = collect_statistics(setup, simulation);
     write_file(folder / "statistics.json", statistics_json(figures));
@@ -85,7 +73,6 @@ void write_run_folder(const std::filesystem::path& folder, const Job& job, const
         write_file(folder / "queue_levels.csv",
                    queue_levels_csv(simulation.pipeline.triangle_queue.history()));
     }
-    remove_other_traces(folder, job);
     if (job.output.ply)
         write_ply(folder / "mesh.ply", simulation.monitor.mesh, units);
     if (job.output.obj)
@@ -94,23 +81,25 @@ void write_run_folder(const std::filesystem::path& folder, const Job& job, const
         write_picture(folder / "picture.png", simulation.monitor.mesh, setup, job);
 }
 
-/// What a run that got stuck leaves: its traces, the job, and nothing of a run before it.
-void write_stuck_run(const std::filesystem::path& folder, const Job& job) {
+/// All that this run leaves takes the place of all that a run before it left: a job beside the mesh or the picture of
+/// another would be believed.
+void replace_run(const std::filesystem::path& folder, AtomicSet& files) {
+    const Interruption::Delay delay;
     remove_frames(folder);
-    remove_results(folder);
-    remove_other_traces(folder, job);
-    write_file(folder / "job.toml", dump_job(job, folder));
+    remove_run_files(folder);
+    files.commit();
+    Interruption::note("when the results were complete");
 }
 
 /// The traces' names and windows, and trace.fst if asked for.
-std::string finish_traces(Traces& traces, const Command& command, const std::filesystem::path& folder) {
+std::string finish_traces(Traces& traces, const Command& command, const std::filesystem::path& folder,
+                          AtomicSet& files) {
     traces.finish();
     std::string text;
     for (const std::string& line : traces.text())
         text += fmt::format("  {}\n", line);
-    std::filesystem::remove(folder / "trace.fst");  // of a run before
     if (command.fst) {
-        const std::string fault = make_fst(folder);
+        const std::string fault = make_fst(folder, files);
         text += fmt::format("  {}\n", fault.empty() ? "trace.fst: the same, compressed" : fault);
     }
     return text;
@@ -154,6 +143,7 @@ Ending run_once(const Job& job, const Command& command, const std::string& name)
     });
 
     std::optional<OutputFolder> output;
+    AtomicSet files;
     std::optional<Traces> traces;
     if (Traces::wanted(job)) {
         const std::vector<const Unit*> units = units_to_trace(job.output.trace_units, simulation.pipeline);
@@ -164,14 +154,14 @@ Ending run_once(const Job& job, const Command& command, const std::string& name)
     const Stopwatch stopwatch;
     const std::string stuck = simulation.run();
     const double seconds = stopwatch.seconds();
-    const std::string traces_text = traces ? finish_traces(*traces, command, folder) : std::string{};
-    if (output)
-        output->keep();
+    const std::string traces_text = traces ? finish_traces(*traces, command, folder, files) : std::string{};
     if (!stuck.empty()) {
         progress.clear();
         fmt::print(stderr, "tessera: {}", stuck);
         if (traces) {
-            write_stuck_run(folder, job);
+            write_file(folder / "job.toml", dump_job(job, folder));
+            replace_run(folder, files);
+            output->keep();
             fmt::print(stderr, "{}  in {}\n", traces_text,
                        std::filesystem::absolute(folder).lexically_normal().string());
         }
@@ -194,8 +184,11 @@ Ending run_once(const Job& job, const Command& command, const std::string& name)
         checks.end_to_end = compare_end_to_end(setup, *golden, mesh);
     }
     progress.show("writing", 0.99);
-    OutputFolder(folder).keep();
+    if (!output)
+        output.emplace(folder);
     write_run_folder(folder, job, setup, simulation, checks);
+    replace_run(folder, files);
+    output->keep();
     progress.clear();
 
     return {

@@ -171,10 +171,10 @@ std::vector<std::string> Traces::text() const {
     return text;
 }
 
-std::string make_fst(const fs::path& folder) {
-    const std::string vcd = (folder / "trace.vcd").string();
-    const std::string fst = (folder / "trace.fst").string();
+std::string make_fst(const fs::path& folder, AtomicSet& files) {
+    const std::string vcd = files.waiting(folder / "trace.vcd").string();
     const std::string unfinished = (folder / fmt::format(".tessera-{}.fst.part", ::getpid())).string();
+    const Unfinished looked_after(unfinished);
     std::string program = "vcd2fst";
     std::string from = vcd, to = unfinished;
     char* const arguments[] = {program.data(), from.data(), to.data(), nullptr};
@@ -199,10 +199,10 @@ std::string make_fst(const fs::path& folder) {
         return WIFEXITED(status) && WEXITSTATUS(status) == 127
                    ? "no trace.fst: vcd2fst is not installed; it is in the package gtkwave (apt-get install "
                      "gtkwave)"
-                   : fmt::format("no trace.fst: vcd2fst failed on {}", vcd);
+                   : fmt::format("no trace.fst: vcd2fst failed on {}", (folder / "trace.vcd").string());
     }
-    fs::rename(unfinished, fst, problem);
-    return problem ? fmt::format("no trace.fst: {}: {}", fst, problem.message()) : std::string{};
+    files.add(unfinished, folder / "trace.fst");
+    return {};
 }
 
 }  // namespace tessera

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "modules/trace/trace_window.h"
+#include "testbench/common/atomic_set.h"
 #include "testbench/host/simulation.h"
 #include "testbench/job/job.h"
 
@@ -16,7 +17,7 @@ namespace tessera {
 std::vector<const Unit*> units_to_trace(const std::string& words, const Pipeline& pipeline);
 
 /// What a job asks for of trace.vcd and timeline.json, written into the run's folder while the simulation runs, under
-/// their names only when complete (AtomicFile). Without finish() nothing is left.
+/// their names only when complete (AtomicFile, AtomicSet). Without finish() nothing is left.
 class Traces {
   public:
     static bool wanted(const Job& job) { return job.output.vcd || job.output.timeline; }
@@ -45,7 +46,8 @@ class Traces {
     TraceWindow window_;
 };
 
-/// Makes trace.fst of trace.vcd. Returns what went wrong, in words for the user; empty: nothing.
-std::string make_fst(const std::filesystem::path& folder);
+/// Makes trace.fst of trace.vcd, which waits in the set of files, and adds it. Returns what went wrong, in words for the
+/// user; empty: nothing.
+std::string make_fst(const std::filesystem::path& folder, AtomicSet& files);
 
 }  // namespace tessera

@@ -8,6 +8,7 @@
 
 #include "testbench/benchmark/bare_recursion.h"
 #include "testbench/common/atomic_file.h"
+#include "testbench/common/atomic_set.h"
 #include "testbench/host/inputs.h"
 #include "testbench/host/simulation.h"
 #include "testbench/job/dump_job.h"
@@ -273,19 +274,21 @@ ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
     progress.clear();
 
     request.goal.error = bound;  // as asked for
-    std::string files = job_file.string() + ", " + json_file.string();
+    std::string names = job_file.string() + ", " + json_file.string();
+    AtomicSet files;
     if (!order.tried.empty()) {
         write_file(order.tried, tried_csv(request, result, unit));
-        files += ", " + order.tried;
+        names += ", " + order.tried;
     }
     if (!result.base_obj.empty()) {
         write_file(obj_file, result.base_obj);
-        files += ", " + obj_file.string();
+        names += ", " + obj_file.string();
     }
     write_file(json_file, tune_json(request, result, figures, unit));
     write_file(job_file,
                tune_comment(request, result, figures, unit) + dump_job(job, job_file.parent_path()));
-    fmt::print("{}  {:<24}{}\n", tune_text(request, result, figures, unit), "written", files);
+    files.commit();
+    fmt::print("{}  {:<24}{}\n", tune_text(request, result, figures, unit), "written", names);
     return ExitCode::fine;
 }
 

@@ -1,0 +1,40 @@
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "testbench/common/interruption.h"
+
+namespace tessera {
+
+/// Files that appear under their names together: while one lives, each AtomicFile that is committed waits here, whole
+/// and on the disk, until commit() renames all of them; an interrupt waits for that. Without commit() none appears, and
+/// what stood under the names stays. One at a time.
+class AtomicSet {
+  public:
+    AtomicSet();
+    ~AtomicSet();
+    AtomicSet(const AtomicSet&) = delete;
+    AtomicSet& operator=(const AtomicSet&) = delete;
+
+    /// Where the file waits that will be `path`.
+    std::filesystem::path waiting(const std::filesystem::path& path) const;
+
+    /// Takes a file into the set that is complete at `from`.
+    void add(const std::filesystem::path& from, const std::filesystem::path& to);
+
+    /// To be called once. Throws InputError, with the name, when a file cannot be renamed.
+    void commit();
+
+    /// The one that lives, if any.
+    static AtomicSet* current();
+
+  private:
+    struct File {
+        std::filesystem::path from, to;
+        std::unique_ptr<Unfinished> unfinished;
+    };
+    std::vector<File> files_;
+};
+
+}  // namespace tessera

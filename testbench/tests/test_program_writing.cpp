@@ -1,0 +1,203 @@
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <map>
+
+#include "testbench/tests/program_runner.h"
+
+using namespace tessera;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+using Files = std::map<std::string, std::string>;
+
+Files files_in(const fs::path& folder) {
+    Files files;
+    std::error_code absent;
+    for (const auto& entry : fs::recursive_directory_iterator(folder, absent))
+        files[entry.path().lexically_relative(folder).string()] =
+            entry.is_regular_file() ? read_all(entry.path()) : "(folder)";
+    return files;
+}
+
+bool is_unfinished(const std::string& name) {
+    return name.find(".part") != std::string::npos;
+}
+
+/// A run small enough to be made some hundred times, with every file there is but the picture, which takes long.
+std::vector<std::string> run_arguments(const std::string& seed) {
+    std::vector<std::string> arguments{"run", "--vcd", "--timeline"};
+    for (const char* const setting :
+         {"map.width=16", "map.height=16", "map.source=noise", "tests.generation_limit=3",
+          "output.picture=false", "output.trace_to=3000", "output.folder=out/run"})
+        arguments.insert(arguments.end(), {"--set", setting});
+    arguments.insert(arguments.end(), {"--set", "map.seed=" + seed});
+    return arguments;
+}
+
+ProgramEnd run_failing(const std::vector<std::string>& arguments, const fs::path& folder, long at,
+                       const std::string& what) {
+    std::vector<std::string> command{TESSERA_PROGRAM};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    return run_program(
+        command, folder, {},
+        {{"LD_PRELOAD", TESSERA_FAILING_DISK}, {"TESSERA_FAILING_DISK", std::to_string(at) + ":" + what}});
+}
+
+/// How many of its calls concern the disk.
+long disk_calls(const std::vector<std::string>& arguments, const fs::path& folder) {
+    const TestFolder log;
+    std::vector<std::string> command{TESSERA_PROGRAM};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    const ProgramEnd end = run_program(
+        command, folder, {},
+        {{"LD_PRELOAD", TESSERA_FAILING_DISK}, {"TESSERA_DISK_LOG", (log.path() / "calls").string()}});
+    INFO(end.text());
+    REQUIRE(end.exit_code == 0);
+    const long calls = std::stol(read_all(log.path() / "calls"));
+    REQUIRE(calls > 4);
+    return calls;
+}
+
+/// What a command may leave behind, whatever happens to it: all that was there, or all that it makes.
+struct Expected {
+    Files before, after;
+};
+
+void check_ends_well(const std::vector<std::string>& arguments, const fs::path& folder,
+                     const Expected& expected, const std::string& what) {
+    const long calls = disk_calls(arguments, folder);
+    long failures = 0;
+    for (long at = 1; at <= calls; ++at) {
+        fs::remove_all(folder / "out");
+        for (const auto& [name, content] : expected.before) {
+            if (content == "(folder)")
+                fs::create_directories(folder / "out" / name);
+            else
+                write_all(folder / "out" / name, content);
+        }
+        const ProgramEnd end = run_failing(arguments, folder, at, what);
+        INFO("call " << at << " of " << calls << ": " << what << "\n" << end.text());
+        const Files left = files_in(folder / "out");
+        std::vector<std::string> names;
+        for (const auto& [name, content] : left)
+            names.push_back(name);
+        CAPTURE(names);
+        CHECK((left == expected.before || left == expected.after));
+        if (end.exit_code == 0) {  // what cannot be synchronised is kept all the same
+            CHECK(left == expected.after);
+            continue;
+        }
+        ++failures;
+        CHECK(lines_of(end.err).size() == 1);
+        CHECK(end.err.rfind("tessera: ", 0) == 0);
+        if (what == "SIGINT" || what == "SIGTERM") {
+            CHECK(end.signal == (what == "SIGINT" ? SIGINT : SIGTERM));
+            CHECK_THAT(end.err, Contains("interrupted (" + what + ")"));
+        } else {
+            CHECK((end.exit_code == 4 || end.exit_code == 2));
+            CHECK_THAT(end.err, Contains(what == "full" ? "No space left on device" : "Input/output error"));
+            CHECK_THAT(end.err, !Contains(".part"));
+        }
+    }
+    CHECK(failures > calls / 2);
+}
+
+Files files_after(const std::vector<std::string>& arguments, const fs::path& folder) {
+    fs::remove_all(folder / "out");
+    const ProgramEnd end = run_tessera(arguments, folder);
+    INFO(end.text());
+    REQUIRE(end.exit_code == 0);
+    return files_in(folder / "out");
+}
+
+}  // namespace
+
+TEST_CASE("a run whose disk is full or fails at any call, or that is interrupted, leaves all or nothing") {
+    const TestFolder here;
+    Expected expected{{}, files_after(run_arguments("1"), here.path())};
+    REQUIRE(expected.after.size() > 10);
+    SECTION("no run before it") {
+        expected.before = {};
+    }
+    SECTION("a run before it, of another map") {
+        expected.before = files_after(run_arguments("2"), here.path());
+        REQUIRE(expected.before != expected.after);
+    }
+    for (const char* const what : {"full", "SIGINT"})
+        check_ends_well(run_arguments("1"), here.path(), expected, what);
+}
+
+TEST_CASE("a run that is killed leaves no half file, and no job beside another's mesh") {
+    const TestFolder here;
+    const Files old_run = files_after(run_arguments("2"), here.path());
+    const Files new_run = files_after(run_arguments("1"), here.path());
+    const long calls = disk_calls(run_arguments("1"), here.path());
+    for (long at = 1; at <= calls; ++at) {
+        files_after(run_arguments("2"), here.path());
+        const ProgramEnd end = run_failing(run_arguments("1"), here.path(), at, "SIGKILL");
+        INFO("call " << at << " of " << calls << "\n" << end.text());
+        CHECK(end.signal == SIGKILL);
+        bool all_old = true, all_new = true;
+        for (const auto& [name, content] : files_in(here.path() / "out")) {
+            if (is_unfinished(name) || content == "(folder)")
+                continue;
+            all_old = all_old && old_run.count(name) > 0 && old_run.at(name) == content;
+            all_new = all_new && new_run.count(name) > 0 && new_run.at(name) == content;
+        }
+        CHECK((all_old || all_new));
+    }
+}
+
+TEST_CASE("an interrupted run says how far it was") {
+    const TestFolder here;
+    std::vector<std::string> arguments{"run",   "--vcd",
+                                       "--set", "map.width=512",
+                                       "--set", "map.height=512",
+                                       "--set", "output.trace_to=10000000",
+                                       "--set", "output.folder=out/run"};
+    const ProgramEnd end = run_failing(arguments, here.path(), 12, "SIGINT");
+    INFO(end.text());
+    CHECK(end.signal == SIGINT);
+    CHECK_THAT(end.err, Contains(" %, ") && Contains(" triangles; no unfinished file is left"));
+    CHECK(here.names().empty());
+}
+
+TEST_CASE(
+    "compare, render, bake and tune leave whole files or none when the disk is full or they are "
+    "interrupted") {
+    const TestFolder here;
+    const std::vector<std::string> run = run_arguments("1");
+    const Files before = files_after(run, here.path());
+    for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+             {"compare", "out/run"},
+             {"render", "out/run", "--size", "64x64", "--view", "shaded", "--view", "generation"},
+             {"bake", (source_folder() / "testbench/surfaces/examples/dome.toml").string(), "--size", "16x16",
+              "--output", "out/baked.png"},
+             {"tune", "--triangles", "60", "--set", "map.width=16", "--set", "map.height=16", "--output",
+              "out/tuned.toml"}}) {
+        INFO(arguments[0]);
+        files_after(run, here.path());
+        const ProgramEnd end = run_tessera(arguments, here.path());
+        INFO(end.text());
+        REQUIRE(end.exit_code == 0);
+        const Files after = files_in(here.path() / "out");
+        REQUIRE(after.size() > before.size());
+        for (const char* const what : {"full", "SIGTERM"})
+            check_ends_well(arguments, here.path(), {before, after}, what);
+    }
+}
+
+TEST_CASE("a summary that cannot be printed is an error, and the results are whole") {
+    const TestFolder here;
+    const Files expected = files_after(run_arguments("1"), here.path());
+    std::string line = std::string(TESSERA_PROGRAM);
+    for (const std::string& argument : run_arguments("1"))
+        line += " " + argument;
+    const ProgramEnd end = run_program({"sh", "-c", line + " > /dev/full"}, here.path());
+    INFO(end.text());
+    CHECK(end.exit_code == 4);
+    CHECK_THAT(end.err, Contains("standard output: No space left on device"));
+    CHECK(files_in(here.path() / "out") == expected);
+}
