@@ -1,6 +1,7 @@
 #include "testbench/host/inputs.h"
 
 #include "testbench/common/error.h"
+#include "testbench/host/fingerprint.h"
 #include "testbench/job/job_paths.h"
 #include "testbench/maps/built_in_maps.h"
 #include "testbench/maps/read_height_map.h"
@@ -9,6 +10,7 @@
 namespace tessera {
 
 BaseMesh load_mesh(const Job& job, const std::filesystem::path& data_folder) {
+    check_mesh_fingerprint(job, data_folder);
     std::string file;
     if (reads_file(job.mesh.source))
         file = resolve_path(job.mesh.file, job.folder, data_folder).string();
@@ -16,6 +18,7 @@ BaseMesh load_mesh(const Job& job, const std::filesystem::path& data_folder) {
 }
 
 HeightMap load_map(const Job& job, const std::filesystem::path& data_folder) {
+    check_map_fingerprint(job, data_folder);
     const Job::Map& map = job.map;
     switch (map.source) {
         case MapSource::half_donut:

@@ -8,7 +8,7 @@
 namespace tessera {
 
 /// Mesh and map of a job, built or read. data_folder: what `data:` paths begin at.
-/// Throws InputError, ResourceError as the readers do.
+/// Throws InputError, ResourceError as the readers do, and InputError on a file of another fingerprint than the job's.
 BaseMesh load_mesh(const Job& job, const std::filesystem::path& data_folder);
 HeightMap load_map(const Job& job, const std::filesystem::path& data_folder);
 

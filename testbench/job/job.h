@@ -29,6 +29,7 @@ struct Job {
     struct Mesh {
         MeshSource source = MeshSource::plane;
         std::string file;          // OBJ, Bezier patches or a run's folder, by the source
+        std::string fingerprint;   // of the file, see host/fingerprint.h; empty: any
         std::int64_t columns = 0;  // quads along u; 0: the source's own (job_keys.cpp)
         std::int64_t rows = 0;     // quads along v; 0: likewise
         double width = 2;          // plane: size along x
@@ -40,6 +41,7 @@ struct Job {
     struct Map {
         MapSource source = MapSource::half_donut;
         std::string file;          // EXR, PNG or PGM, with source = "file"
+        std::string fingerprint;   // of the file; empty: any
         std::string channel;       // EXR channel; empty: Y, else R, else the only one
         std::int64_t width = 256;  // built-in maps, texels
         std::int64_t height = 256;

@@ -75,8 +75,24 @@ void check_file(const std::string& table, bool wanted, const std::string& file, 
                   table, printable(toml_string(file)), source);
 }
 
+void check_fingerprint(const std::string& table, const std::string& fingerprint, const std::string& file,
+                       Faults& faults) {
+    const bool is_one =
+        fingerprint.size() == 16 && fingerprint.find_first_not_of("0123456789abcdef") == std::string::npos;
+    faults.unless(
+        fingerprint.empty() || is_one,
+        "`{}.fingerprint` = {}: wanted are 16 hexadecimal digits (0-9, a-f), as a run writes them into "
+        "its job.toml, or \"\"",
+        table, printable(toml_string(fingerprint)));
+    faults.unless(
+        fingerprint.empty() || !file.empty(),
+        "`{0}.fingerprint` = {1}, but `{0}.file` is empty: name the file, or set {0}.fingerprint = \"\"",
+        table, printable(toml_string(fingerprint)));
+}
+
 void check_mesh(const Job::Mesh& mesh, Faults& faults) {
     check_file("mesh", reads_file(mesh.source), mesh.file, name_of(mesh.source), faults);
+    check_fingerprint("mesh", mesh.fingerprint, mesh.file, faults);
     const bool round = mesh.source == MeshSource::cylinder || mesh.source == MeshSource::sphere;
     faults.unless(
         !round || mesh.columns == 0 || mesh.columns >= 3,
@@ -89,6 +105,7 @@ void check_mesh(const Job::Mesh& mesh, Faults& faults) {
 void check_map(const Job& job, Faults& faults) {
     const Job::Map& map = job.map;
     check_file("map", map.source == MapSource::file, map.file, name_of(map.source), faults);
+    check_fingerprint("map", map.fingerprint, map.file, faults);
     faults.unless(map.source != MapSource::text || !map.text.empty(),
                   "`map.text` is empty, but `map.source` = \"text\": give it a text");
     if (map.source != MapSource::file) {

@@ -102,6 +102,7 @@ ExitCode bake_command(const BakeRequest& request, const fs::path& data_folder) {
 
     job.map.source = MapSource::file;
     job.map.file = rebase_path(request.output.string(), "", job.folder);
+    job.map.fingerprint.clear();
     job.map.channel.clear();
     job.displacement = {file.scale, file.bias};
     job.output.folder = "runs/" + name;

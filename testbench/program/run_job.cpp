@@ -12,6 +12,7 @@
 #include "testbench/check/scoreboard.h"
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/atomic_set.h"
+#include "testbench/host/fingerprint.h"
 #include "testbench/host/inputs.h"
 #include "testbench/host/simulation.h"
 #include "testbench/job/dump_job.h"
@@ -200,7 +201,7 @@ Ending run_once(const Job& job, const Command& command, const std::string& name)
 }  // namespace
 
 ExitCode run_job(const Command& command) {
-    const Job job = load_job(command.job_file, command.settings);
+    Job job = load_job(command.job_file, command.settings);
     if (command.dump_config) {
         fmt::print("{}", dump_job(job));
         return ExitCode::fine;
@@ -210,6 +211,7 @@ ExitCode run_job(const Command& command) {
             fmt::format("{} chooses what to trace, and nothing is traced: add --vcd, --timeline or both",
                         command.trace_option));
     require_inputs_stay(job, command.data_folder);
+    record_fingerprints(job, command.data_folder);
     if (job.frames.count > 1)
         return run_frames(job, command.data_folder, [&](const Job& frame, const std::string& name) {
             return run_once(frame, command, name).code;

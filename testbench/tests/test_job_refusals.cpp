@@ -221,6 +221,12 @@ TEST_CASE("keys that contradict each other") {
     CHECK_THAT(error_with({"mesh.source=file", "map.source=file"}),
                Contains("`mesh.file`") && Contains("\n`map.file`"));
 
+    CHECK_THAT(error_with({"map.fingerprint=0123456789abcdef"}), Contains("`map.file` is empty"));
+    CHECK_THAT(error_with({"map.source=file", "map.file=a.exr", "map.fingerprint=0123456789ABCDEF"}),
+               Contains("wanted are 16 hexadecimal digits"));
+    CHECK_THAT(error_with({"map.source=file", "map.file=a.exr", "map.fingerprint=0123456789abcdef"}),
+               Equals(""));
+
     Job out_of_range;  // made in code, past the checks of reading
     out_of_range.tests.normal_threshold = -1;
     out_of_range.camera.viewport_width = 0;

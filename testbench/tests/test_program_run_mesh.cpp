@@ -234,16 +234,19 @@ TEST_CASE("a run takes away neither the mesh file nor the map file that it reads
     CHECK(fs::exists(here.path() / "runs/first/base.obj"));
 }
 
-TEST_CASE("a run that is cut short in its folder leaves no job beside another's mesh") {
+TEST_CASE("a run that is cut short in its folder leaves the job and the mesh of the run before it") {
     const TestFolder here;
     run(here.path(), "one", {"tests.generation_limit=3"});
-    fs::remove(here.path() / "runs/one/statistics.csv");
-    fs::create_directories(here.path() / "runs/one/statistics.csv/in the way");
+    const fs::path folder = here.path() / "runs/one";
+    const std::string job = read_all(folder / "job.toml"), mesh = read_all(folder / "mesh.ply");
+    fs::remove(folder / "statistics.csv");
+    fs::create_directories(folder / "statistics.csv/in the way");
     const ProgramEnd end =
         run_tessera(arguments_of({"tests.generation_limit=2", "output.folder=runs/one"}), here.path());
     INFO(end.text());
     CHECK(end.exit_code == 2);
-    CHECK_THAT(refused(here.path(), on("one", {})), Contains("left no mesh"));
+    CHECK(read_all(folder / "job.toml") == job);
+    CHECK(read_all(folder / "mesh.ply") == mesh);
 }
 
 TEST_CASE("the teapot's donuts take a second map") {
@@ -269,4 +272,41 @@ TEST_CASE("the teapot's donuts take a second map") {
     CHECK(second.count("run", "triangles_finished") > 3 * first.count("run", "triangles_finished") / 2);
     for (const char* const figure : {"cracks", "t_vertices", "open_texture_seam_edges", "open_crease_edges"})
         CHECK(second.invariant(figure) == 0);
+}
+
+TEST_CASE("a run on files that were changed since is not measured or drawn against them, nor run again") {
+    const TestFolder here;
+    run(here.path(), "first", small_donut);
+    write_all(here.path() / "map.pgm", "P2 3 2 9\n0 9 5\n1 2 3\n");
+    run(here.path(), "second",
+        on("first",
+           {"map.source=file", "map.file=map.pgm", "displacement.scale=0.02", "tests.generation_limit=1"}));
+    const auto fate_of = [&](const std::vector<std::string>& arguments) {
+        return run_tessera(arguments, here.path());
+    };
+    const std::vector<std::vector<std::string>> readers{
+        {"compare", "runs/second"},
+        {"render", "runs/second", "--view", "error", "--size", "64"},
+        {"run", "runs/second/job.toml", "--set", "output.folder=runs/again"}};
+    for (const auto& reader : readers)
+        CHECK(fate_of(reader).exit_code == 0);
+
+    SECTION("the base mesh") {
+        run(here.path(), "first", {"map.width=64", "map.height=64", "tests.view_threshold=10"});
+    }
+    SECTION("the map") {
+        write_all(here.path() / "map.pgm", "P2 3 2 9\n0 9 5\n1 2 4\n");
+    }
+    for (const auto& reader : readers) {
+        const ProgramEnd end = fate_of(reader);
+        INFO(end.text());
+        CHECK(end.exit_code == 2);
+        CHECK(lines_of(end.err).size() == 1);
+        CHECK_THAT(end.err, Contains(".fingerprint = ") && Contains("was changed since"));
+    }
+    const ProgramEnd anew =
+        fate_of({"run", "runs/second/job.toml", "--set", "mesh.fingerprint=", "--set", "map.fingerprint="});
+    INFO(anew.text());
+    CHECK(anew.exit_code == 0);
+    CHECK(fate_of(readers[0]).exit_code == 0);
 }

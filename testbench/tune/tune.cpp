@@ -154,6 +154,7 @@ Job job_with_base(const Job& job, const BaseChoice& base) {
     const bool lattice = base.kind == BaseChoice::Kind::lattice;
     result.mesh.source = lattice ? MeshSource::file : MeshSource::plane;
     result.mesh.file.clear();
+    result.mesh.fingerprint.clear();
     result.mesh.columns = lattice ? 0 : base.columns;
     result.mesh.rows = lattice ? 0 : base.rows;
     return result;
