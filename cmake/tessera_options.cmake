@@ -14,6 +14,14 @@ if(TESSERA_SANITIZE)
   target_compile_options(tessera_options INTERFACE ${sanitize} -Wno-error)
   target_link_options(tessera_options INTERFACE ${sanitize})
 endif()
+if(TESSERA_COVERAGE)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    message(FATAL_ERROR "TESSERA_COVERAGE counts with clang; the compiler is ${CMAKE_CXX_COMPILER}. "
+                        "Configure with -DCMAKE_CXX_COMPILER=clang++, or: cmake --preset coverage")
+  endif()
+  target_compile_options(tessera_options INTERFACE -fprofile-instr-generate -fcoverage-mapping)
+  target_link_options(tessera_options INTERFACE -fprofile-instr-generate)
+endif()
 
 # tessera_add_library(name SOURCES ... LIBRARIES ...): a static library with our settings.
 function(tessera_add_library name)

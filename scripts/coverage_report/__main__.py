@@ -1,0 +1,133 @@
+"""Lines and branches of modules/ and golden/ that the tests executed; see scripts/coverage."""
+import subprocess
+import sys
+import tomllib
+from collections import defaultdict
+from pathlib import Path
+
+ROOMS = ("modules/", "golden/")
+WANTED = 95.0  # percent, of lines and of branches
+
+
+class File:
+    """What was counted of one source file: lines by number; branches by line, the largest count of each."""
+
+    def __init__(self, text):
+        self.text = text
+        self.lines = {}
+        self.branches = defaultdict(dict)
+
+    def unreached_lines(self):
+        return sorted(line for line, count in self.lines.items() if count == 0)
+
+    def unreached_branches(self):
+        return sorted(line for line, branches in self.branches.items() for count in branches.values() if count == 0)
+
+    def branch_count(self):
+        return sum(len(branches) for branches in self.branches.values())
+
+
+def count(root, folder):
+    """{path from the root: File}. A branch of a template, or of a header, is reached where any of its copies is."""
+    merged = folder / "counts.profdata"
+    counts = sorted(str(path) for path in (folder / "counts").glob("*.profraw"))
+    if not counts:
+        sys.exit(f"scripts/coverage: no counts in {folder}/counts; run scripts/coverage without --report-only")
+    subprocess.run(["llvm-profdata", "merge", "--sparse", "-o", merged, *counts], check=True)
+    programs = sorted(path for path in (folder / "testbench").rglob("*")
+                      if path.is_file() and path.parent.name in ("tests", "program")
+                      and path.stat().st_mode & 0o111 and path.suffix == "")
+    objects = [str(programs[0])] + [f"--object={path}" for path in programs[1:]]
+    export = subprocess.run(["llvm-cov", "export", "--format=lcov", f"--instr-profile={merged}", *objects],
+                            check=True, capture_output=True, text=True).stdout
+    files = {}
+    file = None
+    for record in export.splitlines():
+        kind, _, rest = record.partition(":")
+        if kind == "SF":
+            path = Path(rest)
+            name = str(path.relative_to(root)) if path.is_relative_to(root) else ""
+            file = files.setdefault(name, File(path.read_text().splitlines())) if name.startswith(ROOMS) else None
+        elif file is not None and kind == "DA":
+            line, times = rest.split(",")[:2]
+            file.lines[int(line)] = max(file.lines.get(int(line), 0), int(times))
+        elif file is not None and kind == "BRDA":
+            line, block, branch, times = rest.split(",")
+            taken = 0 if times == "-" else int(times)
+            branches = file.branches[int(line)]
+            branches[block, branch] = max(branches.get((block, branch), 0), taken)
+    return files
+
+
+class Reasons:
+    """Why a line is not reached, by file and by the line's text."""
+
+    def __init__(self, path):
+        self.reasons = {(entry["file"], entry["line"]): entry["reason"]
+                        for entry in tomllib.loads(path.read_text()).get("unreached", [])}
+        self.used = set()
+
+    def of(self, name, text):
+        key = (name, text.strip())
+        if key in self.reasons:
+            self.used.add(key)
+        return self.reasons.get(key)
+
+    def unused(self):
+        return [f"{name}: {line}" for name, line in self.reasons if (name, line) not in self.used]
+
+
+def percent(reached, of):
+    return 100.0 * reached / of if of else 100.0
+
+
+def row(name, lines, missed_lines, branches, missed_branches):
+    return (f"{name:58} {lines:6} {missed_lines:6} {percent(lines - missed_lines, lines):7.2f}"
+            f" {branches:9} {missed_branches:6} {percent(branches - missed_branches, branches):7.2f}")
+
+
+def report(files, reasons):
+    """(text, unexplained, percent of lines, percent of branches)"""
+    text = [f"{'file':58} {'lines':>6} {'missed':>6} {'%':>7} {'branches':>9} {'missed':>6} {'%':>7}"]
+    totals = defaultdict(lambda: [0, 0, 0, 0])
+    explained, unexplained = [], []
+    for name, file in sorted(files.items()):
+        lines, branches = file.unreached_lines(), file.unreached_branches()
+        figures = [len(file.lines), len(lines), file.branch_count(), len(branches)]
+        text.append(row(name, *figures))
+        for room in (name.split("/")[0] + "/", "all"):
+            totals[room] = [a + b for a, b in zip(totals[room], figures)]
+        for line in sorted({*lines, *branches}):
+            code = file.text[line - 1]
+            what = "line" if line in lines else "branch"
+            reason = reasons.of(name, code)
+            entry = f"{name}:{line}: {what}: {code.strip()}"
+            (explained if reason else unexplained).append(entry + (f"\n    {reason}" if reason else ""))
+    text += [""] + [row(room, *figures) for room, figures in sorted(totals.items(), reverse=True)]
+    for heading, entries in (("Not reached, and why", explained), ("Not reached, without a reason", unexplained)):
+        if entries:
+            text += ["", f"{heading} ({len(entries)}):", *entries]
+    figures = totals["all"]
+    return ("\n".join(text) + "\n", unexplained, percent(figures[0] - figures[1], figures[0]),
+            percent(figures[2] - figures[3], figures[2]))
+
+
+def main():
+    root, folder = Path(sys.argv[1]), Path(sys.argv[2])
+    reasons = Reasons(Path(__file__).with_name("unreached.toml"))
+    text, unexplained, lines, branches = report(count(root, folder), reasons)
+    (folder / "coverage.txt").write_text(text)
+    print(text, end="")
+    faults = [f"{what}: {value:.2f} %, wanted are {WANTED} %" for what, value in (("lines", lines), ("branches", branches))
+              if value < WANTED]
+    if unexplained:
+        faults.append(f"{len(unexplained)} lines are not wholly reached, and scripts/coverage_report/unreached.toml does "
+                      "not say why")
+    faults += [f"scripts/coverage_report/unreached.toml: reached, or gone: {entry}" for entry in reasons.unused()]
+    for fault in faults:
+        print(f"scripts/coverage: {fault}", file=sys.stderr)
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
