@@ -141,7 +141,7 @@ void write_png(const fs::path& path, const PngSeed& seed) {
             for (std::size_t k = 0; k < row.size(); ++k)
                 row[k] = seed.colour_type == PNG_COLOR_TYPE_PALETTE
                              ? static_cast<std::uint8_t>((k + y) & 3)
-                             : static_cast<std::uint8_t>(k * 37 + y * 11);
+                             : static_cast<std::uint8_t>(k * 37 + std::size_t{y} * 11);
             png_write_row(png, row.data());
         }
     }
