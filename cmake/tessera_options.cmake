@@ -22,6 +22,24 @@ if(TESSERA_COVERAGE)
   target_compile_options(tessera_options INTERFACE -fprofile-instr-generate -fcoverage-mapping)
   target_link_options(tessera_options INTERFACE -fprofile-instr-generate)
 endif()
+if(TESSERA_FUZZ)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    message(FATAL_ERROR "TESSERA_FUZZ needs clang, which has libFuzzer; this is ${CMAKE_CXX_COMPILER_ID}. "
+                        "Take the preset: cmake --preset fuzz")
+  endif()
+  include(CheckCXXSourceCompiles)
+  set(CMAKE_REQUIRED_FLAGS -fsanitize=fuzzer)
+  check_cxx_source_compiles(
+    "extern \"C\" int LLVMFuzzerTestOneInput(const unsigned char*, decltype(sizeof 0)) { return 0; }"
+    TESSERA_HAS_LIBFUZZER)
+  unset(CMAKE_REQUIRED_FLAGS)
+  if(NOT TESSERA_HAS_LIBFUZZER)
+    message(FATAL_ERROR "clang does not link with -fsanitize=fuzzer. On Debian 12: apt-get install clang libclang-rt-14-dev")
+  endif()
+  set(fuzz -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_compile_options(tessera_options INTERFACE ${fuzz})
+  target_link_options(tessera_options INTERFACE ${fuzz})
+endif()
 
 # tessera_add_library(name SOURCES ... LIBRARIES ...): a static library with our settings.
 function(tessera_add_library name)

@@ -77,7 +77,7 @@ toml::table parse_toml(std::string_view text, const std::string& name, std::stri
         return toml::parse(text);
     } catch (const toml::parse_error& error) {
         throw InputError(fmt::format("{}:{}:{}: not TOML: {}", name, error.source().begin.line,
-                                     error.source().begin.column, error.description()));
+                                     error.source().begin.column, fit_to_print(error.description())));
     }
 }
 

@@ -9,6 +9,30 @@ namespace tessera {
 
 namespace {
 
+/// Bytes of the character that the text begins with; 0: it begins with none.
+std::size_t utf8_sequence(std::string_view text) {
+    const auto lead = static_cast<unsigned char>(text[0]);
+    const std::size_t length = lead < 0x80   ? 1
+                               : lead < 0xc2 ? 0
+                               : lead < 0xe0 ? 2
+                               : lead < 0xf0 ? 3
+                               : lead < 0xf5 ? 4
+                                             : 0;
+    if (length == 0 || text.size() < length) {
+        return 0;
+    }
+    char32_t code = length == 1 ? lead : lead & (0xffu >> (length + 1));
+    for (std::size_t k = 1; k < length; ++k) {
+        const auto byte = static_cast<unsigned char>(text[k]);
+        if ((byte & 0xc0) != 0x80) {
+            return 0;
+        }
+        code = (code << 6) | (byte & 0x3fu);
+    }
+    const bool overlong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
+    return overlong || code > 0x10ffff || (code >= 0xd800 && code < 0xe000) ? 0 : length;
+}
+
 std::string escaped(std::string_view text, bool quotes) {
     std::string out;
     for (const char c : text) {
@@ -66,44 +90,40 @@ std::string toml_value(const JobValue& value) {
     return std::visit(ToToml{}, value);
 }
 
+std::string fit_to_print(std::string_view text) {
+    std::string out;
+    while (!text.empty()) {
+        std::size_t length = utf8_sequence(text);
+        // U+0080 to U+009F are controls as well.
+        if (length == 2 && text[0] == '\xc2' && static_cast<unsigned char>(text[1]) < 0xa0) {
+            length = 0;
+        }
+        out += length == 0 ? fmt::format("\\x{:02x}", static_cast<unsigned char>(text[0]))
+                           : escaped(text.substr(0, length), false);
+        text.remove_prefix(length == 0 ? 1 : length);
+    }
+    return out;
+}
+
 std::string printable(std::string_view text) {
     constexpr std::size_t limit = 60;
     if (text.size() <= limit) {
-        return escaped(text, false);
+        return fit_to_print(text);
     }
     std::size_t cut = limit;
     while (cut > limit - 4 && (static_cast<unsigned char>(text[cut]) & 0xc0) == 0x80) {
         --cut;  // not inside a UTF-8 sequence
     }
-    return escaped(text.substr(0, cut), false) + "...";
+    return fit_to_print(text.substr(0, cut)) + "...";
 }
 
 bool is_utf8(std::string_view text) {
-    std::size_t i = 0;
-    while (i < text.size()) {
-        const auto lead = static_cast<unsigned char>(text[i]);
-        const std::size_t length = lead < 0x80   ? 1
-                                   : lead < 0xc2 ? 0
-                                   : lead < 0xe0 ? 2
-                                   : lead < 0xf0 ? 3
-                                   : lead < 0xf5 ? 4
-                                                 : 0;
-        if (length == 0 || text.size() - i < length) {
+    while (!text.empty()) {
+        const std::size_t length = utf8_sequence(text);
+        if (length == 0) {
             return false;
         }
-        char32_t code = length == 1 ? lead : lead & (0xffu >> (length + 1));
-        for (std::size_t k = 1; k < length; ++k) {
-            const auto byte = static_cast<unsigned char>(text[i + k]);
-            if ((byte & 0xc0) != 0x80) {
-                return false;
-            }
-            code = (code << 6) | (byte & 0x3fu);
-        }
-        const bool overlong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
-        if (overlong || code > 0x10ffff || (code >= 0xd800 && code < 0xe000)) {
-            return false;
-        }
-        i += length;
+        text.remove_prefix(length);
     }
     return true;
 }

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "testbench/common/error.h"
 #include "testbench/maps/height_map.h"
@@ -132,7 +133,9 @@ class HeaderReader {
 
     void read_version();
     void read_attribute(const std::string& name);
-    void read_channels(std::string_view list);
+    std::vector<ExrChannel> channels_of(std::string_view list) const;
+    void check_preview(const std::string& name, std::string_view preview) const;
+    void check_texts(const std::string& name, std::string_view texts) const;
     void read_window(std::string_view box);
     void check_present() const;
     void check_claims() const;
@@ -165,7 +168,8 @@ void HeaderReader::read_version() {
     header_.tiled = (field & flag_tiled) != 0;
 }
 
-void HeaderReader::read_channels(std::string_view list) {
+std::vector<ExrChannel> HeaderReader::channels_of(std::string_view list) const {
+    std::vector<ExrChannel> channels;
     std::size_t at = 0;
     const auto damaged = [this] { refuse("the EXR file's channel list is damaged."); };
     for (;;) {
@@ -197,13 +201,37 @@ void HeaderReader::read_channels(std::string_view list) {
                                printable_ascii(channel.name), channel.x_sampling, channel.y_sampling));
         }
         channel.type = static_cast<int>(type);
-        header_.channels.push_back(channel);
+        channels.push_back(channel);
     }
     if (at + 1 != list.size()) {
         damaged();
     }
-    if (header_.channels.empty()) {
-        refuse("the EXR file has no channels, so it holds no map.");
+    return channels;
+}
+
+void HeaderReader::check_preview(const std::string& name, std::string_view preview) const {
+    constexpr std::size_t sides = 8, pixel = 4;
+    const bool whole = preview.size() >= sides &&
+                       std::uint64_t{little_endian_32(preview, 0)} * little_endian_32(preview, 4) ==
+                           (preview.size() - sides) / pixel &&
+                       preview.size() % pixel == 0;
+    if (!whole) {
+        refuse(fmt::format(
+            "the EXR file's attribute \"{}\", a preview, is not of the size it states. It is damaged.",
+            printable_ascii(name)));
+    }
+}
+
+void HeaderReader::check_texts(const std::string& name, std::string_view texts) const {
+    while (!texts.empty()) {
+        const std::size_t length = texts.size() < 4 ? texts.size() : little_endian_32(texts, 0);
+        if (texts.size() < 4 || length > texts.size() - 4) {
+            refuse(fmt::format(
+                "the EXR file's attribute \"{}\", a list of texts, is not of the size it states. It is "
+                "damaged.",
+                printable_ascii(name)));
+        }
+        texts.remove_prefix(4 + length);
     }
 }
 
@@ -257,16 +285,24 @@ void HeaderReader::read_attribute(const std::string& name) {
         refuse(fmt::format("the EXR file's attribute \"tiles\" has type \"{}\"; it must be tiledesc.",
                            printable_ascii(type)));
     }
-    const bool wanted =
-        name == "channels" || name == "compression" || name == "dataWindow" || name == "tiles";
-    if (!wanted) {
+    const bool wanted = name == "compression" || name == "dataWindow" || name == "tiles";
+    // Types of which libOpenEXR reads as many bytes as their content says, whatever size the file states.
+    const bool sized_by_content = type == "chlist" || type == "preview" || type == "stringvector";
+    if (!wanted && !sized_by_content) {
         file_.seekg(size, std::ios::cur);
         position_ += size;
         return;
     }
     const std::string value = bytes(size);
-    if (name == "channels") {
-        read_channels(value);
+    if (type == "chlist") {
+        std::vector<ExrChannel> channels = channels_of(value);
+        if (name == "channels") {
+            header_.channels = std::move(channels);
+        }
+    } else if (type == "preview") {
+        check_preview(name, value);
+    } else if (type == "stringvector") {
+        check_texts(name, value);
     } else if (name == "compression") {
         header_.compression = static_cast<unsigned char>(value[0]);
     } else if (name == "dataWindow") {
@@ -289,6 +325,9 @@ void HeaderReader::check_present() const {
                 "the EXR file's header has no attribute \"{}\", without which its pixels cannot be read.",
                 required.name));
         }
+    }
+    if (header_.channels.empty()) {
+        refuse("the EXR file has no channels, so it holds no map.");
     }
     if (header_.tiled && names_.count("tiles") == 0) {
         refuse("the EXR file is marked as tiled but has no attribute \"tiles\". It is damaged.");

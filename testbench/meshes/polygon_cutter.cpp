@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "testbench/meshes/triangle_geometry.h"
 
@@ -9,6 +10,7 @@ namespace tessera {
 namespace {
 
 constexpr std::size_t most_checked_for_crossing = 256;
+constexpr std::size_t most_fanned = 8;
 constexpr double nonplanar_part = 0.05;  // quads of a curved surface are bent by less as a rule
 constexpr double on_line = 1e-14;        // of the polygon's squared size
 
@@ -62,6 +64,23 @@ void fan(std::vector<std::uint32_t> const& corners, PolygonCutter::Cut& result) 
     for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
         result.triangles.push_back({corners[0], corners[i], corners[i + 1]});
     }
+}
+
+/// Cuts off every second corner, round by round, until few enough are left for a fan. A fan of thousands would be
+/// slivers that all lie in one another's boxes: what searches the mesh by boxes would take quadratic time.
+void cut_convex(std::vector<std::uint32_t> corners, PolygonCutter::Cut& result) {
+    while (corners.size() > most_fanned) {
+        std::vector<std::uint32_t> left;
+        const std::size_t n = corners.size();
+        for (std::size_t i = 0; i < n; i += 2) {
+            left.push_back(corners[i]);
+            if (i + 1 < n) {
+                result.triangles.push_back({corners[i], corners[i + 1], corners[(i + 2) % n]});
+            }
+        }
+        corners = std::move(left);
+    }
+    fan(corners, result);
 }
 
 std::vector<std::uint32_t> numbers_up_to(std::size_t n) {
@@ -228,7 +247,7 @@ PolygonCutter::Cut PolygonCutter::cut(std::vector<glm::dvec3> const& corners) {
                                      : glm::dvec2(local[i][second], local[i][first]);
     }
     if (strictly_convex(points)) {
-        fan(numbers_up_to(n), result);
+        cut_convex(numbers_up_to(n), result);
         return result;
     }
     if (n <= most_checked_for_crossing) {

@@ -10,11 +10,11 @@ namespace tessera {
 
 /// Cuts polygons into triangles that keep the polygon's winding, every corner used.
 ///
-/// Strictly convex: a fan from the first corner. Otherwise ear clipping in the plane's projection along its
-/// largest normal component (Meisters 1975), with these additions: an ear has positive area and no corner on
-/// its border, so that corners on a straight edge give no triangle without area and no T-junction; where no
-/// ear is left (the outline crosses itself), the rest is cut as a fan. Quadratic in the corners at worst; the
-/// work of all calls together is limited.
+/// Strictly convex: a fan from the first corner; of more than 8, every second corner is cut off first, round by
+/// round. Otherwise ear clipping in the plane's projection along its largest normal component (Meisters 1975),
+/// with these additions: an ear has positive area and no corner on its border, so that corners on a straight
+/// edge give no triangle without area and no T-junction; where no ear is left (the outline crosses itself), the
+/// rest is cut as a fan. Quadratic in the corners at worst; the work of all calls together is limited.
 class PolygonCutter {
   public:
     struct Cut {

@@ -221,6 +221,12 @@ TEST_CASE("characters beyond ASCII at every place") {
     CHECK(parse_job("map.text = \"\"\"\n\\\n \xc3\xa4\nb\"\"\"\n", "job.toml").map.text == "\xc3\xa4\nb");
 }
 
+TEST_CASE("no file can steer the terminal that its message is shown on") {
+    CHECK_THAT(parse_error_of("a = f\x1b[31m\x07\n"), Contains("\\u001B[31m") || Contains("\\u001B"));
+    for (const char c : parse_error_of("a = f\x1b[31m\x07\n"))
+        CHECK(static_cast<unsigned char>(c) >= 0x20);
+}
+
 TEST_CASE("random bytes are a job or an InputError") {
     rc::prop("raw bytes", [] { survives(*rc::gen::arbitrary<std::string>()); });
     rc::prop("bytes that TOML uses", [] {

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -339,6 +340,32 @@ TEST_CASE("large polygons, convex and not, are cut") {
         const BaseMesh mesh = parse(polygon(outline));
         CHECK(mesh.triangles.size() == n - 2);
         CHECK(signed_area(mesh) == Approx(area));
+        const EdgeCounts edges = count_edges(mesh);
+        CHECK(edges.border == n);
+        CHECK(edges.odd == 0);
+    }
+}
+
+TEST_CASE("a large convex polygon is cut without a corner that most of its triangles share") {
+    for (const std::size_t n : {std::size_t{9}, std::size_t{10}, std::size_t{1000}, std::size_t{65536}}) {
+        std::vector<glm::dvec2> outline;
+        for (std::size_t i = 0; i < n; ++i) {
+            const double angle = 2 * 3.14159265358979323846 * static_cast<double>(i) / static_cast<double>(n);
+            outline.emplace_back(std::cos(angle), std::sin(angle));
+        }
+        const BaseMesh mesh = parse(polygon(outline));
+        CHECK(mesh.triangles.size() == n - 2);
+        CHECK(signed_area(mesh) == Approx(static_cast<double>(n) / 2 *
+                                          std::sin(2 * 3.14159265358979323846 / static_cast<double>(n))));
+        std::vector<std::size_t> triangles(mesh.vertices.size());
+        for (auto const& t : mesh.triangles) {
+            for (const std::uint32_t i : t) {
+                ++triangles[i];
+            }
+        }
+        // Two more each round, and at the end a fan of no more than 8 corners.
+        const double rounds = std::ceil(std::log2(static_cast<double>(n) / 8));
+        CHECK(static_cast<double>(*std::max_element(triangles.begin(), triangles.end())) <= 2 * rounds + 6);
         const EdgeCounts edges = count_edges(mesh);
         CHECK(edges.border == n);
         CHECK(edges.odd == 0);
