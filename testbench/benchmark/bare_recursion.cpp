@@ -126,14 +126,17 @@ void BareRecursion::evaluate_edge(TrianglePass& pass, int k) {
     edge.tests = static_cast<std::uint8_t>(tests);
 }
 
-std::uint64_t BareRecursion::run(EmittedMesh& mesh) {
+std::uint64_t BareRecursion::run(EmittedMesh& mesh, std::uint64_t most_edges) {
     mesh.triangles.clear();
+    work_.clear();
     std::uint64_t edges = 0;
     TrianglePass pass;
     for (const Triangle& base : setup_.base_triangles) {
         work_.push_back(base);
         complete_base(work_.back());
         while (!work_.empty()) {
+            if (edges >= most_edges)
+                return edges;
             pass.triangle = work_.back();
             work_.pop_back();
             unsigned split = 0;

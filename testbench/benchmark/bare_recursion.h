@@ -15,8 +15,9 @@ class BareRecursion {
     /// `setup` must outlive it.
     explicit BareRecursion(const Setup& setup);
 
-    /// Tessellates every base triangle; returns the edges evaluated. `mesh` is cleared first, its memory kept.
-    std::uint64_t run(EmittedMesh& mesh);
+    /// Tessellates every base triangle; returns the edges evaluated. `mesh` is cleared first, its memory kept. Gives up,
+    /// the mesh incomplete, once `most_edges` have been.
+    std::uint64_t run(EmittedMesh& mesh, std::uint64_t most_edges = UINT64_MAX);
 
     /// Its parts, for who walks in another way. What the machine does to a base triangle's vertices on its first pass:
     void complete_base(datapath::Triangle& triangle);
