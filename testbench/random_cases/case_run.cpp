@@ -6,6 +6,7 @@
 #include "testbench/check/invariants.h"
 #include "testbench/check/scoreboard.h"
 #include "testbench/host/simulation.h"
+#include "testbench/random_cases/lineage_check.h"
 
 namespace tessera {
 
@@ -102,13 +103,23 @@ CaseResult run_case(const RandomCase& random_case, Mode mode) {
         fail(fmt::format("the {} triangles are not the {} of the datapath by itself", mesh.triangles.size(),
                          bare_mesh.triangles.size()));
 
+    // The same for both modes, which leave the same mesh.
+    const LineageResult lineage = mode == Mode::functional ? check_lineage(setup) : LineageResult{};
+    if (!lineage.passed())
+        fail("by descent: " + lineage.first_fault);
+    if (mode == Mode::functional &&
+        (lineage.edges != bare_edges || lineage.triangles != bare_mesh.triangles.size()))
+        fail(fmt::format(
+            "by descent there are {} edges and {} triangles, the datapath by itself has {} and {}",
+            lineage.edges, lineage.triangles, bare_edges, bare_mesh.triangles.size()));
+
     CaseFigures& figures = result.figures;
     figures.runs = 1;
     figures.base_triangles = setup.base_triangles.size();
     figures.triangles = mesh.triangles.size();
     figures.edges = conformance.edges;
-    figures.cracks = invariants.cracks;
-    figures.t_vertices = invariants.t_vertices;
+    figures.cracks = invariants.cracks + lineage.cracks + lineage.unlike_vertices;
+    figures.t_vertices = invariants.t_vertices + lineage.t_vertices;
     figures.other_violations = invariants.violations() - invariants.cracks - invariants.t_vertices;
     figures.collapsed = invariants.collapsed_explained;
     figures.turned_over = invariants.turned_over_explained;
