@@ -1,0 +1,137 @@
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "testbench/benchmark/bare_recursion.h"
+#include "testbench/host/inputs.h"
+#include "testbench/job/read_job.h"
+#include "testbench/random_cases/lineage_check.h"
+#include "testbench/random_cases/random_case.h"
+#include "testbench/tests/program_runner.h"
+
+/// The generator of random cases and its program; that the cases hold is what tessera_random_cases itself is run for.
+using namespace tessera;
+using Catch::Contains;
+
+namespace {
+
+bool same(const datapath::Vertex& a, const datapath::Vertex& b) {
+    return a.position == b.position && a.normal == b.normal && a.tangent == b.tangent &&
+           a.texture == b.texture && a.handedness == b.handedness;
+}
+
+std::uint64_t digest(const std::string& text) {
+    std::uint64_t hash = 0xcbf29ce484222325U;
+    for (const char c : text)
+        hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+    return hash;
+}
+
+ProgramEnd run_cases(const std::vector<std::string>& arguments, const std::filesystem::path& folder) {
+    std::vector<std::string> command{TESSERA_RANDOM_CASES};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    return run_program(command, folder);
+}
+
+}  // namespace
+
+TEST_CASE("random case: from its files it is the same as from memory") {
+    const TestFolder here;
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+        const RandomCase made = make_random_case(seed);
+        made.write(here.path(), Mode::functional);
+        const Job job = read_job((here.path() / "job.toml").string());
+        const Setup written = make_setup(job, load_mesh(job, {}), load_map(job, {})), kept = made.setup();
+        INFO("seed " << seed);
+        CHECK(job.mode == Mode::functional);
+        CHECK(written.map.codes == kept.map.codes);
+        CHECK(written.registers.tests.summed_height_threshold ==
+              kept.registers.tests.summed_height_threshold);
+        CHECK(written.registers.transform.row_w == kept.registers.transform.row_w);
+        REQUIRE(written.base_triangles.size() == kept.base_triangles.size());
+        for (std::size_t k = 0; k < kept.base_triangles.size(); ++k)
+            for (std::size_t corner = 0; corner < 3; ++corner)
+                REQUIRE(same(written.base_triangles[k].vertices[corner],
+                             kept.base_triangles[k].vertices[corner]));
+    }
+}
+
+TEST_CASE("random case: a seed gives the same bytes from every compiler") {
+    std::string text;
+    for (std::uint64_t seed = 100; seed < 130; ++seed) {
+        const RandomCase made = make_random_case(seed);
+        text += made.mesh.obj + made.map.pgm() + made.summary();
+    }
+    CHECK(digest(text) == 0);
+}
+
+TEST_CASE("random cases: meshes of every kind, most of them split") {
+    std::set<std::string> kinds;
+    std::size_t split = 0;
+    constexpr std::uint64_t cases = 150;
+    for (std::uint64_t seed = 1; seed <= cases; ++seed) {
+        const RandomCase made = make_random_case(seed);
+        kinds.insert(made.mesh.kind);
+        const Setup setup = made.setup();
+        EmittedMesh mesh;
+        CHECK(BareRecursion(setup).run(mesh) < RandomCase::most_edges);
+        split += mesh.triangles.size() > 2 * setup.base_triangles.size() ? 1 : 0;
+    }
+    CHECK(kinds == std::set<std::string>{"book", "cylinder", "fan", "grid", "mirrored pair", "slivers",
+                                         "solid", "soup", "sphere", "torus"});
+    CHECK(split > cases / 2);
+}
+
+TEST_CASE(
+    "lineage: a sheet folded along one edge is closed there, and its copy with other normals is another "
+    "sheet") {
+    RandomCase made;
+    made.job.tests.view = false;
+    made.job.tests.summed_height_threshold = 0.1;
+    made.map.width = made.map.height = 16;
+    Random random(5);
+    for (int k = 0; k < 256; ++k)
+        made.map.samples.push_back(static_cast<std::uint16_t>(random.natural(0, 65535)));
+    made.mesh.obj =
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0.4\nvt 0 0\nvt 1 0\nvt 0 1\nvt 1 1\n"
+        "f 1/1 2/2 3/3\nf 2/2 4/4 3/3\n";
+    const LineageResult whole = check_lineage(made.setup());
+    INFO(whole.first_fault);
+    CHECK(whole.passed());
+    CHECK(whole.triangles > 100);
+    // A closed disc: vertices - edges + triangles = 1, and twice the edges are three times the triangles and the border.
+    made.mesh.obj += "v 5 0 0\nv 6 0 0\nv 5 1 0\nf 5/1 6/2 7/3\n";
+    const LineageResult more = check_lineage(made.setup());
+    CHECK(more.passed());
+    CHECK(more.vertices > whole.vertices);
+}
+
+TEST_CASE("the program leaves a case that tessera runs, and says of a line what it ran") {
+    const TestFolder here;
+    const ProgramEnd written = run_cases({"--seed", "5", "--write", "case"}, here.path());
+    INFO(written.text());
+    REQUIRE(written.exit_code == 0);
+    const ProgramEnd ran = run_tessera({"run", "case/job.toml"}, here.path());
+    INFO(ran.text());
+    REQUIRE(ran.exit_code == 0);
+    const auto statistics = nlohmann::json::parse(read_all(here.path() / "run/statistics.json"));
+
+    const ProgramEnd listed = run_cases({"--seed", "5", "--count", "1", "--list"}, here.path());
+    INFO(listed.text());
+    CHECK(listed.exit_code == 0);
+    const std::string triangles =
+        std::to_string(statistics["pass_or_tessellate"]["finished_triangles"]["value"].get<std::uint64_t>());
+    CHECK_THAT(listed.out, Contains("seed 5: " + triangles + " triangles from "));
+    CHECK_THAT(listed.out,
+               Contains("1 cases: 0 cracks, 0 T-vertices, 0 other violations, 0 mismatches, 0 failed"));
+}
+
+TEST_CASE("the program of random cases refuses wrong usage") {
+    const TestFolder here;
+    for (const std::vector<std::string>& arguments :
+         std::vector<std::vector<std::string>>{{"--count", "0"}, {"--seed", "x"}, {"--nonsense"}, {"extra"}})
+        CHECK(run_cases(arguments, here.path()).exit_code == 2);
+    CHECK(run_cases({"--help"}, here.path()).exit_code == 0);
+    CHECK(here.names().empty());
+}
