@@ -154,6 +154,9 @@ RandomCase make_random_case(std::uint64_t seed) {
             made.redrawn = draws;
             validate(made.job);
             settle(random, made);
+            // Without a Generation Test a generation may be wider than the wires of a spilled triangle: an error.
+            if (!made.job.tests.generation)
+                made.job.hardware.queue_capacity = 0;
             return made;
         } catch (const InputError&) {
             // The host refuses it, as it should: another draw.

@@ -195,7 +195,7 @@ TEST_CASE(
             }
         }
     }
-    CHECK(edges > 5'000'000);
+    CHECK(edges > 2'000'000);
     CHECK(yes > edges / 20);
 }
 
