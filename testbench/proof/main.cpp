@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdint>
+#include <cstdio>
+#include <exception>
 #include <string>
 
 #include "testbench/common/error.h"
@@ -62,9 +64,7 @@ void print(const EdgeTrial& trial, std::uint64_t seed, double seconds) {
                number(static_cast<std::uint64_t>(static_cast<double>(trial.edges) / seconds)));
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int try_edges(int argc, char** argv) {
     std::uint64_t seed = 1, edges = 1'000'000;
     CLI::App app{"Tries random edges: the same from either end, and as the definitions say."};
     app.add_option("--seed", seed, "what the edges follow from")->capture_default_str();
@@ -85,4 +85,15 @@ int main(int argc, char** argv) {
     if (!untried.empty())
         fmt::print("the {} said the same nearly always: it has not been tried\n", untried);
     return static_cast<int>(trial.faults() == 0 && untried.empty() ? ExitCode::fine : ExitCode::check_failed);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return try_edges(argc, argv);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "tessera_random_edges: %s\n", error.what());
+        return static_cast<int>(tessera::ExitCode::resource_limit);
+    }
 }

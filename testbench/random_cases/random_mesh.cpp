@@ -328,8 +328,8 @@ void MeshMaker::set_normals() {
     if (choice > 1)
         return;
     if (choice == 0)
-        for (std::size_t k = 0; k < positions_.size(); ++k)
-            normals_.push_back(unit(unit(positions_[k]) + jitter(0.8)));
+        for (const dvec3& p : positions_)
+            normals_.push_back(unit(unit(p) + jitter(0.8)));
     for (Face& face : faces_) {
         if (choice == 1) {
             const dvec3 a = positions_[face[0].position];
