@@ -126,37 +126,45 @@ void BareRecursion::evaluate_edge(TrianglePass& pass, int k) {
     edge.tests = static_cast<std::uint8_t>(tests);
 }
 
-std::uint64_t BareRecursion::run(EmittedMesh& mesh) {
+std::uint8_t BareRecursion::evaluate(TrianglePass& pass) {
+    unsigned split = 0;
+    unsigned stopped_by = 0;
+    for (int k = 0; k < 3; ++k) {
+        evaluate_edge(pass, k);
+        if (setup_.registers.tests.highlight_test)
+            test_for_highlight(pass, k, setup_.registers.tests);
+        const std::uint8_t tests = pass.edges[static_cast<std::size_t>(k)].tests;
+        if (split_decision(tests))
+            split |= 1u << k;
+        else if ((tests & asking_bits) != 0)
+            stopped_by |= ~tests & allowing_bits;
+    }
+    pass.split = static_cast<std::uint8_t>(split);
+    return static_cast<std::uint8_t>(stopped_by);
+}
+
+std::uint64_t BareRecursion::run(EmittedMesh& mesh, std::uint64_t most_edges) {
     mesh.triangles.clear();
+    work_.clear();
     std::uint64_t edges = 0;
     TrianglePass pass;
     for (const Triangle& base : setup_.base_triangles) {
         work_.push_back(base);
         complete_base(work_.back());
         while (!work_.empty()) {
+            if (edges >= most_edges)
+                return edges;
             pass.triangle = work_.back();
             work_.pop_back();
-            unsigned split = 0;
-            unsigned stopped_by = 0;
-            for (int k = 0; k < 3; ++k) {
-                evaluate_edge(pass, k);
-                if (setup_.registers.tests.highlight_test)
-                    test_for_highlight(pass, k, setup_.registers.tests);
-                const std::uint8_t tests = pass.edges[static_cast<std::size_t>(k)].tests;
-                if (split_decision(tests))
-                    split |= 1u << k;
-                else if ((tests & asking_bits) != 0)
-                    stopped_by |= ~tests & allowing_bits;
-            }
+            const std::uint8_t stopped_by = evaluate(pass);
             edges += 3;
-            pass.split = static_cast<std::uint8_t>(split);
-            if (split != 0) {
+            if (pass.split != 0) {
                 tessellate(pass, setup_.registers.triangulation,
                            [&](const Triangle& child) { work_.push_back(child); });
                 continue;
             }
             Triangle& finished = pass.triangle;
-            finished.stopped_by = static_cast<std::uint8_t>(stopped_by);
+            finished.stopped_by = stopped_by;
             for (Vertex& v : finished.vertices)
                 if (!v.screen_normal_known)
                     v.screen_normal = transform_normal(v.displaced_normal, setup_.registers.transform,

@@ -15,13 +15,16 @@ class BareRecursion {
     /// `setup` must outlive it.
     explicit BareRecursion(const Setup& setup);
 
-    /// Tessellates every base triangle; returns the edges evaluated. `mesh` is cleared first, its memory kept.
-    std::uint64_t run(EmittedMesh& mesh);
+    /// Tessellates every base triangle; returns the edges evaluated. `mesh` is cleared first, its memory kept. Gives up,
+    /// the mesh incomplete, once `most_edges` have been.
+    std::uint64_t run(EmittedMesh& mesh, std::uint64_t most_edges = UINT64_MAX);
 
     /// Its parts, for who walks in another way. What the machine does to a base triangle's vertices on its first pass:
     void complete_base(datapath::Triangle& triangle);
-    /// All that a pass finds out about edge k, and decides by the setup's registers.
+    /// All that a pass finds out about edge k, and decides by the setup's registers; the Highlight Test is not in it.
     void evaluate_edge(datapath::TrianglePass& pass, int k);
+    /// All three edges with every test, and pass.split. Returns the tests that kept edges whole (Triangle::stopped_by).
+    std::uint8_t evaluate(datapath::TrianglePass& pass);
     /// The Summed Height Test's sum of the map's codes.
     std::uint64_t sum_around(const datapath::TexCoord& t, const datapath::RectangleSize& size) const;
 

@@ -17,6 +17,8 @@ struct ChainPiece {
     CornerRef last = no_corner;   ///< corner at its end, of the same triangle
     bool ambiguous =
         false;  ///< rounding has put several edges of a folded patch here: perhaps not the right one
+    /// Rounding has put several vertices of a folded patch at its begin, at its end: perhaps not the right corner.
+    bool first_coincides = false, last_coincides = false;
 };
 
 /// How every edge of every base triangle was cut. Edge k of base triangle b is number 3 b + k, and runs from

@@ -201,9 +201,10 @@ BaseEdgeCheck::Piece BaseEdgeCheck::piece(std::uint32_t edge, std::size_t index)
     const std::size_t at = forward ? index : size - 1 - index;
     const ChainPiece& p = chains_.piece(edge, at);
     const std::uint32_t end = at + 1 == size ? ChainPiece::whole : chains_.piece(edge, at + 1).begin;
+    const bool ambiguous = p.ambiguous || p.first_coincides || p.last_coincides;
     if (forward)
-        return {p.begin, end, p.first, p.last, p.ambiguous};
-    return {ChainPiece::whole - end, ChainPiece::whole - p.begin, p.last, p.first, p.ambiguous};
+        return {p.begin, end, p.first, p.last, ambiguous};
+    return {ChainPiece::whole - end, ChainPiece::whole - p.begin, p.last, p.first, ambiguous};
 }
 
 void BaseEdgeCheck::compare(std::uint32_t a, std::uint32_t b, Sides sides) {
@@ -281,13 +282,14 @@ void BaseEdgeCheck::compare_stretch(std::uint32_t a, std::size_t a_begin, std::s
 }
 
 /// What was emitted of a base vertex: it begins its triangle's edge of the same number, and ends the one
-/// before.
+/// before. no_corner: nothing, or what it is cannot be said.
 CornerRef BaseEdgeCheck::corner_at(std::uint32_t index) const {
-    const CornerRef begins = chains_.piece(index, 0).first;
-    if (begins != no_corner)
-        return begins;
+    const ChainPiece& begins = chains_.piece(index, 0);
+    if (begins.first != no_corner)
+        return begins.first_coincides ? no_corner : begins.first;
     const std::uint32_t before = index % 3 == 0 ? index + 2 : index - 1;
-    return chains_.piece(before, chains_.size(before) - 1).last;
+    const ChainPiece& ends = chains_.piece(before, chains_.size(before) - 1);
+    return ends.last_coincides ? no_corner : ends.last;
 }
 
 void BaseEdgeCheck::check_vertices() {

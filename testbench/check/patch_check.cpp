@@ -96,6 +96,7 @@ void PatchCheck::check(std::uint32_t base, const std::uint32_t* triangles, std::
     patch_area_ = border_area_ = border_rounding_ = 0;
     doubled_edge_ = false;
     unlike_.clear();
+    coincident_.clear();
     edges_.clear();
     open_.clear();
 
@@ -206,6 +207,11 @@ void PatchCheck::judge_shape(std::uint32_t index) {
         });
 }
 
+/// Two vertices can share (P, t) only where the patch is folded both in P and in t.
+bool PatchCheck::may_coincide(const Corner& corner) {
+    return texture_folds_.covers(in_texture(corner)) && position_folds_.covers(in_position(corner, plane_));
+}
+
 void PatchCheck::judge_vertices() {
     const auto vertex_of = [&](CornerRef ref) {
         return vertices_.find(surface_point(corner_of(mesh_, ref)));
@@ -220,10 +226,9 @@ void PatchCheck::judge_vertices() {
             continue;
         last = vertex;
         const Corner& corner = corner_of(mesh_, ref);
-        // two vertices can share (P, t) only where the patch is folded both in P and in t
-        if (texture_folds_.covers(in_texture(corner)) &&
-            position_folds_.covers(in_position(corner, plane_))) {
+        if (may_coincide(corner)) {
             ++result_.coincident_vertices;
+            coincident_.push_back(vertex);
             continue;
         }
         ++result_.inconsistent_vertices;
@@ -279,6 +284,13 @@ void PatchCheck::match_run(const HalfEdge* begin, const HalfEdge* end) {
         return low_corner(a).displaced == low_corner(b).displaced &&
                high_corner(a).displaced == high_corner(b).displaced;
     };
+    // at each end one vertex, or two that rounding has put into one place
+    const auto coincide = [&](const HalfEdge& a, const HalfEdge& b) {
+        const auto fine = [&](const Corner& one, const Corner& other) {
+            return one.displaced == other.displaced || may_coincide(one);
+        };
+        return fine(low_corner(a), low_corner(b)) && fine(high_corner(a), high_corner(b));
+    };
     const auto opposite = [](const HalfEdge& a, const HalfEdge& b) {
         return ((a.corner_and_way ^ b.corner_and_way) & 1) != 0;
     };
@@ -316,7 +328,9 @@ void PatchCheck::match_run(const HalfEdge* begin, const HalfEdge* end) {
                 continue;
             }
             --top;
-            if (is_crack)
+            if (is_crack && coincide(run_[top], edge))
+                ++result_.coincident_edges;
+            else if (is_crack)
                 crack_between(edge.corner_and_way >> 1,
                               "lies at another P' in the triangle on its other side");
         }
@@ -432,10 +446,11 @@ void PatchCheck::walk(const SurfacePoint& a, const SurfacePoint& b, std::uint32_
     if (open != nullptr) {
         open->used = true;
         const CornerRef first = open->corner_and_way >> 1;
-        chains_.add_piece({begin, first, next_corner(first), open->ambiguous && is_folded()});
+        chains_.add_piece({begin, first, next_corner(first), open->ambiguous && is_folded(), coincides(from),
+                           coincides(to)});
         return;
     }
-    chains_.add_piece({begin, no_corner, no_corner, false});
+    chains_.add_piece({begin, no_corner, no_corner, false, false, false});
     if (OpenEdge* const turned = ends_exist ? find_open(to, from) : nullptr)
         turned->used = true;  // the same place once more
     ++result_.cracks;

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -57,6 +58,10 @@ class PatchCheck {
     OpenEdge* reopen(std::uint32_t from, std::uint32_t to);
     bool is_covered(const SurfacePoint& a, const SurfacePoint& b, int depth);
     bool is_split(const SurfacePoint& a, const SurfacePoint& b, SurfacePoint& middle);
+    bool may_coincide(const EmittedTriangle::Corner& corner);
+    bool coincides(std::uint32_t vertex) const {
+        return std::binary_search(coincident_.begin(), coincident_.end(), vertex);
+    }
     bool is_folded() const { return texture_folds_.any() && position_folds_.any(); }
     static void start(FoldMap& folds, Wide area, const Place& a, const Place& b, const Place& c);
     bool is_explained(const EmittedTriangle& triangle) const;
@@ -81,7 +86,8 @@ class PatchCheck {
     bool doubled_edge_ = false;  // some edge has two triangles on one side
     FoldMap texture_folds_, position_folds_;
     CornerTable vertices_;
-    std::vector<CornerRef> unlike_;  // corners that differ from their vertex's first
+    std::vector<CornerRef> unlike_;          // corners that differ from their vertex's first
+    std::vector<std::uint32_t> coincident_;  // numbers, in order, that stand for several vertices
     std::vector<HalfEdge> edges_;
     std::vector<OpenEdge> open_;
     std::vector<HalfEdge> run_;

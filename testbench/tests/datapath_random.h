@@ -1,45 +1,8 @@
 #pragma once
-#include <cstdint>
+#include "testbench/common/random.h"
 
 namespace tessera::testing {
 
-/// splitmix64 (Vigna, public domain): seeded, and the same numbers from every compiler and library.
-class Random {
-  public:
-    explicit Random(std::uint64_t seed) : state_(seed) {}
-
-    std::uint64_t bits() {
-        std::uint64_t z = state_ += 0x9e3779b97f4a7c15U;
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
-        return z ^ (z >> 31);
-    }
-
-    std::int64_t integer(std::int64_t low, std::int64_t high) {
-        const std::uint64_t span = static_cast<std::uint64_t>(high) - static_cast<std::uint64_t>(low) + 1;
-        const std::uint64_t offset = span == 0 ? bits() : bits() % span;
-        return static_cast<std::int64_t>(static_cast<std::uint64_t>(low) + offset);
-    }
-    std::int32_t integer32(std::int64_t low, std::int64_t high) {
-        return static_cast<std::int32_t>(integer(low, high));
-    }
-    std::uint32_t natural(std::uint32_t low, std::uint32_t high) {
-        return static_cast<std::uint32_t>(integer(low, high));
-    }
-
-    /// -limit..limit, every magnitude's width equally likely: small values are as interesting as large ones.
-    /// One in sixteen is a limit itself.
-    std::int64_t any_size(std::int64_t limit) {
-        const std::uint64_t choice = bits();
-        const std::int64_t magnitude =
-            (choice & 15) == 0 ? limit : integer(0, limit) >> static_cast<int>((choice >> 8) % 62);
-        return (choice >> 4 & 1) != 0 ? -magnitude : magnitude;
-    }
-
-    bool coin() { return (bits() >> 40 & 1) != 0; }
-
-  private:
-    std::uint64_t state_;
-};
+using tessera::Random;
 
 }  // namespace tessera::testing
