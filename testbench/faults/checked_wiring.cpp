@@ -117,7 +117,7 @@ void CheckedWiring::require_placed() const {
     if (fault_.kind == FaultKind::none || placed_)
         return;
     const std::string near = nearest_name(fault_.place, {places_.begin(), places_.end()});
-    throw InputError(fmt::format("fault.place = \"{}\" is no place for fault.kind = \"{}\"{}; there are {}",
+    throw InputError(fmt::format("fault.place = \"{}\" is no place for fault.kind = \"{}\"{}. There are {}",
                                  fault_.place, name_of(fault_.kind),
                                  near.empty() ? "" : "; did you mean \"" + near + "\"?",
                                  fmt::join(places_, ", ")));

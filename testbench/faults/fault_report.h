@@ -6,7 +6,7 @@ namespace tessera {
 
 /// One check that noticed a fault.
 struct Caught {
-    std::string by;        ///< scoreboard, invariants, work conservation, ...: testbench/faults/README.md
+    std::string by;        ///< scoreboard, invariants, work conservation, ...: testbench/faults/CATCHERS.md
     std::string evidence;  ///< what it found first
 };
 

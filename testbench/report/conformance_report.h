@@ -23,8 +23,9 @@ struct Checks {
     double allowed_flips = 0.5;        ///< percent of edges
     std::vector<std::string> remarks;  ///< what was mended or is odd in mesh and map; one sentence each
 
+    /// A run with a fault never passes.
     bool passed() const {
-        return (!conformance || conformance->passed(allowed_flips)) &&
+        return !fault && (!conformance || conformance->passed(allowed_flips)) &&
                (!invariants || invariants->passed()) && (!work || work->passed()) &&
                (!reads || reads->passed());
     }
