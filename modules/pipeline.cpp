@@ -8,7 +8,7 @@
 namespace tessera {
 
 Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Registers& registers,
-                   const Design& design)
+                   const Design& design, Wiring* wiring)
     : sc_module(name),
       clock("clock", sc_core::sc_time::from_value(design.timing.cycle_picoseconds)),
       get_triangle("get_triangle", clock, design.timing, design.tests_units, passes),
@@ -35,30 +35,36 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
         return new TessellationTests(unit_name, clock, registers, design.timing,
                                      static_cast<unsigned>(number), design.direct_memory);
     });
-    get_triangle.to_calculate_new_p.bind(calculate_new_p.from_get_triangle);
+    Wiring straight;
+    wire(wiring == nullptr ? straight : *wiring);
+    attach();
+}
+
+void Pipeline::wire(Wiring& wiring) {
+    wiring.join(get_triangle.to_calculate_new_p, calculate_new_p.from_get_triangle);
     get_triangle.queue_level.bind(triangle_queue.level);
-    calculate_new_p.to_displace_vertex.bind(displace_vertex.from_calculate_new_p);
-    displace_vertex.to_transform.bind(transform.from_displace_vertex);
-    displace_vertex.displacement_map.bind(displacement_map);
-    transform.to_pass_or_tessellate.bind(pass_or_tessellate.from_transform);
-    for (unsigned k = 0; k < design.tests_units; ++k) {
+    wiring.join(calculate_new_p.to_displace_vertex, displace_vertex.from_calculate_new_p);
+    wiring.join(displace_vertex.to_transform, transform.from_displace_vertex);
+    wiring.join(displace_vertex.displacement_map, displacement_map);
+    wiring.join(transform.to_pass_or_tessellate, pass_or_tessellate.from_transform);
+    for (std::size_t k = 0; k < tessellation_tests.size(); ++k) {
         TessellationTests& tests = tessellation_tests[k];
-        get_triangle.to_tessellation_tests[k].bind(tests.calculate_new_u.input);
-        transform.to_view_test[k].bind(tests.view_test.from_transform);
-        tests.collect_tests.to_pass_or_tessellate.bind(pass_or_tessellate.from_tessellation_tests[k]);
-        tests.summed_height_test.summed_height_table.bind(summed_height_table);
-        tests.normal_test.normal_map.bind(normal_map);
+        tests.wire(wiring);
+        wiring.join(get_triangle.to_tessellation_tests[k], tests.calculate_new_u.input);
+        wiring.join(transform.to_view_test[k], tests.view_test.from_transform);
+        wiring.join(tests.collect_tests.to_pass_or_tessellate, pass_or_tessellate.from_tessellation_tests[k]);
+        wiring.join(tests.summed_height_test.summed_height_table, summed_height_table);
+        wiring.join(tests.normal_test.normal_map, normal_map);
         for (TessellationTests& other : tessellation_tests) {
             if (&other != &tests)
                 tests.normal_test.tells(other.normal_test);
         }
     }
-    pass_or_tessellate.to_tessellation.bind(tessellation.from_pass_or_tessellate);
-    pass_or_tessellate.to_lighting.bind(lighting.from_pass_or_tessellate);
-    tessellation.to_triangle_queue.bind(triangle_queue.from_tessellation);
-    triangle_queue.to_get_triangle.bind(get_triangle.from_triangle_queue);
-    triangle_queue.off_chip_memory.bind(off_chip_memory);
-    attach();
+    wiring.join(pass_or_tessellate.to_tessellation, tessellation.from_pass_or_tessellate);
+    wiring.join(pass_or_tessellate.to_lighting, lighting.from_pass_or_tessellate);
+    wiring.join(tessellation.to_triangle_queue, triangle_queue.from_tessellation);
+    wiring.join(triangle_queue.to_get_triangle, get_triangle.from_triangle_queue);
+    wiring.join(triangle_queue.off_chip_memory, off_chip_memory);
 }
 
 /// On the clock: downstream first (clock.h); in the list: as the figures are read.

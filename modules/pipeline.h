@@ -16,6 +16,7 @@
 #include "modules/units/tessellation_tests/tessellation_tests.h"
 #include "modules/units/transform.h"
 #include "modules/units/triangle_queue.h"
+#include "modules/wiring.h"
 
 namespace tessera {
 
@@ -63,8 +64,9 @@ class Pipeline : public sc_core::sc_module {
     SummedHeightTable summed_height_table;
     OffChipMemory off_chip_memory;
 
-    /// `registers` must outlive the pipeline.
-    Pipeline(const sc_core::sc_module_name& name, const datapath::Registers& registers, const Design& design);
+    /// `registers` must outlive the pipeline. wiring: null: outputs straight to inputs.
+    Pipeline(const sc_core::sc_module_name& name, const datapath::Registers& registers, const Design& design,
+             Wiring* wiring = nullptr);
 
     /// Nothing is in flight.
     bool idle() const;
@@ -82,6 +84,7 @@ class Pipeline : public sc_core::sc_module {
     datapath::Saturations saturations() const;
 
   private:
+    void wire(Wiring& wiring);
     void attach();
 
     Transport transport_;

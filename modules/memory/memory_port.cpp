@@ -72,7 +72,7 @@ void MemoryPort::clocked_by(Clock& clock, Clocked& unit, std::size_t most_under_
 
 void MemoryPort::request(const std::uint64_t* addresses, unsigned count) {
     if (on_offer_)
-        stream_protocol_error(socket.name(), "BEGIN_REQ before END_REQ of the request before");
+        stream_protocol_error(socket.name(), "BEGIN_REQ before END_REQ of the request before", clock_);
     ++under_way_;
     reads_ += count;
     Slot& slot = last();
@@ -97,7 +97,8 @@ void MemoryPort::request(const std::uint64_t* addresses, unsigned count) {
     else if (status == tlm::TLM_ACCEPTED)
         on_offer_ = true;
     else
-        stream_protocol_error(socket.name(), "BEGIN_REQ was answered by neither END_REQ nor TLM_ACCEPTED");
+        stream_protocol_error(socket.name(), "BEGIN_REQ was answered by neither END_REQ nor TLM_ACCEPTED",
+                              clock_);
 }
 
 tlm::tlm_sync_enum MemoryPort::nb_transport_bw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
@@ -106,19 +107,19 @@ tlm::tlm_sync_enum MemoryPort::nb_transport_bw(tlm::tlm_generic_payload& payload
     clock_->wake_at(*unit_, cycle);
     if (phase == tlm::END_REQ) {
         if (!on_offer_ || &last().payload != &payload)
-            stream_protocol_error(socket.name(), "END_REQ for a request that is not on offer");
+            stream_protocol_error(socket.name(), "END_REQ for a request that is not on offer", clock_);
         on_offer_ = false;
         last().taken = true;
         return tlm::TLM_ACCEPTED;
     }
     if (phase != tlm::BEGIN_RESP)
-        stream_protocol_error(socket.name(), "a phase that no memory may send");
+        stream_protocol_error(socket.name(), "a phase that no memory may send", clock_);
     if (answered_ == under_way_)
-        stream_protocol_error(socket.name(), "BEGIN_RESP for a request that was not made");
+        stream_protocol_error(socket.name(), "BEGIN_RESP for a request that was not made", clock_);
     const std::size_t sum = first_ + answered_;
     Slot& slot = *slots_[sum < slots_.size() ? sum : sum - slots_.size()];
     if (&slot.payload != &payload || !slot.taken)
-        stream_protocol_error(socket.name(), "BEGIN_RESP out of order or before END_REQ");
+        stream_protocol_error(socket.name(), "BEGIN_RESP out of order or before END_REQ", clock_);
     check_response(payload);
     ++answered_;
     payload.release();

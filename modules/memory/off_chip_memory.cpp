@@ -23,9 +23,9 @@ OffChipMemory::OffChipMemory(const sc_core::sc_module_name& name, Clock& clock, 
 tlm::tlm_sync_enum OffChipMemory::nb_transport_fw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
                                                   sc_core::sc_time& delay) {
     if (phase != tlm::BEGIN_REQ)
-        stream_protocol_error(socket.name(), "a phase other than BEGIN_REQ");
+        stream_protocol_error(socket.name(), "a phase other than BEGIN_REQ", &clock_);
     if (at_the_door_ != nullptr)
-        stream_protocol_error(socket.name(), "BEGIN_REQ before END_REQ of the request before");
+        stream_protocol_error(socket.name(), "BEGIN_REQ before END_REQ of the request before", &clock_);
     const std::uint64_t wait = stalls_.next() + clock_.cycles(delay);
     const std::uint64_t cycle = now();
     activity_.item_in(cycle);
@@ -114,7 +114,7 @@ void OffChipMemory::step() {
         tlm::tlm_phase phase = tlm::BEGIN_RESP;
         sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
         if (socket->nb_transport_bw(payload, phase, delay) != tlm::TLM_COMPLETED)
-            stream_protocol_error(socket.name(), "BEGIN_RESP was not completed at once");
+            stream_protocol_error(socket.name(), "BEGIN_RESP was not completed at once", &clock_);
         payload.release();
     }
     activity_.set(cycle, channel_free_ > cycle ? State::busy : State::starved);

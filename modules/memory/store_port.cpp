@@ -38,7 +38,7 @@ void StorePort::read(std::uint64_t address) {
 
 void StorePort::request(tlm::tlm_command command, std::uint64_t address) {
     if (on_offer_)
-        stream_protocol_error(socket.name(), "BEGIN_REQ before END_REQ of the request before");
+        stream_protocol_error(socket.name(), "BEGIN_REQ before END_REQ of the request before", &clock_);
     Slot& it = slot(under_way_++);
     it.answered = false;
     tlm::tlm_generic_payload& payload = it.payload;
@@ -57,7 +57,8 @@ void StorePort::request(tlm::tlm_command command, std::uint64_t address) {
     if (status == tlm::TLM_UPDATED && phase == tlm::END_REQ)
         return;
     if (status != tlm::TLM_ACCEPTED)
-        stream_protocol_error(socket.name(), "BEGIN_REQ was answered by neither END_REQ nor TLM_ACCEPTED");
+        stream_protocol_error(socket.name(), "BEGIN_REQ was answered by neither END_REQ nor TLM_ACCEPTED",
+                              &clock_);
     on_offer_ = true;
 }
 
@@ -66,18 +67,18 @@ tlm::tlm_sync_enum StorePort::nb_transport_bw(tlm::tlm_generic_payload& payload,
     clock_.wake_at(unit_, clock_.cycle() + clock_.cycles(delay));
     if (phase == tlm::END_REQ) {
         if (!on_offer_ || &slot(under_way_ - 1).payload != &payload)
-            stream_protocol_error(socket.name(), "END_REQ for a request that is not on offer");
+            stream_protocol_error(socket.name(), "END_REQ for a request that is not on offer", &clock_);
         on_offer_ = false;
         return tlm::TLM_ACCEPTED;
     }
     if (phase != tlm::BEGIN_RESP)
-        stream_protocol_error(socket.name(), "a phase that no memory may send");
+        stream_protocol_error(socket.name(), "a phase that no memory may send", &clock_);
     for (std::size_t k = 0; k < under_way_; ++k) {
         Slot& it = slot(k);
         if (it.answered)
             continue;
         if (&it.payload != &payload || (on_offer_ && k + 1 == under_way_))
-            stream_protocol_error(socket.name(), "BEGIN_RESP out of order or before END_REQ");
+            stream_protocol_error(socket.name(), "BEGIN_RESP out of order or before END_REQ", &clock_);
         if (payload.is_response_error()) {
             std::ostringstream message;
             message << socket.name() << ": access to address 0x" << std::hex << payload.get_address()
@@ -88,7 +89,7 @@ tlm::tlm_sync_enum StorePort::nb_transport_bw(tlm::tlm_generic_payload& payload,
         payload.release();
         return tlm::TLM_COMPLETED;
     }
-    stream_protocol_error(socket.name(), "BEGIN_RESP for a request that was not made");
+    stream_protocol_error(socket.name(), "BEGIN_RESP for a request that was not made", &clock_);
 }
 
 bool StorePort::answered() const {

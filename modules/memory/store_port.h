@@ -25,7 +25,12 @@ class StorePort : public tlm::tlm_mm_interface {
     /// Binds the port to a memory (with a socket of that name).
     template <class Memory>
     void bind(Memory& memory) {
-        socket.bind(memory.socket);
+        bind(memory, memory);
+    }
+    /// The same through what stands before the memory.
+    template <class Interposer>
+    void bind(Interposer& before, const sc_core::sc_object& memory) {
+        socket.bind(before.socket);
         memory_ = &memory;
     }
     /// The memory: who is waited for.

@@ -98,14 +98,14 @@ void TableMemory::b_transport(int, tlm::tlm_generic_payload& payload, sc_core::s
 tlm::tlm_sync_enum TableMemory::nb_transport_fw(int id, tlm::tlm_generic_payload& payload,
                                                 tlm::tlm_phase& phase, sc_core::sc_time& delay) {
     if (phase != tlm::BEGIN_REQ)
-        stream_protocol_error(socket.name(), "a phase other than BEGIN_REQ");
+        stream_protocol_error(socket.name(), "a phase other than BEGIN_REQ", &clock_);
     const auto door = static_cast<std::size_t>(id);
     if (at_the_door_.size() <= door) {
         at_the_door_.resize(door + 1);
         door_opens_.resize(door + 1);
     }
     if (at_the_door_[door].payload != nullptr)
-        stream_protocol_error(socket.name(), "BEGIN_REQ before END_REQ of the request before");
+        stream_protocol_error(socket.name(), "BEGIN_REQ before END_REQ of the request before", &clock_);
     const std::uint64_t cycle = now();
     const std::uint64_t wait = stalls_.next() + clock_.cycles(delay);
     activity_.item_in(cycle);
@@ -229,7 +229,7 @@ void TableMemory::step() {
         tlm::tlm_phase phase = tlm::BEGIN_RESP;
         sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
         if (socket[answer.id]->nb_transport_bw(*answer.payload, phase, delay) != tlm::TLM_COMPLETED)
-            stream_protocol_error(socket.name(), "BEGIN_RESP was not completed at once");
+            stream_protocol_error(socket.name(), "BEGIN_RESP was not completed at once", &clock_);
         answer.payload->release();
     }
     activity_.set(cycle, answers_ > 0 ? State::busy : State::starved);

@@ -6,8 +6,10 @@
 
 namespace tessera {
 
-void stream_protocol_error(const char* socket, const char* what) {
-    const std::string message = std::string(socket) + ": " + what;
+void stream_protocol_error(const char* socket, const char* rule, const Clock* clock) {
+    std::string message = std::string(socket) + ": " + rule;
+    if (clock != nullptr)
+        message += ", in cycle " + std::to_string(clock->cycle());
     SC_REPORT_ERROR("tessera/protocol", message.c_str());
     throw std::logic_error(message);  // where SC_ERROR was told not to throw
 }

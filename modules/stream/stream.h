@@ -1,6 +1,8 @@
 #pragma once
 #include <tlm>
 
+#include "modules/clock/clock.h"
+
 namespace tessera {
 
 /// Protocol of the streams between units: not memory-mapped, so a traits class of its own. The payload is the work
@@ -20,7 +22,7 @@ struct Stream {
     using tlm_phase_type = tlm::tlm_phase;
 };
 
-/// Reports a breach of that protocol: an SC_ERROR that names the socket.
-[[noreturn]] void stream_protocol_error(const char* socket, const char* what);
+/// Reports a breach of that protocol: an SC_ERROR that names the socket, the rule and, with a clock, the cycle.
+[[noreturn]] void stream_protocol_error(const char* socket, const char* rule, const Clock* clock = nullptr);
 
 }  // namespace tessera

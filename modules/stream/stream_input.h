@@ -92,11 +92,11 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
     tlm::tlm_sync_enum nb_transport_fw(Payload& payload, tlm::tlm_phase& phase,
                                        sc_core::sc_time& delay) override {
         if (phase != tlm::BEGIN_REQ)
-            stream_protocol_error(this->name(), "a phase other than BEGIN_REQ");
+            stream_protocol_error(this->name(), "a phase other than BEGIN_REQ", clock_);
         if (at_the_door_ != nullptr)
-            stream_protocol_error(this->name(), "BEGIN_REQ before END_REQ of the item before");
+            stream_protocol_error(this->name(), "BEGIN_REQ before END_REQ of the item before", clock_);
         if (unit_ == nullptr)
-            stream_protocol_error(this->name(), "nb_transport in functional mode");
+            stream_protocol_error(this->name(), "nb_transport in functional mode", clock_);
         const std::uint64_t wait = stalls_.next() + clock_->cycles(delay);
         if (wait == 0 && size_ < depth_) {
             push(payload);

@@ -31,14 +31,15 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
     /// Offers an item, which must stay where it is until free(). True: taken at once.
     bool send(Payload& payload) {
         if (on_offer_ != nullptr)
-            stream_protocol_error(this->name(), "BEGIN_REQ before END_REQ of the item before");
+            stream_protocol_error(this->name(), "BEGIN_REQ before END_REQ of the item before", clock_);
         tlm::tlm_phase phase = tlm::BEGIN_REQ;
         sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
         const tlm::tlm_sync_enum status = (*this)->nb_transport_fw(payload, phase, delay);
         if (status == tlm::TLM_UPDATED && phase == tlm::END_REQ)
             return true;
         if (status != tlm::TLM_ACCEPTED)
-            stream_protocol_error(this->name(), "BEGIN_REQ was answered by neither END_REQ nor TLM_ACCEPTED");
+            stream_protocol_error(this->name(), "BEGIN_REQ was answered by neither END_REQ nor TLM_ACCEPTED",
+                                  clock_);
         on_offer_ = &payload;
         return false;
     }
@@ -57,7 +58,7 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
     tlm::tlm_sync_enum nb_transport_bw(Payload& payload, tlm::tlm_phase& phase,
                                        sc_core::sc_time& delay) override {
         if (on_offer_ != &payload || phase != tlm::END_REQ)
-            stream_protocol_error(this->name(), "a phase other than the END_REQ that was due");
+            stream_protocol_error(this->name(), "a phase other than the END_REQ that was due", clock_);
         on_offer_ = nullptr;
         if (unit_ != nullptr)
             clock_->wake_at(*unit_, clock_->cycle() + clock_->cycles(delay));

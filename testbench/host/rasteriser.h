@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <systemc>
+#include <tlm>
 
 #include "modules/clock/clock.h"
 #include "modules/stream/stream_input.h"
@@ -12,6 +13,8 @@ namespace tessera {
 class Rasteriser : public sc_core::sc_module, public Clocked {
   public:
     StreamInput<LitTriangle> from_lighting{"from_lighting"};
+    /// Every triangle taken: for the work check.
+    tlm::tlm_analysis_port<LitTriangle> taken{"taken"};
 
     Rasteriser(const sc_core::sc_module_name& name, Clock& clock, const StallParameters& stalls)
         : sc_module(name) {
@@ -23,11 +26,15 @@ class Rasteriser : public sc_core::sc_module, public Clocked {
     std::uint64_t triangles() const { return triangles_; }
 
   private:
-    void b_transport(LitTriangle&, sc_core::sc_time&) { ++triangles_; }
+    void b_transport(LitTriangle& triangle, sc_core::sc_time&) { take(triangle); }
+    void take(const LitTriangle& triangle) {
+        ++triangles_;
+        taken.write(triangle);
+    }
     void step() override {
         from_lighting.admit();
         while (!from_lighting.empty()) {
-            ++triangles_;
+            take(from_lighting.front());
             from_lighting.pop();
         }
     }

@@ -356,6 +356,15 @@ std::vector<KeyTable> declare_keys() {
         key.add("end_to_end", &Check::end_to_end, "Golden run of the whole mesh, compared with the hardware's");
         key.add("invariants", &Check::invariants, "The emitted mesh is closed, without T-vertices, and covers the texture");
         key.add("allowed_flips", &Check::allowed_flips, "percent of edges", between(0, 100), "Decisions that differ within the formats' error bound; more fail the run");
+        key.add("work", &Check::work, "No triangle is lost, doubled or altered on its way through the machine, and what goes into a unit comes out of another");
+        key.add("reads", &Check::reads, "Every table read against what the memory holds; in functional mode reads then go by transaction, which is slow");
+    });
+    list.table("fault", &Job::fault, "For tests of tessera's own checks: one transaction is broken on purpose, and the run says what noticed (testbench/faults/CATCHERS.md).", [](const auto& key) {
+        using Fault = Job::Fault;
+        key.add("kind", &Fault::kind, "What is done to the transaction; none: nothing is in the way of any");
+        key.add("place", &Fault::place, KeyKind::text, "Where: an output or a memory port of a unit, such as displace_vertex.to_transform; a wrong name is answered with all that there are");
+        key.add("transaction", &Fault::transaction, "transactions", between(1, any_count), "Which one, of all at that place; with back_pressure_ignored, request_before_end and response_early of those that were held back");
+        key.add("bit", &Fault::bit, "bits", between(0, 100000), "Which bit, with bit_flip of the payload and with address_flip of the address");
     });
     list.table("limits", &Job::limits, "Where a run gives up.", [](const auto& key) {
         using Limits = Job::Limits;

@@ -199,6 +199,23 @@ void check_traces(const Job& job, Faults& faults) {
                   output.trace_from, output.trace_to);
 }
 
+void check_fault(const Job& job, Faults& faults) {
+    const Job::Fault& fault = job.fault;
+    faults.unless(fault.kind == FaultKind::none || !fault.place.empty(),
+                  "`fault.place` is empty, but `fault.kind` = \"{}\": say where, such as "
+                  "\"displace_vertex.to_transform\"",
+                  name_of(fault.kind));
+    const bool without_cycles = fault.kind == FaultKind::none || fault.kind == FaultKind::bit_flip ||
+                                fault.kind == FaultKind::dropped || fault.kind == FaultKind::doubled ||
+                                fault.kind == FaultKind::reordered || fault.kind == FaultKind::address_flip ||
+                                fault.kind == FaultKind::error_response ||
+                                fault.kind == FaultKind::response_lost;
+    faults.unless(
+        without_cycles || job.mode == Mode::timed,
+        "`fault.kind` = \"{}\" breaks the handshake, which only timed mode has: set mode = \"timed\"",
+        name_of(fault.kind));
+}
+
 }  // namespace
 
 void validate(const Job& job) {
@@ -214,6 +231,7 @@ void validate(const Job& job) {
     check_light(job.hardware, faults);
     check_hardware(job.hardware, faults);
     check_traces(job, faults);
+    check_fault(job, faults);
     faults.raise();
 }
 

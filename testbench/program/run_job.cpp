@@ -9,10 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "testbench/check/conservation.h"
 #include "testbench/check/scoreboard.h"
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/atomic_set.h"
 #include "testbench/host/fingerprint.h"
+#include "testbench/faults/checked_run.h"
 #include "testbench/host/inputs.h"
 #include "testbench/host/simulation.h"
 #include "testbench/job/dump_job.h"
@@ -109,7 +111,8 @@ std::string finish_traces(Traces& traces, const Command& command, const std::fil
 const char* verdict(const Checks& checks) {
     if (!checks.passed())
         return "CHECKS FAILED, see conformance.txt";
-    return checks.conformance || checks.invariants ? "all checks passed" : "nothing was checked";
+    return checks.conformance || checks.invariants || checks.work ? "all checks passed"
+                                                                  : "nothing was checked";
 }
 
 /// What a run came to, and what it has to say of it.
@@ -117,6 +120,42 @@ struct Ending {
     ExitCode code;
     std::string text;
 };
+
+/// A run with a fault leaves its conformance report and its job, and no mesh that anyone could take for a result.
+Ending run_faulty(const Job& job, const Setup& setup, Simulation& simulation, const CheckedWiring& wiring,
+                  const Scoreboard* scoreboard, const WorkCheck* work, Progress& progress) {
+    const FaultRun run = run_with_fault(simulation);
+    Checks checks;
+    checks.allowed_flips = job.check.allowed_flips;
+    checks.remarks = setup.remarks;
+    checks.reads = read_result(wiring);
+    if (scoreboard != nullptr)
+        checks.conformance = scoreboard->result();
+    if (work != nullptr && !run.stopped)
+        checks.work = work_result(*work, simulation);
+    if (job.check.invariants && !run.stopped)
+        checks.invariants = check_invariants(simulation.monitor.mesh, setup.base_triangles, setup.registers);
+    checks.fault = judge_fault(
+        job.fault, wiring, run, job.mode == Mode::timed, checks.conformance ? &*checks.conformance : nullptr,
+        checks.work ? &*checks.work : nullptr, checks.invariants ? &*checks.invariants : nullptr);
+    const std::filesystem::path folder = job.output.folder;
+    OutputFolder(folder).keep();
+    remove_frames(folder);
+    remove_run_files(folder);
+    write_file(folder / "job.toml", dump_job(job, folder));
+    write_file(folder / "conformance.txt", conformance_text(checks));
+    write_file(folder / "conformance.json", conformance_json(checks));
+    progress.clear();
+    if (run.stopped)
+        fmt::print(stderr, "tessera: {}\n", run.text);
+    ExitCode code = run.code;
+    if (checks.fault->caught.empty())
+        code = ExitCode::fault_missed;
+    else if (!run.stopped)
+        code = ExitCode::check_failed;
+    return {code, fmt::format("{}  results in {}\n", fault_text(*checks.fault),
+                              std::filesystem::absolute(folder).lexically_normal().string())};
+}
 
 /// `name` tells the run from others, on the line that shows its progress.
 Ending run_once(const Job& job, const Command& command, const std::string& name) {
@@ -127,8 +166,14 @@ Ending run_once(const Job& job, const Command& command, const std::string& name)
     progress.show("reading mesh and map", 0);
     const Setup setup = load_setup(job, command.data_folder);
 
+    std::optional<CheckedWiring> wiring;
+    if (CheckedWiring::wanted(job))
+        wiring.emplace(job, setup.registers.formats);
     Simulation simulation(setup, static_cast<std::uint64_t>(job.limits.triangles),
-                          static_cast<std::uint64_t>(job.limits.cycles_without_progress));
+                          static_cast<std::uint64_t>(job.limits.cycles_without_progress),
+                          wiring ? &*wiring : nullptr);
+    if (wiring)
+        wiring->require_placed();
     std::optional<GoldenInputs> golden;
     std::unique_ptr<Scoreboard> scoreboard;
     if (job.check.golden || job.check.end_to_end)
@@ -137,6 +182,15 @@ Ending run_once(const Job& job, const Command& command, const std::string& name)
         scoreboard = std::make_unique<Scoreboard>(setup.registers, *golden);
         simulation.pipeline.pass_or_tessellate.decided.bind(*scoreboard);
     }
+    std::unique_ptr<WorkCheck> work;
+    if (job.check.work) {
+        work = std::make_unique<WorkCheck>(setup.registers, setup.base_triangles);
+        simulation.pipeline.pass_or_tessellate.decided.bind(*work);
+        simulation.pipeline.pass_or_tessellate.finished.bind(*work);
+        simulation.rasteriser.taken.bind(*work);
+    }
+    if (job.fault.kind != FaultKind::none)
+        return run_faulty(job, setup, simulation, *wiring, scoreboard.get(), work.get(), progress);
     simulation.monitor.on_progress([&](std::size_t triangles) {
         progress.show(
             fmt::format("{} triangles", triangles),
@@ -176,6 +230,10 @@ Ending run_once(const Job& job, const Command& command, const std::string& name)
     checks.remarks = setup.remarks;
     if (scoreboard)
         checks.conformance = scoreboard->result();
+    if (work)
+        checks.work = work_result(*work, simulation);
+    if (wiring)
+        checks.reads = read_result(*wiring);
     if (job.check.invariants) {
         progress.show("checking the mesh", 0.95);
         checks.invariants = check_invariants(mesh, setup.base_triangles, setup.registers);

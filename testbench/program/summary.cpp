@@ -74,6 +74,13 @@ std::string checks_rows(const Checks& checks) {
                             "coordinates",
                             count(i.open_texture_seam_edges)));
     }
+    if (checks.work)
+        text += row("work conservation", fmt::format("{} of {} triangles' and units' counts do not add up",
+                                                     count(checks.work->violations),
+                                                     count(checks.work->triangles + checks.work->equations)));
+    if (checks.reads)
+        text += row("reads", fmt::format("{} entries compared, {} wrong", count(checks.reads->entries),
+                                         count(checks.reads->wrong)));
     return text;
 }
 

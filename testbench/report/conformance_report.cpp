@@ -94,6 +94,27 @@ std::string invariants_text(const InvariantResult& result) {
     return text;
 }
 
+std::string work_text(const WorkResult& result) {
+    std::string text = fmt::format(
+        "Work conservation: {}. Each triangle came where it was to come, once and every bit as it left; what "
+        "goes "
+        "into\none unit came out of another.\n\n  triangles decided {}, equations {}, violations {}\n",
+        verdict(result.passed()), result.triangles, result.equations, result.violations);
+    if (!result.passed())
+        text += "\nFirst violation:\n" + result.first_violation + "\n";
+    return text;
+}
+
+std::string reads_text(const ReadResult& result) {
+    std::string text = fmt::format(
+        "Reads: {}. Every table entry read was compared with what the memory holds.\n\n"
+        "  entries {}, wrong {}\n",
+        verdict(result.passed()), result.entries, result.wrong);
+    if (!result.passed())
+        text += "\nFirst wrong:\n" + result.first_wrong + "\n";
+    return text;
+}
+
 Json distance_json(const EndToEndResult::Distance& d) {
     return {{"points", d.points},
             {"max_model", d.max_model},
@@ -127,8 +148,19 @@ Json conformance_part(const ConformanceResult& result, double allowed_flips) {
 
 }  // namespace
 
+std::string fault_text(const FaultReport& fault) {
+    std::string text = fmt::format("  fault injected: {}\n", fault.injected);
+    for (const Caught& caught : fault.caught)
+        text += fmt::format("  caught by: {}: {}\n", caught.by, caught.evidence);
+    if (fault.caught.empty())
+        text += "  caught by: NOBODY: no check that ran noticed it (masked, or a check is missing)\n";
+    return text;
+}
+
 std::string conformance_text(const Checks& checks) {
     std::string text = fmt::format("Conformance report: {}\n\n", verdict(checks.passed()));
+    if (checks.fault)
+        text += fault_text(*checks.fault) + "\n";
     if (checks.conformance)
         text += decisions_text(*checks.conformance, checks.allowed_flips) + "\n" +
                 values_text(*checks.conformance) + "\n";
@@ -138,6 +170,10 @@ std::string conformance_text(const Checks& checks) {
                               : "End to end: not run (check.end_to_end = false).\n\n";
     text += checks.invariants ? invariants_text(*checks.invariants)
                               : "Invariants: not checked (check.invariants = false).\n";
+    text += "\n" + (checks.work ? work_text(*checks.work)
+                                : std::string("Work conservation: not checked (check.work = false).\n"));
+    if (checks.reads)
+        text += "\n" + reads_text(*checks.reads);
     if (!checks.remarks.empty())
         text += "\nRemarks on mesh and map:\n";
     for (const std::string& remark : checks.remarks)
@@ -166,6 +202,22 @@ std::string conformance_json(const Checks& checks) {
                                  {"unit", figure.unit},
                                  {"description", figure.description}};
         json["invariants"] = std::move(part);
+    }
+    if (checks.work)
+        json["work"] = {{"passed", checks.work->passed()},
+                        {"triangles", checks.work->triangles},
+                        {"equations", checks.work->equations},
+                        {"violations", checks.work->violations},
+                        {"first_violation", checks.work->first_violation}};
+    if (checks.reads)
+        json["reads"] = {{"passed", checks.reads->passed()},
+                         {"entries", checks.reads->entries},
+                         {"wrong", checks.reads->wrong},
+                         {"first_wrong", checks.reads->first_wrong}};
+    if (checks.fault) {
+        json["fault"] = {{"injected", checks.fault->injected}, {"caught", Json::array()}};
+        for (const Caught& caught : checks.fault->caught)
+            json["fault"]["caught"].push_back({{"by", caught.by}, {"evidence", caught.evidence}});
     }
     return json.dump(2) + "\n";
 }

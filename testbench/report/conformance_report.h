@@ -6,6 +6,9 @@
 #include "testbench/check/conformance_result.h"
 #include "testbench/check/end_to_end.h"
 #include "testbench/check/invariants.h"
+#include "testbench/check/read_check.h"
+#include "testbench/check/work_check.h"
+#include "testbench/faults/fault_report.h"
 
 namespace tessera {
 
@@ -14,16 +17,25 @@ struct Checks {
     std::optional<ConformanceResult> conformance;
     std::optional<EndToEndResult> end_to_end;
     std::optional<InvariantResult> invariants;
+    std::optional<WorkResult> work;
+    std::optional<ReadResult> reads;
+    std::optional<FaultReport> fault;  ///< one was injected
     double allowed_flips = 0.5;        ///< percent of edges
     std::vector<std::string> remarks;  ///< what was mended or is odd in mesh and map; one sentence each
 
+    /// A run with a fault never passes.
     bool passed() const {
-        return (!conformance || conformance->passed(allowed_flips)) && (!invariants || invariants->passed());
+        return !fault && (!conformance || conformance->passed(allowed_flips)) &&
+               (!invariants || invariants->passed()) && (!work || work->passed()) &&
+               (!reads || reads->passed());
     }
 };
 
 /// The conformance report of a run, to be read.
 std::string conformance_text(const Checks& checks);
+
+/// "fault injected: ..." and who caught it, a line each.
+std::string fault_text(const FaultReport& fault);
 
 /// The same for programs.
 std::string conformance_json(const Checks& checks);

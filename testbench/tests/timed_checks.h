@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "testbench/check/conservation.h"
 #include "testbench/host/inputs.h"
 #include "testbench/host/simulation.h"
 #include "testbench/tests/mesh_keys.h"
@@ -70,67 +71,17 @@ std::uint64_t sum_over_tests(const Pipeline& pipeline, Figure figure) {
     return sum;
 }
 
-/// What goes into one unit came out of another: triangles, parts, edges, reads.
+/// What goes into one unit came out of another.
 inline void require_conservation(const Simulation& simulation) {
+    for (const Conservation& equation : conservation(simulation)) {
+        INFO(equation.name);
+        CHECK(equation.left == equation.right);
+    }
     const Pipeline& p = simulation.pipeline;
-    const auto& counts = p.pass_or_tessellate.counts();
-    const auto in = [](const Unit& unit) { return unit.activity().items_in(); };
-    const std::uint64_t host = p.get_triangle.host_triangles();
-    const std::uint64_t passes = counts.passes;
-    const std::uint64_t rounds = passes + counts.normal_passes;
-
-    // triangles
-    CHECK(host + p.get_triangle.queue_triangles() == rounds);
-    CHECK(in(p.get_triangle) == rounds);
-    CHECK(in(p.pass_or_tessellate) == rounds);
-    CHECK(p.triangle_queue.taken() == p.tessellation.children());
-    CHECK(in(p.triangle_queue) == p.triangle_queue.taken());
-    CHECK(p.get_triangle.queue_triangles() == p.triangle_queue.taken());
     const auto& made = p.tessellation.made_into();
-    CHECK(in(p.tessellation) == made[1] + made[2] + made[3] + made[4]);
-    CHECK(in(p.tessellation) + counts.finished == rounds);
-    CHECK(made[1] == counts.normal_passes);
-    CHECK(in(p.lighting) == counts.finished - counts.culled);
-    CHECK(simulation.rasteriser.triangles() == in(p.lighting));
-    CHECK(counts.finished == host + counts.edges_split);
-    CHECK(simulation.monitor.mesh.triangles.size() == counts.finished);
-
-    // parts along the geometry branch: a base triangle's vertices, all edges, each new vertex' normal
-    const std::uint64_t parts = p.get_triangle.parts_sent();
-    CHECK(in(p.calculate_new_p) == parts);
-    CHECK(in(p.displace_vertex) == parts);
-    CHECK(in(p.transform) == parts);
-    CHECK(p.pass_or_tessellate.from_transform.taken() == parts);
-    CHECK(p.transform.positions() == 3 * host + 3 * passes);
-    CHECK(p.transform.positions() + p.transform.normals() == parts);
-
-    // parts along the tests: vertices end in the Normal Test
-    const std::uint64_t edges = 3 * passes;
-    const std::uint64_t vertices = 3 * host;
-    const auto tests = [&](auto figure) { return sum_over_tests(p, figure); };
-    CHECK(tests([&](const auto& t) { return in(t.calculate_new_u); }) == vertices + edges);
-    CHECK(tests([&](const auto& t) { return in(t.normal_test); }) == vertices + edges);
-    CHECK(tests([&](const auto& t) { return in(t.tex_coord_test); }) == edges);
-    CHECK(tests([&](const auto& t) { return in(t.summed_height_test); }) == edges);
-    CHECK(tests([&](const auto& t) { return in(t.view_test); }) == edges);
-    CHECK(tests([&](const auto& t) { return in(t.collect_tests); }) == edges);
-
-    // reads
-    CHECK(p.displacement_map_reads() == vertices + edges);
-    CHECK(p.displacement_map.transactions() == p.displacement_map_reads());
-    CHECK(p.normal_map_reads() == vertices + edges);
-    CHECK(p.normal_map.transactions() == p.normal_map_reads());
-    CHECK(p.summed_height_table.transactions() == p.summed_height_table_reads());
-    CHECK(in(p.displacement_map) == vertices + edges);
-    CHECK(in(p.normal_map) == vertices + edges);
-    CHECK(in(p.summed_height_table) == (simulation.setup.registers.tests.summed_height_test ? 3 * edges : 0));
+    CHECK(p.tessellation.activity().items_in() == made[1] + made[2] + made[3] + made[4]);
     if (simulation.setup.registers.tests.summed_height_test)
-        CHECK(p.summed_height_table_reads() >= 12 * edges);
-
-    // what was spilled came back
-    CHECK(p.triangle_queue.spilled() == p.triangle_queue.refilled());
-    CHECK(in(p.off_chip_memory) == 2 * p.triangle_queue.spilled());
-    CHECK(p.off_chip_memory.bytes_read() == p.off_chip_memory.bytes_written());
+        CHECK(p.summed_height_table_reads() >= 12 * p.edges_tested());
 }
 
 /// To be called after a timed run that drained.

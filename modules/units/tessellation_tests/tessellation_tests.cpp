@@ -11,15 +11,17 @@ TessellationTests::TessellationTests(const sc_core::sc_module_name& name, Clock&
       summed_height_test("summed_height_test", clock, registers, timing, use_direct_memory),
       normal_test("normal_test", clock, registers, timing, use_direct_memory),
       view_test("view_test", clock, registers, timing, number),
-      collect_tests("collect_tests", clock, registers, timing) {
-    calculate_new_u.to_tex_coord_test.bind(tex_coord_test.input);
-    calculate_new_u.to_summed_height_test.bind(summed_height_test.input);
-    calculate_new_u.to_normal_test.bind(normal_test.input);
-    calculate_new_u.to_view_test.bind(view_test.input);
-    tex_coord_test.output.bind(collect_tests.from_tex_coord_test);
-    summed_height_test.output.bind(collect_tests.from_summed_height_test);
-    normal_test.output.bind(collect_tests.from_normal_test);
-    view_test.output.bind(collect_tests.from_view_test);
+      collect_tests("collect_tests", clock, registers, timing) {}
+
+void TessellationTests::wire(Wiring& wiring) {
+    wiring.join(calculate_new_u.to_tex_coord_test, tex_coord_test.input);
+    wiring.join(calculate_new_u.to_summed_height_test, summed_height_test.input);
+    wiring.join(calculate_new_u.to_normal_test, normal_test.input);
+    wiring.join(calculate_new_u.to_view_test, view_test.input);
+    wiring.join(tex_coord_test.output, collect_tests.from_tex_coord_test);
+    wiring.join(summed_height_test.output, collect_tests.from_summed_height_test);
+    wiring.join(normal_test.output, collect_tests.from_normal_test);
+    wiring.join(view_test.output, collect_tests.from_view_test);
 }
 
 }  // namespace tessera

@@ -10,6 +10,7 @@
 #include "modules/units/tessellation_tests/summed_height_test.h"
 #include "modules/units/tessellation_tests/tex_coord_test.h"
 #include "modules/units/tessellation_tests/view_test.h"
+#include "modules/wiring.h"
 
 namespace tessera {
 
@@ -37,6 +38,9 @@ class TessellationTests : public sc_core::sc_module {
     /// number: 0, or 0 to 2 of three.
     TessellationTests(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
                       const Timing& timing, unsigned number, bool use_direct_memory);
+
+    /// Joins the units inside. To be called once.
+    void wire(Wiring& wiring);
 };
 
 }  // namespace tessera

@@ -1,0 +1,56 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "modules/wiring.h"
+#include "testbench/check/read_check.h"
+#include "testbench/faults/fault_trigger.h"
+
+namespace tessera {
+
+/// Puts the fault that a job asks for, and the read checks, between the units while the machine is built. To be made
+/// before the simulation, in one scope with it: what stands between the units is part of the machine.
+class CheckedWiring : public Wiring {
+  public:
+    CheckedWiring(const Job& job, const datapath::Formats& formats);
+    ~CheckedWiring() override;
+
+    /// Neither a fault nor read checks are asked for: the machine is to be wired straight.
+    static bool wanted(const Job& job) { return job.fault.kind != FaultKind::none || job.check.reads; }
+
+    void join(StreamOutput<datapath::Triangle>& from, StreamInput<datapath::Triangle>& to) override;
+    void join(StreamOutput<Work>& from, StreamInput<Work>& to) override;
+    void join(StreamOutput<LitTriangle>& from, StreamInput<LitTriangle>& to) override;
+    void join(MemoryPort& port, TableMemory& memory) override;
+    void join(StorePort& port, OffChipMemory& memory) override;
+
+    /// To be called when the machine is built. Throws InputError if the fault's place is none that its kind can strike;
+    /// names all that there are.
+    void require_placed() const;
+
+    const FaultTrigger& trigger() const { return trigger_; }
+    const std::vector<std::unique_ptr<ReadCheck>>& read_checks() const { return read_checks_; }
+
+  private:
+    template <class Payload>
+    void join_stream(StreamOutput<Payload>& from, StreamInput<Payload>& to);
+    bool is_place(const std::string& name, bool applies);
+    template <class Port, class Memory>
+    void join_memory(Port& port, Memory& memory, bool check_reads);
+
+    Job::Fault fault_;
+    datapath::Formats formats_;
+    bool check_reads_;
+    FaultTrigger trigger_;
+    bool placed_ = false;
+    std::vector<std::string> places_;
+    std::vector<std::unique_ptr<sc_core::sc_module>> faults_;
+    std::vector<std::unique_ptr<ReadCheck>> read_checks_;
+};
+
+/// Whether a kind strikes streams, or memories; with and without cycles.
+bool strikes_streams(FaultKind kind);
+bool strikes_memories(FaultKind kind);
+
+}  // namespace tessera

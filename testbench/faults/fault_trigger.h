@@ -1,0 +1,45 @@
+#pragma once
+#include <cstdint>
+#include <systemc>
+
+#include "testbench/job/job.h"
+
+namespace tessera {
+
+/// One fault of a run: counts what it may strike, says when it is to, and remembers that it did.
+class FaultTrigger {
+  public:
+    /// cycle_picoseconds: the clock's period.
+    FaultTrigger(const Job::Fault& fault, unsigned cycle_picoseconds)
+        : fault_(fault), cycle_picoseconds_(cycle_picoseconds) {}
+
+    FaultKind kind() const { return fault_.kind; }
+    std::uint64_t bit() const { return static_cast<std::uint64_t>(fault_.bit); }
+
+    /// A transaction comes by that the fault's kind can strike. True: this is the one.
+    bool strikes() {
+        if (++seen_ != static_cast<std::uint64_t>(fault_.transaction))
+            return false;
+        injected_ = true;
+        cycle_ = sc_core::sc_time_stamp().value() / cycle_picoseconds_;
+        return true;
+    }
+    /// The bit to be flipped does not exist.
+    void has_no_such_bit() { no_such_bit_ = true; }
+
+    bool injected() const { return injected_; }
+    bool no_such_bit() const { return no_such_bit_; }
+    std::uint64_t seen() const { return seen_; }
+    /// In which it was injected; timed mode.
+    std::uint64_t cycle() const { return cycle_; }
+
+  private:
+    Job::Fault fault_;
+    unsigned cycle_picoseconds_;
+    std::uint64_t seen_ = 0;
+    std::uint64_t cycle_ = 0;
+    bool injected_ = false;
+    bool no_such_bit_ = false;
+};
+
+}  // namespace tessera

@@ -1,0 +1,320 @@
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "testbench/check/conservation.h"
+#include "testbench/faults/checked_run.h"
+#include "testbench/job/job_choices.h"
+#include "testbench/tests/timed_checks.h"
+
+// Every kind of fault at every place in both modes: who catches it. What nobody catches must have changed nothing.
+
+using namespace tessera;
+using namespace tessera::testing;
+using Catch::Contains;
+
+namespace {
+
+/// What a run with a fault came to, in a form that goes through a pipe.
+struct Outcome {
+    std::string catchers;  ///< their letters, in the order of judge_fault; ?: the run itself failed
+    std::string text;      ///< of the report
+    std::string mesh;      ///< a hash of the emitted set of triangles
+};
+
+/// By name as reports have it.
+const std::vector<std::pair<char, std::string>> letters = {
+    {'P', "protocol checker"}, {'M', "memory response"},   {'U', "unit's own check"},
+    {'D', "watchdog"},         {'L', "resource limit"},    {'R', "read check"},
+    {'S', "scoreboard"},       {'W', "work conservation"}, {'I', "invariants"}};
+
+std::string mesh_hash(const EmittedMesh& mesh) {
+    std::uint64_t hash = 0;
+    for (const Key& key : keys(mesh))
+        for (const std::int64_t value : key)
+            hash = (hash ^ static_cast<std::uint64_t>(value)) * 0x9e3779b97f4a7c15u + 1;
+    return std::to_string(hash);
+}
+
+/// Two triangles, all edges split twice, a queue that spills: a few hundred transactions on each wire.
+Job small_job(Mode mode) {
+    Job job = full_split_job(1, 2);
+    job.mode = mode;
+    job.map.width = job.map.height = 32;
+    job.hardware.queue_capacity = 4;
+    job.timing.stalls = {5, 400, 24};
+    return job;
+}
+
+Outcome run_here(const Job& job) {
+    const Setup setup = setup_of(job);
+    const GoldenInputs golden(setup);
+    std::optional<CheckedWiring> wiring;
+    if (CheckedWiring::wanted(job))
+        wiring.emplace(job, setup.registers.formats);
+    Simulation simulation(setup, 5000, 5000, wiring ? &*wiring : nullptr);
+    Scoreboard scoreboard(setup.registers, golden);
+    WorkCheck work(setup.registers, setup.base_triangles);
+    simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
+    simulation.pipeline.pass_or_tessellate.decided.bind(work);
+    simulation.pipeline.pass_or_tessellate.finished.bind(work);
+    simulation.rasteriser.taken.bind(work);
+    if (wiring)
+        wiring->require_placed();
+    const FaultRun run = run_with_fault(simulation);
+    const ConformanceResult conformance = scoreboard.result();
+    std::optional<WorkResult> works;
+    std::optional<InvariantResult> invariants;
+    if (!run.stopped) {
+        works = work_result(work, simulation);
+        invariants = check_invariants(simulation.monitor.mesh, setup.base_triangles, setup.registers);
+    }
+    Outcome outcome;
+    outcome.mesh = mesh_hash(simulation.monitor.mesh);
+    if (job.fault.kind == FaultKind::none) {
+        const bool fine = !run.stopped && works->passed() && invariants->passed() &&
+                          conformance.mismatches == 0 && (!wiring || read_result(*wiring).passed());
+        outcome.text = run.text + (works ? works->first_violation : "");
+        outcome.catchers = fine ? "" : "?";
+        return outcome;
+    }
+    const FaultReport report = judge_fault(job.fault, *wiring, run, job.mode == Mode::timed, &conformance,
+                                           works ? &*works : nullptr, invariants ? &*invariants : nullptr);
+    outcome.text = report.injected;
+    for (const Caught& caught : report.caught) {
+        outcome.text += "\n" + caught.by + ": " + caught.evidence;
+        for (const auto& [letter, name] : letters)
+            if (name == caught.by)
+                outcome.catchers += letter;
+    }
+    return outcome;
+}
+
+/// In a process of its own: SystemC elaborates once in each.
+Outcome run(const Job& job) {
+    std::array<int, 2> ends{};
+    REQUIRE(pipe(ends.data()) == 0);
+    const pid_t child = fork();
+    REQUIRE(child >= 0);
+    if (child == 0) {
+        Outcome outcome;
+        try {
+            outcome = run_here(job);
+        } catch (const std::exception& error) {
+            outcome = {"?", error.what(), ""};
+        }
+        const std::string all = outcome.catchers + "\n" + outcome.mesh + "\n" + outcome.text;
+        const bool written = write(ends[1], all.data(), all.size()) == static_cast<ssize_t>(all.size());
+        _exit(written ? 0 : 1);
+    }
+    close(ends[1]);
+    std::string all;
+    std::array<char, 4096> buffer{};
+    for (ssize_t got = 0; (got = read(ends[0], buffer.data(), buffer.size())) > 0;)
+        all.append(buffer.data(), static_cast<std::size_t>(got));
+    close(ends[0]);
+    int status = 0;
+    REQUIRE(waitpid(child, &status, 0) == child);
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+        return {"?", "the process ended by signal " + std::to_string(WTERMSIG(status)), ""};
+    Outcome outcome;
+    std::istringstream lines(all);
+    std::getline(lines, outcome.catchers);
+    std::getline(lines, outcome.mesh);
+    std::getline(lines, outcome.text, '\0');
+    return outcome;
+}
+
+Job with_fault(Mode mode, FaultKind kind, const std::string& place, int transaction, int bit) {
+    Job job = small_job(mode);
+    job.fault = {kind, place, transaction, bit};
+    return job;
+}
+
+/// A wire, and a bit that matters of what it carries.
+struct Place {
+    const char* name;
+    int bit;
+    int transaction;          ///< that both modes have
+    int functional_bit = -1;  ///< where a Work of all parts has its vertices' bits elsewhere
+};
+
+// Offsets: flip_bit.h. A triangle's bit 0 is P.x's lowest.
+constexpr int edge_position = 9;
+constexpr int edge_displaced = 203;
+constexpr int edge_screen = 299;
+constexpr int tests_texture = 380;
+constexpr int test_bits = 574;
+constexpr Place streams[] = {
+    {"host.to_get_triangle", 0, 1},
+    {"get_triangle.to_calculate_new_p", 6, 3},
+    {"get_triangle.to_tessellation_tests_0", 6, 3},
+    {"calculate_new_p.to_displace_vertex", edge_position, 5},
+    {"displace_vertex.to_transform", edge_displaced, 5},
+    {"transform.to_pass_or_tessellate", edge_screen, 5},
+    {"transform.to_view_test_0", 9 + 393, 1, edge_screen},
+    {"tessellation_tests_0.calculate_new_u.to_tex_coord_test", tests_texture, 5},
+    {"tessellation_tests_0.calculate_new_u.to_summed_height_test", tests_texture, 5},
+    {"tessellation_tests_0.calculate_new_u.to_normal_test", tests_texture, 5},
+    {"tessellation_tests_0.calculate_new_u.to_view_test", tests_texture, 5},
+    {"tessellation_tests_0.tex_coord_test.output", test_bits + 3, 5},
+    {"tessellation_tests_0.summed_height_test.output", test_bits + 1, 5},
+    {"tessellation_tests_0.normal_test.output", test_bits, 5},
+    {"tessellation_tests_0.view_test.output", test_bits + 2, 5},
+    {"tessellation_tests_0.collect_tests.to_pass_or_tessellate", test_bits, 5},
+    {"pass_or_tessellate.to_tessellation", edge_position, 3},
+    {"pass_or_tessellate.to_lighting", 393, 3},
+    {"tessellation.to_triangle_queue", 0, 5},
+    {"triangle_queue.to_get_triangle", 0, 5},
+    {"lighting.to_rasteriser", 0, 3},
+};
+constexpr Place memories[] = {
+    {"displace_vertex.displacement_map", 3, 5},
+    {"tessellation_tests_0.normal_test.normal_map", 3, 5},
+    {"tessellation_tests_0.summed_height_test.summed_height_table", 0, 5},
+    {"triangle_queue.off_chip_memory", 0, 5},
+};
+constexpr FaultKind stream_kinds[] = {FaultKind::bit_flip,
+                                      FaultKind::dropped,
+                                      FaultKind::doubled,
+                                      FaultKind::reordered,
+                                      FaultKind::back_pressure_ignored,
+                                      FaultKind::request_before_end,
+                                      FaultKind::end_request_doubled};
+constexpr FaultKind memory_kinds[] = {
+    FaultKind::bit_flip,       FaultKind::address_flip,       FaultKind::dropped,
+    FaultKind::doubled,        FaultKind::request_before_end, FaultKind::end_request_doubled,
+    FaultKind::error_response, FaultKind::response_lost,      FaultKind::response_doubled,
+    FaultKind::response_early, FaultKind::response_reordered};
+
+bool applies(FaultKind kind, Mode mode, bool memory) {
+    if (mode == Mode::timed)
+        return true;
+    switch (kind) {
+        case FaultKind::bit_flip:
+        case FaultKind::dropped:
+        case FaultKind::reordered:
+        case FaultKind::address_flip:
+        case FaultKind::error_response:
+        case FaultKind::response_lost:
+            return true;
+        case FaultKind::doubled:
+            return !memory;
+        default:
+            return false;
+    }
+}
+
+/// One mode's table: a row a place, a column a kind.
+template <class Places, class Kinds>
+std::string table(Mode mode, const Places& places, const Kinds& kinds, bool memory) {
+    std::string text = "| place |";
+    std::string rule = "\n| --- |";
+    for (const FaultKind kind : kinds)
+        if (applies(kind, mode, memory)) {
+            text += " " + std::string(name_of(kind)) + " |";
+            rule += " --- |";
+        }
+    text += rule + "\n";
+    const Outcome clean = run(small_job(mode));
+    INFO(clean.text);
+    REQUIRE(clean.catchers.empty());
+    for (const Place& place : places) {
+        if (mode == Mode::functional && std::string(place.name) == "triangle_queue.off_chip_memory")
+            continue;
+        text += "| " + std::string(place.name) + " |";
+        for (const FaultKind kind : kinds) {
+            if (!applies(kind, mode, memory))
+                continue;
+            const bool held_back = kind == FaultKind::back_pressure_ignored ||
+                                   kind == FaultKind::request_before_end || kind == FaultKind::response_early;
+            const int bit =
+                mode == Mode::functional && place.functional_bit >= 0 ? place.functional_bit : place.bit;
+            const Outcome outcome =
+                run(with_fault(mode, kind, place.name, held_back ? 1 : place.transaction, bit));
+            INFO(name_of(kind) << " at " << place.name << ", " << name_of(mode) << ": " << outcome.text);
+            if (held_back &&
+                outcome.text.find("saw 0 transactions that were held back") != std::string::npos) {
+                text += " . |";
+                continue;
+            }
+            CHECK_THAT(outcome.catchers, !Contains("?"));
+            if (outcome.catchers.empty())
+                CHECK(outcome.mesh == clean.mesh);
+            text += " " + (outcome.catchers.empty() ? "=" : outcome.catchers) + " |";
+        }
+        text += "\n";
+    }
+    return text;
+}
+
+/// The part of testbench/faults/CATCHERS.md under a heading. TESSERA_WRITE_CATCHERS: written anew instead.
+void compare_with_document(const std::string& heading, const std::string& found) {
+    const std::string path = TESSERA_SOURCE_DIR "/testbench/faults/CATCHERS.md";
+    std::stringstream stream;
+    stream << std::ifstream(path).rdbuf();
+    std::string document = stream.str();
+    const std::size_t begin = document.find("## " + heading + "\n\n");
+    REQUIRE(begin != std::string::npos);
+    const std::size_t from = begin + heading.size() + 5;
+    const std::size_t to = std::min(document.find("\n\n", from), document.size() - 1) + 1;
+    if (std::getenv("TESSERA_WRITE_CATCHERS") != nullptr) {
+        document.replace(from, to - from, found);
+        std::ofstream(path) << document;
+        return;
+    }
+    INFO("testbench/faults/CATCHERS.md says something else; TESSERA_WRITE_CATCHERS=1 has the test write it");
+    CHECK(document.substr(from, to - from) == found);
+}
+
+}  // namespace
+
+TEST_CASE("faults on streams, functional mode: who catches which") {
+    compare_with_document("Streams, functional mode", table(Mode::functional, streams, stream_kinds, false));
+}
+
+TEST_CASE("faults on streams, timed mode: who catches which") {
+    compare_with_document("Streams, timed mode", table(Mode::timed, streams, stream_kinds, false));
+}
+
+TEST_CASE("faults at memories, functional mode: who catches which") {
+    compare_with_document("Memories, functional mode", table(Mode::functional, memories, memory_kinds, true));
+}
+
+TEST_CASE("faults at memories, timed mode: who catches which") {
+    compare_with_document("Memories, timed mode", table(Mode::timed, memories, memory_kinds, true));
+}
+
+TEST_CASE("read checks without a fault find none, and the mesh is the same") {
+    for (const Mode mode : {Mode::functional, Mode::timed}) {
+        Job job = small_job(mode);
+        const Outcome plain = run(job);
+        job.check.reads = true;
+        const Outcome checked = run(job);
+        INFO(checked.text);
+        CHECK(checked.catchers.empty());
+        CHECK(checked.mesh == plain.mesh);
+    }
+}
+
+TEST_CASE("a fault that cannot be is refused with what can") {
+    CHECK_THAT(run(with_fault(Mode::timed, FaultKind::dropped, "displace_vertex.to_transforn", 1, 0)).text,
+               Contains("did you mean \"displace_vertex.to_transform\"") &&
+                   Contains("lighting.to_rasteriser") && Contains("triangle_queue.off_chip_memory"));
+    CHECK_THAT(
+        run(with_fault(Mode::timed, FaultKind::dropped, "displace_vertex.to_transform", 100000, 0)).text,
+        Contains("fault.transaction = 100000 was never reached: displace_vertex.to_transform saw "));
+    CHECK_THAT(run(with_fault(Mode::timed, FaultKind::bit_flip, "host.to_get_triangle", 1, 99999)).text,
+               Contains("fault.bit = 99999"));
+}
