@@ -151,7 +151,7 @@ std::uint64_t BareRecursion::run(EmittedMesh& mesh) {
             edges += 3;
             pass.split = static_cast<std::uint8_t>(split);
             if (split != 0) {
-                tessellate(pass, setup_.registers.triangulation,
+                tessellate(pass, setup_.registers.triangulation, setup_.registers.formats, saturations_,
                            [&](const Triangle& child) { work_.push_back(child); });
                 continue;
             }
