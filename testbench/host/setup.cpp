@@ -9,6 +9,7 @@
 #include "modules/datapath/map_entry.h"
 #include "modules/datapath/rectangle.h"
 #include "testbench/common/error.h"
+#include "testbench/host/unit_vector.h"
 
 namespace tessera {
 
@@ -241,8 +242,8 @@ struct View {
 View make_view(const Job::Camera& camera) {
     const auto vector = [](const std::array<double, 3>& a) { return glm::dvec3(a[0], a[1], a[2]); };
     View view;
-    view.backward = glm::normalize(vector(camera.eye) - vector(camera.target));
-    view.right = glm::normalize(glm::cross(vector(camera.up), view.backward));
+    view.backward = unit_vector(vector(camera.eye) - vector(camera.target));
+    view.right = unit_vector(glm::cross(brought_near_one(vector(camera.up)), view.backward));
     view.up = glm::cross(view.backward, view.right);
     return view;
 }
@@ -312,7 +313,7 @@ Format view_distance_format(const datapath::TransformParameters& transform, cons
 
 /// Unit length, world space.
 glm::dvec3 towards_light(const Job::Hardware& hardware) {
-    return glm::normalize(glm::dvec3(hardware.light[0], hardware.light[1], hardware.light[2]));
+    return unit_vector(glm::dvec3(hardware.light[0], hardware.light[1], hardware.light[2]));
 }
 
 /// A threshold on its way into a register.

@@ -96,6 +96,17 @@ TEST_CASE("limits: a view distance whose format has fewer than no fraction bits 
     require_consistent(run);
 }
 
+TEST_CASE("limits: directions as short as a number can be are directions") {
+    const TestFolder here;
+    const auto mesh_of = [&](const std::string& up, const std::string& light) {
+        const ProgramEnd end = run_with({"camera.up=" + up, "hardware.light=" + light}, here.path());
+        INFO(end.text());
+        REQUIRE(end.exit_code == 0);
+        return read_all(here.path() / "out/mesh.obj");
+    };
+    CHECK(mesh_of("[0, 0, 5e-324]", "[0, 0, 5e-324]") == mesh_of("[0, 0, 1]", "[0, 0, 1]"));
+}
+
 TEST_CASE("limits: a threshold below its register's step is refused before the work") {
     const TestFolder here;
     const ProgramEnd end =

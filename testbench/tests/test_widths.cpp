@@ -136,6 +136,7 @@ TEST_CASE("widths: where everything can be written exactly nothing differs from 
     Job job = small_job();
     job.mesh.columns = job.mesh.rows = 4;
     job.map.source = MapSource::constant;
+    job.map.value = 0;
     job.map.width = job.map.height = 64;
     job.tests.normal_threshold = 0;
     job.tests.summed_height_threshold = 0;

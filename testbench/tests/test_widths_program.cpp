@@ -148,7 +148,7 @@ TEST_CASE("widths: Crater Lake's Summed Height Table and positions") {
         return;
     const TestFolder here;
     const std::string job = (source_folder() / "testbench/jobs/crater_lake_24.toml").string();
-    succeed({"widths", job, "--quantity", "summed_height,position", "--bits", "20..26", "--output", "w"},
+    succeed({"widths", job, "--quantity", "summed_height,position", "--bits", "24..32", "--output", "w"},
             here.path());
     const json table = read_json(here.path() / "w/widths.json").at("quantities");
     // a table that is wide enough changes nothing
