@@ -85,24 +85,25 @@ TEST_CASE("saturations: displaced positions, as 128 bit integers count them") {
     r.displacement.scale = static_cast<std::int32_t>(r.formats.position.highest / 3);
     std::uint64_t expected = 0, wrong = 0;
     const Saturations counted = run_watched(setup, [&](const TrianglePass& pass) {
-        for_each_displaced(pass, [&](const auto& p, const auto& n, const auto& t, const auto& displaced,
-                                     const auto&) {
-            const auto texel = [&](std::uint32_t c, std::uint32_t size) {
-                return std::min(c >> r.formats.texture.fraction, size - 1);
-            };
-            const Wide code = setup.map.code(texel(t.u, r.map.width), texel(t.v, r.map.height));
-            const Wide height =
-                nearest(r.displacement.scale * code, r.formats.displacement.bits) + r.displacement.bias;
-            const auto count = [&](std::int32_t base, std::int32_t normal, std::int32_t machine) {
-                const Wide exact = base + nearest(height * normal, r.formats.normal.fraction);
-                expected += beyond(exact, r.formats.position) ? 1u : 0u;
-                wrong +=
-                    machine == clamped(exact, r.formats.position.lowest, r.formats.position.highest) ? 0u : 1u;
-            };
-            count(p.x, n.x, displaced.x);
-            count(p.y, n.y, displaced.y);
-            count(p.z, n.z, displaced.z);
-        });
+        for_each_displaced(
+            pass, [&](const auto& p, const auto& n, const auto& t, const auto& displaced, const auto&) {
+                const auto texel = [&](std::uint32_t c, std::uint32_t size) {
+                    return std::min(c >> r.formats.texture.fraction, size - 1);
+                };
+                const Wide code = setup.map.code(texel(t.u, r.map.width), texel(t.v, r.map.height));
+                const Wide height =
+                    nearest(r.displacement.scale * code, r.formats.displacement.bits) + r.displacement.bias;
+                const auto count = [&](std::int32_t base, std::int32_t normal, std::int32_t machine) {
+                    const Wide exact = base + nearest(height * normal, r.formats.normal.fraction);
+                    expected += beyond(exact, r.formats.position) ? 1u : 0u;
+                    wrong += machine == clamped(exact, r.formats.position.lowest, r.formats.position.highest)
+                                 ? 0u
+                                 : 1u;
+                };
+                count(p.x, n.x, displaced.x);
+                count(p.y, n.y, displaced.y);
+                count(p.z, n.z, displaced.z);
+            });
     });
     CHECK(expected > 50);
     CHECK(counted.displaced_position == expected);

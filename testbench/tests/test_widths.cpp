@@ -115,13 +115,16 @@ TEST_CASE("widths: a row's figures are the simulation's, a screen that saturates
     CHECK(run_of(job).saturations.screen_position > 0);
     expect_the_simulation_figures(job);
 }
-TEST_CASE("widths: a row's figures are the simulation's, zero vectors and full light") {
+TEST_CASE("widths: a row's figures are the simulation's, full light") {
     Job job = small_job();
     job.map.source = MapSource::constant;
     job.camera.eye = {0, -3, 0};
     job.camera.target = {0, 0, 0};
     job.hardware.light = {0, 0, 1};
     CHECK(run_of(job).saturations.intensity == 54);
+    Job culled = job;
+    culled.hardware.culling = Culling::back;  // seen edge on, all of it: nothing is lit
+    CHECK(run_of(culled).saturations.intensity == 0);
     expect_the_simulation_figures(job);
 }
 TEST_CASE("widths: a row's figures are the simulation's, a sphere of few texture bits") {
