@@ -123,6 +123,8 @@ datapath::Saturations Pipeline::saturations() const {
     all += transform.saturations();
     for (const TessellationTests& tests : tessellation_tests)
         all += tests.normal_test.saturations();
+    all += tessellation.saturations();
+    all += lighting.saturations();
     return all;
 }
 

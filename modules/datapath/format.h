@@ -46,6 +46,8 @@ struct Saturations {
     std::uint64_t view_distance = 0;  ///< w
     std::uint64_t screen_normal = 0;
     std::uint64_t degenerate_normal = 0;  ///< a zero vector was to be normalised: it stays zero
+    std::uint64_t generation = 0;         ///< only with the Generation Test off: the limit fits the field
+    std::uint64_t intensity = 0;          ///< a vertex that faces the light fully: 256 of 256
 
     constexpr Saturations& operator+=(const Saturations& other) {
         displaced_position += other.displaced_position;
@@ -54,11 +56,13 @@ struct Saturations {
         view_distance += other.view_distance;
         screen_normal += other.screen_normal;
         degenerate_normal += other.degenerate_normal;
+        generation += other.generation;
+        intensity += other.intensity;
         return *this;
     }
     constexpr std::uint64_t total() const {
         return displaced_position + normal + screen_position + view_distance + screen_normal +
-               degenerate_normal;
+               degenerate_normal + generation + intensity;
     }
 };
 

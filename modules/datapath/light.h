@@ -7,17 +7,19 @@
 
 namespace tessera::datapath {
 
-/// Diffuse per-vertex lighting in screen space: ambient + (256 - ambient) * max(0, N's . L), 0..255, truncated.
+/// Diffuse per-vertex lighting in screen space: ambient + (256 - ambient) * max(0, N's . L), 0..255, truncated; 256,
+/// full light, saturates, counted.
 /// The pipeline's existing unit, reduced to one directional light.
 constexpr std::uint8_t light(const Direction& screen_normal, const LightParameters& parameters,
-                             const Formats& formats) {
+                             const Formats& formats, Saturations& saturations) {
     const std::int64_t dot = std::int64_t{screen_normal.x} * parameters.direction[0] +
                              std::int64_t{screen_normal.y} * parameters.direction[1] +
                              std::int64_t{screen_normal.z} * parameters.direction[2];
     const std::int64_t cosine = dot > 0 ? dot >> formats.normal.fraction : 0;
     const std::int64_t intensity =
         parameters.ambient + (((256 - parameters.ambient) * cosine) >> formats.normal.fraction);
-    return static_cast<std::uint8_t>(intensity > 255 ? 255 : intensity);
+    constexpr Format eight_bits = Format::make_unsigned(8, 8);
+    return static_cast<std::uint8_t>(saturate(intensity, eight_bits, saturations.intensity));
 }
 
 }  // namespace tessera::datapath

@@ -7,10 +7,19 @@
 
 namespace tessera::datapath {
 
+/// The generation of an inserted vertex as its field holds it: saturates, counted. With the Generation Test on, what it
+/// lets through fits the field.
+constexpr std::uint8_t kept_generation(std::uint8_t generation, const Formats& formats,
+                                       Saturations& saturations) {
+    return static_cast<std::uint8_t>(
+        saturate(generation, Format::make_unsigned(formats.generation_bits, 0), saturations.generation));
+}
+
 /// The children of a pass whose edges are decided, complete with all that is known of their vertices.
 /// Calls child(triangle) for each; returns how many.
 template <class Child>
-int tessellate(const TrianglePass& pass, Triangulation choice, Child&& child) {
+int tessellate(const TrianglePass& pass, Triangulation choice, const Formats& formats,
+               Saturations& saturations, Child&& child) {
     std::array<Vertex, 3> inserted;
     std::array<const Vertex*, 6> vertices;
     std::uint8_t split_by = 0;
@@ -19,7 +28,9 @@ int tessellate(const TrianglePass& pass, Triangulation choice, Child&& child) {
         vertices[static_cast<std::size_t>(3 + k)] = &inserted[static_cast<std::size_t>(k)];
         if ((pass.split >> k & 1) == 0)
             continue;
-        inserted[static_cast<std::size_t>(k)] = inserted_vertex(pass, k);
+        Vertex& vertex = inserted[static_cast<std::size_t>(k)];
+        vertex = inserted_vertex(pass, k);
+        vertex.generation = kept_generation(vertex.generation, formats, saturations);
         split_by = static_cast<std::uint8_t>(split_by |
                                              (pass.edges[static_cast<std::size_t>(k)].tests & asking_bits));
     }

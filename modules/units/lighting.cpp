@@ -13,14 +13,15 @@ Lighting::Lighting(const sc_core::sc_module_name& name, Clock& clock, const data
     to_rasteriser.clocked_by(clock, *this);
 }
 
-LitTriangle Lighting::light(const datapath::Triangle& triangle) const {
+LitTriangle Lighting::light(const datapath::Triangle& triangle) {
     LitTriangle lit;
     for (std::size_t k = 0; k < 3; ++k) {
         const datapath::Vertex& vertex = triangle.vertices[k];
         if (!vertex.screen_normal_known)
             SC_REPORT_ERROR("tessera/lighting", "a triangle came without its normals in screen space");
-        lit.corners[k] = {vertex.screen, vertex.texture,
-                          datapath::light(vertex.screen_normal, registers_.light, registers_.formats)};
+        lit.corners[k] = {
+            vertex.screen, vertex.texture,
+            datapath::light(vertex.screen_normal, registers_.light, registers_.formats, saturations_)};
     }
     return lit;
 }

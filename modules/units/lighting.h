@@ -26,7 +26,7 @@ struct LitTriangle {
 /// Lighting (paper figure 7): per-vertex lighting, after Transform so that re-meshing happens in world space.
 ///
 /// In:   a finished triangle: P's, N's, t. Out: P's, t, intensity, to the rasteriser.
-/// Arithmetic: three multiplications and a maximum per vertex, one multiplication; truncated to 8 bits.
+/// Arithmetic: three multiplications and a maximum per vertex, one multiplication; truncated to 8 bits, saturates (counted).
 /// Timing: one triangle per interval; latency 4, interval 1 by default.
 /// Waits for nothing but its input; held back by the rasteriser.
 class Lighting : public Unit {
@@ -37,6 +37,8 @@ class Lighting : public Unit {
     Lighting(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
              const Timing& timing);
 
+    const datapath::Saturations& saturations() const { return saturations_; }
+
     std::string holds() const override;
     std::uint64_t occupied_cycles() const override { return activity_.items_in() * timing_.interval; }
     void show(Signals& signals) const override;
@@ -44,12 +46,13 @@ class Lighting : public Unit {
   private:
     void b_transport(datapath::Triangle& triangle, sc_core::sc_time& delay);
     void step() override;
-    LitTriangle light(const datapath::Triangle& triangle) const;
+    LitTriangle light(const datapath::Triangle& triangle);
 
     const datapath::Registers& registers_;
     UnitTiming timing_;
     ElasticPipeline<LitTriangle> pipeline_;
     bool offered_ = false;  // the first is on offer to the rasteriser
+    datapath::Saturations saturations_;
 };
 
 }  // namespace tessera

@@ -17,9 +17,9 @@ Tessellation::Tessellation(const sc_core::sc_module_name& name, Clock& clock,
 
 void Tessellation::b_transport(Work& work, sc_core::sc_time& delay) {
     delay += clock_.period() * timing_.latency;
-    const int children = tessellate(*work.pass, registers_.triangulation, [&](datapath::Triangle& child) {
-        to_triangle_queue->b_transport(child, delay);
-    });
+    const int children =
+        tessellate(*work.pass, registers_.triangulation, registers_.formats, saturations_,
+                   [&](datapath::Triangle& child) { to_triangle_queue->b_transport(child, delay); });
     ++made_into_[static_cast<std::size_t>(children)];
 }
 
@@ -40,7 +40,7 @@ void Tessellation::step() {
         if (from_pass_or_tessellate.empty())
             break;
         Pass& pass = *from_pass_or_tessellate.front().pass;
-        tessellate(pass, registers_.triangulation,
+        tessellate(pass, registers_.triangulation, registers_.formats, saturations_,
                    [&](const datapath::Triangle& child) { children_[made_++] = child; });
         ++made_into_[made_];
         activity_.item_in(cycle);

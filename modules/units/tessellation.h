@@ -18,7 +18,8 @@ namespace tessera {
 ///
 /// In:   a pass with split set, both branches complete. Out: its children, one after another; for a finished triangle
 ///       on its way to fetch normals, the triangle itself.
-/// Arithmetic: wiring; with the `shorter` diagonal two Manhattan lengths (6 subtractions, 4 adds) and a compare.
+/// Arithmetic: wiring; with the `shorter` diagonal two Manhattan lengths (6 subtractions, 4 adds) and a compare. The
+///       generations of new vertices saturate (counted), which only the Generation Test switched off lets happen.
 /// Timing: one child per interval, the first a latency after the pass was taken; latency 1, interval 1 by default.
 ///       Capacity: one pass; the next is taken when its last child has been.
 /// Waits for nothing but its input; held back by the Triangle Queue.
@@ -35,6 +36,8 @@ class Tessellation : public Unit {
     std::uint64_t children() const {
         return made_into_[1] + 2 * made_into_[2] + 3 * made_into_[3] + 4 * made_into_[4];
     }
+
+    const datapath::Saturations& saturations() const { return saturations_; }
 
     std::string holds() const override;
     std::uint64_t occupied_cycles() const override {
@@ -54,6 +57,7 @@ class Tessellation : public Unit {
     unsigned sent_ = 0;  // of these, sent
     std::uint64_t next_ = 0;
     std::array<std::uint64_t, 5> made_into_{};
+    datapath::Saturations saturations_;
 };
 
 }  // namespace tessera

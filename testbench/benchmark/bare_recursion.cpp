@@ -159,7 +159,7 @@ std::uint64_t BareRecursion::run(EmittedMesh& mesh, std::uint64_t most_edges) {
             const std::uint8_t stopped_by = evaluate(pass);
             edges += 3;
             if (pass.split != 0) {
-                tessellate(pass, setup_.registers.triangulation,
+                tessellate(pass, setup_.registers.triangulation, setup_.registers.formats, saturations_,
                            [&](const Triangle& child) { work_.push_back(child); });
                 continue;
             }

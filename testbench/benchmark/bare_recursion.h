@@ -15,6 +15,9 @@ class BareRecursion {
     /// `setup` must outlive it.
     explicit BareRecursion(const Setup& setup);
 
+    /// So far. The machine normalises N_ij in two units and counts there twice; Lighting is not part of this.
+    const datapath::Saturations& saturations() const { return saturations_; }
+
     /// Tessellates every base triangle; returns the edges evaluated. `mesh` is cleared first, its memory kept. Gives up,
     /// the mesh incomplete, once `most_edges` have been.
     std::uint64_t run(EmittedMesh& mesh, std::uint64_t most_edges = UINT64_MAX);

@@ -45,15 +45,23 @@ int generation_of(const EmittedTriangle& triangle) {
     return std::max({c[0].generation, c[1].generation, c[2].generation});
 }
 
+/// How often its edges have been cut, at most: its generation, unless that may have saturated.
+int depth_of(const EmittedTriangle& triangle, const datapath::Registers& registers) {
+    const int generation = generation_of(triangle);
+    const bool saturated =
+        !registers.tests.generation_test && generation == (1 << registers.formats.generation_bits) - 1;
+    return saturated ? 255 : generation;
+}
+
 /// Twice the bound on what rounding does to a triangle's doubled area: see
 /// InvariantResult::collapsed_explained.
 template <class ToPlace>
-Wide doubled_rounding(const EmittedTriangle& triangle, ToPlace&& place) {
+Wide doubled_rounding(const EmittedTriangle& triangle, int depth, ToPlace&& place) {
     const auto& c = triangle.corners;
     const Place a = place(c[0]), b = place(c[1]), d = place(c[2]);
     std::array<std::int64_t, 3> lengths = {manhattan(a, b), manhattan(b, d), manhattan(d, a)};
     std::sort(lengths.begin(), lengths.end());
-    const Wide g = generation_of(triangle);
+    const Wide g = depth;
     return g * (lengths[0] + lengths[1]) + g * g;
 }
 
@@ -143,10 +151,10 @@ bool PatchCheck::is_explained(const EmittedTriangle& triangle) const {
     if (base_sign_ == 0)
         return true;
     // how much smaller its exact area may be than the bound of rounding, doubled
-    const Wide room = doubled_rounding(triangle, [](const Corner& c) { return in_texture(c); }) -
+    const int depth = depth_of(triangle, registers_);
+    const Wide room = doubled_rounding(triangle, depth, [](const Corner& c) { return in_texture(c); }) -
                       2 * absolute(doubled_area(triangle));
-    const int generation = generation_of(triangle);
-    if (2 * (absolute(base_area_) >> std::min(2 * generation, 126)) > room)
+    if (2 * (absolute(base_area_) >> std::min(2 * depth, 126)) > room)
         return false;
     if (base_seen_area_ == 0)
         return true;
@@ -155,7 +163,7 @@ bool PatchCheck::is_explained(const EmittedTriangle& triangle) const {
     const Wide area = doubled_area(in_plane(triangle.corners[0]), in_plane(triangle.corners[1]),
                                    in_plane(triangle.corners[2])) *
                       (base_seen_area_ < 0 ? -1 : 1);
-    const Wide left = 2 * area - doubled_rounding(triangle, in_plane);
+    const Wide left = 2 * area - doubled_rounding(triangle, depth, in_plane);
     Wide needed, possible;
     if (__builtin_mul_overflow(left, absolute(base_area_), &needed) ||
         __builtin_mul_overflow(room, absolute(base_seen_area_), &possible))
@@ -533,7 +541,7 @@ void PatchCheck::count_duplicates(const std::uint32_t* triangles, std::size_t co
         const auto may_be_folded = [&](auto&& place) {
             const auto& c = triangle.corners;
             return 2 * absolute(doubled_area(place(c[0]), place(c[1]), place(c[2]))) <=
-                   doubled_rounding(triangle, place);
+                   doubled_rounding(triangle, depth_of(triangle, registers_), place);
         };
         if (may_be_folded([](const Corner& c) { return in_texture(c); }) &&
             may_be_folded([&](const Corner& c) { return in_position(c, plane_); }))

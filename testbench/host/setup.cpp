@@ -9,6 +9,7 @@
 #include "modules/datapath/map_entry.h"
 #include "modules/datapath/rectangle.h"
 #include "testbench/common/error.h"
+#include "testbench/host/unit_vector.h"
 
 namespace tessera {
 
@@ -22,14 +23,17 @@ std::int64_t to_fixed(double value, int fraction) {
     return static_cast<std::int64_t>(std::nearbyint(std::ldexp(value, fraction)));
 }
 
-std::int32_t to_format(double value, const Format& format) {
+/// Rounded to the format; what does not fit it saturates, counted.
+std::int32_t to_format(double value, const Format& format, std::uint64_t& saturated) {
     const double scaled = std::nearbyint(std::ldexp(value, format.fraction));
-    return static_cast<std::int32_t>(
-        std::clamp(scaled, static_cast<double>(format.lowest), static_cast<double>(format.highest)));
+    const auto lowest = static_cast<double>(format.lowest), highest = static_cast<double>(format.highest);
+    saturated += scaled >= lowest && scaled <= highest ? 0 : 1;
+    return static_cast<std::int32_t>(std::clamp(scaled, lowest, highest));
 }
 
-datapath::Direction to_direction(const glm::dvec3& v, const Format& format) {
-    return {to_format(v.x, format), to_format(v.y, format), to_format(v.z, format)};
+datapath::Direction to_direction(const glm::dvec3& v, const Format& format, std::uint64_t& saturated) {
+    return {to_format(v.x, format, saturated), to_format(v.y, format, saturated),
+            to_format(v.z, format, saturated)};
 }
 
 datapath::Formats make_formats(const Job::Formats& job) {
@@ -136,10 +140,12 @@ void make_base_triangles(const BaseMesh& mesh, Setup& setup) {
         const glm::dvec3 world = setup.model_scale.to_world(base.position);
         bool clamped = false;
         datapath::Vertex vertex;
-        vertex.position = {to_format(world.x, formats.position), to_format(world.y, formats.position),
-                           to_format(world.z, formats.position)};
-        vertex.normal = to_direction(base.normal, formats.normal);
-        vertex.tangent = to_direction(base.tangent, formats.normal);
+        InputSaturations& saturated = setup.input_saturations;
+        vertex.position = {to_format(world.x, formats.position, saturated.position),
+                           to_format(world.y, formats.position, saturated.position),
+                           to_format(world.z, formats.position, saturated.position)};
+        vertex.normal = to_direction(base.normal, formats.normal, saturated.normal);
+        vertex.tangent = to_direction(base.tangent, formats.normal, saturated.normal);
         vertex.handedness = base.handedness < 0 ? std::int8_t{-1} : std::int8_t{1};
         vertex.texture = {
             to_texture(base.texture.x + shift_u, map.width, map.address_u, formats.texture, clamped),
@@ -236,13 +242,13 @@ struct View {
 View make_view(const Job::Camera& camera) {
     const auto vector = [](const std::array<double, 3>& a) { return glm::dvec3(a[0], a[1], a[2]); };
     View view;
-    view.backward = glm::normalize(vector(camera.eye) - vector(camera.target));
-    view.right = glm::normalize(glm::cross(vector(camera.up), view.backward));
+    view.backward = unit_vector(vector(camera.eye) - vector(camera.target));
+    view.right = unit_vector(glm::cross(brought_near_one(vector(camera.up)), view.backward));
     view.up = glm::cross(view.backward, view.right);
     return view;
 }
 
-datapath::TransformParameters make_transform(const Job& job, const Setup& setup) {
+datapath::TransformParameters make_transform(const Job& job, Setup& setup) {
     const Job::Camera& camera = job.camera;
     const View view = make_view(camera);
     const glm::dvec3 eye =
@@ -278,12 +284,13 @@ datapath::TransformParameters make_transform(const Job& job, const Setup& setup)
     result.row_x = row(x, std::ldexp(1.0, -result.exponent));
     result.row_y = row(y, std::ldexp(1.0, -result.exponent));
     result.row_w = row(forward, 1);
+    // No w reaches 2^62: a near plane there has everything behind it, as one further away would.
     result.near_plane = static_cast<std::int64_t>(
         std::min(std::ldexp(camera.near_plane * setup.model_scale.scale, fraction + position_fraction),
-                 std::ldexp(1.0, 61)));
+                 std::ldexp(1.0, 62)));
     const Format& normal = setup.registers.formats.normal;
     const auto rotation = [&](const glm::dvec3& axis) {
-        const datapath::Direction d = to_direction(axis, normal);
+        const datapath::Direction d = to_direction(axis, normal, setup.input_saturations.registers);
         return std::array<std::int32_t, 3>{d.x, d.y, d.z};
     };
     result.normal_rows = {rotation(view.right), rotation(view.up), rotation(view.backward)};
@@ -306,7 +313,36 @@ Format view_distance_format(const datapath::TransformParameters& transform, cons
 
 /// Unit length, world space.
 glm::dvec3 towards_light(const Job::Hardware& hardware) {
-    return glm::normalize(glm::dvec3(hardware.light[0], hardware.light[1], hardware.light[2]));
+    return unit_vector(glm::dvec3(hardware.light[0], hardware.light[1], hardware.light[2]));
+}
+
+/// A threshold on its way into a register.
+struct Threshold {
+    const char* key;
+    double value;
+    bool used;     // by a test that is on
+    double scale;  // register's value per unit of the threshold
+    double limit;  // the register's highest value
+    const char* format_key;
+};
+
+/// Rounded down. Refused is what does not fit, and what would be 0 without being meant to: a test against 0 asks another
+/// question, and rounding answers it.
+std::uint64_t to_register(const Threshold& threshold) {
+    const double fixed = std::floor(threshold.value * threshold.scale);
+    if (fixed > threshold.limit)
+        throw InputError(fmt::format("{} = {} does not fit its register; the largest is {}", threshold.key,
+                                     threshold.value, threshold.limit / threshold.scale));
+    if (threshold.used && threshold.value > 0 && fixed < 1)
+        throw InputError(fmt::format(
+            "{} = {} is less than one step of its register, {}, and would be 0 there: set it to 0, or at "
+            "least to that step, or raise {}",
+            threshold.key, threshold.value, 1 / threshold.scale, threshold.format_key));
+    return static_cast<std::uint64_t>(fixed);
+}
+
+double largest_normal_threshold(const datapath::Formats& formats) {
+    return static_cast<double>(2 * formats.normal.highest + 1);
 }
 
 /// The Highlight Test's registers, if the design has one.
@@ -322,7 +358,8 @@ void set_highlight_test(const Job& job, Setup& setup) {
     // Shorter, and its direction would be that of rounding errors.
     constexpr double shortest = 1e-9;
     if (glm::length(sum) > shortest) {
-        const datapath::Direction half = to_direction(glm::normalize(sum), formats.normal);
+        const datapath::Direction half =
+            to_direction(glm::normalize(sum), formats.normal, setup.input_saturations.registers);
         result.half_vector = {half.x, half.y, half.z};
     } else {
         setup.remarks.emplace_back(
@@ -334,27 +371,32 @@ void set_highlight_test(const Job& job, Setup& setup) {
     result.highlight_cosine =
         to_fixed(std::cos(tests.highlight_angle * pi / 180), 2 * formats.normal.fraction);
     result.highlight_normal_threshold = static_cast<std::uint32_t>(
-        std::floor(std::ldexp(tests.highlight_normal_threshold, formats.normal.fraction)));
+        to_register({"tests.highlight_normal_threshold", tests.highlight_normal_threshold, true,
+                     std::ldexp(1.0, formats.normal.fraction), largest_normal_threshold(formats),
+                     "formats.normal_fraction"}));
 }
 
-datapath::LightParameters make_light(const Job& job, const Setup& setup) {
+datapath::LightParameters make_light(const Job& job, Setup& setup) {
     const View view = make_view(job.camera);
     const glm::dvec3 world = towards_light(job.hardware);
     const glm::dvec3 seen(glm::dot(view.right, world), glm::dot(view.up, world),
                           glm::dot(view.backward, world));
-    const datapath::Direction d = to_direction(seen, setup.registers.formats.normal);
+    const datapath::Direction d =
+        to_direction(seen, setup.registers.formats.normal, setup.input_saturations.registers);
     datapath::LightParameters result;
     result.direction = {d.x, d.y, d.z};
     result.ambient = static_cast<std::int32_t>(std::lround(job.hardware.ambient * 256));
     return result;
 }
 
-datapath::DisplacementParameters make_displacement(const Heights& heights, const Setup& setup) {
+datapath::DisplacementParameters make_displacement(const Heights& heights, Setup& setup) {
     // d = code / 2^bits reaches 1 - 2^-bits only; S makes up for it
     const double codes = static_cast<double>(setup.map.highest_code());
     const double full = heights.range * (codes + 1) / codes * setup.model_scale.scale;
     const Format& position = setup.registers.formats.position;
-    return {to_format(full, position), to_format(heights.bias * setup.model_scale.scale, position)};
+    std::uint64_t& saturated = setup.input_saturations.registers;
+    return {to_format(full, position, saturated),
+            to_format(heights.bias * setup.model_scale.scale, position, saturated)};
 }
 
 Design make_design(const Job& job) {
@@ -378,13 +420,6 @@ Design make_design(const Job& job) {
 }  // namespace
 
 datapath::TestParameters make_tests(const Job& job, const datapath::Formats& formats) {
-    const auto threshold = [](const char* key, double value, double scale, double limit) {
-        const double fixed = std::floor(value * scale);
-        if (fixed > limit)
-            throw InputError(fmt::format("{} = {} does not fit its register; the largest is {}", key, value,
-                                         limit / scale));
-        return static_cast<std::uint64_t>(fixed);
-    };
     const auto& tests = job.tests;
     datapath::TestParameters result;
     result.normal_test = tests.normal;
@@ -393,18 +428,20 @@ datapath::TestParameters make_tests(const Job& job, const datapath::Formats& for
     result.tex_coord_test = tests.tex_coord;
     result.generation_test = tests.generation;
     result.normal_threshold = static_cast<std::uint32_t>(
-        threshold("tests.normal_threshold", tests.normal_threshold, std::ldexp(1.0, formats.normal.fraction),
-                  static_cast<double>(2 * formats.normal.highest + 1)));
+        to_register({"tests.normal_threshold", tests.normal_threshold, tests.normal,
+                     std::ldexp(1.0, formats.normal.fraction), largest_normal_threshold(formats),
+                     "formats.normal_fraction"}));
     const bool area = tests.summed_height_unit == SummedHeightUnit::area;
     const double highest_code = static_cast<double>(formats.displacement.highest);
     result.summed_height_unit = area ? datapath::SummedHeightUnit::area : datapath::SummedHeightUnit::sum;
     // sum: compared with |2 S_ij - S_i - S_j|, four times the paper's difference
     result.summed_height_threshold =
-        threshold("tests.summed_height_threshold", tests.summed_height_threshold,
-                  highest_code * (area ? 1 : 4), area ? std::ldexp(1.0, 18) : std::ldexp(1.0, 50));
-    result.view_threshold = static_cast<std::uint32_t>(threshold("tests.view_threshold", tests.view_threshold,
-                                                                 std::ldexp(1.0, formats.screen.fraction),
-                                                                 std::ldexp(1.0, formats.screen.bits)));
+        to_register({"tests.summed_height_threshold", tests.summed_height_threshold, tests.summed_height,
+                     highest_code * (area ? 1 : 4), area ? std::ldexp(1.0, 18) : std::ldexp(1.0, 50),
+                     "formats.displacement_bits"});
+    result.view_threshold = static_cast<std::uint32_t>(to_register(
+        {"tests.view_threshold", tests.view_threshold, tests.view, std::ldexp(1.0, formats.screen.fraction),
+         std::ldexp(1.0, formats.screen.bits), "formats.screen_fraction"}));
     result.generation_limit = static_cast<std::uint32_t>(tests.generation_limit);
     return result;
 }

@@ -23,6 +23,14 @@ struct ModelScale {
     glm::dvec3 to_model(const glm::dvec3& world) const { return world / scale + centre; }
 };
 
+/// What of the host's own values did not fit its format and was set to the nearest value that does. fit() leaves room, so
+/// that nothing should.
+struct InputSaturations {
+    std::uint64_t position = 0;   ///< components of base vertices
+    std::uint64_t normal = 0;     ///< components of base vertices' normals and tangents
+    std::uint64_t registers = 0;  ///< displacement's scale and bias, directions of view and light
+};
+
 /// A job made ready for the machine: everything rounded to the hardware's formats. What the simulation, the golden
 /// model and the reports all start from.
 struct Setup {
@@ -39,12 +47,13 @@ struct Setup {
     bool summed_height_bits_chosen = false;   ///< by `auto`
     std::uint64_t base_dropped = 0;           ///< triangles that rounding made name one vertex twice
     std::uint64_t texture_clamped = 0;        ///< vertices whose u or v lay outside a clamped map
-    std::vector<std::string> remarks;         ///< one sentence each, for the report
+    InputSaturations input_saturations;
+    std::vector<std::string> remarks;  ///< one sentence each, for the report
 };
 
 /// Rounds mesh, map, camera, thresholds to the formats. Errors: InputError where something cannot fit and no repair
 /// keeps the meaning (a table entry too narrow for the largest rectangle, an eye too far away, a texture coordinate
-/// beyond the format, a threshold beyond its register), with value, limit and what to do.
+/// beyond the format, a threshold beyond its register or below its step), with value, limit and what to do.
 Setup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& map);
 
 /// The tests' part of it alone: the registers a job's [tests] are rounded to. InputError as above.

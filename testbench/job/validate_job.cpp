@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -29,6 +30,12 @@ Vector cross(const Vector& a, const Vector& b) {
 
 double length(const Vector& v) {
     return std::hypot(v[0], v[1], v[2]);
+}
+
+/// The same direction, the largest component 1: products of what is very short would be 0.
+Vector direction(const Vector& v) {
+    const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
+    return {v[0] / largest, v[1] / largest, v[2] / largest};
 }
 
 std::string text_of(const Vector& v) {
@@ -129,7 +136,10 @@ void check_camera(const Job& job, Faults& faults) {
     faults.unless(up > 0, "`camera.up` = {} has no direction: give it one, such as [0, 0, 1]",
                   text_of(camera.up));
     // Below a sine of 1e-6 the picture's roll would be rounding error.
-    const bool parallel = apart && up > 0 && length(cross(view, camera.up)) <= 1e-6 * length(view) * up;
+    const auto sine = [](const Vector& a, const Vector& b) {
+        return length(cross(a, b)) / (length(a) * length(b));
+    };
+    const bool parallel = apart && up > 0 && sine(direction(view), direction(camera.up)) <= 1e-6;
     faults.unless(
         !parallel,
         "`camera.up` = {} is parallel to the view direction {} (camera.target - camera.eye): turn up by "

@@ -9,6 +9,7 @@
 #include "testbench/program/bake_options.h"
 #include "testbench/program/render_options.h"
 #include "testbench/program/tune_options.h"
+#include "testbench/program/widths_options.h"
 
 namespace tessera {
 
@@ -121,6 +122,13 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     tune_options.add_to(*tune);
     tune->add_option("--data", data, "folder that `data:` paths of the job begin at; $TESSERA_DATA likewise");
 
+    CLI::App* const widths = app.add_subcommand(
+        "widths", "how many bits each quantity needs: width against flipped decisions, error and triangles");
+    WidthsOptions widths_options;
+    widths_options.add_to(*widths);
+    widths->add_option("--data", data,
+                       "folder that `data:` paths of the job begin at; $TESSERA_DATA likewise");
+
     CLI::App* const keys =
         app.add_subcommand("keys", "print every key of a job file: unit, default, range, meaning");
 
@@ -137,7 +145,7 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     if (app.get_subcommands().empty())
         throw InputError(
             "say what to do: `tessera run`, `tessera compare`, `tessera render`, `tessera bake`, `tessera "
-            "tune` or `tessera "
+            "tune`, `tessera widths` or `tessera "
             "keys`; "
             "see `tessera --help`");
     if (job->count() > 0 && command.job_file.empty())
@@ -157,6 +165,10 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     if (tune->parsed()) {
         command.verb = Command::Verb::tune;
         command.tune = tune_options.order();
+    }
+    if (widths->parsed()) {
+        command.verb = Command::Verb::widths;
+        command.widths = widths_options.order();
     }
     traces.apply_to(command);
     return command;

@@ -7,12 +7,13 @@
 #include "testbench/program/bake_command.h"
 #include "testbench/program/render_command.h"
 #include "testbench/program/tune_command.h"
+#include "testbench/program/widths_command.h"
 
 namespace tessera {
 
 /// What the user asked for.
 struct Command {
-    enum class Verb { run, compare, render, bake, tune, keys } verb = Verb::run;
+    enum class Verb { run, compare, render, bake, tune, widths, keys } verb = Verb::run;
     std::string job_file;               ///< empty: the default job
     std::string run_folder;             ///< compare: what a run left
     std::vector<std::string> settings;  ///< --set a.b=value, in order
@@ -22,6 +23,7 @@ struct Command {
     RenderRequest render;               ///< Verb::render
     BakeRequest bake;                   ///< Verb::bake
     TuneOrder tune;                     ///< Verb::tune
+    WidthsOrder widths;                 ///< Verb::widths
     std::string trace_option;           ///< --trace or --trace-units, if given: it wants something to trace
 };
 

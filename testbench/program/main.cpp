@@ -18,6 +18,7 @@
 #include "testbench/program/render_command.h"
 #include "testbench/program/run_job.h"
 #include "testbench/program/tune_command.h"
+#include "testbench/program/widths_command.h"
 
 namespace {
 
@@ -40,6 +41,8 @@ tessera::ExitCode obey(const std::optional<tessera::Command>& command) {
         return tessera::compare_run(*command);
     if (command->verb == tessera::Command::Verb::tune)
         return tessera::tune_command(command->tune, command->data_folder);
+    if (command->verb == tessera::Command::Verb::widths)
+        return tessera::widths_command(command->widths, command->data_folder);
     fmt::print("{}", tessera::document_keys());
     return tessera::ExitCode::fine;
 }

@@ -4,6 +4,7 @@
 
 #include "modules/datapath/widths.h"
 #include "testbench/common/grouped_digits.h"
+#include "testbench/report/saturation_figures.h"
 #include "testbench/report/timing_report.h"
 
 namespace tessera {
@@ -20,21 +21,6 @@ std::string count(std::uint64_t value) {
 
 double percent(std::uint64_t part, std::uint64_t whole) {
     return whole == 0 ? 0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
-}
-
-std::string saturations_text(const datapath::Saturations& saturations) {
-    std::string text;
-    const auto add = [&](const char* name, std::uint64_t value) {
-        if (value > 0)
-            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, count(value));
-    };
-    add("displaced position", saturations.displaced_position);
-    add("normal", saturations.normal);
-    add("screen position", saturations.screen_position);
-    add("view distance", saturations.view_distance);
-    add("screen normal", saturations.screen_normal);
-    add("zero vectors", saturations.degenerate_normal);
-    return text.empty() ? "none" : text;
 }
 
 std::string checks_rows(const Checks& checks) {
@@ -139,7 +125,7 @@ std::string summary(const Setup& setup, const Simulation& simulation, const Chec
                         setup.registers.formats.summed_height.bits,
                         setup.summed_height_bits_chosen ? " (chosen)" : "", count(table_reads),
                         edges == 0 ? 0.0 : static_cast<double>(table_reads) / static_cast<double>(edges)));
-    const datapath::Saturations saturations = p.saturations();
+    const std::vector<SaturationFigure> saturations = saturation_figures(setup, p.saturations());
     text += row("saturations", saturations_text(saturations));
     text += checks_rows(checks);
     const bool timed = setup.design.transport == Transport::non_blocking;
@@ -148,6 +134,8 @@ std::string summary(const Setup& setup, const Simulation& simulation, const Chec
     text += row(timed ? "timed mode" : "functional mode",
                 fmt::format("{:.2f} s, {:.2f} million edges a second, checking included", seconds,
                             static_cast<double>(edges) / seconds / 1e6));
+    for (const std::string& warning : saturation_warnings(saturations))
+        text += fmt::format("  warning: {}\n", warning);
     for (const std::string& remark : setup.remarks)
         text += fmt::format("  note: {}\n", remark);
     return text;

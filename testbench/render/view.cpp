@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "testbench/host/unit_vector.h"
+
 namespace tessera {
 namespace {
 
@@ -56,8 +58,8 @@ View make_view(const Job::Camera& camera) {
     const auto vector = [](const std::array<double, 3>& a) { return glm::dvec3(a[0], a[1], a[2]); };
     View view;
     view.eye = vector(camera.eye);
-    view.backward = glm::normalize(view.eye - vector(camera.target));
-    view.right = glm::normalize(glm::cross(vector(camera.up), view.backward));
+    view.backward = unit_vector(view.eye - vector(camera.target));
+    view.right = unit_vector(glm::cross(brought_near_one(vector(camera.up)), view.backward));
     view.up = glm::cross(view.backward, view.right);
     view.width = static_cast<int>(camera.viewport_width);
     view.height = static_cast<int>(camera.viewport_height);

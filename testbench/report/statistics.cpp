@@ -9,6 +9,7 @@
 #include "modules/datapath/reciprocal.h"
 #include "modules/datapath/widths.h"
 #include "testbench/host/host_traffic.h"
+#include "testbench/report/saturation_figures.h"
 #include "testbench/report/timing_statistics.h"
 
 namespace tessera {
@@ -24,6 +25,8 @@ class Collector {
         Figure figure{group_, name, {}, unit, description};
         if constexpr (std::is_floating_point_v<Value>)
             figure.value = static_cast<double>(value);
+        else if constexpr (std::is_signed_v<Value>)
+            figure.value = static_cast<std::int64_t>(value);
         else if constexpr (std::is_arithmetic_v<Value>)
             figure.value = static_cast<std::uint64_t>(value);
         else
@@ -240,17 +243,9 @@ std::vector<Figure> collect_statistics(const Setup& setup, const Simulation& sim
     take(memory_figures("summed_height_table", setup.registers.summed_height_table,
                         p.summed_height_table_reads(), edges_real));
 
-    const datapath::Saturations saturations = p.saturations();
     Collector saturated("saturations");
-    saturated.add("displaced_position", saturations.displaced_position, "value",
-                  "P' beyond the position's format");
-    saturated.add("normal", saturations.normal, "value", "N, T or N' beyond the normal's format");
-    saturated.add("screen_position", saturations.screen_position, "value", "P's beyond the screen's format");
-    saturated.add("view_distance", saturations.view_distance, "value",
-                  "w beyond the position's format: the eye is far");
-    saturated.add("screen_normal", saturations.screen_normal, "value", "N's beyond the normal's format");
-    saturated.add("degenerate_normal", saturations.degenerate_normal, "value",
-                  "zero vectors that stayed zero");
+    for (const SaturationFigure& figure : saturation_figures(setup, p.saturations()))
+        saturated.add(figure.name, figure.count, figure.unit, figure.description);
     take(std::move(saturated));
 
     take(mesh_figures(simulation.monitor.mesh));

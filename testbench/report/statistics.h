@@ -12,7 +12,7 @@ namespace tessera {
 struct Figure {
     std::string group;  ///< the unit, memory or stream it belongs to
     std::string name;
-    std::variant<std::uint64_t, double, std::string> value;
+    std::variant<std::uint64_t, std::int64_t, double, std::string> value;
     std::string unit;
     std::string description;
 };

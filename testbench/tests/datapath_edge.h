@@ -50,11 +50,12 @@ class WorkList {
             result(pass.triangle);
             return;
         }
-        tessellate(pass, machine_.registers.triangulation, [&](const datapath::Triangle& child) {
-            for (const datapath::Vertex& vertex : child.vertices)
-                largest_generation = std::max(largest_generation, int{vertex.generation});
-            waiting.push_back(child);
-        });
+        tessellate(pass, machine_.registers.triangulation, machine_.registers.formats, machine_.saturations,
+                   [&](const datapath::Triangle& child) {
+                       for (const datapath::Vertex& vertex : child.vertices)
+                           largest_generation = std::max(largest_generation, int{vertex.generation});
+                       waiting.push_back(child);
+                   });
     }
 
     /// Until nothing waits or `bound` triangles are finished.

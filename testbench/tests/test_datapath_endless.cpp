@@ -59,6 +59,7 @@ TEST_CASE("endless case: the generation test ends the triangle that runs along i
 TEST_CASE("endless case: without the generation test it never ends, for the machine's state repeats") {
     Machine machine = half_donut_machine(normal_threshold, summed_height_threshold);
     machine.registers.tests.generation_test = false;
+    machine.registers.formats.generation_bits = 8;
     WorkList work(machine, {endless_triangle()});
     work.run(1000);
     const std::deque<Triangle> state = work.waiting;
@@ -75,6 +76,16 @@ TEST_CASE("endless case: without the generation test it never ends, for the mach
     CHECK(work.finished == 200'000);
     CHECK(!work.waiting.empty());
     CHECK(work.largest_generation == 255);  // saturated; what is in the queue has been split far more often
+
+    // four bits, the default: the same triangles, their generations saturate
+    machine.registers.formats.generation_bits = 4;
+    machine.saturations = {};
+    WorkList narrow(machine, {endless_triangle()});
+    narrow.run(200'000);
+    CHECK(narrow.finished == work.finished);
+    CHECK(narrow.waiting.size() == work.waiting.size());
+    CHECK(narrow.largest_generation == 15);
+    CHECK(machine.saturations.generation > 100'000);
 }
 
 TEST_CASE("endless case: the plane of 18, with the generation test and without") {
@@ -99,6 +110,7 @@ TEST_CASE("endless case: the plane of 18, with the generation test and without")
     CHECK(not_positive == 0);
 
     machine.registers.tests.generation_test = false;
+    machine.registers.formats.generation_bits = 8;
     WorkList endless(machine, base);
     endless.run(200'000);
     CHECK(endless.finished == 200'000);

@@ -79,27 +79,28 @@ TEST_CASE("fingerprint: a hundred thousand random triangles give the recorded bi
             v.screen_normal = transform_normal(v.displaced_normal, registers.transform, registers.formats,
                                                machine.saturations);
             hash.add(v.screen_normal);
-            hash.add(light(v.screen_normal, registers.light, registers.formats));
+            hash.add(light(v.screen_normal, registers.light, registers.formats, machine.saturations));
         }
         const auto& v = triangle.vertices;
         hash.add(faces_away(v[0].screen, v[1].screen, v[2].screen) ? 1 : 0);
         const TrianglePass pass = machine.evaluate(triangle);
         for (std::size_t e = 0; e < 3; ++e)
             hash.add(pass.edges[e].tests);
-        tessellate(pass, Triangulation::shorter, [&](const Triangle& child) {
-            for (const Vertex& c : child.vertices) {
-                hash.add(c.position);
-                hash.add(c.normal);
-                hash.add(c.tangent);
-                hash.add(c.texture.u);
-                hash.add(c.texture.v);
-                hash.add(c.handedness);
-                hash.add(c.generation);
-                hash.add(c.displaced);
-                hash.add(c.displaced_normal);
-                hash.add(c.screen);
-            }
-        });
+        tessellate(pass, Triangulation::shorter, registers.formats, machine.saturations,
+                   [&](const Triangle& child) {
+                       for (const Vertex& c : child.vertices) {
+                           hash.add(c.position);
+                           hash.add(c.normal);
+                           hash.add(c.tangent);
+                           hash.add(c.texture.u);
+                           hash.add(c.texture.v);
+                           hash.add(c.handedness);
+                           hash.add(c.generation);
+                           hash.add(c.displaced);
+                           hash.add(c.displaced_normal);
+                           hash.add(c.screen);
+                       }
+                   });
     }
     const Saturations& s = machine.saturations;
     for (const std::uint64_t count :

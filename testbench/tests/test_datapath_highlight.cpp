@@ -215,7 +215,8 @@ TEST_CASE("children say that the Highlight Test split their parent") {
     pass.edges[0].tests = highlight_bit | allowing_bits;
     pass.edges[1].tests = normal_bit | view_bit;  // not split: does not count
     int children = 0;
-    tessellate(pass, Triangulation::shorter, [&](const Triangle& child) {
+    Saturations saturations;
+    tessellate(pass, Triangulation::shorter, Formats{}, saturations, [&](const Triangle& child) {
         ++children;
         CHECK(child.split_by == highlight_bit);
     });

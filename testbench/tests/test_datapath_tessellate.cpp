@@ -64,8 +64,13 @@ TrianglePass any_pass(Random& random) {
 
 TEST_CASE("tessellate: children carry complete vertices and the parent's tags") {
     Random random(26);
+    Formats formats;
+    Saturations saturations;
+    std::uint64_t saturated = 0;
     for (int k = 0; k < 20'000; ++k) {
         const TrianglePass pass = any_pass(random);
+        formats.generation_bits = static_cast<int>(random.integer(1, 4));
+        const int highest_generation = (1 << formats.generation_bits) - 1;
         const auto choice = static_cast<Triangulation>(random.integer(0, 2));
 
         std::array<Vertex, 6> expected;
@@ -79,14 +84,17 @@ TEST_CASE("tessellate: children carry complete vertices and the parent's tags") 
             v.tangent = pass.edges[e].tangent;
             v.texture = pass.new_vertex[e].texture;
             v.handedness = i.handedness == 1 && j.handedness == 1 ? std::int8_t{1} : std::int8_t{-1};
-            v.generation = static_cast<std::uint8_t>(std::max(i.generation, j.generation) + 1);
+            const int generation = std::max(i.generation, j.generation) + 1;
+            v.generation = static_cast<std::uint8_t>(std::min(generation, highest_generation));
             v.displaced_known = true;
             v.screen_normal_known = false;
             v.displaced = pass.new_vertex[e].displaced;
             v.displaced_normal = pass.edges[e].displaced_normal;
             v.screen = pass.new_vertex[e].screen;
-            if ((pass.split >> e & 1) != 0)
+            if ((pass.split >> e & 1) != 0) {
                 split_by |= pass.edges[e].tests & 3;
+                saturated += generation > highest_generation ? 1 : 0;
+            }
         }
         const ChildIndices indices = triangulate(
             pass.split, choose_second_diagonal(pass.split, choice, [&](std::uint8_t at) -> const Position& {
@@ -94,8 +102,8 @@ TEST_CASE("tessellate: children carry complete vertices and the parent's tags") 
             }));
 
         std::vector<Triangle> children;
-        CHECK(tessellate(pass, choice, [&](const Triangle& child) { children.push_back(child); }) ==
-              indices.count);
+        CHECK(tessellate(pass, choice, formats, saturations,
+                         [&](const Triangle& child) { children.push_back(child); }) == indices.count);
         if (children.size() != static_cast<std::size_t>(indices.count))
             FAIL(children.size() << " children, said to be " << indices.count);
         for (std::size_t c = 0; c < children.size(); ++c) {
@@ -110,6 +118,9 @@ TEST_CASE("tessellate: children carry complete vertices and the parent's tags") 
                 FAIL("split " << int{pass.split} << ", tags of child " << c);
         }
     }
+    CHECK(saturated > 1000);
+    CHECK(saturations.generation == saturated);
+    CHECK(saturations.total() == saturated);
 }
 
 TEST_CASE("tessellate: edge k runs from vertex k to the next") {

@@ -1,0 +1,170 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "testbench/common/error.h"
+#include "testbench/host/inputs.h"
+#include "testbench/job/job_keys.h"
+#include "testbench/job/read_job.h"
+#include "testbench/job/validate_job.h"
+#include "testbench/widths/width_run.h"
+
+// Every key of a job at the ends of its range, beyond them, and at what no number should be: a message that names it, or
+// a mesh like any other.
+
+using namespace tessera;
+
+namespace {
+
+Job small_job() {
+    Job job;
+    job.mode = Mode::functional;
+    job.map.width = job.map.height = 16;
+    job.tests.generation_limit = 3;
+    return job;
+}
+
+bool in_range(const Key& key, double value) {
+    return (value >= key.range.low && value <= key.range.high) || (key.range.or_zero && value == 0);
+}
+
+struct Extreme {
+    std::string text;
+    double value;
+};
+
+std::vector<Extreme> extremes_of(const Key& key) {
+    std::vector<Extreme> all;
+    const double largest = 9223372036854775807.0;
+    if (key.kind == KeyKind::integer) {
+        const auto low = static_cast<std::int64_t>(key.range.low),
+                   high = static_cast<std::int64_t>(key.range.high);
+        for (const std::int64_t value :
+             {low, high, low - 1, high + 1, std::int64_t{0}, std::int64_t{-1},
+              std::numeric_limits<std::int64_t>::max(), std::numeric_limits<std::int64_t>::min()})
+            all.push_back({std::to_string(value), static_cast<double>(value)});
+        all.push_back({"9223372036854775808", 2 * largest});  // no 64 bit integer
+        return all;
+    }
+    const double nan = std::numeric_limits<double>::quiet_NaN(),
+                 infinity = std::numeric_limits<double>::infinity();
+    const auto add = [&](double value) {
+        char text[40];
+        std::snprintf(text, sizeof text, "%.17g", value);
+        std::string number = text;
+        if (number.find_first_of(".en") == std::string::npos)
+            number += ".0";
+        all.push_back(
+            {key.kind == KeyKind::vector ? "[" + number + ", " + number + ", " + number + "]" : number,
+             value});
+    };
+    const double low = key.range.low, high = key.range.high;
+    for (const double value : {low, high, std::nextafter(low, -infinity), std::nextafter(high, infinity),
+                               -0.0, 0.0, 1e308, -1e308, 5e-324, -5e-324, nan, infinity, -infinity})
+        add(value);
+    return all;
+}
+
+/// Sets up the job and runs it. Nothing but a message may come of it, or a mesh that holds.
+std::string outcome_of(const Job& job) {
+    try {
+        validate(job);
+        const BaseMesh mesh = load_mesh(job, {});
+        const HeightMap map = load_map(job, {});
+        const Setup setup = make_setup(job, mesh, map);
+        const WidthRun run = run_widths(setup, ExactModel(job, mesh, map), 300'000);
+        INFO(run.conformance.first_mismatch);
+        INFO(run.invariants.first_violation);
+        CHECK(run.conformance.mismatches == 0);
+        CHECK(run.invariants.passed());
+        CHECK(run.triangles == setup.base_triangles.size() + run.edges_split);
+        CHECK(std::isfinite(run.position_rms));
+    } catch (const InputError& error) {
+        CHECK(std::string(error.what()).find('.') != std::string::npos);
+        return error.what();
+    } catch (const ResourceError& error) {
+        return error.what();
+    }
+    return {};
+}
+
+}  // namespace
+
+TEST_CASE("limits: every number of a job, at and beyond its range, is refused by name or runs") {
+    std::size_t tried = 0, refused = 0, ran = 0;
+    for (const KeyTable& table : job_tables()) {
+        for (const Key& key : table.keys) {
+            if (key.kind != KeyKind::integer && key.kind != KeyKind::number && key.kind != KeyKind::vector)
+                continue;
+            for (const Extreme& extreme : extremes_of(key)) {
+                const std::string setting = key.name + "=" + extreme.text;
+                INFO(setting);
+                ++tried;
+                Job job = small_job();
+                std::string message;
+                try {
+                    apply_setting(job, setting);
+                } catch (const InputError& error) {
+                    message = error.what();
+                }
+                const bool fits = in_range(key, extreme.value);
+                CHECK(message.empty() == fits);
+                if (!fits) {
+                    ++refused;
+                    CHECK_THAT(message, Catch::Contains(key.name));
+                    continue;
+                }
+                // timing is a simulation's: test_limits.cpp, test_limits_program.cpp
+                if (table.name == "timing" || key.name == "frames.count")
+                    continue;
+                ran += outcome_of(job).empty() ? 1u : 0u;
+            }
+        }
+    }
+    CHECK(tried > 900);
+    CHECK(refused > 500);
+    CHECK(ran > 100);
+}
+
+TEST_CASE("limits: cameras that see nothing sensible are refused with both keys' names") {
+    const auto refusal = [](const std::vector<const char*>& settings) {
+        Job job = small_job();
+        for (const char* const setting : settings)
+            apply_setting(job, setting);
+        const std::string message = outcome_of(job);
+        INFO(settings.front());
+        CHECK_FALSE(message.empty());
+        return message;
+    };
+    using Catch::Contains;
+    CHECK_THAT(refusal({"camera.eye=[1, 2, 3]", "camera.target=[1, 2, 3]"}),
+               Contains("`camera.eye`") && Contains("`camera.target`") && Contains("same point"));
+    CHECK_THAT(refusal({"camera.eye=[1e6, 1e6, 1e6]", "camera.target=[1e6, 1e6, 999999.9999999]"}),
+               Contains("same point"));
+    CHECK_THAT(refusal({"camera.eye=[0, 0, 3]", "camera.target=[0, 0, 0]", "camera.up=[0, 0, 1]"}),
+               Contains("`camera.up`") && Contains("parallel"));
+    CHECK_THAT(refusal({"camera.eye=[0, 0, 3]", "camera.target=[0, 0, 0]", "camera.up=[0, 0, -5]"}),
+               Contains("parallel"));
+    CHECK_THAT(refusal({"camera.up=[0, 0, 0]"}), Contains("`camera.up`") && Contains("no direction"));
+    CHECK_THAT(refusal({"hardware.light=[0, 0, 0]"}), Contains("`hardware.light`"));
+}
+
+TEST_CASE("limits: a near plane that is not in front and angles that are none are out of range") {
+    Job job;
+    const auto refusal = [&](const char* setting) {
+        try {
+            apply_setting(job, setting);
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string{};
+    };
+    using Catch::Contains;
+    CHECK_THAT(refusal("camera.near_plane=0"), Contains("camera.near_plane") && Contains("range"));
+    CHECK_THAT(refusal("camera.near_plane=-0.1"), Contains("camera.near_plane"));
+    CHECK_THAT(refusal("camera.field_of_view=0"), Contains("camera.field_of_view") && Contains("0.1 .. 179"));
+    CHECK_THAT(refusal("camera.field_of_view=180"), Contains("camera.field_of_view"));
+    CHECK_THAT(refusal("camera.viewport_width=0"), Contains("camera.viewport_width"));
+    CHECK_THAT(refusal("camera.eye=[0, nan, 0]"), Contains("camera.eye") && Contains("not a finite number"));
+    CHECK_THAT(refusal("displacement.scale=inf"), Contains("displacement.scale"));
+}
