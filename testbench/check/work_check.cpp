@@ -109,9 +109,10 @@ void WorkCheck::write(const datapath::TrianglePass& pass) {
     if (pass.split == 0)
         base.finished.expect(hash_to_finish(pass.triangle));
     else
-        datapath::tessellate(pass, registers_.triangulation, [&](const datapath::Triangle& child) {
-            base.decided.expect(hash_to_decide(child, unknown_vertices(child)));
-        });
+        datapath::tessellate(pass, registers_.triangulation, registers_.formats, counted_by_the_unit_,
+                             [&](const datapath::Triangle& child) {
+                                 base.decided.expect(hash_to_decide(child, unknown_vertices(child)));
+                             });
 }
 
 void WorkCheck::write(const datapath::Triangle& finished) {
@@ -128,8 +129,9 @@ void WorkCheck::write(const datapath::Triangle& finished) {
                             "transforms to ({}, {}, {})",
                             finished.base, k, vertex.screen_normal.x, vertex.screen_normal.y,
                             vertex.screen_normal.z, normal.x, normal.y, normal.z));
-        lit.corners[k] = {vertex.screen, vertex.texture,
-                          datapath::light(normal, registers_.light, registers_.formats)};
+        lit.corners[k] = {
+            vertex.screen, vertex.texture,
+            datapath::light(normal, registers_.light, registers_.formats, counted_by_the_unit_)};
     }
     const auto& v = finished.vertices;
     if (!registers_.back_face_culling || !datapath::faces_away(v[0].screen, v[1].screen, v[2].screen))

@@ -72,6 +72,7 @@ class WorkCheck : public tlm::tlm_analysis_if<datapath::TrianglePass>,
     std::vector<Base> bases_;
     Base foreign_;
     Balance lit_;
+    datapath::Saturations counted_by_the_unit_;  // once more, and not looked at
     WorkResult result_;
 };
 

@@ -213,11 +213,12 @@ class Checker {
                 check_packing(waiting.triangle);
                 continue;
             }
-            tessellate(pass, case_.registers.triangulation, [&](const Triangle& child) {
-                for (const Vertex& vertex : child.vertices)
-                    promise_fits(vertex, case_.registers);
-                work.push_back({child, waiting.depth + 1});
-            });
+            tessellate(pass, case_.registers.triangulation, case_.registers.formats, saturations_,
+                       [&](const Triangle& child) {
+                           for (const Vertex& vertex : child.vertices)
+                               promise_fits(vertex, case_.registers);
+                           work.push_back({child, waiting.depth + 1});
+                       });
         }
         promise(account.balanced(), "the tessellated patch has a crack");
     }
@@ -258,6 +259,7 @@ class Checker {
 
     DatapathCase case_;
     testing::Machine machine_;
+    Saturations saturations_;
 };
 
 }  // namespace

@@ -157,6 +157,7 @@ Name Lineage::inserted_name(const DirectedEdge& edge, const Vertex& vertex) {
 void Lineage::split(const NamedTriangle& parent, TrianglePass& pass) {
     std::array<Vertex, 6> vertices;
     std::array<Name, 6> names{};
+    datapath::Saturations ignored;           // the machine counts them
     std::array<bool, 36> on_parents_edge{};  // from one of the six to another
     const auto mark = [&](std::size_t a, std::size_t b) {
         on_parents_edge[6 * a + b] = on_parents_edge[6 * b + a] = true;
@@ -169,6 +170,8 @@ void Lineage::split(const NamedTriangle& parent, TrianglePass& pass) {
         if ((pass.split >> k & 1) == 0)
             continue;
         vertices[middle] = datapath::inserted_vertex(pass, static_cast<int>(k));
+        vertices[middle].generation =
+            datapath::kept_generation(vertices[middle].generation, setup_.registers.formats, ignored);
         const Vertex &a = pass.triangle.vertices[k], &b = pass.triangle.vertices[next];
         const DirectedEdge whole = edge_between(parent.names[k], a, parent.names[next], b);
         names[middle] = inserted_name(whole, vertices[middle]);
@@ -185,18 +188,20 @@ void Lineage::split(const NamedTriangle& parent, TrianglePass& pass) {
         [&](std::uint8_t index) -> const datapath::Position& { return vertices[index].displaced; });
     const datapath::ChildIndices indices = datapath::triangulate(pass.split, second);
     std::size_t number = 0;
-    datapath::tessellate(pass, setup_.registers.triangulation, [&](const datapath::Triangle& child) {
-        const auto& corners = indices.children[number++];
-        work_.push_back({child, {names[corners[0]], names[corners[1]], names[corners[2]]}});
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::size_t a = corners[k], b = corners[(k + 1) % 3];
-            if (on_parents_edge[6 * a + b])
-                continue;
-            const DirectedEdge inner = edge_between(names[a], vertices[a], names[b], vertices[b]);
-            Sides& wanted = edges_[inner.key].wanted;  // both children that have it add their side
-            ++(inner.along ? wanted.along : wanted.against);
-        }
-    });
+    datapath::tessellate(
+        pass, setup_.registers.triangulation, setup_.registers.formats, ignored,
+        [&](const datapath::Triangle& child) {
+            const auto& corners = indices.children[number++];
+            work_.push_back({child, {names[corners[0]], names[corners[1]], names[corners[2]]}});
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::size_t a = corners[k], b = corners[(k + 1) % 3];
+                if (on_parents_edge[6 * a + b])
+                    continue;
+                const DirectedEdge inner = edge_between(names[a], vertices[a], names[b], vertices[b]);
+                Sides& wanted = edges_[inner.key].wanted;  // both children that have it add their side
+                ++(inner.along ? wanted.along : wanted.against);
+            }
+        });
 }
 
 void Lineage::finish(const NamedTriangle& done) {
