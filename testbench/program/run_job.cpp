@@ -13,8 +13,8 @@
 #include "testbench/check/scoreboard.h"
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/atomic_set.h"
-#include "testbench/host/fingerprint.h"
 #include "testbench/faults/checked_run.h"
+#include "testbench/host/fingerprint.h"
 #include "testbench/host/inputs.h"
 #include "testbench/host/simulation.h"
 #include "testbench/job/dump_job.h"
@@ -139,12 +139,13 @@ Ending run_faulty(const Job& job, const Setup& setup, Simulation& simulation, co
         job.fault, wiring, run, job.mode == Mode::timed, checks.conformance ? &*checks.conformance : nullptr,
         checks.work ? &*checks.work : nullptr, checks.invariants ? &*checks.invariants : nullptr);
     const std::filesystem::path folder = job.output.folder;
-    OutputFolder(folder).keep();
-    remove_frames(folder);
-    remove_run_files(folder);
+    OutputFolder output(folder);
+    AtomicSet files;
     write_file(folder / "job.toml", dump_job(job, folder));
     write_file(folder / "conformance.txt", conformance_text(checks));
     write_file(folder / "conformance.json", conformance_json(checks));
+    replace_run(folder, files);
+    output.keep();
     progress.clear();
     if (run.stopped)
         fmt::print(stderr, "tessera: {}\n", run.text);

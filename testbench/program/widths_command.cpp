@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "testbench/common/atomic_file.h"
+#include "testbench/common/atomic_set.h"
 #include "testbench/host/inputs.h"
 #include "testbench/job/job_paths.h"
 #include "testbench/job/nearest_name.h"
@@ -155,8 +156,10 @@ ExitCode widths_command(const WidthsOrder& order, const fs::path& data_folder) {
 
     if (output.own_folder)
         OutputFolder(output.folder, "--output").keep();
+    AtomicSet files;
     write_file(output.csv, widths_csv(sweep));
     write_file(output.json, widths_json(request, sweep));
+    files.commit();
     fmt::print("{}\n  written in {} and {}\n", widths_text(request, sweep), output.csv.string(),
                output.json.string());
     const std::string failure = first_failure(sweep);
