@@ -171,7 +171,7 @@ TEST_CASE("the narrowest and widest formats run or say what does not fit") {
 
 TEST_CASE("checks and files that are switched off are left out") {
     const Attempt attempt({"check.golden=false", "check.end_to_end=false", "check.invariants=false",
-                           "output.ply=false", "output.obj=false", "output.picture=false",
+                           "check.work=false", "output.ply=false", "output.obj=false", "output.picture=false",
                            "tests.generation_limit=2"});
     INFO(attempt.end.text());
     REQUIRE(attempt.end.exit_code == 0);
