@@ -152,11 +152,7 @@ TEST_CASE("a stated limit ends a run with exit code 4, one message and no trace"
         CHECK(end.exit_code == 4);
         CHECK(lines_of(end.err).size() == 1);
         CHECK_THAT(end.err, Contains("out/mesh.ply"));
-        CHECK_FALSE(fs::exists(here.path() / "out/mesh.ply"));
-        for (const auto& entry : fs::directory_iterator(here.path() / "out")) {
-            INFO(entry.path());
-            CHECK(entry.path().extension() != ".part");
-        }
+        CHECK_FALSE(fs::exists(here.path() / "out"));
     }
     SECTION("standard output on a full disk") {
         for (const std::string words : {"keys", "run --dump-config", "run --set output.folder=out"}) {
