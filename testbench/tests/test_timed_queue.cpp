@@ -1,0 +1,103 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "modules/datapath/pack_triangle.h"
+#include "modules/memory/off_chip_memory.h"
+#include "modules/units/triangle_queue.h"
+#include "testbench/tests/timed_modules.h"
+
+// The Triangle Queue alone, spilling: what goes in comes out, and first in first out in that order.
+
+using namespace tessera;
+using namespace tessera::testing;
+
+namespace {
+
+constexpr unsigned triangles = 600;
+
+/// A queue of a few places between a driver that pauses and a sink that stalls.
+struct Bench {
+    Sink<datapath::Triangle> sink;
+    OffChipMemory memory;
+    TriangleQueue queue;
+    Driver<datapath::Triangle> driver;
+
+    Bench(const std::string& name, Clock& clock, const datapath::Registers& registers,
+          const QueueDesign& design, std::uint64_t seed)
+        : sink(("sink_" + name).c_str(), clock, {seed, 500, 12}),
+          memory(("memory_" + name).c_str(), clock, OffChipTiming{}, {}, std::uint64_t{1} << 20,
+                 datapath::packed_triangle_tag_bytes),
+          queue(("queue_" + name).c_str(), clock, registers, design, Timing{}),
+          driver(("driver_" + name).c_str(), clock, {seed + 1, 250, 120}) {
+        clock.attach(memory);
+        clock.attach(queue);
+        driver.out.bind(queue.from_tessellation);
+        queue.to_get_triangle.bind(sink.in);
+        queue.off_chip_memory.bind(memory);
+        for (unsigned k = 0; k < triangles; ++k) {
+            datapath::Triangle triangle;
+            triangle.base = k;
+            driver.items.push_back(triangle);
+        }
+    }
+
+    std::vector<std::uint32_t> came() const {
+        std::vector<std::uint32_t> tags;
+        for (const datapath::Triangle& triangle : sink.items)
+            tags.push_back(triangle.base);
+        return tags;
+    }
+};
+
+std::vector<std::uint32_t> in_order() {
+    std::vector<std::uint32_t> tags;
+    for (std::uint32_t k = 0; k < triangles; ++k)
+        tags.push_back(k);
+    return tags;
+}
+
+}  // namespace
+
+TEST_CASE("triangle queue: first in first out, through off-chip memory and back") {
+    Clock clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
+    const datapath::Registers registers;
+    std::vector<std::unique_ptr<Bench>> benches;
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+        QueueDesign design;
+        design.capacity = 1 + seed % 4;
+        benches.push_back(std::make_unique<Bench>(std::to_string(seed), clock, registers, design, 3 * seed));
+    }
+    sc_core::sc_start();
+    for (const auto& bench : benches) {
+        INFO(bench->queue.name());
+        CHECK(bench->queue.spilled() > 0);
+        CHECK(bench->queue.spilled() < triangles);  // it was empty off chip now and then
+        CHECK(bench->queue.spilled() == bench->queue.refilled());
+        CHECK(bench->queue.on_chip_high_water_mark() <= 4);
+        CHECK(bench->came() == in_order());
+    }
+}
+
+TEST_CASE("triangle queue: last in first out, through off-chip memory and back, none is lost or doubled") {
+    Clock clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
+    const datapath::Registers registers;
+    std::vector<std::unique_ptr<Bench>> benches;
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+        QueueDesign design;
+        design.order = TriangleOrder::lifo;
+        design.capacity = 1 + seed % 4;
+        benches.push_back(std::make_unique<Bench>(std::to_string(seed), clock, registers, design, 3 * seed));
+    }
+    sc_core::sc_start();
+    for (const auto& bench : benches) {
+        INFO(bench->queue.name());
+        CHECK(bench->queue.spilled() > 0);
+        std::vector<std::uint32_t> tags = bench->came();
+        CHECK(tags != in_order());
+        std::sort(tags.begin(), tags.end());
+        CHECK(tags == in_order());
+    }
+}
