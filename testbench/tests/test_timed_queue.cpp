@@ -26,8 +26,8 @@ struct Bench {
     Driver<datapath::Triangle> driver;
 
     Bench(const std::string& name, Clock& clock, const datapath::Registers& registers,
-          const QueueDesign& design, std::uint64_t seed)
-        : sink(("sink_" + name).c_str(), clock, {seed, 500, 12}),
+          const QueueDesign& design, std::uint64_t seed, const StallParameters& sink_stalls)
+        : sink(("sink_" + name).c_str(), clock, sink_stalls),
           memory(("memory_" + name).c_str(), clock, OffChipTiming{}, {}, std::uint64_t{1} << 20,
                  datapath::packed_triangle_tag_bytes),
           queue(("queue_" + name).c_str(), clock, registers, design, Timing{}),
@@ -68,7 +68,8 @@ TEST_CASE("triangle queue: first in first out, through off-chip memory and back"
     for (std::uint64_t seed = 0; seed < 8; ++seed) {
         QueueDesign design;
         design.capacity = 1 + seed % 4;
-        benches.push_back(std::make_unique<Bench>(std::to_string(seed), clock, registers, design, 3 * seed));
+        benches.push_back(std::make_unique<Bench>(std::to_string(seed), clock, registers, design, 3 * seed,
+                                                  StallParameters{3 * seed, 500, 12}));
     }
     sc_core::sc_start();
     for (const auto& bench : benches) {
@@ -89,7 +90,8 @@ TEST_CASE("triangle queue: last in first out, through off-chip memory and back, 
         QueueDesign design;
         design.order = TriangleOrder::lifo;
         design.capacity = 1 + seed % 4;
-        benches.push_back(std::make_unique<Bench>(std::to_string(seed), clock, registers, design, 3 * seed));
+        benches.push_back(std::make_unique<Bench>(std::to_string(seed), clock, registers, design, 3 * seed,
+                                                  StallParameters{3 * seed, 500, 12}));
     }
     sc_core::sc_start();
     for (const auto& bench : benches) {
@@ -99,5 +101,26 @@ TEST_CASE("triangle queue: last in first out, through off-chip memory and back, 
         CHECK(tags != in_order());
         std::sort(tags.begin(), tags.end());
         CHECK(tags == in_order());
+    }
+}
+
+// Nobody takes what the queue offers, for far longer than the test looks.
+TEST_CASE("triangle queue: the host may send while fewer triangles wait than the watermark says") {
+    Clock clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
+    const datapath::Registers registers;
+    std::vector<std::unique_ptr<Bench>> benches;
+    for (unsigned waiting = 0; waiting < 5; ++waiting) {
+        QueueDesign design;
+        design.watermark = 3;
+        benches.push_back(std::make_unique<Bench>(std::to_string(waiting), clock, registers, design, 0,
+                                                  StallParameters{1, 1000, 1'000'000}));
+        benches.back()->driver.items.resize(waiting);
+    }
+    sc_core::sc_start(sc_core::sc_time(100 * triangles, sc_core::SC_NS));
+    for (unsigned waiting = 0; waiting < 5; ++waiting) {
+        const TriangleQueue& queue = benches[waiting]->queue;
+        INFO(queue.name());
+        REQUIRE(queue.waiting() == waiting);
+        CHECK(queue.takes_host_triangles() == (waiting < 3));
     }
 }
