@@ -128,7 +128,7 @@ void Interruption::note(std::string_view progress) {
     const std::size_t next = 1 - current_note;
     Note& note = notes[next];
     note.size = std::min(progress.size(), note.text.size());
-    std::memcpy(note.text.data(), progress.data(), note.size);
+    std::copy_n(progress.data(), note.size, note.text.data());
     current_note = next;
 }
 

@@ -253,7 +253,9 @@ void MeshMaker::soup() {
     }
     // One that is a triangle whatever was drawn.
     const std::size_t p = position({2, 0, 0}), q = position({2, 1, 0}), r = position({2, 0, 1});
-    face({p, texture({0, 0}), 0}, {q, texture({1, 0}), 0}, {r, texture({0, 1}), 0});
+    // One after another: in which order a call's arguments are evaluated is the compiler's choice.
+    const std::size_t tp = texture({0, 0}), tq = texture({1, 0}), tr = texture({0, 1});
+    face({p, tp, 0}, {q, tq, 0}, {r, tr, 0});
 }
 
 /// Two triangles whose texture is mirrored across their common edge: of either handedness.
