@@ -98,4 +98,21 @@ void require_inputs_stay(const Job& job, const fs::path& data_folder) {
         refuse("map", "map.file", job.map.file);
 }
 
+void require_inputs_kept(const std::string& output, const std::vector<fs::path>& written,
+                         const std::string& job_file, const Job& job, const fs::path& data_folder) {
+    std::vector<fs::path> read;
+    if (!job_file.empty())
+        read.emplace_back(job_file);
+    if (reads_file(job.mesh.source))
+        read.push_back(resolve_path(job.mesh.file, job.folder, data_folder));
+    if (job.map.source == MapSource::file)
+        read.push_back(resolve_path(job.map.file, job.folder, data_folder));
+    for (const fs::path& to : written)
+        for (const fs::path& from : read)
+            if (real_place(to) == real_place(from))
+                throw InputError(
+                    fmt::format("--output {}: {} would overwrite {}, which is read; choose another name",
+                                output, to.string(), from.string()));
+}
+
 }  // namespace tessera

@@ -150,24 +150,12 @@ std::string own_run_folder(const fs::path& job_file) {
 /// Nothing that is written may take the place of something read, of another file written, or of somebody's mesh.
 void check_places(const TuneOrder& order, const Job& job, const fs::path& data_folder,
                   const std::vector<fs::path>& written, const fs::path& obj_file) {
-    std::vector<fs::path> read;
-    if (!order.job_file.empty())
-        read.emplace_back(order.job_file);
-    if (reads_file(job.mesh.source))
-        read.push_back(resolve_path(job.mesh.file, job.folder, data_folder));
-    if (job.map.source == MapSource::file)
-        read.push_back(resolve_path(job.map.file, job.folder, data_folder));
-    for (std::size_t k = 0; k < written.size(); ++k) {
-        for (const fs::path& file : read)
-            if (real_place(written[k]) == real_place(file))
-                throw InputError(
-                    fmt::format("--output {}: {} would overwrite {}, which is read; choose another name",
-                                order.output, written[k].string(), file.string()));
+    require_inputs_kept(order.output, written, order.job_file, job, data_folder);
+    for (std::size_t k = 0; k < written.size(); ++k)
         for (std::size_t other = 0; other < k; ++other)
             if (real_place(written[k]) == real_place(written[other]))
                 throw InputError(fmt::format("--tried {}: is written with the tuned job; choose another name",
                                              order.tried));
-    }
     std::ifstream mesh(obj_file);
     std::string first;
     if (!order.grids.empty() && std::getline(mesh, first) && first.rfind("# tessera tune:", 0) != 0)

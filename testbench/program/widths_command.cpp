@@ -8,7 +8,6 @@
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/atomic_set.h"
 #include "testbench/host/inputs.h"
-#include "testbench/job/job_paths.h"
 #include "testbench/job/nearest_name.h"
 #include "testbench/program/load_job.h"
 #include "testbench/program/output_folder.h"
@@ -52,24 +51,6 @@ Output output_of(const WidthsOrder& order) {
             throw InputError(
                 fmt::format("--output {}: {} is a folder; name a file", wanted.string(), file.string()));
     return output;
-}
-
-/// Nothing that is written may take the place of something read.
-void check_places(const WidthsOrder& order, const Job& job, const fs::path& data_folder,
-                  const Output& output) {
-    std::vector<fs::path> read;
-    if (!order.job_file.empty())
-        read.emplace_back(order.job_file);
-    if (reads_file(job.mesh.source))
-        read.push_back(resolve_path(job.mesh.file, job.folder, data_folder));
-    if (job.map.source == MapSource::file)
-        read.push_back(resolve_path(job.map.file, job.folder, data_folder));
-    for (const fs::path& written : {output.csv, output.json})
-        for (const fs::path& file : read)
-            if (real_place(written) == real_place(file))
-                throw InputError(
-                    fmt::format("--output {}: {} would overwrite {}, which is read; choose another name",
-                                order.output, written.string(), file.string()));
 }
 
 const Quantity& quantity_named(const std::string& name) {
@@ -144,7 +125,7 @@ std::string first_failure(const WidthSweep& sweep) {
 ExitCode widths_command(const WidthsOrder& order, const fs::path& data_folder) {
     const WidthRequest request = request_of(order);
     const Output output = output_of(order);
-    check_places(order, request.job, data_folder, output);
+    require_inputs_kept(order.output, {output.csv, output.json}, order.job_file, request.job, data_folder);
 
     Progress progress;
     progress.show("reading mesh and map", 0);
