@@ -97,7 +97,6 @@ class MemoryPort : public tlm::tlm_mm_interface {
     void pop_answer();
 
     std::uint64_t reads() const { return reads_; }
-    std::uint64_t bytes_read() const { return reads_ * entry_bytes_; }
     unsigned entry_bytes() const { return entry_bytes_; }
 
     /// Binds the port to a memory (with a socket of that name).

@@ -28,7 +28,10 @@ class OffChipMemory : public Unit {
     std::uint64_t bytes_written() const { return bytes_written_; }
     std::uint64_t bytes_read() const { return bytes_read_; }
 
-    std::string holds() const override { return count_of(std::size_t{queued_} + answers_, "request"); }
+    std::string holds() const override {
+        return listed(count_of(std::size_t{queued_} + answers_, "request"),
+                      at_the_door_ == nullptr ? "" : "one at its door");
+    }
     std::uint64_t occupied_cycles() const override { return channel_cycles_; }
     void show(Signals& signals) const override;
 

@@ -258,6 +258,8 @@ unsigned TableMemory::transport_dbg(int, tlm::tlm_generic_payload& payload) {
         std::memcpy(place, payload.get_data_ptr(), payload.get_data_length());
     else if (payload.get_command() == tlm::TLM_READ_COMMAND)
         std::memcpy(payload.get_data_ptr(), place, payload.get_data_length());
+    else
+        return 0;
     return payload.get_data_length();
 }
 

@@ -35,9 +35,6 @@ class TableMemory : public Unit {
     TableMemory(const sc_core::sc_module_name& name, Clock& clock, const datapath::TableLayout& layout,
                 const MemoryTiming& timing, const StallParameters& stalls);
 
-    const datapath::TableLayout& layout() const { return layout_; }
-    const MemoryTiming& timing() const { return timing_; }
-
     /// Entries read by transactions; what DMI reads is counted by the reader.
     std::uint64_t transactions() const { return transactions_; }
     /// Port slots taken: entries times the cycles a port needs for one.
@@ -46,10 +43,11 @@ class TableMemory : public Unit {
     std::uint64_t slots_per_cycle() const { return std::uint64_t{timing_.ports} * timing_.banks; }
     /// Cycles in which a request in the buffer waited for a port.
     std::uint64_t cycles_held_up() const { return cycles_held_up_; }
-    /// Address and count of the request served last, for traces.
-    std::uint64_t last_address() const { return last_address_; }
 
-    std::string holds() const override { return count_of(size_t{queued_} + answers_, "request"); }
+    std::string holds() const override {
+        return listed(count_of(std::size_t{queued_} + answers_, "request"),
+                      waiting_at_doors_ == 0 ? "" : std::to_string(waiting_at_doors_) + " at its doors");
+    }
     std::uint64_t occupied_cycles() const override;
     void show(Signals& signals) const override;
 

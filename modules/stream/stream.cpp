@@ -14,4 +14,10 @@ void stream_protocol_error(const char* socket, const char* rule, const Clock* cl
     throw std::logic_error(message);  // where SC_ERROR was told not to throw
 }
 
+const sc_core::sc_object* module_behind(const sc_core::sc_interface* interface) {
+    const auto* object = dynamic_cast<const sc_core::sc_object*>(interface);
+    const bool is_socket = object != nullptr && dynamic_cast<const sc_core::sc_module*>(object) == nullptr;
+    return is_socket ? object->get_parent_object() : object;
+}
+
 }  // namespace tessera

@@ -1,4 +1,5 @@
 #pragma once
+#include <systemc>
 #include <tlm>
 
 #include "modules/clock/clock.h"
@@ -24,5 +25,9 @@ struct Stream {
 
 /// Reports a breach of that protocol: an SC_ERROR that names the socket, the rule and, with a clock, the cycle.
 [[noreturn]] void stream_protocol_error(const char* socket, const char* rule, const Clock* clock = nullptr);
+
+/// The module on the other side of a bound socket or port, by what implements the interface there: the module itself or
+/// a socket of it; null: neither (as in TLM's convenience sockets).
+const sc_core::sc_object* module_behind(const sc_core::sc_interface* interface);
 
 }  // namespace tessera

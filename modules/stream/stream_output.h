@@ -46,11 +46,8 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
 
     /// The module that takes the items: who blocks this one.
     const sc_core::sc_object* consumer() const {
-        if (consumer_ == nullptr) {
-            const auto* target =
-                dynamic_cast<const sc_core::sc_object*>(this->get_base_port().get_interface());
-            consumer_ = target == nullptr ? nullptr : target->get_parent_object();
-        }
+        if (consumer_ == nullptr)
+            consumer_ = module_behind(this->get_base_port().get_interface());
         return consumer_;
     }
 

@@ -119,7 +119,7 @@ void Recorder::finish(std::uint64_t cycles) {
     if (vcd_ != nullptr) {
         if (!began_) {
             show_all();
-            next_cycle_ = cycles == 0 ? 0 : cycles - 1;
+            next_cycle_ = cycles - 1;
         }
         end_cycles_before(began_ ? std::min(cycles, end_of_window()) : cycles);
         vcd_->finish(cycles);

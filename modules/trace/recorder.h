@@ -30,7 +30,7 @@ class Recorder : public CycleObserver {
              const std::vector<const Unit*>& units);
     ~Recorder() override;
 
-    /// After the run and the units' Activity::finish, which `cycles` is the length of.
+    /// After the run and the units' Activity::finish, which `cycles`, at least 1, is the length of.
     void finish(std::uint64_t cycles);
 
   private:

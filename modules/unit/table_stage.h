@@ -29,12 +29,9 @@ template <class Derived, class Item>
 class TableStage : public Unit {
   public:
     std::string holds() const override {
-        std::string text = count_of(pipeline_.size() + input_->size(), "item");
-        if (port_->on_offer())
-            text += ", a request its memory does not take";
-        if (input_->holds_back())
-            text += text.empty() ? "one at its door" : ", one at its door";
-        return text;
+        const std::string items = listed(count_of(pipeline_.size() + input_->size(), "item"),
+                                         port_->on_offer() ? "a request its memory does not take" : "");
+        return listed(items, input_->holds_back() ? "one at its door" : "");
     }
     std::uint64_t occupied_cycles() const override { return activity_.items_in() * timing_.interval; }
 

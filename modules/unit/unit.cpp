@@ -16,4 +16,8 @@ std::string count_of(std::size_t count, const char* what) {
     return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
+std::string listed(const std::string& text, const std::string& more, const char* separator) {
+    return text.empty() || more.empty() ? text + more : text + separator + more;
+}
+
 }  // namespace tessera

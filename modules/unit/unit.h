@@ -56,4 +56,7 @@ constexpr std::uint64_t one_at_a_time_cycles(const UnitTiming& timing, std::uint
 /// "3 edges", "1 edge", "".
 std::string count_of(std::size_t count, const char* what);
 
+/// Both, with the separator between them where neither is empty.
+std::string listed(const std::string& text, const std::string& more, const char* separator = ", ");
+
 }  // namespace tessera

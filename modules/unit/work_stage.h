@@ -17,10 +17,8 @@ template <class Derived>
 class WorkStage : public Unit {
   public:
     std::string holds() const override {
-        std::string text = count_of(pipeline_.size() + input_->size(), "item");
-        if (input_->holds_back())
-            text += text.empty() ? "one at its door" : ", one at its door";
-        return text;
+        return listed(count_of(pipeline_.size() + input_->size(), "item"),
+                      input_->holds_back() ? "one at its door" : "");
     }
     std::uint64_t occupied_cycles() const override { return activity_.items_in() * timing_.interval; }
 

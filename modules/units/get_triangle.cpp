@@ -145,12 +145,10 @@ std::string GetTriangle::holds() const {
     if (pass_ != nullptr)
         text = "triangle " + std::to_string(pass_->number) + ", not all of it sent";
     if (!from_host.empty())
-        text +=
-            std::string(text.empty() ? "" : ", ") + "a host triangle" +
-            (queue_level->takes_host_triangles() ? "" : " it may not take: the queue is at its watermark");
-    if (!from_triangle_queue.empty())
-        text += std::string(text.empty() ? "" : ", ") + "a triangle from the queue";
-    return text;
+        text = listed(text, queue_level->takes_host_triangles()
+                                ? "a host triangle"
+                                : "a host triangle it may not take: the queue is at its watermark");
+    return listed(text, from_triangle_queue.empty() ? "" : "a triangle from the queue");
 }
 
 void GetTriangle::show(Signals& signals) const {

@@ -30,13 +30,9 @@ PassOrTessellate::PassOrTessellate(const sc_core::sc_module_name& name, Clock& c
 }
 
 void PassOrTessellate::end_of_elaboration() {
-    const auto producer = [](StreamInput<Work>& input) -> const sc_core::sc_object* {
-        const auto* port = dynamic_cast<const sc_core::sc_object*>(input.get_base_port().get_interface());
-        return port == nullptr ? nullptr : port->get_parent_object();
-    };
-    transform_ = producer(from_transform);
+    transform_ = module_behind(from_transform.get_base_port().get_interface());
     for (StreamInput<Work>& input : from_tessellation_tests)
-        tests_.push_back(producer(input));
+        tests_.push_back(module_behind(input.get_base_port().get_interface()));
 }
 
 void PassOrTessellate::b_transport(Work& work, sc_core::sc_time& delay) {
@@ -172,10 +168,7 @@ const sc_core::sc_object* PassOrTessellate::lacks() const {
 
 std::string PassOrTessellate::holds() const {
     std::string text;
-    const auto add = [&](const std::string& what) {
-        if (!what.empty())
-            text += (text.empty() ? "" : "; ") + what;
-    };
+    const auto add = [&](const std::string& what) { text = listed(text, what, "; "); };
     if (incomplete_count_ > 0) {
         const Pass& first = *incomplete_[first_incomplete_];
         add(count_of(incomplete_count_, "triangle") + " to be joined, the first (" +

@@ -61,9 +61,7 @@ std::string Tessellation::holds() const {
     if (made_ > 0)
         text = std::to_string(made_ - sent_ + (to_triangle_queue.free() ? 0u : 1u)) + " of " +
                std::to_string(made_) + " children of a triangle";
-    if (!from_pass_or_tessellate.empty())
-        text += std::string(text.empty() ? "" : ", ") + "a triangle that waits";
-    return text;
+    return listed(text, from_pass_or_tessellate.empty() ? "" : "a triangle that waits");
 }
 
 void Tessellation::show(Signals& signals) const {

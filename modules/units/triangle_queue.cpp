@@ -143,7 +143,7 @@ void TriangleQueue::take_back() {
 void TriangleQueue::refill() {
     const bool fifo = design_.order == TriangleOrder::fifo;
     while (off_chip_ > 0 && off_chip_memory.may_request() &&
-           (fifo ? on_chip_room() : store_.size() + refills_ <= design_.capacity / 2 && on_chip_room())) {
+           (fifo ? on_chip_room() : store_.size() + refills_ <= design_.capacity / 2)) {
         --off_chip_;
         off_chip_memory.read(place_address(fifo ? off_chip_head_++ : off_chip_head_ + off_chip_));
         ++refills_;
@@ -202,10 +202,11 @@ std::string TriangleQueue::holds() const {
         text += ", " + std::to_string(off_chip_) + " of them off chip";
     if (!leaving_.empty())
         text += ", " + std::to_string(leaving_.size()) + " of them on the way out";
-    if (!from_tessellation.empty())
-        text += std::string(text.empty() ? "" : "; ") + "no place for the next" +
-                (design_.capacity == 0 ? "" : " (capacity " + std::to_string(design_.capacity) + ")");
-    return text;
+    if (from_tessellation.empty())
+        return text;
+    const std::string capacity =
+        design_.capacity == 0 ? "" : " (capacity " + std::to_string(design_.capacity) + ")";
+    return listed(text, "no place for the next" + capacity, "; ");
 }
 
 /// Shows the levels, what goes off chip and comes back, and the triangle that was read from the store last.

@@ -1,4 +1,6 @@
 """Lines and branches of modules/ and golden/ that the tests executed; see scripts/coverage."""
+import json
+import os
 import subprocess
 import sys
 import tomllib
@@ -10,18 +12,37 @@ WANTED = 95.0  # percent, of lines and of branches
 
 
 class File:
-    """What was counted of one source file: lines by number; branches by line, the largest count of each."""
+    """What was counted of one source file: lines by number; branches by line, each by its condition's place in the
+    line and by the way it goes, with the largest count of its copies."""
 
     def __init__(self, text):
         self.text = text
         self.lines = {}
         self.branches = defaultdict(dict)
 
+    def add_line(self, line, times):
+        self.lines[line] = max(self.lines.get(line, 0), times)
+
+    def add_branch(self, line, branch, times):
+        self.branches[line][branch] = max(self.branches[line].get(branch, 0), times)
+
     def unreached_lines(self):
         return sorted(line for line, count in self.lines.items() if count == 0)
 
     def unreached_branches(self):
-        return sorted(line for line, branches in self.branches.items() for count in branches.values() if count == 0)
+        """Line and (column, end line, end column, way) of each."""
+        return sorted((line, branch) for line, branches in self.branches.items()
+                      for branch, count in branches.items() if count == 0)
+
+    def unreached(self):
+        """{line: what of it is not reached}"""
+        faults = defaultdict(list)
+        for line in self.unreached_lines():
+            faults[line].append("never executed")
+        for line, (column, end_line, end_column, way) in self.unreached_branches():
+            condition = self.text[line - 1][column - 1:end_column - 1 if end_line == line else None]
+            faults[line].append(f"`{condition}` never {'true' if way else 'false'}")
+        return faults
 
     def branch_count(self):
         return sum(len(branches) for branches in self.branches.values())
@@ -38,24 +59,35 @@ def count(root, folder):
                       if path.is_file() and path.parent.name in ("tests", "program")
                       and path.stat().st_mode & 0o111 and path.suffix == "")
     objects = [str(programs[0])] + [f"--object={path}" for path in programs[1:]]
-    export = subprocess.run(["llvm-cov", "export", "--format=lcov", f"--instr-profile={merged}", *objects],
-                            check=True, capture_output=True, text=True).stdout
     files = {}
-    file = None
-    for record in export.splitlines():
+
+    def file_of(path):
+        path = Path(os.path.normpath(folder / path))  # a compiler cache may have made it relative to the build
+        name = str(path.relative_to(root)) if path.is_relative_to(root) else ""
+        if not name.startswith(ROOMS):
+            return None
+        if name not in files:
+            files[name] = File(path.read_text().splitlines())
+        return files[name]
+
+    def exported(form):
+        return subprocess.run(["llvm-cov", "export", f"--format={form}", "--skip-functions",
+                               f"--instr-profile={merged}", *objects], check=True, capture_output=True, text=True).stdout
+
+    # A copy of a template has branches of its own in the lcov form; only the JSON form says that they are the same.
+    for record in exported("lcov").splitlines():
         kind, _, rest = record.partition(":")
         if kind == "SF":
-            path = Path(rest)
-            name = str(path.relative_to(root)) if path.is_relative_to(root) else ""
-            file = files.setdefault(name, File(path.read_text().splitlines())) if name.startswith(ROOMS) else None
+            file = file_of(rest)
         elif file is not None and kind == "DA":
             line, times = rest.split(",")[:2]
-            file.lines[int(line)] = max(file.lines.get(int(line), 0), int(times))
-        elif file is not None and kind == "BRDA":
-            line, block, branch, times = rest.split(",")
-            taken = 0 if times == "-" else int(times)
-            branches = file.branches[int(line)]
-            branches[block, branch] = max(branches.get((block, branch), 0), taken)
+            file.add_line(int(line), int(times))
+    for counted in json.loads(exported("text"))["data"][0]["files"]:
+        file = file_of(counted["filename"])
+        for line, column, end_line, end_column, taken, passed_by, *_ in counted["branches"] if file is not None else ():
+            place = (column, end_line, end_column)
+            file.add_branch(line, (*place, True), taken)
+            file.add_branch(line, (*place, False), passed_by)
     return files
 
 
@@ -63,8 +95,8 @@ class Reasons:
     """Why a line is not reached, by file and by the line's text."""
 
     def __init__(self, path):
-        self.reasons = {(entry["file"], entry["line"]): entry["reason"]
-                        for entry in tomllib.loads(path.read_text()).get("unreached", [])}
+        self.reasons = {(entry["file"], line): entry["reason"]
+                        for entry in tomllib.loads(path.read_text()).get("unreached", []) for line in entry["lines"]}
         self.used = set()
 
     def of(self, name, text):
@@ -97,11 +129,10 @@ def report(files, reasons):
         text.append(row(name, *figures))
         for room in (name.split("/")[0] + "/", "all"):
             totals[room] = [a + b for a, b in zip(totals[room], figures)]
-        for line in sorted({*lines, *branches}):
+        for line, faults in sorted(file.unreached().items()):
             code = file.text[line - 1]
-            what = "line" if line in lines else "branch"
             reason = reasons.of(name, code)
-            entry = f"{name}:{line}: {what}: {code.strip()}"
+            entry = f"{name}:{line}: {', '.join(faults)}: {code.strip()}"
             (explained if reason else unexplained).append(entry + (f"\n    {reason}" if reason else ""))
     text += [""] + [row(room, *figures) for room, figures in sorted(totals.items(), reverse=True)]
     for heading, entries in (("Not reached, and why", explained), ("Not reached, without a reason", unexplained)):

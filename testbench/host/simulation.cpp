@@ -75,10 +75,11 @@ std::string Simulation::stuck() const {
         std::string line = unit->holds();
         const Activity& activity = unit->activity();
         const sc_core::sc_object* by = activity.by();
-        if (activity.state() == State::blocked && by != nullptr)
-            line += fmt::format("; waits for {} to take it", by->basename());
-        else if (by != nullptr)
-            line += fmt::format("; waits for {}", by->basename());
+        if (by != nullptr)
+            line = listed(line,
+                          fmt::format("waits for {}{}", by->basename(),
+                                      activity.state() == State::blocked ? " to take it" : ""),
+                          "; ");
         if (!line.empty())
             text += fmt::format("  {}: {}\n", unit->name(), line);
     }

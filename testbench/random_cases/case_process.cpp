@@ -15,6 +15,8 @@
 #include <system_error>
 #include <type_traits>
 
+#include "testbench/common/leave_process.h"
+
 namespace tessera {
 
 namespace {
@@ -52,7 +54,7 @@ void write_all(int pipe, const void* data, std::size_t size) {
     write_all(pipe, &header, sizeof header);
     write_all(pipe, result.failure.data(), result.failure.size());
     std::fflush(nullptr);
-    ::_exit(0);
+    leave_process(0);
 }
 
 std::string read_all(int pipe) {

@@ -62,6 +62,30 @@ TrianglePass any_pass(Random& random) {
 
 }  // namespace
 
+namespace {
+
+/// Equal to itself, and to no copy of which one field differs.
+template <class Part, class... Fields>
+void check_equality(const Part& part, Fields Part::*... fields) {
+    CHECK(part == part);
+    const auto differs = [&](auto field) {
+        Part other = part;
+        other.*field = !(other.*field);
+        return !(other == part) && !(part == other);
+    };
+    CHECK((differs(fields) && ...));
+}
+
+}  // namespace
+
+TEST_CASE("vertex: parts are equal when every field is") {
+    check_equality(Position{5, 6, 7}, &Position::x, &Position::y, &Position::z);
+    check_equality(Direction{5, 6, 7}, &Direction::x, &Direction::y, &Direction::z);
+    check_equality(TexCoord{5, 6}, &TexCoord::u, &TexCoord::v);
+    check_equality(ScreenPosition{5, 6, 7, true}, &ScreenPosition::x, &ScreenPosition::y, &ScreenPosition::w,
+                   &ScreenPosition::in_front);
+}
+
 TEST_CASE("tessellate: children carry complete vertices and the parent's tags") {
     Random random(26);
     Formats formats;

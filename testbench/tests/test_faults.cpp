@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "testbench/check/conservation.h"
+#include "testbench/common/leave_process.h"
 #include "testbench/faults/checked_run.h"
 #include "testbench/job/job_choices.h"
 #include "testbench/tests/timed_checks.h"
@@ -116,7 +117,7 @@ Outcome run(const Job& job) {
         }
         const std::string all = outcome.catchers + "\n" + outcome.mesh + "\n" + outcome.text;
         const bool written = write(ends[1], all.data(), all.size()) == static_cast<ssize_t>(all.size());
-        _exit(written ? 0 : 1);
+        leave_process(written ? 0 : 1);
     }
     close(ends[1]);
     std::string all;

@@ -53,6 +53,7 @@ TEST_CASE("table: four reads equal the sum texel by texel") {
 TEST_CASE("map: unusable input is refused") {
     const AddressMode clamp = AddressMode::clamp;
     CHECK_THROWS_AS(Map(0, 1, clamp, clamp, {}), std::invalid_argument);
+    CHECK_THROWS_AS(Map(1, 0, clamp, clamp, {}), std::invalid_argument);
     CHECK_THROWS_AS(Map(2, 2, clamp, clamp, {1, 2, 3}), std::invalid_argument);
     CHECK_THROWS_AS(Map(1, 1, clamp, clamp, {0.5}), std::invalid_argument);
     CHECK_THROWS_AS(Map(1, 1, clamp, clamp, {-1}), std::invalid_argument);

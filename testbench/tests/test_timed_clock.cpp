@@ -203,6 +203,23 @@ TEST_CASE("clock: running out of things to do is no lack of progress") {
     CHECK(t.clock.idle());
 }
 
+TEST_CASE("clock: a period of zero is an error") {
+    CHECK_THAT(error_of([] { Clock clock("clock", sc_core::SC_ZERO_TIME); }),
+               Catch::Contains("period is zero"));
+}
+
+TEST_CASE("clock: idle when nobody asked for a cycle, and not within one") {
+    Three t;
+    CHECK(t.clock.idle());
+    t.clock.wake_at(t.a, 3);
+    CHECK_FALSE(t.clock.idle());
+    bool idle_within = true;
+    t.a.on_step = [&] { idle_within = t.clock.idle(); };
+    sc_core::sc_start();
+    CHECK_FALSE(idle_within);
+    CHECK(t.clock.idle());
+}
+
 TEST_CASE("clock: 64 units, and an error for the next") {
     Clock clock("clock", sc_time(10, SC_PS));
     std::vector<std::unique_ptr<Caller>> callers;

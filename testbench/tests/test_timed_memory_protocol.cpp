@@ -1,15 +1,16 @@
+#include <tlm_utils/simple_target_socket.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <string>
 #include <vector>
 
 #include "modules/memory/memory_port.h"
-#include "modules/memory/off_chip_memory.h"
-#include "modules/memory/store_port.h"
 #include "modules/memory/table_memory.h"
+#include "testbench/tests/memory_protocol.h"
 #include "testbench/tests/timed_modules.h"
 
-// The memories' sockets: base protocol responses, breaches by either side, and off-chip memory to the cycle.
+// The tables' sockets and the ports that read them: base protocol responses, direct access, breaches by either side.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -18,69 +19,11 @@ using sc_core::SC_PS;
 using sc_core::sc_time;
 using sc_core::SC_ZERO_TIME;
 using Cycles = std::vector<std::uint64_t>;
-using Transaction = tlm::tlm_generic_payload;
 
 namespace {
 
 const sc_time period(10, SC_PS);
 const datapath::TableLayout layout{4096, 16, 16, 4};
-
-/// The reuse of payloads is the test's own matter.
-struct Manager : tlm::tlm_mm_interface {
-    void free(Transaction*) override {}
-};
-
-/// An initiator whose phases are the test's.
-struct Initiator : sc_core::sc_module {
-    tlm_utils::simple_initiator_socket<Initiator> socket{"socket"};
-    std::vector<std::pair<tlm::tlm_phase, Transaction*>> back;
-    tlm::tlm_sync_enum reply = tlm::TLM_COMPLETED;
-
-    explicit Initiator(const sc_core::sc_module_name& name) : sc_module(name) {
-        socket.register_nb_transport_bw(this, &Initiator::nb_transport_bw);
-    }
-    tlm::tlm_sync_enum send(Transaction& payload, tlm::tlm_phase phase, sc_time delay = SC_ZERO_TIME) {
-        return socket->nb_transport_fw(payload, phase, delay);
-    }
-
-  private:
-    tlm::tlm_sync_enum nb_transport_bw(Transaction& payload, tlm::tlm_phase& phase, sc_time&) {
-        back.emplace_back(phase, &payload);
-        return phase == tlm::BEGIN_RESP ? reply : tlm::TLM_ACCEPTED;
-    }
-};
-
-/// A target whose phases are the test's; keeps what it is sent.
-struct Target : sc_core::sc_module {
-    tlm_utils::passthrough_target_socket<Target> socket{"socket"};
-    std::vector<Transaction*> come;
-    tlm::tlm_sync_enum status = tlm::TLM_UPDATED;
-    tlm::tlm_phase phase_back = tlm::END_REQ;
-
-    explicit Target(const sc_core::sc_module_name& name) : sc_module(name) {
-        socket.register_nb_transport_fw(this, &Target::nb_transport_fw);
-    }
-    tlm::tlm_sync_enum send_back(Transaction& payload, tlm::tlm_phase phase, sc_time delay = SC_ZERO_TIME) {
-        return socket->nb_transport_bw(payload, phase, delay);
-    }
-
-  private:
-    tlm::tlm_sync_enum nb_transport_fw(Transaction& payload, tlm::tlm_phase& phase, sc_time&) {
-        come.push_back(&payload);
-        phase = phase_back;
-        return status;
-    }
-};
-
-void make_read(Transaction& payload, unsigned char* data, std::uint64_t address, unsigned length = 4) {
-    payload.set_command(tlm::TLM_READ_COMMAND);
-    payload.set_address(address);
-    payload.set_data_ptr(data);
-    payload.set_data_length(length);
-    payload.set_streaming_width(length);
-    payload.set_byte_enable_ptr(nullptr);
-    payload.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
-}
 
 struct TableBench {
     Clock clock{"clock", period};
@@ -134,6 +77,8 @@ TEST_CASE("table memory: every response of the base protocol, blocking and non-b
         make_read(payload, bench.data, outside);
         bench.expect(payload, tlm::TLM_ADDRESS_ERROR_RESPONSE);
     }
+    make_read(payload, bench.data, layout.base, static_cast<unsigned>(layout.bytes()) + 1);
+    bench.expect(payload, tlm::TLM_ADDRESS_ERROR_RESPONSE);
     make_read(payload, bench.data, layout.base);
     payload.set_command(tlm::TLM_WRITE_COMMAND);
     bench.expect(payload, tlm::TLM_COMMAND_ERROR_RESPONSE);
@@ -162,6 +107,96 @@ TEST_CASE("table memory: a gather with one address outside is an address error")
     gather.address[2] = layout.base + layout.bytes() - 4;
     bench.expect(payload, tlm::TLM_OK_RESPONSE);
     payload.clear_extension(&gather);
+}
+
+TEST_CASE("table memory: a copied request asks for the same addresses") {
+    GatherExtension gather;
+    gather.count = 2;
+    gather.address = {layout.base + 8, layout.base + 60};
+    Transaction payload, copy;
+    payload.set_extension(&gather);
+    copy.deep_copy_from(payload);
+    const auto* copied = copy.get_extension<GatherExtension>();
+    REQUIRE(copied != nullptr);
+    CHECK(copied != &gather);
+    CHECK(copied->count == 2);
+    CHECK(copied->address == gather.address);
+    gather.address[0] = 0;
+    copy.update_extensions_from(payload);
+    CHECK(copied->address[0] == 0);
+    copy.free_all_extensions();
+    payload.clear_extension(&gather);
+}
+
+TEST_CASE("table memory: debug access reads and writes what lies in the table, and nothing else") {
+    TableBench bench;
+    Transaction payload;
+    const auto access = [&](tlm::tlm_command command, std::uint64_t address, unsigned length = 4) {
+        make_read(payload, bench.data, address, length);
+        payload.set_command(command);
+        return bench.initiator.socket->transport_dbg(payload);
+    };
+    const std::vector<unsigned char> written{1, 2, 3, 4};
+    std::copy(written.begin(), written.end(), bench.data);
+    CHECK(access(tlm::TLM_WRITE_COMMAND, layout.base + 8) == 4);
+    std::fill_n(bench.data, 4, static_cast<unsigned char>(9));
+    CHECK(access(tlm::TLM_IGNORE_COMMAND, layout.base + 8) == 0);
+    CHECK(bench.data[0] == 9);
+    CHECK(access(tlm::TLM_READ_COMMAND, layout.base + 8) == 4);
+    CHECK(std::equal(written.begin(), written.end(), bench.data));
+    for (const tlm::tlm_command command : {tlm::TLM_READ_COMMAND, tlm::TLM_WRITE_COMMAND}) {
+        CHECK(access(command, layout.base - 1) == 0);
+        CHECK(access(command, layout.base + layout.bytes() - 3) == 0);
+    }
+    CHECK(bench.memory.transactions() == 0);
+    CHECK(sc_core::sc_time_stamp() == SC_ZERO_TIME);
+}
+
+TEST_CASE("table memory: direct access is granted for reads, over the whole table, at its latency") {
+    TableBench bench;
+    Transaction payload;
+    tlm::tlm_dmi dmi;
+    make_read(payload, bench.data, layout.base + 8);
+    payload.set_command(tlm::TLM_WRITE_COMMAND);
+    CHECK_FALSE(bench.initiator.socket->get_direct_mem_ptr(payload, dmi));
+    make_read(payload, bench.data, layout.base + layout.bytes());
+    CHECK_FALSE(bench.initiator.socket->get_direct_mem_ptr(payload, dmi));
+    make_read(payload, bench.data, layout.base + 8);
+    REQUIRE(bench.initiator.socket->get_direct_mem_ptr(payload, dmi));
+    CHECK(dmi.is_read_allowed());
+    CHECK_FALSE(dmi.is_write_allowed());
+    CHECK(dmi.get_start_address() == layout.base);
+    CHECK(dmi.get_end_address() == layout.base + layout.bytes() - 1);
+    CHECK(dmi.get_read_latency() == period);
+}
+
+TEST_CASE("table memory: a plain read takes a port of its own address's bank") {
+    Clock clock("clock", period);
+    MemoryTiming timing;
+    timing.banks = 2;
+    timing.buffer = 2;
+    TableMemory memory("memory", clock, layout, timing, {});
+    clock.attach(memory);
+    Initiator initiator("initiator");
+    initiator.socket.bind(memory.socket);
+    sc_core::sc_start(SC_ZERO_TIME);
+    Manager manager;
+    unsigned char data[8] = {};
+    Transaction first(&manager), second(&manager);
+    const auto cycles_of = [&](std::uint64_t first_address, std::uint64_t second_address) {
+        const std::uint64_t begin = clock.cycle();
+        make_read(first, data, first_address);
+        make_read(second, data, second_address);
+        for (Transaction* it : {&first, &second}) {
+            it->acquire();
+            CHECK(initiator.send(*it, tlm::BEGIN_REQ) == tlm::TLM_UPDATED);
+        }
+        sc_core::sc_start();
+        return clock.last_cycle() - begin;
+    };
+    CHECK(cycles_of(layout.base, layout.base + 4) == 1);
+    CHECK(cycles_of(layout.base, layout.base + 8) == 2);
+    CHECK(initiator.back.size() == 4);
 }
 
 TEST_CASE("table memory: the delay of a request is added before it is served") {
@@ -297,9 +332,95 @@ TEST_CASE("memory port: breaches of a memory are errors that name the port") {
 TEST_CASE("memory port: an answer by return that is none is an error") {
     PortBench bench("bench");
     sc_core::sc_start(SC_ZERO_TIME);
-    bench.target.status = tlm::TLM_COMPLETED;
-    CHECK_THAT(error_of([&] { bench.port.request(bench.addresses, 1); }),
-               Contains("bench.port") && Contains("answered by neither"));
+    for (const auto& [status, phase] : std::vector<std::pair<tlm::tlm_sync_enum, tlm::tlm_phase>>{
+             {tlm::TLM_COMPLETED, tlm::END_REQ}, {tlm::TLM_UPDATED, tlm::BEGIN_RESP}}) {
+        bench.target.status = status;
+        bench.target.phase_back = phase;
+        CHECK_THAT(error_of([&] { bench.port.request(bench.addresses, 1); }),
+                   Contains("bench.port") && Contains("answered by neither"));
+    }
+}
+
+namespace {
+
+/// A blocking memory of four entries whose answers about direct access are the test's.
+struct DirectTarget : sc_core::sc_module {
+    tlm_utils::simple_target_socket<DirectTarget> socket{"socket"};
+    std::vector<unsigned char> bytes = std::vector<unsigned char>(16);
+    bool grants = true;
+    bool readable = true;
+    std::uint64_t last = 15;
+    unsigned transactions = 0;
+    unsigned asked = 0;
+
+    explicit DirectTarget(const sc_core::sc_module_name& name) : sc_module(name) {
+        for (std::size_t k = 0; k < bytes.size(); ++k)
+            bytes[k] = static_cast<unsigned char>(k);
+        socket.register_b_transport(this, &DirectTarget::b_transport);
+        socket.register_get_direct_mem_ptr(this, &DirectTarget::get_direct_mem_ptr);
+    }
+
+  private:
+    void b_transport(Transaction& payload, sc_time& delay) {
+        ++transactions;
+        std::copy_n(&bytes[payload.get_address()], payload.get_data_length(), payload.get_data_ptr());
+        payload.set_dmi_allowed(true);
+        payload.set_response_status(tlm::TLM_OK_RESPONSE);
+        delay += period;
+    }
+    bool get_direct_mem_ptr(Transaction&, tlm::tlm_dmi& dmi) {
+        ++asked;
+        dmi.set_dmi_ptr(bytes.data());
+        dmi.set_start_address(0);
+        dmi.set_end_address(last);
+        dmi.set_read_latency(period);
+        if (readable)
+            dmi.allow_read();
+        else
+            dmi.allow_write();
+        return grants;
+    }
+};
+
+}  // namespace
+
+TEST_CASE(
+    "memory port: reads are transactions until direct access is granted, and again after it is withdrawn") {
+    DirectTarget target("target");
+    struct Owner : sc_core::sc_module {
+        MemoryPort port{"port", 4, true};
+        explicit Owner(const sc_core::sc_module_name& name) : sc_module(name) {}
+    } owner("owner");
+    owner.port.socket.bind(target.socket);
+    sc_core::sc_start(SC_ZERO_TIME);
+    sc_time delay = SC_ZERO_TIME;
+    unsigned reads = 0;
+    const auto read = [&] {
+        CHECK(owner.port.read(4, delay) == 0x07060504);
+        CHECK(owner.port.reads() == ++reads);
+        CHECK(delay == period * reads);
+    };
+    target.grants = false;
+    read();
+    target.grants = true;
+    target.readable = false;
+    read();
+    target.readable = true;
+    target.last = 6;  // entries are fetched eight bytes at a time
+    read();
+    CHECK(target.asked == 3);
+    CHECK(target.transactions == 3);
+    target.last = 15;
+    read();  // asks, and is granted
+    read();
+    read();
+    CHECK(target.asked == 4);
+    CHECK(target.transactions == 4);
+    target.socket->invalidate_direct_mem_ptr(0, 15);
+    read();
+    CHECK(target.transactions == 5);
+    read();
+    CHECK(target.transactions == 5);
 }
 
 TEST_CASE("memory port: an error response is an error that names port, address and response") {
@@ -316,168 +437,4 @@ TEST_CASE("memory port: a memory that forgets the response status is an error") 
     bench.port.request(bench.addresses, 1);
     CHECK_THAT(error_of([&] { bench.answer(0, tlm::TLM_INCOMPLETE_RESPONSE); }),
                Contains("bench.port") && Contains("TLM_INCOMPLETE_RESPONSE"));
-}
-
-namespace {
-
-/// Off-chip memory of 1000 bytes and a port for records of 40 bytes, of which 8 take no time.
-struct OffChipBench : sc_core::sc_module {
-    Clock clock{"clock", period};
-    OffChipMemory memory;
-    Caller owner{clock};
-    StorePort port{"port", clock, owner, 40, 16};
-    std::vector<std::pair<bool, std::uint64_t>> wanted;  ///< write?, address; each made as soon as it may
-    Cycles offered, answered;
-    std::vector<int> read_values;
-
-    OffChipBench(const sc_core::sc_module_name& name, const OffChipTiming& timing,
-                 const StallParameters& stalls = {})
-        : sc_module(name), memory("memory", clock, timing, stalls, 1000, 8) {
-        clock.attach(memory);
-        port.socket.bind(memory.socket);
-        owner.on_step = [this] { step(); };
-    }
-    void run() {
-        clock.wake_at(owner, 10);
-        sc_core::sc_start();
-        memory.activity().finish(clock.last_cycle() + 1);
-        CHECK(answered.size() == wanted.size());
-    }
-
-  private:
-    void step() {
-        while (port.answered()) {
-            answered.push_back(clock.cycle());
-            if (port.answer_is_read())
-                read_values.push_back(port.answer()[0]);
-            port.pop_answer();
-        }
-        while (offered.size() < wanted.size() && port.may_request()) {
-            const auto [write, address] = wanted[offered.size()];
-            offered.push_back(clock.cycle());
-            if (write) {
-                std::fill_n(port.record_to_write(), 40, static_cast<unsigned char>(offered.size()));
-                port.write(address);
-            } else {
-                port.read(address);
-            }
-        }
-    }
-};
-
-}  // namespace
-
-TEST_CASE("off-chip memory: bandwidth, latency, and one channel for both directions") {
-    // 32 bytes at 5 a cycle: 7 cycles each, one after another from 10 on; answered 20 after the last byte
-    OffChipBench bench("bench", {20, 5, 4});
-    bench.wanted = {{true, 0}, {true, 40}, {false, 40}, {true, 0}, {false, 0}, {false, 80}};
-    bench.run();
-    CHECK(bench.answered == Cycles{37, 44, 51, 58, 65, 72});
-    CHECK(bench.read_values == std::vector<int>{2, 4, 0});  // never written: zero
-    CHECK(bench.memory.bytes_written() == 3 * 32);
-    CHECK(bench.memory.bytes_read() == 3 * 32);
-    CHECK(bench.memory.occupied_cycles() == 6 * 7);
-    CHECK(bench.memory.activity().cycles_in(State::busy) == 6 * 7);
-    CHECK(bench.memory.activity().items_out() == 6);
-}
-
-TEST_CASE("off-chip memory: latency 0, a cycle for what fits into one") {
-    OffChipBench bench("bench", {0, 32, 1});
-    bench.wanted = {{true, 0}, {false, 0}, {true, 0}, {false, 0}};
-    bench.run();
-    CHECK(bench.answered == Cycles{11, 12, 13, 14});
-    CHECK(bench.read_values == std::vector<int>{1, 3});
-}
-
-TEST_CASE("off-chip memory: a full buffer withholds END_REQ") {
-    // 4 cycles each: one served in cycle 10, two in the buffer, the fourth on offer until 14, the fifth until 18
-    OffChipBench bench("bench", {1, 8, 2});
-    bench.wanted = std::vector<std::pair<bool, std::uint64_t>>(6, {true, 0});
-    bench.run();
-    CHECK(bench.offered == Cycles{10, 10, 10, 10, 14, 18});
-}
-
-TEST_CASE("off-chip memory: random stalls change no answer") {
-    OffChipBench bench("bench", {3, 16, 2}, {5, 500, 20});
-    for (int k = 0; k < 100; ++k)
-        for (const bool write : {true, false})
-            bench.wanted.emplace_back(write, static_cast<std::uint64_t>(k % 25 * 40));
-    bench.run();
-    REQUIRE(bench.read_values.size() == 100);
-    for (int k = 0; k < 100; ++k)
-        REQUIRE(bench.read_values[static_cast<std::size_t>(k)] == (2 * k + 1) % 256);
-    CHECK(bench.clock.last_cycle() > 10 + 200 * 2 + 100);
-}
-
-TEST_CASE("off-chip memory: an access beyond its size is an error that names the port") {
-    OffChipBench bench("bench", {1, 8, 2});
-    bench.wanted = {{true, 960}, {true, 961}};
-    CHECK_THAT(error_of([&] { bench.run(); }),
-               Contains("bench.port") && Contains("0x3c1") && Contains("TLM_ADDRESS_ERROR_RESPONSE"));
-    CHECK(bench.answered.size() == 1);
-}
-
-TEST_CASE("off-chip memory: a command that is neither read nor write, and breaches of an initiator") {
-    Clock clock("clock", period);
-    OffChipMemory memory("memory", clock, {1, 8, 1}, {}, 1000, 8);
-    clock.attach(memory);
-    Initiator initiator("initiator");
-    initiator.socket.bind(memory.socket);
-    sc_core::sc_start(SC_ZERO_TIME);
-    Manager manager;
-    unsigned char data[40] = {};
-    Transaction payload(&manager), second(&manager), third(&manager);
-    for (Transaction* it : {&payload, &second, &third}) {
-        it->acquire();
-        make_read(*it, data, 0, 40);
-    }
-    CHECK_THAT(error_of([&] { initiator.send(payload, tlm::END_RESP); }),
-               Contains("memory.socket") && Contains("other than BEGIN_REQ"));
-    payload.set_command(tlm::TLM_IGNORE_COMMAND);
-    CHECK(initiator.send(payload, tlm::BEGIN_REQ) == tlm::TLM_UPDATED);
-    CHECK(initiator.send(second, tlm::BEGIN_REQ) == tlm::TLM_ACCEPTED);
-    CHECK_THAT(error_of([&] { initiator.send(third, tlm::BEGIN_REQ); }),
-               Contains("memory.socket") && Contains("BEGIN_REQ before END_REQ"));
-    sc_core::sc_start();
-    CHECK(payload.get_response_status() == tlm::TLM_COMMAND_ERROR_RESPONSE);
-    CHECK(second.get_response_status() == tlm::TLM_OK_RESPONSE);
-    initiator.reply = tlm::TLM_ACCEPTED;
-    CHECK(initiator.send(third, tlm::BEGIN_REQ) == tlm::TLM_UPDATED);
-    CHECK_THAT(error_of([] { sc_core::sc_start(); }),
-               Contains("memory.socket") && Contains("BEGIN_RESP was not completed"));
-}
-
-TEST_CASE("store port: breaches of a memory are errors that name the port") {
-    Clock clock("clock", period);
-    Caller owner(clock);
-    struct Owner : sc_core::sc_module {
-        StorePort port;
-        Owner(const sc_core::sc_module_name& name, Clock& its_clock, Clocked& unit)
-            : sc_module(name), port("port", its_clock, unit, 40, 4) {}
-    } unit("unit", clock, owner);
-    Target target("target");
-    unit.port.socket.bind(target.socket);
-    sc_core::sc_start(SC_ZERO_TIME);
-    Transaction stranger;
-    const auto breach = [&](Transaction& payload, tlm::tlm_phase phase) {
-        return error_of([&] { target.send_back(payload, phase); });
-    };
-    CHECK_THAT(breach(stranger, tlm::END_REQ), Contains("unit.port") && Contains("not on offer"));
-    CHECK_THAT(breach(stranger, tlm::BEGIN_RESP), Contains("unit.port") && Contains("was not made"));
-    unit.port.read(0);
-    target.status = tlm::TLM_ACCEPTED;
-    unit.port.write(40);
-    CHECK_THAT(error_of([&] { unit.port.write(80); }),
-               Contains("unit.port") && Contains("BEGIN_REQ before END_REQ"));
-    CHECK_THAT(breach(*target.come[1], tlm::BEGIN_RESP), Contains("out of order or before END_REQ"));
-    CHECK_THAT(breach(*target.come[0], tlm::END_RESP), Contains("no memory may send"));
-    target.come[0]->set_response_status(tlm::TLM_OK_RESPONSE);
-    CHECK(breach(*target.come[0], tlm::BEGIN_RESP).empty());
-    CHECK_THAT(breach(*target.come[1], tlm::BEGIN_RESP), Contains("before END_REQ"));
-    CHECK(unit.port.answered());
-    unit.port.pop_answer();
-    CHECK(breach(*target.come[1], tlm::END_REQ).empty());
-    target.status = tlm::TLM_COMPLETED;
-    CHECK_THAT(error_of([&] { unit.port.read(0); }),
-               Contains("unit.port") && Contains("answered by neither"));
 }

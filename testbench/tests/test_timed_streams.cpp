@@ -273,6 +273,39 @@ TEST_CASE("stream: every breach of a consumer is an error that names the produce
                Contains("offerer.out"));  // for an item that was not offered
 }
 
+TEST_CASE("stream: no memory, so neither direct nor debug access") {
+    Clock clock("clock", period);
+    Sink<int> sink("sink", clock);
+    Offerer offerer("offerer");
+    offerer.out.bind(sink.in);
+    sc_core::sc_start(SC_ZERO_TIME);
+    int item = 3;
+    tlm::tlm_dmi dmi;
+    CHECK_FALSE(offerer.out->get_direct_mem_ptr(item, dmi));
+    CHECK(offerer.out->transport_dbg(item) == 0);
+    sink.in->invalidate_direct_mem_ptr(0, 7);  // of which it has none: nothing happens
+    CHECK(sink.items.empty());
+}
+
+TEST_CASE("stream: who is behind a socket") {
+    struct NoObject : sc_core::sc_interface {
+    } no_object;
+    struct Channel : sc_core::sc_module, sc_core::sc_interface {
+        explicit Channel(const sc_core::sc_module_name& name) : sc_module(name) {}
+    } channel("channel");
+    Clock clock("clock", period);
+    Sink<int> sink("sink", clock);
+    Offerer offerer("offerer");
+    offerer.out.bind(sink.in);
+    sc_core::sc_start(SC_ZERO_TIME);
+    CHECK(module_behind(nullptr) == nullptr);
+    CHECK(module_behind(&no_object) == nullptr);
+    CHECK(module_behind(&channel) == &channel);
+    CHECK(module_behind(offerer.out.get_base_port().get_interface()) == &sink);
+    CHECK(module_behind(sink.in.get_base_port().get_interface()) == &offerer);
+    CHECK(offerer.out.consumer() == &sink);
+}
+
 TEST_CASE("stream: b_transport adds to the delay it is given") {
     Clock clock("clock", period);
     Sink<int> sink("sink", clock);

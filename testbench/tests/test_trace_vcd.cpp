@@ -447,6 +447,7 @@ TEST_CASE("VCD: misuse is refused") {
     CHECK_THROWS_AS(writer.add("top", "y", 65), std::logic_error);
     CHECK_THROWS_AS(writer.add("top", "", 1), std::logic_error);
     CHECK_THROWS_AS(writer.add("top", "y z", 1), std::logic_error);
+    CHECK_THROWS_AS(writer.add("top", "y\x7f", 1), std::logic_error);
     CHECK_THROWS_AS(writer.add("", "y", 1), std::logic_error);
     CHECK_THROWS_AS(writer.add("top..b", "y", 1), std::logic_error);
     writer.end_cycle(5);

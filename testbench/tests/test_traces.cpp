@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "testbench/tests/program_runner.h"
 #include "testbench/tests/run_folder.h"
@@ -147,6 +148,28 @@ TEST_CASE("waveforms count what the statistics count") {
         for (std::uint64_t state = 0; state < 4; ++state)
             CHECK(cycles_in(group.substr(7), state) == members.at(names[state]).at("value"));
     }
+}
+
+TEST_CASE("waveforms of off-chip memory show what a queue of four triangles spills and gets back") {
+    const TestFolder here;
+    require_fine(run_small(here, {"--vcd", "--trace", "0:1000000", "--set", "hardware.queue_capacity=4"}));
+    const VcdFile vcd(here.path() / "out/trace.vcd");
+    const nlohmann::json statistics = statistics_of(here);
+    const auto& of_memory = [&](const std::string& name) -> const VcdFile::Signal& {
+        return vcd["tessera.off_chip_memory." + name];
+    };
+    const std::uint64_t bytes = count(statistics, "triangle_queue", "spill_bytes");
+    REQUIRE(bytes > 0);
+    CHECK(of_memory("bytes_written").at(vcd.end) == bytes / 2);
+    CHECK(of_memory("bytes_read").at(vcd.end) == bytes / 2);
+    CHECK(of_memory("answers_due").at(vcd.end) == 0);
+    CHECK(of_memory("served").high_cycles(period, vcd.end) ==
+          2 * count(statistics, "triangle_queue", "spilled"));
+    CHECK(of_memory("write").changes.size() > 1);
+    std::set<std::uint64_t> addresses;
+    for (const auto& [time, address] : of_memory("address").changes)
+        addresses.insert(address);
+    CHECK(addresses.size() > 4);
 }
 
 TEST_CASE("only the units named are traced") {

@@ -18,9 +18,7 @@ ViewTest::ViewTest(const sc_core::sc_module_name& name, Clock& clock, const data
 }
 
 void ViewTest::end_of_elaboration() {
-    const auto* producer =
-        dynamic_cast<const sc_core::sc_object*>(from_transform.get_base_port().get_interface());
-    transform_ = producer == nullptr ? nullptr : producer->get_parent_object();
+    transform_ = module_behind(from_transform.get_base_port().get_interface());
 }
 
 void ViewTest::process(const Work& work) {
