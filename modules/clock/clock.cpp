@@ -9,6 +9,7 @@ Clock::Clock(const sc_core::sc_module_name& name, const sc_core::sc_time& period
     : sc_module(name), period_time_(period), period_(period.value()) {
     if (period_ == 0)
         SC_REPORT_ERROR("tessera/clock", "the clock's period is zero");
+    most_cycles_ = UINT64_MAX / period_;
     for (std::size_t cycles = 0; cycles < delays_.size(); ++cycles)
         delays_[cycles] = sc_core::sc_time::from_value(cycles * period_);
     units_.reserve(most_units);
@@ -41,11 +42,18 @@ void Clock::wake_from_outside(const Clocked& unit, std::uint64_t cycle) {
     } else {
         wake_far(unit, cycle);
     }
-    if (!scheduled_ || cycle < next_tick_) {
+    if (cycle > most_cycles_) {
+        end_time();
+    } else if (!scheduled_ || cycle < next_tick_) {
         scheduled_ = true;
         next_tick_ = cycle;
         tick_event_.notify(sc_core::sc_time::from_value(cycle * period_) - sc_core::sc_time_stamp());
     }
+}
+
+void Clock::end_time() {
+    out_of_time_ = true;
+    sc_core::sc_stop();
 }
 
 void Clock::take_far() {
@@ -130,7 +138,11 @@ void Clock::tick() {
         sc_core::sc_stop();
         return;
     }
-    if (find_next(next_tick_)) {
+    if (!find_next(next_tick_))
+        return;
+    if (next_tick_ > most_cycles_) {
+        end_time();
+    } else {
         scheduled_ = true;
         const std::uint64_t cycles = next_tick_ - cycle_;
         tick_event_.notify(cycles < delays_.size() ? delays_[cycles]

@@ -104,6 +104,10 @@ class Clock : public sc_core::sc_module {
     /// The clock did that.
     bool stalled() const { return stalled_; }
 
+    /// The clock stopped the simulation because a cycle was asked for that begins after the end of SystemC's time, 2^64 - 1
+    /// time steps.
+    bool out_of_time() const { return out_of_time_; }
+
     /// From cycle `first` to cycle `last`; outside these an observer costs nothing.
     void observe(CycleObserver* observer, std::uint64_t first = 0, std::uint64_t last = UINT64_MAX) {
         observer_ = observer;
@@ -130,10 +134,12 @@ class Clock : public sc_core::sc_module {
     void wake_far(const Clocked& unit, std::uint64_t cycle);
     void wake_from_outside(const Clocked& unit, std::uint64_t cycle);
     bool find_next(std::uint64_t& next) const;
+    void end_time();
     std::uint64_t first_cycle_not_before_now() const { return cycles(sc_core::sc_time_stamp()); }
 
     sc_core::sc_time period_time_;
     std::uint64_t period_;
+    std::uint64_t most_cycles_ = 0;  // that begin within SystemC's time
     std::array<sc_core::sc_time, 16> delays_;  // of so many cycles: sc_time is slow to make
     sc_core::sc_event tick_event_{"tick_event"};
     std::vector<Clocked*> units_;
@@ -148,6 +154,7 @@ class Clock : public sc_core::sc_module {
     std::uint64_t cycles_without_progress_ = 0;
     std::uint64_t most_without_progress_ = 0;
     bool stalled_ = false;
+    bool out_of_time_ = false;
     CycleObserver* observer_ = nullptr;
     std::uint64_t observed_first_ = 0;
     std::uint64_t observed_last_ = 0;

@@ -86,6 +86,8 @@ void OffChipMemory::serve(tlm::tlm_generic_payload& payload, std::uint64_t cycle
     channel_free_ = cycle + taken;
     channel_cycles_ += taken;
     access(payload);
+    last_address_ = payload.get_address();
+    last_is_write_ = payload.is_write();
     if (answers_ == answer_ring_.size()) {
         std::rotate(answer_ring_.begin(), answer_ring_.begin() + static_cast<std::ptrdiff_t>(answer_first_),
                     answer_ring_.end());
@@ -128,12 +130,8 @@ void OffChipMemory::step() {
 void OffChipMemory::show(Signals& signals) const {
     Unit::show(signals);
     signals.pulse("served", channel_cycles_);
-    signals.group(signals.changed(channel_cycles_) && signals.running(), [&] {
-        const Request& last =
-            answer_ring_[(answer_first_ + answers_ + answer_ring_.size() - 1) % answer_ring_.size()];
-        signals.value("address", 32, last.payload == nullptr ? 0 : last.payload->get_address());
-        signals.flag("write", last.payload != nullptr && last.payload->is_write());
-    });
+    signals.value("address", 32, last_address_);
+    signals.flag("write", last_is_write_);
     signals.flag("stalled", at_the_door_ != nullptr);
     signals.value("queued", 16, queued_);
     signals.value("answers_due", 16, answers_);

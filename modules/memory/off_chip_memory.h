@@ -63,6 +63,8 @@ class OffChipMemory : public Unit {
     std::size_t answers_ = 0;
     std::uint64_t channel_free_ = 0;
     std::uint64_t channel_cycles_ = 0;
+    std::uint64_t last_address_ = 0;  // of the request served last
+    bool last_is_write_ = false;
     std::uint64_t bytes_written_ = 0;
     std::uint64_t bytes_read_ = 0;
 };

@@ -38,6 +38,7 @@ void GetTriangle::prepare(datapath::TrianglePass& pass) {
 }
 
 void GetTriangle::send_whole(const datapath::Triangle& triangle, sc_core::sc_time& delay) {
+    ++whole_.number;
     whole_.triangle = triangle;
     prepare(whole_);
     delay += clock_.period() * timing_.latency;

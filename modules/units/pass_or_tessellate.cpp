@@ -40,10 +40,11 @@ void PassOrTessellate::b_transport(Work& work, sc_core::sc_time& delay) {
     if (pass.tested) {
         if (waiting_ == nullptr) {
             waiting_ = &pass;
+            waiting_number_ = pass.number;
             waiting_delay_ = delay;
             return;
         }
-        if (waiting_ != &pass)
+        if (waiting_ != &pass || waiting_number_ != pass.number)
             SC_REPORT_ERROR("tessera/pass_or_tessellate", "the two branches brought different triangles");
         waiting_ = nullptr;
         delay = std::max(delay, waiting_delay_);

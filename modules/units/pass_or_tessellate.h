@@ -93,9 +93,10 @@ class PassOrTessellate : public Unit {
     const datapath::Registers& registers_;
     UnitTiming timing_;
     PassPool& passes_;
-    const Pass* waiting_ = nullptr;   // functional mode: the pass of which one branch has come
-    sc_core::sc_time waiting_delay_;  // and when
-    std::vector<Pass*> incomplete_;   // timed mode: a ring, in order of arrival
+    const Pass* waiting_ = nullptr;     // functional mode: the pass of which one branch has come
+    std::uint32_t waiting_number_ = 0;  // which, for the place may be another's by now
+    sc_core::sc_time waiting_delay_;    // and when
+    std::vector<Pass*> incomplete_;     // timed mode: a ring, in order of arrival
     std::size_t first_incomplete_ = 0;
     std::size_t incomplete_count_ = 0;
     std::size_t most_incomplete_ = 0;

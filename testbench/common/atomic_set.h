@@ -1,15 +1,19 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <vector>
 
 #include "testbench/common/interruption.h"
 
 namespace tessera {
 
-/// Files that appear under their names together: while one lives, each AtomicFile that is committed waits here, whole
-/// and on the disk, until commit() renames all of them; an interrupt waits for that. Without commit() none appears, and
-/// what stood under the names stays. One at a time.
+/// Files that appear under their names together, while others go away: while one lives, each AtomicFile that is
+/// committed waits here, whole and on the disk, until commit() renames all of them; an interrupt waits for that. Without
+/// commit() none appears, and what stood under the names stays. One at a time.
+///
+/// A process that is killed within commit() can leave a part: of the files taken away before any is new, then of the new
+/// ones. The first file added appears first, and the one of its name goes last.
 class AtomicSet {
   public:
     AtomicSet();
@@ -23,7 +27,11 @@ class AtomicSet {
     /// Takes a file into the set that is complete at `from`.
     void add(const std::filesystem::path& from, const std::filesystem::path& to);
 
-    /// To be called once. Throws InputError, with the name, when a file cannot be renamed.
+    /// A plain file that goes away when the others appear.
+    void take_away(const std::filesystem::path& file);
+
+    /// To be called once. Throws InputError, with the name, when a file can neither be renamed nor taken away: then all
+    /// is as it was.
     void commit();
 
     /// The one that lives, if any.
@@ -35,6 +43,7 @@ class AtomicSet {
         std::unique_ptr<Unfinished> unfinished;
     };
     std::vector<File> files_;
+    std::set<std::filesystem::path> taken_away_;
 };
 
 }  // namespace tessera

@@ -2,6 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <new>
+#include <string_view>
+
 #include "testbench/common/error.h"
 
 namespace tessera {
@@ -24,8 +27,23 @@ Simulation::Simulation(const Setup& its_setup, std::uint64_t triangle_limit,
     pipeline.clock.stop_without_progress_for(cycles_without_progress);
 }
 
+namespace {
+
+void start() {
+    try {
+        sc_core::sc_start();
+    } catch (const sc_core::sc_report& report) {
+        // The kernel makes a report of its own of what a process throws.
+        if (report.get_msg() == std::string_view(std::bad_alloc().what()))
+            throw std::bad_alloc();
+        throw;
+    }
+}
+
+}  // namespace
+
 std::string Simulation::run() {
-    sc_core::sc_start();
+    start();
     if (setup.design.transport == Transport::non_blocking) {
         cycles_ = pipeline.clock.last_cycle() + 1;
         for (Unit* unit : pipeline.units())
@@ -35,20 +53,29 @@ std::string Simulation::run() {
     if (monitor.limit_reached())
         throw ResourceError(
             fmt::format("limits.triangles = {}: the mesh has more triangles than that; raise the thresholds "
-                        "under [tests], lower "
-                        "tests.generation_limit, or raise the limit",
-                        monitor.mesh.triangles.size()));
+                        "under [tests], "
+                        "{}, or raise the limit",
+                        monitor.mesh.triangles.size(),
+                        setup.registers.tests.generation_test ? "lower tests.generation_limit"
+                                                              : "set tests.generation = true"));
+    if (pipeline.clock.out_of_time())
+        throw ResourceError(fmt::format(
+            "timing.clock_period = {} ps: after cycle {} simulated time ends, at 2^64 - 1 ps; lower the "
+            "period, which changes no figure but those in seconds, or the latencies under [timing]",
+            setup.design.timing.cycle_picoseconds, pipeline.clock.last_cycle()));
+    const bool fifo = setup.design.queue.order == TriangleOrder::fifo;
     if (pipeline.triangle_queue.overflowed())
         throw ResourceError(fmt::format(
             "hardware.queue_capacity = {}: in cycle {} a triangle found the Triangle Queue full; raise the "
-            "capacity, or set hardware.queue_order = \"lifo\" or hardware.queue_overflow = \"spill\"",
-            setup.design.queue.capacity, pipeline.clock.last_cycle()));
+            "capacity, or set {}hardware.queue_overflow = \"spill\"",
+            setup.design.queue.capacity, pipeline.clock.last_cycle(),
+            fifo ? "hardware.queue_order = \"lifo\" or " : ""));
     if (pipeline.triangle_queue.off_chip_memory_full())
         throw ResourceError(fmt::format(
             "hardware.off_chip_triangles = {}: in cycle {} a full Triangle Queue (hardware.queue_capacity = "
-            "{}) had "
-            "more to spill; raise either, or set hardware.queue_order = \"lifo\", which needs far fewer",
-            setup.design.queue.off_chip_triangles, pipeline.clock.last_cycle(), setup.design.queue.capacity));
+            "{}) had more to spill; raise either{}",
+            setup.design.queue.off_chip_triangles, pipeline.clock.last_cycle(), setup.design.queue.capacity,
+            fifo ? ", or set hardware.queue_order = \"lifo\", which needs far fewer" : ""));
     return drained() ? std::string{} : stuck();
 }
 

@@ -187,9 +187,4 @@ std::vector<std::string> picture_names() {
     return names;
 }
 
-void remove_pictures(const fs::path& run) {
-    for (const std::string& name : picture_names())
-        fs::remove(run / name);
-}
-
 }  // namespace tessera

@@ -33,7 +33,4 @@ ExitCode render_command(const RenderRequest& request, const std::filesystem::pat
 /// The files that render leaves in a run's folder unless told another place.
 std::vector<std::string> picture_names();
 
-/// Takes away what render_command() leaves in a run's folder by default: pictures of a mesh that is no longer there.
-void remove_pictures(const std::filesystem::path& run);
-
 }  // namespace tessera

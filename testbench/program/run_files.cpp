@@ -22,7 +22,8 @@ namespace fs = std::filesystem;
 constexpr const char* run_file_names[] = {
     "job.toml",        "mesh.ply",         "mesh.obj",   "statistics.json",  "statistics.csv",
     "conformance.txt", "conformance.json", "timing.txt", "queue_levels.csv", "picture.png",
-    "error.json",      "error.txt",        "trace.vcd",  "trace.fst",        "timeline.json"};
+    "error.json",      "error.txt",        "trace.vcd",  "trace.fst",        "timeline.json",
+    "frames.csv",      "frames.txt"};
 
 /// Whether a run, or what is done with it, writes or takes away a file of this name.
 bool is_run_file(const std::string& name) {
@@ -31,6 +32,12 @@ bool is_run_file(const std::string& name) {
         return std::find(std::begin(names), std::end(names), name) != std::end(names);
     };
     return among(run_file_names) || among(pictures);
+}
+
+void take_away_plain(const fs::path& file, AtomicSet& files) {
+    std::error_code absent;
+    if (fs::is_regular_file(fs::symlink_status(file, absent)))
+        files.take_away(file);
 }
 
 /// Whether a run into `output` has `folder` to itself: it is that, or a frame in it.
@@ -48,32 +55,39 @@ fs::path real_place(const fs::path& path) {
     return result.has_filename() ? result : result.parent_path();
 }
 
-void remove_run_file(const fs::path& file) {
-    std::error_code absent;
-    if (fs::is_regular_file(fs::symlink_status(file, absent)))
-        fs::remove(file);
-}
-
-void remove_run_files(const fs::path& folder) {
+void take_away_run(const fs::path& folder, AtomicSet& files) {
+    std::error_code failed;
+    if (!fs::exists(folder / "job.toml", failed))
+        return;
     for (const char* const name : run_file_names)
-        remove_run_file(folder / name);
-    remove_pictures(folder);
+        take_away_plain(folder / name, files);
+    for (const std::string& name : picture_names())
+        take_away_plain(folder / name, files);
 }
 
-void remove_frames(const fs::path& folder) {
-    remove_run_file(folder / "frames.csv");
-    remove_run_file(folder / "frames.txt");
+std::vector<fs::path> take_away_frames(const fs::path& folder, AtomicSet& files) {
     std::error_code failed;
     std::vector<fs::path> frames;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed))
-        if (is_frame_name(entry.path().filename().string()))
-            frames.push_back(entry.path());
-    for (const fs::path& frame : frames) {
-        if (fs::is_symlink(fs::symlink_status(frame, failed)) || !fs::exists(frame / "job.toml", failed))
-            continue;
-        remove_run_files(frame);
-        fs::remove(frame, failed);  // unless something else lies there
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
+        const fs::path frame = entry.path();
+        if (is_frame_name(frame.filename().string()) && !fs::is_symlink(fs::symlink_status(frame, failed)) &&
+            fs::exists(frame / "job.toml", failed))
+            frames.push_back(frame);
     }
+    for (const fs::path& frame : frames)
+        take_away_run(frame, files);
+    return frames;
+}
+
+void replace_run(const fs::path& folder, AtomicSet& files) {
+    const Interruption::Delay delay;
+    take_away_run(folder, files);
+    const std::vector<fs::path> frames = take_away_frames(folder, files);
+    files.commit();
+    std::error_code holds_more;
+    for (const fs::path& frame : frames)
+        fs::remove(frame, holds_more);
+    Interruption::note("when the results were complete");
 }
 
 void require_inputs_stay(const Job& job, const fs::path& data_folder) {

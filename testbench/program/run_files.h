@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "testbench/common/atomic_set.h"
 #include "testbench/job/job.h"
 
 namespace tessera {
@@ -10,15 +11,10 @@ namespace tessera {
 /// A path that names one place in one way, whether or not it is there; without a slash at its end.
 std::filesystem::path real_place(const std::filesystem::path& path);
 
-/// Takes away the file that a run left under this name. What is no plain file stays.
-void remove_run_file(const std::filesystem::path& file);
-
-/// Takes away what `tessera run`, `tessera compare` and `tessera render` leave in a run's folder. Other files stay.
-void remove_run_files(const std::filesystem::path& folder);
-
-/// Takes away what a run of several frames left in its folder: the table of frames, and every frame's run. A frame's
-/// folder that holds other files keeps those; a folder called like a frame's that is no run's is left alone.
-void remove_frames(const std::filesystem::path& folder);
+/// What `files` holds appears in the place of all that a run before it, of one frame or of several, left in `folder`: a job
+/// beside the mesh or the picture of another would be believed. What others left there stays: all files of a folder
+/// without a job.toml, what has no name of a run's file, what is no plain file; and a frame's folder that holds more.
+void replace_run(const std::filesystem::path& folder, AtomicSet& files);
 
 /// Throws InputError if this run would take away what it reads: the run of mesh.source = "run" lies in output.folder or
 /// is a frame in it, or a mesh or map file there has the name of one that a run leaves.

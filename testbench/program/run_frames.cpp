@@ -25,7 +25,6 @@
 #include "testbench/program/frame_table.h"
 #include "testbench/program/output_folder.h"
 #include "testbench/program/progress.h"
-#include "testbench/program/run_files.h"
 
 namespace tessera {
 
@@ -80,26 +79,36 @@ struct End {
     int signal = 0;  ///< if one ended it
 };
 
-End run_in_process(const Frame& frame, const RunFrame& run) {
+End run_in_process(const Frame& frame, const RunFrame& run, const fs::path& replaced) {
     std::fflush(nullptr);  // what waits in a buffer would be printed twice
     const pid_t parent = ::getpid();
-    const pid_t child = ::fork();
-    if (child < 0)
-        throw std::system_error(errno, std::generic_category(),
-                                fmt::format("{}: no process for it", frame.text()));
+    pid_t child = -1;
+    std::optional<Interruption::Child> looked_after;
+    {
+        const Interruption::Delay delay;
+        child = ::fork();
+        if (child < 0)
+            throw std::system_error(errno, std::generic_category(),
+                                    fmt::format("{}: no process for it", frame.text()));
+        if (child > 0)
+            looked_after.emplace(child);
+        else
+            Interruption::leave_the_line_to_parent();
+    }
     End end;
     if (child == 0) {
         end.in_frame = true;
         ::prctl(PR_SET_PDEATHSIG, SIGTERM);
         if (::getppid() != parent)  // it ended before it could be watched
             ::raise(SIGTERM);
-        end.code = run(frame.job, frame.row.name + ": ");
+        end.code = run(frame.job, frame.row.name + ": ", replaced);
         return end;
     }
     int status = 0;
     while (::waitpid(child, &status, 0) < 0)
         if (errno != EINTR)
             throw std::system_error(errno, std::generic_category(), frame.text());
+    looked_after.reset();  // a signal that was handed on ends this process here
     if (WIFSIGNALED(status))
         end.signal = WTERMSIG(status);
     else
@@ -124,9 +133,6 @@ void print_failure(const Frame& frame, const std::string& why) {
 ExitCode run_frames(const Job& job, const fs::path& data_folder, const RunFrame& run) {
     std::vector<Frame> frames = plan_frames(job, data_folder);
     const fs::path folder = job.output.folder;
-    remove_run_files(folder);
-    remove_frames(folder);
-
     std::string text = frames_heading();
     fmt::print("{}", text);
     ExitCode worst = ExitCode::fine;
@@ -134,7 +140,7 @@ ExitCode run_frames(const Job& job, const fs::path& data_folder, const RunFrame&
     for (Frame& frame : frames) {
         Interruption::note(
             fmt::format("at {} of {} frames, complete in {}", rows.size(), frames.size(), folder.string()));
-        const End end = run_in_process(frame, run);
+        const End end = run_in_process(frame, run, rows.empty() ? folder : fs::path(frame.job.output.folder));
         if (end.in_frame)
             return end.code;
         const std::string rest =

@@ -84,16 +84,6 @@ void write_run_folder(const std::filesystem::path& folder, const Job& job, const
         write_picture(folder / "picture.png", simulation.monitor.mesh, setup, job);
 }
 
-/// All that this run leaves takes the place of all that a run before it left: a job beside the mesh or the picture of
-/// another would be believed.
-void replace_run(const std::filesystem::path& folder, AtomicSet& files) {
-    const Interruption::Delay delay;
-    remove_frames(folder);
-    remove_run_files(folder);
-    files.commit();
-    Interruption::note("when the results were complete");
-}
-
 /// The traces' names and windows, and trace.fst if asked for.
 std::string finish_traces(Traces& traces, const Command& command, const std::filesystem::path& folder,
                           AtomicSet& files) {
@@ -123,7 +113,8 @@ struct Ending {
 
 /// A run with a fault leaves its conformance report and its job, and no mesh that anyone could take for a result.
 Ending run_faulty(const Job& job, const Setup& setup, Simulation& simulation, const CheckedWiring& wiring,
-                  const Scoreboard* scoreboard, const WorkCheck* work, Progress& progress) {
+                  const Scoreboard* scoreboard, const WorkCheck* work, Progress& progress,
+                  const std::filesystem::path& replaced) {
     const FaultRun run = run_with_fault(simulation);
     Checks checks;
     checks.allowed_flips = job.check.allowed_flips;
@@ -144,7 +135,7 @@ Ending run_faulty(const Job& job, const Setup& setup, Simulation& simulation, co
     write_file(folder / "job.toml", dump_job(job, folder));
     write_file(folder / "conformance.txt", conformance_text(checks));
     write_file(folder / "conformance.json", conformance_json(checks));
-    replace_run(folder, files);
+    replace_run(replaced, files);
     output.keep();
     progress.clear();
     if (run.stopped)
@@ -158,8 +149,10 @@ Ending run_faulty(const Job& job, const Setup& setup, Simulation& simulation, co
                               std::filesystem::absolute(folder).lexically_normal().string())};
 }
 
-/// `name` tells the run from others, on the line that shows its progress.
-Ending run_once(const Job& job, const Command& command, const std::string& name) {
+/// `name` tells the run from others, on the line that shows its progress. What it leaves takes the place of an earlier
+/// run in `replaced`: job.output.folder, or one above it.
+Ending run_once(const Job& job, const Command& command, const std::string& name,
+                const std::filesystem::path& replaced) {
     const std::filesystem::path folder = job.output.folder;
     check_output_folder(folder);
 
@@ -191,7 +184,7 @@ Ending run_once(const Job& job, const Command& command, const std::string& name)
         simulation.rasteriser.taken.bind(*work);
     }
     if (job.fault.kind != FaultKind::none)
-        return run_faulty(job, setup, simulation, *wiring, scoreboard.get(), work.get(), progress);
+        return run_faulty(job, setup, simulation, *wiring, scoreboard.get(), work.get(), progress, replaced);
     simulation.monitor.on_progress([&](std::size_t triangles) {
         progress.show(
             fmt::format("{} triangles", triangles),
@@ -216,7 +209,7 @@ Ending run_once(const Job& job, const Command& command, const std::string& name)
         fmt::print(stderr, "tessera: {}", stuck);
         if (traces) {
             write_file(folder / "job.toml", dump_job(job, folder));
-            replace_run(folder, files);
+            replace_run(replaced, files);
             output->keep();
             fmt::print(stderr, "{}  in {}\n", traces_text,
                        std::filesystem::absolute(folder).lexically_normal().string());
@@ -247,7 +240,7 @@ Ending run_once(const Job& job, const Command& command, const std::string& name)
     if (!output)
         output.emplace(folder);
     write_run_folder(folder, job, setup, simulation, checks);
-    replace_run(folder, files);
+    replace_run(replaced, files);
     output->keep();
     progress.clear();
 
@@ -272,10 +265,12 @@ ExitCode run_job(const Command& command) {
     require_inputs_stay(job, command.data_folder);
     record_fingerprints(job, command.data_folder);
     if (job.frames.count > 1)
-        return run_frames(job, command.data_folder, [&](const Job& frame, const std::string& name) {
-            return run_once(frame, command, name).code;
-        });
-    const Ending ending = run_once(job, command, {});
+        return run_frames(
+            job, command.data_folder,
+            [&](const Job& frame, const std::string& name, const std::filesystem::path& replaced) {
+                return run_once(frame, command, name, replaced).code;
+            });
+    const Ending ending = run_once(job, command, {}, job.output.folder);
     fmt::print("{}", ending.text);
     return ending.code;
 }

@@ -212,6 +212,17 @@ TEST_CASE("the triangle limit ends a run with a message that names its key") {
     CHECK(simulation.monitor.mesh.triangles.size() == 500);
 }
 
+TEST_CASE("a machine that is stopped with triangles in its queue is not idle") {
+    Job job;
+    job.mesh.columns = job.mesh.rows = 1;  // a base triangle that makes more than go without a pause
+    const Setup setup = setup_of(job);
+    Simulation simulation(setup, 500);
+    CHECK(simulation.pipeline.idle());
+    CHECK_THROWS_AS(simulation.run(), ResourceError);
+    CHECK(simulation.pipeline.triangle_queue.waiting() > 0);
+    CHECK_FALSE(simulation.pipeline.idle());
+}
+
 TEST_CASE("a read outside a table is an error that names the reader") {
     Job job;
     job.hardware.direct_memory = false;

@@ -175,6 +175,39 @@ TEST_CASE("a frame that fails ends the run with its exit code and its name") {
     }
 }
 
+TEST_CASE("frames of which the first fails leave the earlier run as it was") {
+    const TestFolder here;
+    std::vector<std::string> plain = small;
+    plain.emplace_back("output.folder=out");
+    require_fine(run(here.path(), plain));
+    const std::vector<std::string> names = names_in(here.path() / "out");
+    const std::string mesh = read_all(here.path() / "out/mesh.ply");
+    const ProgramEnd end = run(here.path(), frames(3, {"limits.triangles=20"}));
+    INFO(end.text());
+    CHECK(end.exit_code == 4);
+    CHECK_THAT(end.err, Contains("0 of 3"));
+    CHECK(names_in(here.path() / "out") == names);
+    CHECK(read_all(here.path() / "out/mesh.ply") == mesh);
+}
+
+TEST_CASE(
+    "a signal to the process of all frames ends the frame's first, and one line says how far all were") {
+    const TestFolder here;
+    const std::string interrupt =
+        "\"$0\" run --set frames.count=20 --set output.folder=out --set map.width=1024 & parent=$!\n"
+        "until [ \"$child\" ] && ls out/frame_00[0-9]/.tessera-* >/dev/null 2>&1; do\n"
+        "child=$(cat /proc/$parent/task/$parent/children); done\n"
+        "kill -TERM $parent; wait $parent; echo ended $?; ls -d /proc/$child; find out -name '.tessera-*'";
+    const ProgramEnd end = run_program({"sh", "-c", interrupt, TESSERA_PROGRAM}, here.path());
+    INFO(end.text());
+    CHECK_THAT(end.out, Contains("ended 143\n") && !Contains("/proc/") && !Contains(".tessera-"));
+    CHECK_THAT(end.err, Contains("tessera: interrupted (SIGTERM) at ") && Contains("of 20 frames, complete"));
+    std::size_t lines = 0;
+    for (const std::string& line : lines_of(end.err))
+        lines += line.rfind("tessera: ", 0) == 0;
+    CHECK(lines == 1);
+}
+
 TEST_CASE("frames that cannot be are refused before the first, and what was there stays") {
     const TestFolder here;
     require_fine(run(here.path(), frames(2)));

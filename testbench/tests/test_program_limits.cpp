@@ -146,6 +146,27 @@ TEST_CASE("limits: maps, texts and frames beyond any measure are refused") {
             {"map.text", "4096 x 256", "Shorten the text"});
 }
 
+TEST_CASE("limits: memory that runs out, wherever it does, is told as that") {
+    if (sanitized)
+        return;  // AddressSanitizer reserves address space by the terabyte
+    const TestFolder here;
+    unsigned short_of_memory = 0;
+    for (unsigned kibibytes = 66000; kibibytes <= 106000; kibibytes += 4000) {
+        const ProgramEnd end = run_program(
+            {"sh", "-c", "ulimit -v " + std::to_string(kibibytes) + "; exec \"$0\" run", TESSERA_PROGRAM},
+            here.path());
+        INFO(kibibytes << " KiB of address space\n" << end.text());
+        CHECK((end.exit_code == 0 || end.exit_code == 4));
+        if (end.exit_code == 4) {
+            CHECK(lines_of(end.err).size() == 1);
+            CHECK_THAT(end.err, Contains("out of memory"));
+            CHECK_FALSE(fs::exists(here.path() / "runs/half_donut"));
+            ++short_of_memory;
+        }
+    }
+    CHECK(short_of_memory > 2);
+}
+
 TEST_CASE("limits: headers of a few bytes that claim gigabytes") {
     const TestFolder here;
     const auto check_map = [&](const std::string& bytes, const std::vector<std::string>& words) {

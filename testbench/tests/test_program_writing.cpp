@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <map>
@@ -22,7 +24,7 @@ Files files_in(const fs::path& folder) {
 }
 
 bool is_unfinished(const std::string& name) {
-    return name.find(".part") != std::string::npos;
+    return fs::path(name).filename().string().rfind(".tessera-", 0) == 0;
 }
 
 /// A run small enough to be made some hundred times, with every file there is but the picture, which takes long.
@@ -98,7 +100,7 @@ void check_ends_well(const std::vector<std::string>& arguments, const fs::path& 
         } else {
             CHECK((end.exit_code == 4 || end.exit_code == 2));
             CHECK_THAT(end.err, Contains(what == "full" ? "No space left on device" : "Input/output error"));
-            CHECK_THAT(end.err, !Contains(".part"));
+            CHECK_THAT(end.err, !Contains(".tessera-"));
         }
     }
     CHECK(failures > calls / 2);
@@ -148,6 +150,45 @@ TEST_CASE("a run that is killed leaves no half file, and no job beside another's
         }
         CHECK((all_old || all_new));
     }
+}
+
+TEST_CASE("what cannot be taken away or replaced leaves the earlier run as it was") {
+    const TestFolder here;
+    const fs::path run = here.path() / "out/run";
+    Files old_run = files_after(run_arguments("2"), here.path());
+
+    // What is no file of a run's is none of its business.
+    fs::create_directories(run / "wireframe.png/mine");
+    write_all(run / "wireframe.png/mine/notes.txt", "mine");
+    INFO(run_tessera(run_arguments("1"), here.path()).text());
+    CHECK(read_all(run / "wireframe.png/mine/notes.txt") == "mine");
+    CHECK(files_in(run).at("mesh.ply") != old_run.at("run/mesh.ply"));
+
+    // A folder that never held a run keeps what it has.
+    fs::remove_all(here.path() / "out");
+    fs::create_directories(run);
+    for (const char* const name : {"error.txt", "shaded.png", "frames.csv"})
+        write_all(run / name, "mine");
+    const ProgramEnd beside = run_tessera(run_arguments("1"), here.path());
+    INFO(beside.text());
+    CHECK(beside.exit_code == 0);
+    for (const char* const name : {"error.txt", "shaded.png", "frames.csv"})
+        CHECK(read_all(run / name) == "mine");
+
+    // A link that leads into a folder nobody may write to: the last file of all that cannot be replaced.
+    if (::geteuid() == 0)
+        return;  // whom permissions do not stop
+    old_run = files_after(run_arguments("2"), here.path());
+    fs::create_directories(run / "frame_000");
+    write_all(run / "frame_000/job.toml", "another run's");
+    fs::permissions(run / "frame_000", fs::perms::owner_read | fs::perms::owner_exec);
+    const ProgramEnd refused = run_tessera(run_arguments("1"), here.path());
+    fs::permissions(run / "frame_000", fs::perms::owner_all);
+    INFO(refused.text());
+    CHECK(refused.exit_code == 2);
+    CHECK_THAT(refused.err, Contains("frame_000/job.toml") && Contains("all is as it was"));
+    fs::remove_all(run / "frame_000");
+    CHECK(files_in(here.path() / "out") == old_run);
 }
 
 TEST_CASE("an interrupted run says how far it was") {

@@ -150,15 +150,19 @@ TEST_CASE("triangle store: grows at either end, and keeps the order") {
         return triangle;
     };
     for (std::uint32_t k = 0; k < 1500; ++k) {
-        store.push(numbered(3000 + k));
         store.push_oldest(numbered(2999 - k));
+        store.push(numbered(3000 + k));
     }
     CHECK(store.size() == 3000);
     for (std::uint32_t k = 1500; k < 4500; ++k)
         REQUIRE(store.pop().base == k);
     CHECK(store.empty());
+    TriangleStore other(TriangleOrder::lifo);
     for (std::uint32_t k = 0; k < 3000; ++k)
-        store.push_oldest(numbered(k));
-    for (std::uint32_t k = 0; k < 3000; ++k)
-        REQUIRE(store.pop_oldest().base == 2999 - k);
+        other.push_oldest(numbered(k));
+    for (std::uint32_t k = 2999; k >= 2000; --k)
+        REQUIRE(other.pop_oldest().base == k);
+    for (std::uint32_t k = 0; k < 2000; ++k)
+        REQUIRE(other.pop().base == k);
+    CHECK(other.empty());
 }

@@ -208,6 +208,41 @@ TEST_CASE("clock: a period of zero is an error") {
                Catch::Contains("period is zero"));
 }
 
+namespace {
+
+/// Sixteen cycles, of which SystemC's time is full.
+struct LongClock {
+    Clock clock{"clock", sc_time::from_value(std::uint64_t{1} << 60)};
+    Caller a{clock}, b{clock};
+    std::vector<std::uint64_t> called;
+
+    LongClock() {
+        b.on_step = [this] { called.push_back(clock.cycle()); };
+    }
+};
+
+}  // namespace
+
+TEST_CASE("clock: a cycle beyond the end of simulated time stops the simulation, it does not come early") {
+    LongClock t;
+    t.a.on_step = [&] {
+        t.clock.wake_at(t.b, 15);
+        t.clock.wake_at(t.b, 16);
+    };
+    t.clock.wake_at(t.a, 1);
+    sc_core::sc_start();
+    CHECK(t.called == std::vector<std::uint64_t>{15});
+    CHECK(t.clock.out_of_time());
+    CHECK_FALSE(t.clock.stalled());
+}
+
+TEST_CASE("clock: a cycle beyond the end of simulated time cannot be asked for from outside either") {
+    LongClock t;
+    t.clock.wake_at(t.b, 16);
+    CHECK(t.clock.idle());
+    CHECK(t.clock.out_of_time());
+}
+
 TEST_CASE("clock: idle when nobody asked for a cycle, and not within one") {
     Three t;
     CHECK(t.clock.idle());

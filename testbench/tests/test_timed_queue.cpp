@@ -104,6 +104,18 @@ TEST_CASE("triangle queue: last in first out, through off-chip memory and back, 
     }
 }
 
+TEST_CASE("triangle queue: a triangle that does not fit its record is an error, not another triangle") {
+    Clock clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
+    const datapath::Registers registers;
+    QueueDesign design;
+    design.capacity = 1;
+    Bench bench("spills", clock, registers, design, 0, StallParameters{1, 1000, 1000});
+    for (datapath::Triangle& triangle : bench.driver.items)
+        triangle.vertices[0].generation = 255;
+    CHECK_THAT(error_of([] { sc_core::sc_start(); }),
+               Catch::Contains("triangle_queue") || Catch::Contains("does not fit"));
+}
+
 // Nobody takes what the queue offers, for far longer than the test looks.
 TEST_CASE("triangle queue: the host may send while fewer triangles wait than the watermark says") {
     Clock clock("clock", sc_core::sc_time(5, sc_core::SC_NS));

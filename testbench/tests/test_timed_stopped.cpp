@@ -70,6 +70,7 @@ void set_every_unit(Timing& timing, const UnitTiming& its) {
 TEST_CASE("stopped anywhere: the paper's design, items stalled at random") {
     Job job = full_split_job(2, 2);
     job.timing.stalls = {3, 300, 9};
+    job.hardware.queue_capacity = 2;
     const Texts texts = texts_of_every_cycle(setup_of(job));
     CHECK(any_contains(texts, "get_triangle", "not all of it sent"));
     CHECK(any_contains(texts, "get_triangle", "may not take: the queue is at its watermark"));
@@ -77,6 +78,7 @@ TEST_CASE("stopped anywhere: the paper's design, items stalled at random") {
     CHECK(any_contains(texts, "pass_or_tessellate", "lacks its parts from Tessellation Tests"));
     CHECK(any_contains(texts, "transform", "at its door"));
     CHECK(any_contains(texts, "summed_height_table", "at its doors"));
+    CHECK(any_contains(texts, "off_chip_memory", "one at its door"));
 }
 
 TEST_CASE("stopped anywhere: every unit slower to begin than to end, a queue of three that spills") {

@@ -158,18 +158,27 @@ TEST_CASE("waveforms of off-chip memory show what a queue of four triangles spil
     const auto& of_memory = [&](const std::string& name) -> const VcdFile::Signal& {
         return vcd["tessera.off_chip_memory." + name];
     };
-    const std::uint64_t bytes = count(statistics, "triangle_queue", "spill_bytes");
+    const std::uint64_t bytes = count(statistics, "timing.triangle_queue", "spill_bytes");
     REQUIRE(bytes > 0);
     CHECK(of_memory("bytes_written").at(vcd.end) == bytes / 2);
     CHECK(of_memory("bytes_read").at(vcd.end) == bytes / 2);
     CHECK(of_memory("answers_due").at(vcd.end) == 0);
     CHECK(of_memory("served").high_cycles(period, vcd.end) ==
-          2 * count(statistics, "triangle_queue", "spilled"));
+          2 * count(statistics, "timing.triangle_queue", "spilled"));
     CHECK(of_memory("write").changes.size() > 1);
     std::set<std::uint64_t> addresses;
     for (const auto& [time, address] : of_memory("address").changes)
         addresses.insert(address);
     CHECK(addresses.size() > 4);
+
+    // A window that begins when memory has been at work begins with the request it served last.
+    const std::uint64_t middle = of_memory("address").changes[addresses.size()].first / period + 1;
+    require_fine(run_small(here, {"--vcd", "--trace", std::to_string(middle) + ":1000000", "--set",
+                                  "hardware.queue_capacity=4"}));
+    const VcdFile rest(here.path() / "out/trace.vcd");
+    for (const char* name : {"address", "write", "bytes_written"})
+        CHECK(rest["tessera.off_chip_memory." + std::string(name)].initial ==
+              of_memory(name).at(middle * period));
 }
 
 TEST_CASE("only the units named are traced") {
