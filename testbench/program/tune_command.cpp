@@ -12,6 +12,7 @@
 #include "testbench/host/inputs.h"
 #include "testbench/host/simulation.h"
 #include "testbench/job/dump_job.h"
+#include "testbench/job/job_choices.h"
 #include "testbench/job/job_paths.h"
 #include "testbench/program/load_job.h"
 #include "testbench/program/output_folder.h"
@@ -105,6 +106,11 @@ void choose_tests(const TuneOrder& order, TuneRequest& request) {
             "frames.count = {}: thresholds are tuned for one frame; tune with --set frames.count=1 and "
             "set it in the tuned job, whose other frames may have more triangles",
             request.job.frames.count));
+    if (request.job.fault.kind != FaultKind::none)
+        throw InputError(fmt::format(
+            "fault.kind = \"{}\": thresholds are tuned for the machine as it should be; tune with --set "
+            "fault.kind=none --set fault.place=",
+            name_of(request.job.fault.kind)));
     if (tests.highlight)
         throw InputError(
             "tests.highlight = true: the search knows nothing of highlights; tune with --set "

@@ -8,6 +8,7 @@
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/atomic_set.h"
 #include "testbench/host/inputs.h"
+#include "testbench/job/job_choices.h"
 #include "testbench/job/nearest_name.h"
 #include "testbench/program/load_job.h"
 #include "testbench/program/output_folder.h"
@@ -88,6 +89,12 @@ WidthRequest request_of(const WidthsOrder& order) {
             "frames.count = {}: widths are swept for one frame; use --set frames.count=1, and --set "
             "displacement.scale for the frame",
             request.job.frames.count));
+    if (request.job.fault.kind != FaultKind::none)
+        throw InputError(
+            fmt::format("fault.kind = \"{}\": widths are swept of the machine as it should be; use --set "
+                        "fault.kind=none --set "
+                        "fault.place=",
+                        name_of(request.job.fault.kind)));
     request.threads = order.jobs;
     request.most_flips = order.most_flips;
     request.most_error = order.most_error;
