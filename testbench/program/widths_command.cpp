@@ -127,6 +127,17 @@ std::string first_failure(const WidthSweep& sweep) {
     return {};
 }
 
+/// If no width of any quantity makes a design: why not the widest; else empty.
+std::string all_refused(const WidthSweep& sweep) {
+    for (const WidthTable& table : sweep.tables)
+        for (const WidthRow& row : table.rows)
+            if (row.refused.empty())
+                return {};
+    const WidthTable& first = sweep.tables.front();
+    return fmt::format("every width was refused, {} of {} bits because: {}", first.swept.quantity->name,
+                       first.rows.front().bits, first.rows.front().refused);
+}
+
 }  // namespace
 
 ExitCode widths_command(const WidthsOrder& order, const fs::path& data_folder) {
@@ -151,11 +162,12 @@ ExitCode widths_command(const WidthsOrder& order, const fs::path& data_folder) {
     fmt::print("{}\n  written in {} and {}\n", widths_text(request, sweep), output.csv.string(),
                output.json.string());
     const std::string failure = first_failure(sweep);
-    if (failure.empty())
+    const std::string refusal = all_refused(sweep);
+    if (failure.empty() && refusal.empty())
         return ExitCode::fine;
     std::fflush(stdout);
-    fmt::print(stderr, "tessera: {}\n", failure);
-    return ExitCode::check_failed;
+    fmt::print(stderr, "tessera: {}\n", failure.empty() ? refusal : failure);
+    return failure.empty() ? ExitCode::bad_input : ExitCode::check_failed;
 }
 
 }  // namespace tessera

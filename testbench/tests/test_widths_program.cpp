@@ -143,6 +143,19 @@ TEST_CASE("widths: wrong usage is refused in one line, and leaves nothing") {
     CHECK(read_all(here.path() / "m.csv") == "P2 2 2 9 1 2 3 4\n");
 }
 
+TEST_CASE("widths: a sweep of which every width is refused is no result") {
+    const TestFolder here;
+    const ProgramEnd end =
+        run_tessera(Arguments{"widths", "--quantity", "screen", "--bits", "10..14", "--output", "w"} + small,
+                    here.path());
+    INFO(end.text());
+    CHECK(end.exit_code == 2);
+    CHECK(lines_of(end.err).size() == 1);
+    CHECK_THAT(end.err, Contains("every width was refused, screen of 14 bits because: ") &&
+                            Contains("formats.screen_fraction = 8"));
+    CHECK_THAT(end.out, Contains("knee: none; every width was refused"));
+}
+
 TEST_CASE("widths: Crater Lake's Summed Height Table and positions") {
     if (!shared_data_is_there())
         return;
