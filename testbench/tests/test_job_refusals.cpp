@@ -115,6 +115,10 @@ TEST_CASE("mistyped names are reported with place and suggestion") {
     CHECK_THAT(parse_error_of("[mesh.rows]\nx = 2\n"),
                Contains("`mesh.rows` is a table; wanted is an integer"));
     CHECK_THAT(parse_error_of("[mesh.more]\nx = 2\n"), Contains("unknown table `mesh.more`"));
+    CHECK_THAT(parse_error_of("mesh.camera = {eye = [1, 2, 3]}\n"),
+               Contains("unknown table `mesh.camera`; did you mean the group `camera`?") &&
+                   Contains("write [camera]") && Contains("eye, target, "));
+    CHECK_THAT(parse_error_of("camera = {eye = [1, 2, 3]}\n"), Equals(""));
     CHECK_THAT(parse_error_of("\"\" = 1\n"), Contains("unknown key `\"\"`"));
     CHECK_THAT(parse_error_of("folder = \"x\"\n"), Contains("unknown key `folder`"));
     CHECK(nearest_name("mesh.file", {"mesh.file"}) == "mesh.file");
