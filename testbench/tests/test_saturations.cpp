@@ -269,7 +269,19 @@ TEST_CASE("saturations: vertices that face the light fully") {
     CHECK(counted.total() == counted.intensity);
     const auto figures = saturation_figures(setup, counted);
     CHECK(saturations_text(figures) == "intensity 54");
-    CHECK(saturation_warnings(figures).empty());  // nothing can be done about it
+    CHECK(saturation_warnings(figures).empty());  // no width helps
+    const auto notes = saturation_notes(figures);
+    REQUIRE(notes.size() == 1);
+    CHECK_THAT(notes[0], Catch::Contains("intensity: 54 values saturated") &&
+                             Catch::Contains("no key widens Lighting's 8 bits"));
+}
+
+TEST_CASE("saturations: each says what to widen, what it means, or is remarked on by the setup") {
+    for (const SaturationFigure& figure : saturation_figures(setup_of(small_job()), {})) {
+        INFO(figure.name);
+        CHECK((figure.remedy != nullptr || figure.meaning != nullptr) ==
+              (figure.name != std::string("input_texture")));
+    }
 }
 
 TEST_CASE("saturations: what the host rounds is counted too") {
