@@ -27,7 +27,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t largest_mesh = std::uint64_t{1} << 22;  // some gigabytes of a forest
 constexpr std::uint64_t largest_base_for_error = 2048;
 constexpr int most_rounds = 20;
 
@@ -129,7 +128,7 @@ TuneRequest request_of(const TuneOrder& order) {
     request.goal.triangles = order.triangles;
     request.goal.largest = order.largest;
     request.goal.most_triangles =
-        std::min(largest_mesh, static_cast<std::uint64_t>(request.job.limits.triangles));
+        std::min(most_tuned_triangles, static_cast<std::uint64_t>(request.job.limits.triangles));
     if (order.triangles > request.goal.most_triangles)
         throw InputError(
             fmt::format("--triangles {}: at most {} can be tuned for (2^22 and limits.triangles)",

@@ -160,6 +160,8 @@ TEST_CASE("tune refuses wrong usage and goals out of reach, and leaves nothing")
     CHECK_THAT(tune({"--triangles", "17"}), Contains("18 triangles"));
     CHECK_THAT(tune({"--triangles", "3000000"}), Contains("at most"));
     CHECK_THAT(tune({"--triangles", "300000000"}), Contains("limits.triangles"));
+    for (const char* number : {"18446744073709551615", "18446744073709551616", "99999999999999999999999"})
+        CHECK_THAT(tune({"--triangles", number}), Contains(number) && Contains("limits.triangles"));
     CHECK_THAT(tune({"--error", "0"}), Contains("--error"));
     CHECK_THAT(tune({"--error", "nan"}), Contains("--error"));
     CHECK_THAT(tune({"--error", "1e-9"}), Contains("the least RMS error"));
