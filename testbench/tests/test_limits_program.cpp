@@ -12,8 +12,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Arguments = std::vector<std::string>;
-
 const Arguments small{"map.width=16", "map.height=16", "tests.generation_limit=2", "output.picture=false"};
 
 ProgramEnd run_with(const Arguments& settings, const fs::path& folder) {

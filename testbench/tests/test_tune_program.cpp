@@ -3,29 +3,16 @@
 #include <nlohmann/json.hpp>
 
 #include "testbench/tests/program_runner.h"
+#include "testbench/tests/run_folder.h"
 
 using namespace tessera;
 using Catch::Contains;
-using nlohmann::json;
+using json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 namespace {
 
-using Arguments = std::vector<std::string>;
-
-Arguments operator+(Arguments a, const Arguments& b) {
-    a.insert(a.end(), b.begin(), b.end());
-    return a;
-}
-
 const Arguments small_map{"--set", "map.width=64", "--set", "map.height=64"};
-
-void succeed(const Arguments& arguments, const fs::path& folder) {
-    const ProgramEnd end = run_tessera(arguments, folder);
-    INFO(end.text());
-    REQUIRE(end.exit_code == 0);
-    CHECK(end.err.empty());
-}
 
 std::string refused(const Arguments& arguments, const fs::path& folder) {
     const ProgramEnd end = run_tessera(arguments, folder);
@@ -34,10 +21,6 @@ std::string refused(const Arguments& arguments, const fs::path& folder) {
     CHECK(end.out.empty());
     CHECK(lines_of(end.err).size() == 1);
     return end.err;
-}
-
-json read_json(const fs::path& file) {
-    return json::parse(read_all(file));
 }
 
 /// Runs the tuned job and compares it: error.json must have the tuner's figures to the last bit.

@@ -2,34 +2,16 @@
 #include <nlohmann/json.hpp>
 
 #include "testbench/tests/program_runner.h"
+#include "testbench/tests/run_folder.h"
 
 using namespace tessera;
 using Catch::Contains;
-using nlohmann::json;
+using json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 namespace {
 
-using Arguments = std::vector<std::string>;
-
-Arguments operator+(Arguments a, const Arguments& b) {
-    a.insert(a.end(), b.begin(), b.end());
-    return a;
-}
-
 const Arguments small{"--set", "map.width=48", "--set", "map.height=48", "--set", "tests.generation_limit=6"};
-
-ProgramEnd succeed(const Arguments& arguments, const fs::path& folder) {
-    ProgramEnd end = run_tessera(arguments, folder);
-    INFO(end.text());
-    REQUIRE(end.exit_code == 0);
-    CHECK(end.err.empty());
-    return end;
-}
-
-json read_json(const fs::path& file) {
-    return json::parse(read_all(file));
-}
 
 }  // namespace
 
