@@ -105,6 +105,16 @@ TEST_CASE("limits: directions as short as a number can be are directions") {
     CHECK(mesh_of("[0, 0, 5e-324]", "[0, 0, 5e-324]") == mesh_of("[0, 0, 1]", "[0, 0, 1]"));
 }
 
+TEST_CASE("limits: a saturation that no width helps is noted, not warned of") {
+    const TestFolder here;
+    const ProgramEnd end = run_with({"map.source=constant", "camera.eye=[0, -3, 0]",
+                                     "camera.target=[0, 0, 0]", "hardware.light=[0, 0, 1]"},
+                                    here.path());
+    INFO(end.text());
+    CHECK(end.exit_code == 0);
+    CHECK_THAT(end.out, Contains("note: intensity: ") && Contains("no key widens") && !Contains("warning: "));
+}
+
 TEST_CASE("limits: a threshold below its register's step is refused before the work") {
     const TestFolder here;
     const ProgramEnd end =

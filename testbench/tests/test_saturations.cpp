@@ -284,6 +284,20 @@ TEST_CASE("saturations: each says what to widen, what it means, or is remarked o
     }
 }
 
+TEST_CASE(
+    "saturations: texture coordinates beyond a map that clamps are counted, and the setup remarks on them") {
+    const Job job = small_job();
+    BaseMesh mesh = load_mesh(job, {});
+    mesh.vertices.front().texture.x = -0.25;
+    const Setup setup = make_setup(job, mesh, load_map(job, {}));
+    const auto figures = saturation_figures(setup, {});
+    CHECK(saturations_text(figures) == "input texture 1");
+    CHECK(saturation_warnings(figures).empty());
+    CHECK(saturation_notes(figures).empty());
+    REQUIRE(setup.remarks.size() == 1);
+    CHECK_THAT(setup.remarks[0], Catch::Contains("set to the border") && Catch::Contains("map.address_u"));
+}
+
 TEST_CASE("saturations: what the host rounds is counted too") {
     // S is twice the range of a map of one bit: 2^(bits - 1), one LSB more than its register holds
     Job job = small_job();
