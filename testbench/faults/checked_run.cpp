@@ -74,6 +74,26 @@ ReadResult read_result(const CheckedWiring& wiring) {
     return result;
 }
 
+std::vector<Caught> who_noticed(const CheckedWiring& wiring, const FaultRun& run,
+                                const ConformanceResult* conformance, const WorkResult* work,
+                                const InvariantResult* invariants) {
+    std::vector<Caught> noticed;
+    if (run.stopped)
+        noticed.push_back(*run.stopped);
+    const ReadResult reads = read_result(wiring);
+    if (!reads.passed())
+        noticed.push_back({"read check", reads.first_wrong});
+    if (conformance != nullptr && conformance->mismatches > 0)
+        noticed.push_back({"scoreboard", first_line(conformance->first_mismatch)});
+    if (run.stopped)
+        return noticed;
+    if (work != nullptr && !work->passed())
+        noticed.push_back({"work conservation", work->first_violation});
+    if (invariants != nullptr && !invariants->passed())
+        noticed.push_back({"invariants", first_line(invariants->first_violation)});
+    return noticed;
+}
+
 FaultReport judge_fault(const Job::Fault& fault, const CheckedWiring& wiring, const FaultRun& run, bool timed,
                         const ConformanceResult* conformance, const WorkResult* work,
                         const InvariantResult* invariants) {
@@ -90,22 +110,15 @@ FaultReport judge_fault(const Job::Fault& fault, const CheckedWiring& wiring, co
         throw InputError(fmt::format("fault.bit = {}: the transaction at {} has fewer bits; lower it",
                                      fault.bit, fault.place));
 
-    FaultReport report;
-    report.injected = injected_text(fault, trigger, timed);
-    if (run.stopped)
-        report.caught.push_back(*run.stopped);
-    const ReadResult reads = read_result(wiring);
-    if (!reads.passed())
-        report.caught.push_back({"read check", reads.first_wrong});
-    if (conformance != nullptr && conformance->mismatches > 0)
-        report.caught.push_back({"scoreboard", first_line(conformance->first_mismatch)});
-    if (run.stopped)
-        return report;
-    if (work != nullptr && !work->passed())
-        report.caught.push_back({"work conservation", work->first_violation});
-    if (invariants != nullptr && !invariants->passed())
-        report.caught.push_back({"invariants", first_line(invariants->first_violation)});
-    return report;
+    // Whoever stops a run by an error may do so before the next transaction could come.
+    if (trigger.waits_for_next() && (!run.stopped || run.code == ExitCode::deadlock))
+        throw InputError(
+            fmt::format("fault.kind = \"{}\": no later transaction came at {} for fault.transaction = {} to "
+                        "change places "
+                        "with; lower it, or choose another place",
+                        name_of(fault.kind), fault.place, fault.transaction));
+
+    return {injected_text(fault, trigger, timed), who_noticed(wiring, run, conformance, work, invariants)};
 }
 
 }  // namespace tessera

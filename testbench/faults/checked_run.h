@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "testbench/check/invariants.h"
 #include "testbench/check/scoreboard.h"
@@ -26,9 +27,14 @@ FaultRun run_with_fault(Simulation& simulation);
 /// Over all read checks.
 ReadResult read_result(const CheckedWiring& wiring);
 
-/// Who noticed, in this order: who stopped the run, read check, scoreboard, work conservation, invariants. The last two
-/// only of a run that drained; those not asked for are null. Throws InputError if the fault's transaction never came,
-/// or has no such bit.
+/// Who noticed something, in this order: who stopped the run, read check, scoreboard, work conservation, invariants. The
+/// last two only of a run that drained; those not asked for are null.
+std::vector<Caught> who_noticed(const CheckedWiring& wiring, const FaultRun& run,
+                                const ConformanceResult* conformance, const WorkResult* work,
+                                const InvariantResult* invariants);
+
+/// The same of the fault. Throws InputError if the fault's transaction never came, has no such bit, or was to change
+/// places with one that never came.
 FaultReport judge_fault(const Job::Fault& fault, const CheckedWiring& wiring, const FaultRun& run, bool timed,
                         const ConformanceResult* conformance, const WorkResult* work,
                         const InvariantResult* invariants);

@@ -44,6 +44,7 @@ bool strikes_memories(FaultKind kind) {
 CheckedWiring::CheckedWiring(const Job& job, const datapath::Formats& formats)
     : fault_(job.fault),
       formats_(formats),
+      timed_(job.mode == Mode::timed),
       check_reads_(job.check.reads || job.fault.kind != FaultKind::none),
       trigger_(job.fault, job.timing.cycle_picoseconds) {}
 
@@ -91,6 +92,7 @@ void CheckedWiring::join_memory(Port& port, Memory& memory, bool check_reads) {
         port.bind(*check, memory);
     }
     if (is_place(name, strikes_memories(fault_.kind))) {
+        lacks_cycles_ = !timed_ && fault_.kind == FaultKind::doubled;
         auto fault = std::make_unique<MemoryFault>("fault", trigger_);
         if (check != nullptr)
             check->to_memory.bind(fault->socket);
@@ -114,6 +116,12 @@ void CheckedWiring::join(StorePort& port, OffChipMemory& memory) {
 }
 
 void CheckedWiring::require_placed() const {
+    if (lacks_cycles_)
+        throw InputError(
+            fmt::format("`fault.kind` = \"{}\" at a memory, `fault.place` = \"{}\", breaks the handshake, "
+                        "which only timed "
+                        "mode has: set mode = \"timed\"",
+                        name_of(fault_.kind), fault_.place));
     if (fault_.kind == FaultKind::none || placed_)
         return;
     const std::string near = nearest_name(fault_.place, {places_.begin(), places_.end()});

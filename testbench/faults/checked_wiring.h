@@ -25,9 +25,12 @@ class CheckedWiring : public Wiring {
     void join(MemoryPort& port, TableMemory& memory) override;
     void join(StorePort& port, OffChipMemory& memory) override;
 
-    /// To be called when the machine is built. Throws InputError if the fault's place is none that its kind can strike;
-    /// names all that there are.
+    /// To be called when the machine is built. Throws InputError if the fault's place is none that its kind can strike in
+    /// the job's mode; names all that there are.
     void require_placed() const;
+
+    /// From now on the fault does not come.
+    void disarm() { trigger_.disarm(); }
 
     const FaultTrigger& trigger() const { return trigger_; }
     const std::vector<std::unique_ptr<ReadCheck>>& read_checks() const { return read_checks_; }
@@ -41,9 +44,11 @@ class CheckedWiring : public Wiring {
 
     Job::Fault fault_;
     datapath::Formats formats_;
+    bool timed_;
     bool check_reads_;
     FaultTrigger trigger_;
     bool placed_ = false;
+    bool lacks_cycles_ = false;  // at a memory of functional mode, which answers in one call
     std::vector<std::string> places_;
     std::vector<std::unique_ptr<sc_core::sc_module>> faults_;
     std::vector<std::unique_ptr<ReadCheck>> read_checks_;

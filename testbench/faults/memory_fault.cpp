@@ -120,6 +120,7 @@ tlm::tlm_sync_enum MemoryFault::answer(Payload& payload, tlm::tlm_phase& phase, 
         if (held_ != nullptr) {
             send_back(*held_, tlm::BEGIN_RESP);
             held_ = nullptr;
+            trigger_.waits_for_next(false);
         }
         return status;
     }
@@ -129,6 +130,7 @@ tlm::tlm_sync_enum MemoryFault::answer(Payload& payload, tlm::tlm_phase& phase, 
             return tlm::TLM_COMPLETED;
         case FaultKind::response_reordered:
             held_ = &payload;
+            trigger_.waits_for_next(true);
             return tlm::TLM_COMPLETED;
         case FaultKind::error_response:
             payload.set_response_status(tlm::TLM_GENERIC_ERROR_RESPONSE);

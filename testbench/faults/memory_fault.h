@@ -15,14 +15,14 @@ namespace tessera {
 ///   bit_flip             of the data: read, or about to be written
 ///   address_flip         a bit of the request's (first) address
 ///   dropped              END_REQ to the port, nothing to the memory
-///   doubled              the memory gets the request twice, the port two answers
+///   doubled              the memory gets the request twice, the port two answers (timed mode)
 ///   request_before_end   a second BEGIN_REQ while the memory withholds END_REQ
 ///   end_request_doubled  the port gets END_REQ twice
 ///   error_response       TLM_GENERIC_ERROR_RESPONSE
 ///   response_lost        the answer does not come
 ///   response_doubled     it comes twice
 ///   response_early       it comes while END_REQ is withheld
-///   response_reordered   the next request's comes first
+///   response_reordered   the next request's comes first; the last of a run has none (judge_fault)
 class MemoryFault : public sc_core::sc_module {
   public:
     tlm_utils::passthrough_target_socket<MemoryFault> socket{"socket"};

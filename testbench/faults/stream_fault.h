@@ -18,7 +18,7 @@ namespace tessera {
 ///   bit_flip               the consumer gets a copy with a bit flipped (what a Work refers to is flipped in place)
 ///   dropped                END_REQ to the producer, nothing to the consumer
 ///   doubled                the consumer gets it twice, by the rules; the producer waits for both
-///   reordered              the next one goes first
+///   reordered              the next one goes first; the last of a run has none (judge_fault)
 ///   back_pressure_ignored  as dropped, when the consumer has no room: it is overwritten
 ///   request_before_end     a second BEGIN_REQ while the consumer withholds END_REQ
 ///   end_request_doubled    the producer gets END_REQ twice
@@ -84,6 +84,7 @@ class StreamFault : public sc_core::sc_module {
         if (held_) {
             copies_ = {payload, *held_};
             held_.reset();
+            trigger_.waits_for_next(false);
             return;
         }
         copies_ = {payload};
@@ -97,6 +98,7 @@ class StreamFault : public sc_core::sc_module {
                 break;
             case FaultKind::reordered:
                 held_ = payload;
+                trigger_.waits_for_next(true);
                 copies_.clear();
                 break;
             default:

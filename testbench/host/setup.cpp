@@ -179,7 +179,7 @@ void make_base_triangles(const BaseMesh& mesh, Setup& setup) {
     if (setup.texture_clamped > 0)
         setup.remarks.push_back(
             fmt::format("{} base vertices have texture coordinates outside 0..1 on an axis that clamps; they "
-                        "were set to the border",
+                        "were set to the border (map.address_u and map.address_v = \"repeat\" have none)",
                         setup.texture_clamped));
 }
 

@@ -47,9 +47,26 @@ std::vector<std::string> all_names() {
     return names;
 }
 
+std::string keys_text(const KeyTable& table) {
+    std::string text;
+    for (const Key& key : table.keys) {
+        text += fmt::format("{}{}", text.empty() ? "" : ", ", key.leaf());
+    }
+    return text;
+}
+
 std::string suggestion(std::string_view unknown_name) {
     const std::string near = nearest_name(unknown_name, all_names());
-    return near.empty() ? "; `tessera keys` lists them all" : fmt::format("; did you mean `{}`?", near);
+    if (near.empty()) {
+        return "; `tessera keys` lists them all";
+    }
+    const KeyTable* group = find_table(near);
+    const bool within_another = unknown_name.find('.') != std::string_view::npos;
+    return group != nullptr && within_another
+               ? fmt::format(
+                     "; did you mean the group `{0}`? It stands alone: write [{0}], then its keys ({1})",
+                     near, keys_text(*group))
+               : fmt::format("; did you mean `{}`?", near);
 }
 
 std::optional<std::array<double, 3>> to_vector(const toml::node& node) {
@@ -209,6 +226,13 @@ void set_from_text(Job& job, const Key& key, std::string_view text) {
 
 void set_key(Job& job, std::string_view name, std::string_view value) {
     const Key* key = find_key(name);
+    const KeyTable* group = key == nullptr && !name.empty() ? find_table(name) : nullptr;
+    if (group != nullptr) {
+        throw InputError(
+            fmt::format("`{0}` is a group of keys, and one --set sets one key, as in --set {1}=...; `{0}` "
+                        "has {2}",
+                        name, group->keys.front().name, keys_text(*group)));
+    }
     if (key == nullptr) {
         throw InputError(fmt::format("unknown key `{}`{}", printable(name), suggestion(name)));
     }

@@ -155,6 +155,12 @@ RenderRequest RenderOptions::request() const {
         if (!(error_scale_ > 0 && error_scale_ <= largest_error_scale))
             throw InputError(fmt::format("--error-scale {}: must be above 0, and at most {} model units",
                                          error_scale_, largest_error_scale));
+        if (std::find(request.views.begin(), request.views.end(), PictureView::error) == request.views.end())
+            throw InputError(
+                fmt::format("--error-scale {}: is of the view `error` alone, which is not asked for; add "
+                            "--view error, or leave "
+                            "it out",
+                            error_scale_));
         picture.errors.largest = error_scale_;
     }
     check_caption(caption_);

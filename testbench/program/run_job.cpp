@@ -14,6 +14,7 @@
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/atomic_set.h"
 #include "testbench/faults/checked_run.h"
+#include "testbench/faults/faultless_run.h"
 #include "testbench/host/fingerprint.h"
 #include "testbench/host/inputs.h"
 #include "testbench/host/simulation.h"
@@ -101,8 +102,8 @@ std::string finish_traces(Traces& traces, const Command& command, const std::fil
 const char* verdict(const Checks& checks) {
     if (!checks.passed())
         return "CHECKS FAILED, see conformance.txt";
-    return checks.conformance || checks.invariants || checks.work ? "all checks passed"
-                                                                  : "nothing was checked";
+    return checks.conformance || checks.invariants || checks.work || checks.reads ? "all checks passed"
+                                                                                  : "nothing was checked";
 }
 
 /// What a run came to, and what it has to say of it.
@@ -111,31 +112,59 @@ struct Ending {
     std::string text;
 };
 
-/// A run with a fault leaves its conformance report and its job, and no mesh that anyone could take for a result.
-Ending run_faulty(const Job& job, const Setup& setup, Simulation& simulation, const CheckedWiring& wiring,
-                  const Scoreboard* scoreboard, const WorkCheck* work, Progress& progress,
-                  const std::filesystem::path& replaced) {
-    const FaultRun run = run_with_fault(simulation);
+/// A run with a fault, or of the same machine without it, and what its checks found.
+struct CheckedFaultRun {
+    FaultRun run;
     Checks checks;
+
+    template <class T>
+    static const T* if_there(const std::optional<T>& part) {
+        return part ? &*part : nullptr;
+    }
+    std::vector<Caught> noticed(const CheckedWiring& wiring) const {
+        return who_noticed(wiring, run, if_there(checks.conformance), if_there(checks.work),
+                           if_there(checks.invariants));
+    }
+};
+
+CheckedFaultRun check_fault_run(const Job& job, const Setup& setup, Simulation& simulation,
+                                const CheckedWiring& wiring, const Scoreboard* scoreboard,
+                                const WorkCheck* work) {
+    CheckedFaultRun result;
+    result.run = run_with_fault(simulation);
+    Checks& checks = result.checks;
     checks.allowed_flips = job.check.allowed_flips;
     checks.remarks = setup.remarks;
     checks.reads = read_result(wiring);
     if (scoreboard != nullptr)
         checks.conformance = scoreboard->result();
-    if (work != nullptr && !run.stopped)
+    if (work != nullptr && !result.run.stopped)
         checks.work = work_result(*work, simulation);
-    if (job.check.invariants && !run.stopped)
+    if (job.check.invariants && !result.run.stopped)
         checks.invariants = check_invariants(simulation.monitor.mesh, setup.base_triangles, setup.registers);
+    return result;
+}
+
+/// A run with a fault leaves its conformance report and its job, and no mesh that anyone could take for a result.
+Ending run_faulty(const Job& job, const Setup& setup, Simulation& simulation, CheckedWiring& wiring,
+                  const Scoreboard* scoreboard, const WorkCheck* work, Progress& progress) {
+    progress.show("running without the fault", 0);
+    require_sound_without_fault([&] {
+        wiring.disarm();
+        return check_fault_run(job, setup, simulation, wiring, scoreboard, work).noticed(wiring);
+    });
+    progress.show("running with the fault", 0.5);
+    auto [run, checks] = check_fault_run(job, setup, simulation, wiring, scoreboard, work);
     checks.fault = judge_fault(
-        job.fault, wiring, run, job.mode == Mode::timed, checks.conformance ? &*checks.conformance : nullptr,
-        checks.work ? &*checks.work : nullptr, checks.invariants ? &*checks.invariants : nullptr);
+        job.fault, wiring, run, job.mode == Mode::timed, CheckedFaultRun::if_there(checks.conformance),
+        CheckedFaultRun::if_there(checks.work), CheckedFaultRun::if_there(checks.invariants));
     const std::filesystem::path folder = job.output.folder;
     OutputFolder output(folder);
     AtomicSet files;
     write_file(folder / "job.toml", dump_job(job, folder));
     write_file(folder / "conformance.txt", conformance_text(checks));
     write_file(folder / "conformance.json", conformance_json(checks));
-    replace_run(replaced, files);
+    replace_run(folder, files);
     output.keep();
     progress.clear();
     if (run.stopped)
@@ -184,7 +213,7 @@ Ending run_once(const Job& job, const Command& command, const std::string& name,
         simulation.rasteriser.taken.bind(*work);
     }
     if (job.fault.kind != FaultKind::none)
-        return run_faulty(job, setup, simulation, *wiring, scoreboard.get(), work.get(), progress, replaced);
+        return run_faulty(job, setup, simulation, *wiring, scoreboard.get(), work.get(), progress);
     simulation.monitor.on_progress([&](std::size_t triangles) {
         progress.show(
             fmt::format("{} triangles", triangles),

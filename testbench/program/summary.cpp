@@ -136,6 +136,8 @@ std::string summary(const Setup& setup, const Simulation& simulation, const Chec
                             static_cast<double>(edges) / seconds / 1e6));
     for (const std::string& warning : saturation_warnings(saturations))
         text += fmt::format("  warning: {}\n", warning);
+    for (const std::string& note : saturation_notes(saturations))
+        text += fmt::format("  note: {}\n", note);
     for (const std::string& remark : setup.remarks)
         text += fmt::format("  note: {}\n", remark);
     return text;

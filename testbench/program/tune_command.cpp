@@ -12,6 +12,7 @@
 #include "testbench/host/inputs.h"
 #include "testbench/host/simulation.h"
 #include "testbench/job/dump_job.h"
+#include "testbench/job/job_choices.h"
 #include "testbench/job/job_paths.h"
 #include "testbench/program/load_job.h"
 #include "testbench/program/output_folder.h"
@@ -26,7 +27,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t largest_mesh = std::uint64_t{1} << 22;  // some gigabytes of a forest
 constexpr std::uint64_t largest_base_for_error = 2048;
 constexpr int most_rounds = 20;
 
@@ -105,6 +105,11 @@ void choose_tests(const TuneOrder& order, TuneRequest& request) {
             "frames.count = {}: thresholds are tuned for one frame; tune with --set frames.count=1 and "
             "set it in the tuned job, whose other frames may have more triangles",
             request.job.frames.count));
+    if (request.job.fault.kind != FaultKind::none)
+        throw InputError(fmt::format(
+            "fault.kind = \"{}\": thresholds are tuned for the machine as it should be; tune with --set "
+            "fault.kind=none --set fault.place=",
+            name_of(request.job.fault.kind)));
     if (tests.highlight)
         throw InputError(
             "tests.highlight = true: the search knows nothing of highlights; tune with --set "
@@ -123,7 +128,7 @@ TuneRequest request_of(const TuneOrder& order) {
     request.goal.triangles = order.triangles;
     request.goal.largest = order.largest;
     request.goal.most_triangles =
-        std::min(largest_mesh, static_cast<std::uint64_t>(request.job.limits.triangles));
+        std::min(most_tuned_triangles, static_cast<std::uint64_t>(request.job.limits.triangles));
     if (order.triangles > request.goal.most_triangles)
         throw InputError(
             fmt::format("--triangles {}: at most {} can be tuned for (2^22 and limits.triangles)",

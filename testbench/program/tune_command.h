@@ -9,6 +9,9 @@
 
 namespace tessera {
 
+/// Of one tuned mesh: some gigabytes of a forest.
+inline constexpr std::uint64_t most_tuned_triangles = std::uint64_t{1} << 22;
+
 /// What `tessera tune` is asked for.
 struct TuneOrder {
     std::string job_file;               ///< empty: the default job

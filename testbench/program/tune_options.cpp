@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cmath>
+#include <cstdlib>
 
 namespace tessera {
 
@@ -15,15 +17,24 @@ void refuse(const std::string& what) {
     throw InputError(what + "; see `tessera tune --help`");
 }
 
+/// Of the text: what does not fit 64 bits would come out of the conversion as another number.
+std::string triangles_complaint(const std::string& text) {
+    if (text.rfind('-', 0) == 0)
+        return text + " is negative";
+    errno = 0;
+    static_cast<void>(std::strtoull(text.c_str(), nullptr, 10));
+    return errno == ERANGE ? fmt::format("{}: at most {}, and limits.triangles, can be tuned for", text,
+                                         most_tuned_triangles)
+                           : std::string{};
+}
+
 }  // namespace
 
 void TuneOptions::add_to(CLI::App& tune) {
     job_given_ = tune.add_option("JOB", order_.job_file, "job file (TOML); without one, the default job");
     triangles_given_ = tune.add_option("--triangles", order_.triangles,
                                        "find the least error with at most so many triangles")
-                           ->check([](const std::string& text) {
-                               return text.rfind('-', 0) == 0 ? text + " is negative" : std::string{};
-                           });
+                           ->check(triangles_complaint);
     error_given_ =
         tune.add_option("--error", order_.error,
                         "find the fewest triangles with at most this error: units of the map's file on "

@@ -8,6 +8,7 @@
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/atomic_set.h"
 #include "testbench/host/inputs.h"
+#include "testbench/job/job_choices.h"
 #include "testbench/job/nearest_name.h"
 #include "testbench/program/load_job.h"
 #include "testbench/program/output_folder.h"
@@ -88,6 +89,12 @@ WidthRequest request_of(const WidthsOrder& order) {
             "frames.count = {}: widths are swept for one frame; use --set frames.count=1, and --set "
             "displacement.scale for the frame",
             request.job.frames.count));
+    if (request.job.fault.kind != FaultKind::none)
+        throw InputError(
+            fmt::format("fault.kind = \"{}\": widths are swept of the machine as it should be; use --set "
+                        "fault.kind=none --set "
+                        "fault.place=",
+                        name_of(request.job.fault.kind)));
     request.threads = order.jobs;
     request.most_flips = order.most_flips;
     request.most_error = order.most_error;
@@ -120,6 +127,17 @@ std::string first_failure(const WidthSweep& sweep) {
     return {};
 }
 
+/// If no width of any quantity makes a design: why not the widest; else empty.
+std::string all_refused(const WidthSweep& sweep) {
+    for (const WidthTable& table : sweep.tables)
+        for (const WidthRow& row : table.rows)
+            if (row.refused.empty())
+                return {};
+    const WidthTable& first = sweep.tables.front();
+    return fmt::format("every width was refused, {} of {} bits because: {}", first.swept.quantity->name,
+                       first.rows.front().bits, first.rows.front().refused);
+}
+
 }  // namespace
 
 ExitCode widths_command(const WidthsOrder& order, const fs::path& data_folder) {
@@ -144,11 +162,12 @@ ExitCode widths_command(const WidthsOrder& order, const fs::path& data_folder) {
     fmt::print("{}\n  written in {} and {}\n", widths_text(request, sweep), output.csv.string(),
                output.json.string());
     const std::string failure = first_failure(sweep);
-    if (failure.empty())
+    const std::string refusal = all_refused(sweep);
+    if (failure.empty() && refusal.empty())
         return ExitCode::fine;
     std::fflush(stdout);
-    fmt::print(stderr, "tessera: {}\n", failure);
-    return ExitCode::check_failed;
+    fmt::print(stderr, "tessera: {}\n", failure.empty() ? refusal : failure);
+    return failure.empty() ? ExitCode::bad_input : ExitCode::check_failed;
 }
 
 }  // namespace tessera

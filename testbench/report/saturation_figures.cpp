@@ -51,7 +51,7 @@ std::vector<SaturationFigure> saturation_figures(const Setup& setup,
          "tests.generation = true, or widen formats.generation_bits"},
         {"intensity", saturations.intensity, "value",
          "vertices that face the light fully: 256 of 256, lit as 255, the highest of Lighting's 8 bits",
-         nullptr},
+         nullptr, "no key widens Lighting's 8 bits, and their highest is full light"},
     };
 }
 
@@ -64,14 +64,29 @@ std::string saturations_text(const std::vector<SaturationFigure>& figures) {
     return text.empty() ? "none" : text;
 }
 
+namespace {
+
+std::string sentence(const SaturationFigure& figure, const char* what_then) {
+    return fmt::format("{}: {} {}{} saturated ({}); {}", spoken(figure.name), grouped_digits(figure.count),
+                       figure.unit, figure.count == 1 ? "" : "s", figure.description, what_then);
+}
+
+}  // namespace
+
 std::vector<std::string> saturation_warnings(const std::vector<SaturationFigure>& figures) {
     std::vector<std::string> warnings;
     for (const SaturationFigure& figure : figures)
         if (figure.count > 0 && figure.remedy != nullptr)
-            warnings.push_back(fmt::format("{}: {} {}{} saturated ({}); {}", spoken(figure.name),
-                                           grouped_digits(figure.count), figure.unit,
-                                           figure.count == 1 ? "" : "s", figure.description, figure.remedy));
+            warnings.push_back(sentence(figure, figure.remedy));
     return warnings;
+}
+
+std::vector<std::string> saturation_notes(const std::vector<SaturationFigure>& figures) {
+    std::vector<std::string> notes;
+    for (const SaturationFigure& figure : figures)
+        if (figure.count > 0 && figure.meaning != nullptr)
+            notes.push_back(sentence(figure, figure.meaning));
+    return notes;
 }
 
 }  // namespace tessera

@@ -14,8 +14,9 @@ struct SaturationFigure {
     std::uint64_t count;
     const char* unit;
     const char* description;
-    const char*
-        remedy;  ///< the key to widen, or what else helps; null: nothing does, or a remark of the setup says it
+    const char* remedy;  ///< the key to widen, or what else helps; null: no width does
+    const char* meaning =
+        nullptr;  ///< where no width helps: what to make of the count; null: the setup remarks on it
 };
 
 /// Of every quantity that can saturate, in the machine (`saturations`) or on its way into it (Setup), in the order of the
@@ -28,5 +29,8 @@ std::string saturations_text(const std::vector<SaturationFigure>& figures);
 
 /// A sentence for each quantity that saturated and that something can be done about: how often, what, and what to do.
 std::vector<std::string> saturation_warnings(const std::vector<SaturationFigure>& figures);
+
+/// A sentence for each quantity that saturated and that no width helps: how often, what, and what that means.
+std::vector<std::string> saturation_notes(const std::vector<SaturationFigure>& figures);
 
 }  // namespace tessera

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "testbench/common/error.h"
+#include "testbench/job/job_choices.h"
 #include "testbench/job/job_paths.h"
 #include "testbench/job/read_job.h"
 #include "testbench/job/validate_job.h"
@@ -56,6 +57,12 @@ Job read_run_job(const fs::path& folder) {
 
 RecordedMesh read_mesh(const fs::path& folder, const Job& job) {
     const fs::path mesh_file = folder / "mesh.ply";
+    if (!is_there(mesh_file) && job.fault.kind != FaultKind::none)
+        throw InputError(
+            fmt::format("{}: the run left no mesh: its job.toml has fault.kind = \"{}\", and a run with a "
+                        "fault leaves none; "
+                        "run it again with --set fault.kind=none --set fault.place=",
+                        mesh_file.string(), name_of(job.fault.kind)));
     if (!is_there(mesh_file))
         throw InputError(fmt::format(
             "{}: the run left no mesh: {}", mesh_file.string(),

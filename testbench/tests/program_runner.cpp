@@ -120,11 +120,21 @@ ProgramEnd run_program(const std::vector<std::string>& command, const fs::path& 
     return end;
 }
 
-ProgramEnd run_tessera(const std::vector<std::string>& arguments, const fs::path& folder,
-                       const ProgramLimits& limits) {
-    std::vector<std::string> command{TESSERA_PROGRAM};
-    command.insert(command.end(), arguments.begin(), arguments.end());
-    return run_program(command, folder, limits);
+Arguments operator+(Arguments a, const Arguments& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
+
+ProgramEnd run_tessera(const Arguments& arguments, const fs::path& folder, const ProgramLimits& limits) {
+    return run_program(Arguments{TESSERA_PROGRAM} + arguments, folder, limits);
+}
+
+ProgramEnd succeed(const Arguments& arguments, const fs::path& folder) {
+    ProgramEnd end = run_tessera(arguments, folder);
+    INFO(end.text());
+    REQUIRE(end.exit_code == 0);
+    CHECK(end.err.empty());
+    return end;
 }
 
 std::string read_all(const fs::path& file) {

@@ -46,9 +46,15 @@ using Environment = std::vector<std::pair<std::string, std::string>>;
 ProgramEnd run_program(const std::vector<std::string>& command, const std::filesystem::path& folder,
                        const ProgramLimits& limits = {}, const Environment& environment = {});
 
+using Arguments = std::vector<std::string>;
+Arguments operator+(Arguments a, const Arguments& b);
+
 /// The same for `tessera` with these arguments.
-ProgramEnd run_tessera(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+ProgramEnd run_tessera(const Arguments& arguments, const std::filesystem::path& folder,
                        const ProgramLimits& limits = {});
+
+/// The same where exit code 0 is required and nothing on standard error.
+ProgramEnd succeed(const Arguments& arguments, const std::filesystem::path& folder);
 
 std::string read_all(const std::filesystem::path& file);
 void write_all(const std::filesystem::path& file, const std::string& content);

@@ -8,12 +8,12 @@
 
 namespace tessera {
 
-namespace {
-
 nlohmann::ordered_json read_json(const std::filesystem::path& file) {
     INFO(file);
     return nlohmann::ordered_json::parse(read_all(file));  // throws what is wrong, and where
 }
+
+namespace {
 
 std::vector<std::string> cells_of(const std::string& row) {
     std::vector<std::string> cells(1);

@@ -8,6 +8,8 @@
 
 namespace tessera {
 
+nlohmann::ordered_json read_json(const std::filesystem::path& file);
+
 /// The header of a PLY file, and what its faces say of themselves.
 struct PlyFacts {
     std::uint64_t vertices = 0, faces = 0;

@@ -147,6 +147,27 @@ TEST_CASE("tessellate: children carry complete vertices and the parent's tags") 
     CHECK(saturations.total() == saturated);
 }
 
+TEST_CASE("tessellate: in every child the sum of generations is greater than in its parent") {
+    Random random(27);
+    Saturations saturations;
+    const auto sum = [](const Triangle& triangle) {
+        int generations = 0;
+        for (const Vertex& vertex : triangle.vertices)
+            generations += vertex.generation;
+        return generations;
+    };
+    for (int k = 0; k < 20'000; ++k) {
+        TrianglePass pass = any_pass(random);
+        pass.split = static_cast<std::uint8_t>(1 + k % 7);
+        const auto choice = static_cast<Triangulation>(random.integer(0, 2));
+        tessellate(pass, choice, Formats{}, saturations, [&](const Triangle& child) {
+            if (sum(child) <= sum(pass.triangle))
+                FAIL("split " << int{pass.split} << ": " << sum(child) << " after " << sum(pass.triangle));
+        });
+    }
+    CHECK(saturations.generation == 0);
+}
+
 TEST_CASE("tessellate: edge k runs from vertex k to the next") {
     TrianglePass pass;
     for (std::size_t k = 0; k < 3; ++k)

@@ -250,7 +250,10 @@ TEST_CASE("settings of the command line") {
     CHECK_THAT(set_error_of("mesh.columns"), Contains("wanted is table.key=value"));
     CHECK_THAT(set_error_of("=3"), Contains("unknown key"));
     CHECK_THAT(set_error_of(""), Contains("wanted is table.key=value"));
-    CHECK_THAT(set_error_of("mesh=3"), Contains("unknown key `mesh`"));
+    CHECK_THAT(set_error_of("mesh=3"), Contains("`mesh` is a group of keys"));
+    CHECK_THAT(set_error_of("camera={eye=[1,2,3]}"), Contains("`camera` is a group of keys") &&
+                                                         Contains("as in --set camera.eye=") &&
+                                                         Contains("eye, target, up, "));
     CHECK_THAT(set_error_of("mesh.columns=3\n[map]"), Contains("one --set sets one key"));
     CHECK_THAT(set_error_of("mesh.columns=3\nvalue=4"), Contains("--set"));
     CHECK_THAT(set_error_of("map.text=\"open"), Contains("`map.text` cannot be"));

@@ -12,8 +12,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Arguments = std::vector<std::string>;
-
 const Arguments small{"map.width=16", "map.height=16", "tests.generation_limit=2", "output.picture=false"};
 
 ProgramEnd run_with(const Arguments& settings, const fs::path& folder) {
@@ -105,6 +103,16 @@ TEST_CASE("limits: directions as short as a number can be are directions") {
         return read_all(here.path() / "out/mesh.obj");
     };
     CHECK(mesh_of("[0, 0, 5e-324]", "[0, 0, 5e-324]") == mesh_of("[0, 0, 1]", "[0, 0, 1]"));
+}
+
+TEST_CASE("limits: a saturation that no width helps is noted, not warned of") {
+    const TestFolder here;
+    const ProgramEnd end = run_with({"map.source=constant", "camera.eye=[0, -3, 0]",
+                                     "camera.target=[0, 0, 0]", "hardware.light=[0, 0, 1]"},
+                                    here.path());
+    INFO(end.text());
+    CHECK(end.exit_code == 0);
+    CHECK_THAT(end.out, Contains("note: intensity: ") && Contains("no key widens") && !Contains("warning: "));
 }
 
 TEST_CASE("limits: a threshold below its register's step is refused before the work") {

@@ -208,6 +208,8 @@ TEST_CASE("render: hostile arguments are refused in one line") {
     refused({"run", "--line-width", "0"}, here, {"--line-width", "0.1", "50"});
     refused({"run", "--line-width", "nan"}, here, {"--line-width"});
     refused({"run", "--error-scale", "0"}, here, {"--error-scale"});
+    refused({"run", "--error-scale", "0.5"}, here, {"--error-scale 0.5", "--view error"});
+    refused({"run", "--view", "test,wireframe", "--error-scale", "0.5"}, here, {"--view error"});
     refused({"run", "--view", "shadow"}, here, {"shadow", "shaded"});
     refused({"run", "--view", ""}, here, {"--view"});
     refused({"run", "--caption", "caf\xc3\xa9"}, here, {"--caption", "195"});

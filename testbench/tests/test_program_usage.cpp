@@ -201,6 +201,30 @@ TEST_CASE("help and version are asked for and given") {
     CHECK(here.names().empty());
 }
 
+TEST_CASE("help has every exit code that the README has") {
+    const TestFolder here;
+    const std::string readme = read_all(source_folder() / "README.md");
+    std::string codes = readme.substr(readme.find("Exit codes: ") + std::string("Exit codes: ").size());
+    codes = codes.substr(0, codes.find('.'));
+    std::vector<std::string> parts;
+    for (std::size_t at = 0, comma = 0; comma != std::string::npos; at = comma + 1) {
+        comma = codes.find(',', at);
+        std::string part = codes.substr(at, comma - at);
+        for (char& c : part)
+            c = c == '\n' ? ' ' : c;
+        parts.push_back(part.substr(part.find_first_not_of(' ')));
+    }
+    REQUIRE(parts.size() == 6);
+    for (const std::vector<std::string>& verb : std::vector<std::vector<std::string>>{
+             {}, {"run"}, {"compare"}, {"render"}, {"bake"}, {"tune"}, {"widths"}, {"keys"}}) {
+        std::vector<std::string> arguments = verb;
+        arguments.emplace_back("--help");
+        const std::string help = run_tessera(arguments, here.path()).out;
+        for (const std::string& part : parts)
+            CHECK_THAT(help, Contains(part));
+    }
+}
+
 TEST_CASE("keys lists every key of a dumped job") {
     const TestFolder here;
     const ProgramEnd end = run_tessera({"keys"}, here.path());

@@ -269,7 +269,33 @@ TEST_CASE("saturations: vertices that face the light fully") {
     CHECK(counted.total() == counted.intensity);
     const auto figures = saturation_figures(setup, counted);
     CHECK(saturations_text(figures) == "intensity 54");
-    CHECK(saturation_warnings(figures).empty());  // nothing can be done about it
+    CHECK(saturation_warnings(figures).empty());  // no width helps
+    const auto notes = saturation_notes(figures);
+    REQUIRE(notes.size() == 1);
+    CHECK_THAT(notes[0], Catch::Contains("intensity: 54 values saturated") &&
+                             Catch::Contains("no key widens Lighting's 8 bits"));
+}
+
+TEST_CASE("saturations: each says what to widen, what it means, or is remarked on by the setup") {
+    for (const SaturationFigure& figure : saturation_figures(setup_of(small_job()), {})) {
+        INFO(figure.name);
+        CHECK((figure.remedy != nullptr || figure.meaning != nullptr) ==
+              (figure.name != std::string("input_texture")));
+    }
+}
+
+TEST_CASE(
+    "saturations: texture coordinates beyond a map that clamps are counted, and the setup remarks on them") {
+    const Job job = small_job();
+    BaseMesh mesh = load_mesh(job, {});
+    mesh.vertices.front().texture.x = -0.25;
+    const Setup setup = make_setup(job, mesh, load_map(job, {}));
+    const auto figures = saturation_figures(setup, {});
+    CHECK(saturations_text(figures) == "input texture 1");
+    CHECK(saturation_warnings(figures).empty());
+    CHECK(saturation_notes(figures).empty());
+    REQUIRE(setup.remarks.size() == 1);
+    CHECK_THAT(setup.remarks[0], Catch::Contains("set to the border") && Catch::Contains("map.address_u"));
 }
 
 TEST_CASE("saturations: what the host rounds is counted too") {

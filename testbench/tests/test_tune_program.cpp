@@ -3,29 +3,16 @@
 #include <nlohmann/json.hpp>
 
 #include "testbench/tests/program_runner.h"
+#include "testbench/tests/run_folder.h"
 
 using namespace tessera;
 using Catch::Contains;
-using nlohmann::json;
+using json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 namespace {
 
-using Arguments = std::vector<std::string>;
-
-Arguments operator+(Arguments a, const Arguments& b) {
-    a.insert(a.end(), b.begin(), b.end());
-    return a;
-}
-
 const Arguments small_map{"--set", "map.width=64", "--set", "map.height=64"};
-
-void succeed(const Arguments& arguments, const fs::path& folder) {
-    const ProgramEnd end = run_tessera(arguments, folder);
-    INFO(end.text());
-    REQUIRE(end.exit_code == 0);
-    CHECK(end.err.empty());
-}
 
 std::string refused(const Arguments& arguments, const fs::path& folder) {
     const ProgramEnd end = run_tessera(arguments, folder);
@@ -34,10 +21,6 @@ std::string refused(const Arguments& arguments, const fs::path& folder) {
     CHECK(end.out.empty());
     CHECK(lines_of(end.err).size() == 1);
     return end.err;
-}
-
-json read_json(const fs::path& file) {
-    return json::parse(read_all(file));
 }
 
 /// Runs the tuned job and compares it: error.json must have the tuner's figures to the last bit.
@@ -160,6 +143,8 @@ TEST_CASE("tune refuses wrong usage and goals out of reach, and leaves nothing")
     CHECK_THAT(tune({"--triangles", "17"}), Contains("18 triangles"));
     CHECK_THAT(tune({"--triangles", "3000000"}), Contains("at most"));
     CHECK_THAT(tune({"--triangles", "300000000"}), Contains("limits.triangles"));
+    for (const char* number : {"18446744073709551615", "18446744073709551616", "99999999999999999999999"})
+        CHECK_THAT(tune({"--triangles", number}), Contains(number) && Contains("limits.triangles"));
     CHECK_THAT(tune({"--error", "0"}), Contains("--error"));
     CHECK_THAT(tune({"--error", "nan"}), Contains("--error"));
     CHECK_THAT(tune({"--error", "1e-9"}), Contains("the least RMS error"));

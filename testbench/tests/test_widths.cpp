@@ -211,7 +211,11 @@ TEST_CASE("widths: refused widths keep their place and say why") {
     const WidthTable screen = table_of(job, "screen", {16, 15, 8});
     CHECK(screen.rows[0].refused.empty());
     CHECK(screen.rows[0].fraction == 0);
-    CHECK_FALSE(screen.rows[1].refused.empty());
+    CHECK_THAT(screen.rows[1].refused, Contains("formats.screen_bits = 24") &&
+                                           Contains("formats.screen_fraction = 8") &&
+                                           Contains("16 integer bits") && Contains("screen_range"));
+    const WidthTable range = table_of(job, "screen_range", {9, 8});
+    CHECK_THAT(range.rows[1].refused, Contains("`formats.screen_fraction` = 8 must be less than"));
     const std::string csv = widths_csv({0, {normals, screen}});
     CHECK(std::count(csv.begin(), csv.end(), '\n') == 8);
     CHECK_THAT(csv, Contains("out of range"));
@@ -269,7 +273,7 @@ TEST_CASE("widths: the widths of a sweep, widest first, the job's own among them
             CHECK(std::count(widths.begin(), widths.end(), quantity.bits(formats)) == 1);
         for (const std::int64_t bits : widths) {
             Job::Formats changed = formats;
-            CHECK(quantity.set(changed, bits));
+            CHECK(quantity.set(changed, bits).empty());
             CHECK(quantity.bits(changed) == bits);
         }
     }

@@ -2,34 +2,16 @@
 #include <nlohmann/json.hpp>
 
 #include "testbench/tests/program_runner.h"
+#include "testbench/tests/run_folder.h"
 
 using namespace tessera;
 using Catch::Contains;
-using nlohmann::json;
+using json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 namespace {
 
-using Arguments = std::vector<std::string>;
-
-Arguments operator+(Arguments a, const Arguments& b) {
-    a.insert(a.end(), b.begin(), b.end());
-    return a;
-}
-
 const Arguments small{"--set", "map.width=48", "--set", "map.height=48", "--set", "tests.generation_limit=6"};
-
-ProgramEnd succeed(const Arguments& arguments, const fs::path& folder) {
-    ProgramEnd end = run_tessera(arguments, folder);
-    INFO(end.text());
-    REQUIRE(end.exit_code == 0);
-    CHECK(end.err.empty());
-    return end;
-}
-
-json read_json(const fs::path& file) {
-    return json::parse(read_all(file));
-}
 
 }  // namespace
 
@@ -141,6 +123,19 @@ TEST_CASE("widths: wrong usage is refused in one line, and leaves nothing") {
     CHECK_THAT(refused({"--output", "m.csv", "--set", "map.source=file", "--set", "map.file=m.csv"}),
                Contains("would overwrite m.csv"));
     CHECK(read_all(here.path() / "m.csv") == "P2 2 2 9 1 2 3 4\n");
+}
+
+TEST_CASE("widths: a sweep of which every width is refused is no result") {
+    const TestFolder here;
+    const ProgramEnd end =
+        run_tessera(Arguments{"widths", "--quantity", "screen", "--bits", "10..14", "--output", "w"} + small,
+                    here.path());
+    INFO(end.text());
+    CHECK(end.exit_code == 2);
+    CHECK(lines_of(end.err).size() == 1);
+    CHECK_THAT(end.err, Contains("every width was refused, screen of 14 bits because: ") &&
+                            Contains("formats.screen_fraction = 8"));
+    CHECK_THAT(end.out, Contains("knee: none; every width was refused"));
 }
 
 TEST_CASE("widths: Crater Lake's Summed Height Table and positions") {

@@ -1,5 +1,7 @@
 #include "testbench/widths/quantity.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace tessera {
@@ -9,10 +11,10 @@ namespace {
 using Formats = Job::Formats;
 
 /// Sets bits and fraction; the integer part is kept, as far as there are bits for it.
-bool keep_integer(std::int64_t& bits, std::int64_t& fraction, std::int64_t wanted) {
+std::string keep_integer(std::int64_t& bits, std::int64_t& fraction, std::int64_t wanted) {
     fraction = std::max<std::int64_t>(0, wanted - (bits - fraction));
     bits = wanted;
-    return true;
+    return {};
 }
 
 std::vector<Quantity> declare() {
@@ -33,14 +35,14 @@ std::vector<Quantity> declare() {
          [](const Formats& f) { return f.texture_fraction; },
          [](Formats& f, std::int64_t bits) {
              f.texture_fraction = bits - f.texture_integer;
-             return f.texture_fraction >= 0 && f.texture_fraction <= 12;
+             return std::string(f.texture_fraction >= 0 && f.texture_fraction <= 12 ? "" : by_the_job);
          }},
         {"displacement", "d, the map's codes", "formats.displacement_bits", 1, 16,
          [](const Formats& f) { return f.displacement_bits; },
          [](const Formats& f) { return f.displacement_bits; },
          [](Formats& f, std::int64_t bits) {
              f.displacement_bits = bits;
-             return true;
+             return std::string{};
          }},
         {"summed_height",
          "entry of the Summed Height Table, modulo 2^bits: holds a rectangle's sum or is refused",
@@ -48,27 +50,33 @@ std::vector<Quantity> declare() {
          [](const Formats&) { return std::int64_t{0}; },
          [](Formats& f, std::int64_t bits) {
              f.summed_height_bits = bits;
-             return true;
+             return std::string{};
          }},
         {"screen", "P's in pixels: precision, integer bits kept",
          "formats.screen_bits, formats.screen_fraction", 8, 31,
          [](const Formats& f) { return f.screen_bits; }, [](const Formats& f) { return f.screen_fraction; },
          [](Formats& f, std::int64_t bits) {
-             const bool possible = bits >= f.screen_bits - f.screen_fraction;
+             const Formats job = f;
              keep_integer(f.screen_bits, f.screen_fraction, bits);
-             return possible;
+             if (bits >= job.screen_bits - job.screen_fraction)
+                 return std::string{};
+             return fmt::format(
+                 "formats.screen_bits = {} with formats.screen_fraction = {} has {} integer bits, which this "
+                 "quantity keeps; sweep screen_range, which keeps the fraction, or narrow "
+                 "formats.screen_bits",
+                 job.screen_bits, job.screen_fraction, job.screen_bits - job.screen_fraction);
          }},
         {"screen_range", "P's in pixels: range, fraction bits kept", "formats.screen_bits", 8, 31,
          [](const Formats& f) { return f.screen_bits; }, [](const Formats& f) { return f.screen_fraction; },
          [](Formats& f, std::int64_t bits) {
              f.screen_bits = bits;
-             return bits > f.screen_fraction;
+             return std::string(bits > f.screen_fraction ? "" : by_the_job);
          }},
         {"generation", "generation of a vertex", "formats.generation_bits", 1, 4,
          [](const Formats& f) { return f.generation_bits; }, [](const Formats&) { return std::int64_t{0}; },
          [](Formats& f, std::int64_t bits) {
              f.generation_bits = bits;
-             return true;
+             return std::string{};
          }},
     };
 }
@@ -90,7 +98,7 @@ std::vector<std::int64_t> usual_widths(const Quantity& quantity, const Job::Form
     std::vector<std::int64_t> possible;
     for (std::int64_t bits = quantity.most; bits >= quantity.least; --bits) {
         Job::Formats formats = job;
-        if (quantity.set(formats, bits))
+        if (quantity.set(formats, bits).empty())
             possible.push_back(bits);
     }
     const std::size_t step = possible.size() > 32 ? 4 : (possible.size() > 16 ? 2 : 1);

@@ -1,11 +1,15 @@
 #pragma once
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "testbench/job/job.h"
 
 namespace tessera {
+
+/// What Quantity::set() answers where validate() of the job refuses the formats it set, and says why.
+inline constexpr const char* by_the_job = "refused by the job";
 
 /// A format whose width is swept. Of its integer and fraction bits one part is the job's and the other takes what is left.
 struct Quantity {
@@ -16,8 +20,8 @@ struct Quantity {
     /// Bits in all and behind the point.
     std::int64_t (*bits)(const Job::Formats&);
     std::int64_t (*fraction)(const Job::Formats&);
-    /// False: no such width can be written in a job.
-    bool (*set)(Job::Formats&, std::int64_t bits);
+    /// Empty: done. Else why no such width can be written in a job, and what to do; or `by_the_job`.
+    std::string (*set)(Job::Formats&, std::int64_t bits);
 };
 
 const std::vector<Quantity>& quantities();

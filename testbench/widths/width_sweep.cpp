@@ -46,20 +46,16 @@ WidthRow make_row(const Quantity& quantity, std::int64_t bits, const Job& job, c
                   const HeightMap& map, const ExactModel& exact) {
     WidthRow row;
     Job changed = job;
-    const bool possible = quantity.set(changed.formats, bits);
+    const std::string refusal = quantity.set(changed.formats, bits);
     row.bits = bits;
     row.fraction = quantity.fraction(changed.formats);
     row.of_the_job = bits == quantity.bits(job.formats);
     if (row.of_the_job)
         changed = job;
-    if (!possible) {
+    if (!refusal.empty())
         row.fraction = 0;
-        row.refused = fmt::format("{} cannot have {} bits with the job's other formats", quantity.name, bits);
-        try {
-            validate(changed);
-        } catch (const InputError& error) {
-            row.refused = one_line(error.what());
-        }
+    if (!refusal.empty() && refusal != by_the_job) {
+        row.refused = refusal;
         return row;
     }
     try {
