@@ -69,7 +69,7 @@ std::vector<fs::path> take_away_frames(const fs::path& folder, AtomicSet& files)
     std::error_code failed;
     std::vector<fs::path> frames;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
-        const fs::path frame = entry.path();
+        const fs::path& frame = entry.path();
         if (is_frame_name(frame.filename().string()) && !fs::is_symlink(fs::symlink_status(frame, failed)) &&
             fs::exists(frame / "job.toml", failed))
             frames.push_back(frame);

@@ -7,7 +7,7 @@
 
 using namespace tessera;
 using Catch::Contains;
-using json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 namespace {
@@ -25,13 +25,13 @@ std::string refused(const Arguments& arguments, const fs::path& folder) {
 
 /// Runs the tuned job and compares it: error.json must have the tuner's figures to the last bit.
 void check_by_run_and_compare(const fs::path& folder, const std::string& name) {
-    const json tuned = read_json(folder / (name + ".json"));
+    const Json tuned = read_json(folder / (name + ".json"));
     succeed({"run", name + ".toml", "--set", "mode=functional", "--set", "check.end_to_end=false", "--set",
              "output.picture=false"},
             folder);
     const fs::path run = folder / "runs" / fs::path(name).filename();
     succeed({"compare", run.string()}, folder);
-    const json error = read_json(run / "error.json");
+    const Json error = read_json(run / "error.json");
     const auto value = [&](const char* group, const char* figure) {
         return error.at(group).at(figure).at("value");
     };
@@ -52,7 +52,7 @@ TEST_CASE("tune writes a job that runs to the figures it tells, and the same byt
     const Arguments tune = Arguments{"tune", "--triangles", "600", "--tried", "tried.csv"} + small_map;
     succeed(tune, here.path());
     CHECK(here.names() == Arguments{"tried.csv", "tuned.json", "tuned.toml"});
-    const json tuned = read_json(here.path() / "tuned.json");
+    const Json tuned = read_json(here.path() / "tuned.json");
     CHECK(tuned.at("triangles") <= 600);
     CHECK(tuned.at("triangles") >= 570);
     CHECK(tuned.at("goal").at("triangles") == 600);
@@ -80,7 +80,7 @@ TEST_CASE("tune chooses a base mesh, writes a lattice beside the job, and keeps 
 
     succeed(Arguments{"tune", "--error", "0.02", "--grid", "auto", "--output", "bound.toml"} + small_map,
             here.path());
-    const json bound = read_json(here.path() / "bound.json");
+    const Json bound = read_json(here.path() / "bound.json");
     CHECK(bound.at("goal").at("error") == 0.02);
     CHECK(bound.at("error").at("rms") <= 0.02);
     CHECK(bound.at("error").at("rms") > 0.015);
@@ -99,7 +99,7 @@ TEST_CASE("a bound on the error holds for the error that compare measures, to th
     for (int triangles = 100; triangles <= 800; triangles += 100) {
         const double bound = std::nextafter(error_for("--triangles", std::to_string(triangles)), 0.0);
         INFO(triangles);
-        CHECK(error_for("--error", json(bound).dump()) <= bound);
+        CHECK(error_for("--error", Json(bound).dump()) <= bound);
     }
 }
 
@@ -110,7 +110,7 @@ TEST_CASE("tune works where the surface is no height field") {
                       "displacement.scale=0.1"} +
                 small_map,
             here.path());
-    const json tuned = read_json(here.path() / "tuned.json");
+    const Json tuned = read_json(here.path() / "tuned.json");
     CHECK(tuned.at("error").at("unit") == "model unit");
     CHECK(tuned.at("triangles") <= 1200);
     check_by_run_and_compare(here.path(), "tuned");
@@ -124,7 +124,7 @@ TEST_CASE("tune finds thresholds for Crater Lake") {
     succeed(
         {"tune", job, "--triangles", "3047", "--grid", "lattice16,lattice32", "--set", "tests.view=false"},
         here.path());
-    const json tuned = read_json(here.path() / "tuned.json");
+    const Json tuned = read_json(here.path() / "tuned.json");
     CHECK(tuned.at("triangles") <= 3047);
     CHECK(tuned.at("error").at("rms") < 8.2);  // metres; the sketch had 9.1
     CHECK(tuned.at("error").at("unit") == "map unit");

@@ -6,7 +6,7 @@
 
 using namespace tessera;
 using Catch::Contains;
-using json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 namespace {
@@ -22,11 +22,11 @@ TEST_CASE("widths: a row has the figures of tessera run with those formats") {
         here.path());
     CHECK_THAT(end.out, Contains("knee: ") && Contains("refused: ") && Contains("w/widths.csv"));
     CHECK(lines_of(read_all(here.path() / "w/widths.csv")).size() == 1 + 14);
-    const json table = read_json(here.path() / "w/widths.json");
+    const Json table = read_json(here.path() / "w/widths.json");
     const auto check_row = [&](const char* quantity, std::int64_t bits, const Arguments& formats) {
         INFO(quantity << " " << bits);
-        const json* row = nullptr;
-        for (const json& each : table.at("quantities").at(quantity).at("rows"))
+        const Json* row = nullptr;
+        for (const Json& each : table.at("quantities").at(quantity).at("rows"))
             if (each.at("bits") == bits)
                 row = &each;
         REQUIRE(row != nullptr);
@@ -34,8 +34,8 @@ TEST_CASE("widths: a row has the figures of tessera run with those formats") {
                           "check.allowed_flips=100", "--set", "output.folder=run"} +
                     formats + small,
                 here.path());
-        const json statistics = read_json(here.path() / "run/statistics.json");
-        const json conformance = read_json(here.path() / "run/conformance.json");
+        const Json statistics = read_json(here.path() / "run/statistics.json");
+        const Json conformance = read_json(here.path() / "run/conformance.json");
         const auto value = [&](const char* group, const std::string& name) {
             return statistics.at(group).at(name).at("value");
         };
@@ -47,7 +47,7 @@ TEST_CASE("widths: a row has the figures of tessera run with those formats") {
         CHECK(row->at("storage").at("summed_height_table_bytes") == value("summed_height_table", "size"));
         for (const auto& [name, count] : row->at("saturations").items())
             CHECK(count == value("saturations", name));
-        const json& checked = conformance.at("conformance");
+        const Json& checked = conformance.at("conformance");
         CHECK(row->at("local").at("flipped_edges") == checked.at("flipped_edges"));
         CHECK(row->at("local").at("mismatches") == checked.at("mismatches"));
         CHECK(row->at("golden_triangles") == conformance.at("end_to_end").at("golden_triangles"));
@@ -63,13 +63,13 @@ TEST_CASE("widths: a row of saturated screen positions has the run's count, and 
     succeed(
         Arguments{"widths", "--quantity", "screen_range", "--bits", "18", "--output", "s.csv"} + near + small,
         here.path());
-    const json row = read_json(here.path() / "s.json").at("quantities").at("screen_range").at("rows").at(0);
+    const Json row = read_json(here.path() / "s.json").at("quantities").at("screen_range").at("rows").at(0);
     const ProgramEnd run = succeed(Arguments{"run", "--set", "formats.screen_bits=18", "--set",
                                              "output.folder=run", "--set", "output.picture=false"} +
                                        near + small,
                                    here.path());
-    const json statistics = read_json(here.path() / "run/statistics.json");
-    const json counted = statistics.at("saturations").at("screen_position").at("value");
+    const Json statistics = read_json(here.path() / "run/statistics.json");
+    const Json counted = statistics.at("saturations").at("screen_position").at("value");
     CHECK(counted > 100);
     CHECK(row.at("saturations").at("screen_position") == counted);
     CHECK_THAT(run.out, Contains("warning: screen position: ") && Contains("formats.screen_bits"));
@@ -145,12 +145,12 @@ TEST_CASE("widths: Crater Lake's Summed Height Table and positions") {
     const std::string job = (source_folder() / "testbench/jobs/crater_lake_24.toml").string();
     succeed({"widths", job, "--quantity", "summed_height,position", "--bits", "24..32", "--output", "w"},
             here.path());
-    const json table = read_json(here.path() / "w/widths.json").at("quantities");
+    const Json table = read_json(here.path() / "w/widths.json").at("quantities");
     // a table that is wide enough changes nothing
-    const json& heights = table.at("summed_height").at("rows");
-    const json& widest = heights.at(0);
+    const Json& heights = table.at("summed_height").at("rows");
+    const Json& widest = heights.at(0);
     std::size_t refused = 0;
-    for (const json& row : heights) {
+    for (const Json& row : heights) {
         refused += row.contains("refused") ? 1u : 0u;
         if (!row.contains("refused")) {
             CHECK(row.at("triangles") == widest.at("triangles"));
@@ -159,7 +159,7 @@ TEST_CASE("widths: Crater Lake's Summed Height Table and positions") {
     }
     CHECK(refused > 0);
     CHECK(refused < heights.size());
-    for (const json& row : table.at("position").at("rows")) {
+    for (const Json& row : table.at("position").at("rows")) {
         CHECK(row.at("cracks") == 0);
         CHECK(row.at("local").at("mismatches") == 0);
     }
