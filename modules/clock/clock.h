@@ -139,7 +139,7 @@ class Clock : public sc_core::sc_module {
 
     sc_core::sc_time period_time_;
     std::uint64_t period_;
-    std::uint64_t most_cycles_ = 0;  // that begin within SystemC's time
+    std::uint64_t most_cycles_ = 0;            // that begin within SystemC's time
     std::array<sc_core::sc_time, 16> delays_;  // of so many cycles: sc_time is slow to make
     sc_core::sc_event tick_event_{"tick_event"};
     std::vector<Clocked*> units_;
