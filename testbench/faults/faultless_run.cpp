@@ -16,31 +16,11 @@
 
 #include "testbench/common/error.h"
 #include "testbench/common/leave_process.h"
+#include "testbench/common/pipe.h"
 
 namespace tessera {
 
 namespace {
-
-void write_all(int pipe, const std::string& text) {
-    for (std::size_t done = 0; done < text.size();) {
-        const ssize_t written = ::write(pipe, text.data() + done, text.size() - done);
-        if (written < 0)
-            return;
-        done += static_cast<std::size_t>(written);
-    }
-}
-
-std::string read_all(int pipe) {
-    std::string text;
-    std::array<char, 4096> some{};
-    for (;;) {
-        const ssize_t count = ::read(pipe, some.data(), some.size());
-        if (count > 0)
-            text.append(some.data(), static_cast<std::size_t>(count));
-        else if (count == 0 || errno != EINTR)
-            return text;
-    }
-}
 
 /// Whatever it says is its parent's to say: reports of the kernel, and that it was interrupted.
 void fall_silent() {
@@ -62,7 +42,7 @@ void fall_silent() {
     } catch (const std::exception& error) {
         text = error.what();
     }
-    write_all(pipe, text);
+    write_to_pipe(pipe, text.data(), text.size());
     std::fflush(nullptr);
     leave_process(0);
 }
@@ -83,7 +63,7 @@ void require_sound_without_fault(const std::function<std::vector<Caught>()>& run
         run_and_tell(run, parent, pipe[1]);
     }
     ::close(pipe[1]);
-    std::string text = read_all(pipe[0]);
+    std::string text = read_from_pipe(pipe[0]);
     ::close(pipe[0]);
     int status = 0;
     while (::waitpid(child, &status, 0) < 0)

@@ -16,6 +16,7 @@
 #include <type_traits>
 
 #include "testbench/common/leave_process.h"
+#include "testbench/common/pipe.h"
 
 namespace tessera {
 
@@ -30,17 +31,6 @@ struct Header {
 };
 static_assert(std::is_trivially_copyable_v<Header>);
 
-void write_all(int pipe, const void* data, std::size_t size) {
-    const char* next = static_cast<const char*>(data);
-    while (size > 0) {
-        const ssize_t written = ::write(pipe, next, size);
-        if (written < 0)
-            return;
-        next += written;
-        size -= static_cast<std::size_t>(written);
-    }
-}
-
 [[noreturn]] void run_and_tell(const RandomCase& random_case, Mode mode, int pipe) {
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);
     ::alarm(most_seconds);
@@ -51,22 +41,10 @@ void write_all(int pipe, const void* data, std::size_t size) {
         result.failure = error.what();
     }
     const Header header{result.figures, result.mesh_digest};
-    write_all(pipe, &header, sizeof header);
-    write_all(pipe, result.failure.data(), result.failure.size());
+    write_to_pipe(pipe, &header, sizeof header);
+    write_to_pipe(pipe, result.failure.data(), result.failure.size());
     std::fflush(nullptr);
     leave_process(0);
-}
-
-std::string read_all(int pipe) {
-    std::string text;
-    std::array<char, 4096> some{};
-    for (;;) {
-        const ssize_t count = ::read(pipe, some.data(), some.size());
-        if (count > 0)
-            text.append(some.data(), static_cast<std::size_t>(count));
-        else if (count == 0 || errno != EINTR)
-            return text;
-    }
 }
 
 }  // namespace
@@ -84,7 +62,7 @@ CaseResult run_case_in_process(const RandomCase& random_case, Mode mode) {
         run_and_tell(random_case, mode, pipe[1]);
     }
     ::close(pipe[1]);
-    const std::string told = read_all(pipe[0]);
+    const std::string told = read_from_pipe(pipe[0]);
     ::close(pipe[0]);
     int status = 0;
     while (::waitpid(child, &status, 0) < 0)
