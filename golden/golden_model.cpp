@@ -156,8 +156,9 @@ Subdivision subdivide(const std::array<bool, 3>& split, const std::array<Vertex,
         return manhattan(vertices[static_cast<std::size_t>(a)].displaced_position -
                          vertices[static_cast<std::size_t>(b)].displaced_position);
     };
-    const bool from_first = diagonal == Diagonal::first ||
-                            (diagonal == Diagonal::shorter && length(q[0], q[2]) <= length(q[1], q[3]));
+    const bool from_first =
+        diagonal == Diagonal::first ||
+        (diagonal == Diagonal::shorter && length(q[0], q[2]) * (1 - diagonal_margin) <= length(q[1], q[3]));
     if (from_first) {
         return {3, {{corner, {q[0], q[1], q[2]}, {q[0], q[2], q[3]}}}};
     }

@@ -61,8 +61,15 @@ constexpr ChildIndices triangulate(unsigned split, bool second_diagonal) {
     return result;
 }
 
-/// The shorter diagonal by Manhattan length of displaced positions; a tie goes to the first (algorithm section 5 D).
-/// corner(k) gives the displaced position of index k as above.
+/// The second diagonal must be shorter than the first by more than 2^-6 of it. Many diagonals are equally long in exact
+/// arithmetic (a square's, wherever the map is level), and rounding, which moves each of a length's six coordinates by up
+/// to (generation + 1) / 2 LSB of the position and the height times 3/4 LSB of the normal, must not choose between them.
+/// In the default job that is less than 2^-6 of a texel's side even at full height on a curved surface.
+inline constexpr int diagonal_margin_shift = 6;
+
+/// With `shorter`, the second if it is shorter by more than the margin, by Manhattan length of displaced positions, else
+/// the first: an add and a compare of 40 bits, which round nothing. corner(k) gives the displaced position of index k as
+/// above.
 template <class DisplacedPosition>
 constexpr bool choose_second_diagonal(unsigned split, Triangulation choice, DisplacedPosition&& corner) {
     if (choice != Triangulation::shorter)
@@ -70,7 +77,9 @@ constexpr bool choose_second_diagonal(unsigned split, Triangulation choice, Disp
     if (split != 3 && split != 5 && split != 6)
         return false;
     const auto q = remaining_quadrilateral(split == 6 ? 0 : (split == 5 ? 1 : 2));
-    return manhattan_length(corner(q[1]), corner(q[3])) < manhattan_length(corner(q[0]), corner(q[2]));
+    const std::uint64_t first = manhattan_length(corner(q[0]), corner(q[2]));
+    const std::uint64_t second = manhattan_length(corner(q[1]), corner(q[3]));
+    return second << diagonal_margin_shift < (first << diagonal_margin_shift) - first;
 }
 
 }  // namespace tessera::datapath

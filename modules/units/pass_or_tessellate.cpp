@@ -235,6 +235,9 @@ void PassOrTessellate::decide_edges(datapath::TrianglePass& pass) {
             counts_.stopped_by_view += (missing & datapath::view_bit) != 0;
             counts_.stopped_by_tex_coord += (missing & datapath::tex_coord_bit) != 0;
             counts_.stopped_by_generation += (missing & datapath::generation_bit) != 0;
+            counts_.stopped_by_view_alone += missing == datapath::view_bit;
+            counts_.stopped_by_tex_coord_alone += missing == datapath::tex_coord_bit;
+            counts_.stopped_by_generation_alone += missing == datapath::generation_bit;
         }
     }
     pass.split = static_cast<std::uint8_t>(split);

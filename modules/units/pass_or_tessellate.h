@@ -53,6 +53,9 @@ class PassOrTessellate : public Unit {
         std::uint64_t stopped_by_view = 0;         ///< NT, SHT or HT would split, VT is false
         std::uint64_t stopped_by_tex_coord = 0;    ///< likewise TCT
         std::uint64_t stopped_by_generation = 0;   ///< likewise GT
+        std::uint64_t stopped_by_view_alone = 0;   ///< of these: TCT and GT are true
+        std::uint64_t stopped_by_tex_coord_alone = 0;
+        std::uint64_t stopped_by_generation_alone = 0;
         std::uint64_t finished = 0;
         std::uint64_t culled = 0;
     };

@@ -60,8 +60,8 @@ struct Job {
         std::string file;          // EXR, PNG or PGM, with source = "file"
         std::string fingerprint;   // of the file; empty: any
         std::string channel;       // EXR channel; empty: Y, else R, else the only one
-        std::int64_t width = 256;  // built-in maps, texels
-        std::int64_t height = 256;
+        std::int64_t width = 264;  // built-in maps, texels; a multiple of the plane's 3 quads
+        std::int64_t height = 264;
         double value = 0.5;            // constant map, 0..1
         std::int64_t seed = 1;         // noise map
         std::string text = "tessera";  // text map
@@ -80,11 +80,12 @@ struct Job {
     } frames;
 
     struct Camera {
-        std::array<double, 3> eye{1.05, -2.9, 2.45};
-        std::array<double, 3> target{0, 0, 0.05};
+        // 20 degrees right of the front, 38 up, as far away as puts the displaced plane into 90 % of the viewport.
+        std::array<double, 3> eye{1.0695277931745295, -2.9385034612261536, 2.568150522748748};
+        std::array<double, 3> target{0, 0, 0.125};  // centre of the displaced plane
         std::array<double, 3> up{0, 0, 1};
-        double field_of_view = 36;  // vertical, degrees
-        double near_plane = 0.01;   // model units
+        double field_of_view = 36;                // vertical, degrees
+        double near_plane = 0.00396833425618588;  // model units; a thousandth of the eye's distance
         std::int64_t viewport_width = 1024;
         std::int64_t viewport_height = 768;
     } camera;
@@ -93,10 +94,10 @@ struct Job {
         bool normal = true;
         double normal_threshold = 0.12;  // difference of one component of two unit normals
         bool summed_height = true;
-        double summed_height_threshold = 2.0;  // full-scale texels (sum) or full scale (area)
+        double summed_height_threshold = 0.03;  // full-scale texels (sum) or full scale (area)
         SummedHeightUnit summed_height_unit = SummedHeightUnit::sum;
         bool view = true;
-        double view_threshold = 4;  // pixels, Manhattan
+        double view_threshold = 5;  // pixels, Manhattan
         bool tex_coord = true;
         bool generation = true;
         std::int64_t generation_limit = 12;
