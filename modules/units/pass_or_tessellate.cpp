@@ -238,6 +238,7 @@ void PassOrTessellate::decide_edges(datapath::TrianglePass& pass) {
             counts_.stopped_by_view_alone += missing == datapath::view_bit;
             counts_.stopped_by_tex_coord_alone += missing == datapath::tex_coord_bit;
             counts_.stopped_by_generation_alone += missing == datapath::generation_bit;
+            counts_.stopped_by_several += (missing & (missing - 1)) != 0;
         }
     }
     pass.split = static_cast<std::uint8_t>(split);

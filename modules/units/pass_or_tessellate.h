@@ -56,6 +56,7 @@ class PassOrTessellate : public Unit {
         std::uint64_t stopped_by_view_alone = 0;   ///< of these: TCT and GT are true
         std::uint64_t stopped_by_tex_coord_alone = 0;
         std::uint64_t stopped_by_generation_alone = 0;
+        std::uint64_t stopped_by_several = 0;
         std::uint64_t finished = 0;
         std::uint64_t culled = 0;
     };

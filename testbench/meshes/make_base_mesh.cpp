@@ -22,6 +22,12 @@ std::int64_t quads(std::int64_t wanted, MeshSource source) {
 
 }  // namespace
 
+std::array<std::int64_t, 2> quads_of(const Job::Mesh& mesh) {
+    if (mesh.source == MeshSource::file || mesh.source == MeshSource::run)
+        return {0, 0};
+    return {quads(mesh.columns, mesh.source), quads(mesh.rows, mesh.source)};
+}
+
 BaseMesh make_base_mesh(Job::Mesh const& job, std::string const& file) {
     const std::int64_t columns = quads(job.columns, job.source);
     const std::int64_t rows = quads(job.rows, job.source);

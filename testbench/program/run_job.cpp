@@ -11,6 +11,7 @@
 
 #include "testbench/check/conservation.h"
 #include "testbench/check/scoreboard.h"
+#include "testbench/check/texel_borders.h"
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/atomic_set.h"
 #include "testbench/faults/checked_run.h"
@@ -214,6 +215,8 @@ Ending run_once(const Job& job, const Command& command, const std::string& name,
     }
     if (job.fault.kind != FaultKind::none)
         return run_faulty(job, setup, simulation, *wiring, scoreboard.get(), work.get(), progress);
+    TexelBorders borders(setup.registers.formats);
+    simulation.pipeline.pass_or_tessellate.decided.bind(borders);
     simulation.monitor.on_progress([&](std::size_t triangles) {
         progress.show(
             fmt::format("{} triangles", triangles),
@@ -257,6 +260,8 @@ Ending run_once(const Job& job, const Command& command, const std::string& name,
         checks.work = work_result(*work, simulation);
     if (wiring)
         checks.reads = read_result(*wiring);
+    checks.texel_borders =
+        texel_borders_warning(borders.count(), job, setup.registers.map.width, setup.registers.map.height);
     if (job.check.invariants) {
         progress.show("checking the mesh", 0.95);
         checks.invariants = check_invariants(mesh, setup.base_triangles, setup.registers);

@@ -106,16 +106,17 @@ std::string summary(const Setup& setup, const Simulation& simulation, const Chec
                     counts.culled > 0 ? fmt::format(", {} culled", count(counts.culled)) : ""));
     text += row("edges", fmt::format("{} tested, {} split ({:.1f} %)", count(edges),
                                      count(counts.edges_split), percent(counts.edges_split, edges)));
-    text += row("  split by",
-                fmt::format("normal {}, summed height {}, both {}{}", count(counts.split_by_normal),
-                            count(counts.split_by_summed_height), count(counts.split_by_both),
-                            setup.registers.tests.highlight_test
-                                ? fmt::format(", highlight alone {}", count(counts.split_by_highlight))
-                                : ""));
-    text += row(
-        "  wanted, but stopped by",
-        fmt::format("view {}, tex coord {}, generation {} (may be several)", count(counts.stopped_by_view),
-                    count(counts.stopped_by_tex_coord), count(counts.stopped_by_generation)));
+    text +=
+        row("  split by",
+            fmt::format("normal alone {}, summed height alone {}, both {}{}", count(counts.split_by_normal),
+                        count(counts.split_by_summed_height), count(counts.split_by_both),
+                        setup.registers.tests.highlight_test
+                            ? fmt::format(", highlight alone {}", count(counts.split_by_highlight))
+                            : ""));
+    text += row("  wanted, but stopped by",
+                fmt::format("view alone {}, tex coord alone {}, generation alone {}, several {}",
+                            count(counts.stopped_by_view_alone), count(counts.stopped_by_tex_coord_alone),
+                            count(counts.stopped_by_generation_alone), count(counts.stopped_by_several)));
     text += row("triangle queue", fmt::format("at most {} triangles waiting, {} bits each",
                                               count(p.triangle_queue.high_water_mark()), widths.triangle));
     text +=
@@ -136,6 +137,8 @@ std::string summary(const Setup& setup, const Simulation& simulation, const Chec
                             static_cast<double>(edges) / seconds / 1e6));
     for (const std::string& warning : saturation_warnings(saturations))
         text += fmt::format("  warning: {}\n", warning);
+    if (!checks.texel_borders.empty())
+        text += fmt::format("  warning: {}\n", checks.texel_borders);
     for (const std::string& note : saturation_notes(saturations))
         text += fmt::format("  note: {}\n", note);
     for (const std::string& remark : setup.remarks)

@@ -22,6 +22,7 @@ struct Checks {
     std::optional<FaultReport> fault;  ///< one was injected
     double allowed_flips = 0.5;        ///< percent of edges
     std::vector<std::string> remarks;  ///< what was mended or is odd in mesh and map; one sentence each
+    std::string texel_borders;         ///< a warning, see texel_borders.h; empty: none
 
     /// A run with a fault never passes.
     bool passed() const {

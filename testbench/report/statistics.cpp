@@ -196,9 +196,10 @@ std::vector<Figure> collect_statistics(const Setup& setup, const Simulation& sim
     decide.add("passes", counts.passes, "triangle", "triangles that went through the tests");
     decide.add("normal_passes", counts.normal_passes, "triangle",
                "went round once more for normals on the screen");
-    decide.add("split_by_normal", counts.split_by_normal, "edge", "split by the Normal Test alone");
+    decide.add("split_by_normal", counts.split_by_normal, "edge",
+               "split by the Normal Test, while the Summed Height Test was false");
     decide.add("split_by_summed_height", counts.split_by_summed_height, "edge",
-               "split by the Summed Height Test alone");
+               "split by the Summed Height Test, while the Normal Test was false");
     decide.add("split_by_both", counts.split_by_both, "edge", "split by both");
     if (setup.registers.tests.highlight_test) {
         decide.add("split_by_highlight", counts.split_by_highlight, "edge",
@@ -210,6 +211,13 @@ std::vector<Figure> collect_statistics(const Setup& setup, const Simulation& sim
                "kept whole by the View Test (perhaps among others)");
     decide.add("stopped_by_tex_coord", counts.stopped_by_tex_coord, "edge", "likewise the Tex Coord Test");
     decide.add("stopped_by_generation", counts.stopped_by_generation, "edge", "likewise the Generation Test");
+    const char* const alone =
+        "kept whole by this test alone: had it been true, the edge would have been split";
+    decide.add("stopped_by_view_alone", counts.stopped_by_view_alone, "edge", alone);
+    decide.add("stopped_by_tex_coord_alone", counts.stopped_by_tex_coord_alone, "edge", alone);
+    decide.add("stopped_by_generation_alone", counts.stopped_by_generation_alone, "edge", alone);
+    decide.add("stopped_by_several", counts.stopped_by_several, "edge",
+               "kept whole by two or three of these tests, so that none of them decided");
     decide.add("culled", counts.culled, "triangle", "finished triangles that face away");
     take(std::move(decide));
 

@@ -150,6 +150,10 @@ TEST_CASE("subdivision: two edges split, the three choices of diagonal") {
         CHECK(subdivide(split, v, Diagonal::first).children == cut_first[unsplit]);
         place(4, 4);
         CHECK(subdivide(split, v, Diagonal::shorter).children == cut_first[unsplit]);
+        place(4, 4 * 63 / 64.0);  // the margin
+        CHECK(subdivide(split, v, Diagonal::shorter).children == cut_first[unsplit]);
+        place(4, 4 * 62.9 / 64);
+        CHECK(subdivide(split, v, Diagonal::shorter).children == cut_second[unsplit]);
     }
 }
 

@@ -38,6 +38,7 @@ class Walk {
           datapath_(setup),
           inputs_(setup),
           scoreboard_(setup.registers, inputs_),
+          borders_(setup.registers.formats),
           dequantise_(setup.registers.formats) {}
 
     WidthRun run() {
@@ -67,6 +68,7 @@ class Walk {
         for (int k = 0; k < 3; ++k)
             inserted[static_cast<std::size_t>(k)] = decide(k, pair.exact);
         scoreboard_.write(pass_);
+        borders_.write(pass_);
         result_.edges += 3;
         if (pass_.split == 0)
             emit(pass_.triangle);
@@ -123,6 +125,8 @@ class Walk {
                                                                   : pass_.new_vertex[index - 3u].displaced;
                                              });
         const datapath::ChildIndices indices = datapath::triangulate(pass_.split, second);
+        if (indices.count == 3)
+            compare_diagonal(vertices, indices);
         std::size_t child = 0;
         datapath::tessellate(
             pass_, setup_.registers.triangulation, setup_.registers.formats, others_,
@@ -130,6 +134,21 @@ class Walk {
                 const auto& c = indices.children[child++];
                 work_.push_back({triangle, {*vertices[c[0]], *vertices[c[1]], *vertices[c[2]]}});
             });
+    }
+
+    void compare_diagonal(const std::array<const golden::Vertex*, 6>& exact,
+                          const datapath::ChildIndices& machine) {
+        std::array<golden::Vertex, 6> corners;
+        std::transform(exact.begin(), exact.end(), corners.begin(),
+                       [](const golden::Vertex* corner) { return *corner; });
+        const golden::Subdivision cut =
+            golden::subdivide({(pass_.split & 1) != 0, (pass_.split & 2) != 0, (pass_.split & 4) != 0},
+                              corners, exact_.parameters().diagonal);
+        // Both list the quadrilateral's halves in the same order.
+        const auto& a = machine.children[1];
+        const auto& b = cut.children[1];
+        ++result_.quadrilaterals;
+        result_.diagonal_flips += std::equal(a.begin(), a.end(), b.begin(), b.end()) ? 0u : 1u;
     }
 
     void emit(datapath::Triangle& triangle) {
@@ -162,6 +181,7 @@ class Walk {
         result_.triangles = mesh_.triangles.size();
         result_.conformance = scoreboard_.result();
         result_.invariants = check_invariants(mesh_, setup_.base_triangles, setup_.registers);
+        result_.texel_borders = borders_.count();
         result_.end_to_end = compare_end_to_end(setup_, inputs_, mesh_);
         result_.saturations = datapath_.saturations();
         result_.saturations += others_;
@@ -178,6 +198,7 @@ class Walk {
     BareRecursion datapath_;
     GoldenInputs inputs_;
     Scoreboard scoreboard_;
+    TexelBorders borders_;
     Dequantise dequantise_;
     std::vector<Pair> work_;
     datapath::TrianglePass pass_;

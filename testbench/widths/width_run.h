@@ -5,6 +5,7 @@
 #include "testbench/check/conformance_result.h"
 #include "testbench/check/end_to_end.h"
 #include "testbench/check/invariants.h"
+#include "testbench/check/texel_borders.h"
 #include "testbench/host/setup.h"
 #include "testbench/widths/exact_model.h"
 
@@ -29,6 +30,9 @@ struct WidthRun {
     /// Against the exact model, which is led along the machine's own splits: each vertex beside the one that exact
     /// arithmetic would have inserted, each edge decided from those. Edges on which a decision differs.
     std::array<std::uint64_t, static_cast<std::size_t>(Decided::count)> flips{};
+    std::uint64_t quadrilaterals = 0;  ///< left by two split edges
+    std::uint64_t diagonal_flips = 0;  ///< of them cut along the other diagonal than the exact vertices'
+    TexelBorderCount texel_borders;
     /// P' of every base vertex and every inserted one from the exact one, as a distance; model units.
     std::uint64_t positions = 0;
     double position_max = 0;

@@ -87,6 +87,14 @@ WidthKnee find_knee(const WidthRequest& request, const std::vector<WidthRow>& ro
     return knee;
 }
 
+const WidthRow* first_made(const WidthSweep& sweep) {
+    for (const WidthTable& table : sweep.tables)
+        for (const WidthRow& row : table.rows)
+            if (row.refused.empty())
+                return &row;
+    return nullptr;
+}
+
 }  // namespace
 
 WidthSweep sweep_widths(const WidthRequest& request, const BaseMesh& mesh, const HeightMap& map,
@@ -134,6 +142,9 @@ WidthSweep sweep_widths(const WidthRequest& request, const BaseMesh& mesh, const
             std::rethrow_exception(failure);
     for (WidthTable& table : result.tables)
         table.knee = find_knee(request, table.rows);
+    if (const WidthRow* const first = first_made(result))
+        result.texel_borders =
+            texel_borders_warning(first->run.texel_borders, request.job, map.width, map.height);
     return result;
 }
 

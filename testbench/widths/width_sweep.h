@@ -61,6 +61,8 @@ struct WidthSweep {
     std::uint64_t exact_triangles =
         0;  ///< of the exact model's own mesh; 0: more than four times limits.triangles
     std::vector<WidthTable> tables;
+    std::string
+        texel_borders;  ///< a warning, see texel_borders.h, of the first design that was made; empty: none
 };
 
 /// The result does not depend on the number of threads. on_progress(what, 0..1) is called from one thread at a time. Throws

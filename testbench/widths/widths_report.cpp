@@ -115,6 +115,7 @@ Json row_json(const WidthRow& row) {
     Json& flips = json["flips"];
     for (std::size_t k = 0; k < decided_names.size(); ++k)
         flips[decided_names[k]] = {{"edges", run.flips[k]}, {"percent", percent(run.flips[k], run.edges)}};
+    json["diagonals"] = {{"quadrilaterals", run.quadrilaterals}, {"flips", run.diagonal_flips}};
     Json& local = json["local"];
     local["flipped_edges"] = run.conformance.flipped_edges;
     local["mismatches"] = run.conformance.mismatches;
@@ -159,6 +160,8 @@ std::string widths_text(const WidthRequest& request, const WidthSweep& sweep) {
         request.job.tests.highlight ? " (HT: in the CSV)" : "");
     for (const WidthTable& table : sweep.tables)
         text += table_text(table);
+    if (!sweep.texel_borders.empty())
+        text += fmt::format("\n  warning: {}\n", sweep.texel_borders);
     return text;
 }
 
@@ -200,6 +203,8 @@ std::string widths_csv(const WidthSweep& sweep) {
 std::string widths_json(const WidthRequest& request, const WidthSweep& sweep) {
     Json json;
     json["exact_triangles"] = sweep.exact_triangles;
+    if (!sweep.texel_borders.empty())
+        json["warning"] = sweep.texel_borders;
     json["decisions"] =
         request.job.tests.highlight ? "with the Highlight Test" : "without the Highlight Test";
     for (const WidthTable& table : sweep.tables) {
