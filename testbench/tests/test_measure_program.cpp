@@ -61,9 +61,9 @@ TEST_CASE("compare tells the default run's error") {
     const TestFolder here;
     run_job(here.path(), {});
     const json error = compare(here.path(), "runs/half_donut");
-    // A texel is 2 / 256. The mesh follows the donut within about a texel.
+    // A texel is 2 / 264. The mesh follows the donut within about a texel.
     const double texel = value(error, "measurement", "texel");
-    CHECK(texel == Approx(2.0 / 256));
+    CHECK(texel == Approx(2.0 / 264));
     CHECK(value(error, "measurement", "reference_density") == 4);
     for (const char* const group : {"interpolated", "nearest_texel"})
         for (const char* const direction : {"reference_to_mesh", "mesh_to_reference"}) {
@@ -76,8 +76,8 @@ TEST_CASE("compare tells the default run's error") {
             CHECK(max < 4 * texel);
             CHECK(value(error, group, (name + "_max_texels").c_str()) == Approx(max / texel));
         }
-    CHECK(value(error, "vertical", "grid_points") == 65536);
-    CHECK(value(error, "vertical", "covered") == 65536);
+    CHECK(value(error, "vertical", "grid_points") == 69696);
+    CHECK(value(error, "vertical", "covered") == 69696);
     CHECK(value(error, "vertical", "rms") < 0.005);
     CHECK(value(error, "vertical", "max_map") == Approx(value(error, "vertical", "max") / 0.25));
     CHECK(value(error, "worst_reference_to_mesh", "distance") ==

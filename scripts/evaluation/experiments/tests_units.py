@@ -65,9 +65,9 @@ def measure(study):
     section.charts.append(Chart(
         charts.lines({name: (LATENCIES, shares) for name, shares in waits.items()}, "latency of Transform, cycles",
                      "cycles in which the join waits for the tests, %", log_x=True),
-        "What of the tests' latency shows, half donut, 256 x 256"))
+        "What of the tests' latency shows, half donut, 264 x 264"))
     section.tables = [
-        Table("tests_units", "Units and ports, half donut, 256 x 256",
+        Table("tests_units", "Units and ports, half donut, 264 x 264",
               [("tests units", ""), ("table ports", ""), ("cycles", ""), ("a pass", "cycles"), ("a triangle", "cycles"),
                ("bottleneck", "")], rows),
         Table("transform_latency", "The join's wait for the tests, % of cycles, by Transform's latency",
