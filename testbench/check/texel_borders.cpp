@@ -44,7 +44,7 @@ void TexelBorders::write(const datapath::TrianglePass& pass) {
     const std::array<bool, 3> ends = {below(v[0].texture), below(v[1].texture), below(v[2].texture)};
     count_.edges += 3;
     for (std::size_t k = 0; k < 3; ++k)
-        count_.below += ends[k] || ends[(k + 1) % 3] || below(pass.new_vertex[k].texture) ? 1 : 0;
+        count_.below += ends[k] || ends[(k + 1) % 3] || below(pass.new_vertex[k].texture) ? 1u : 0u;
 }
 
 bool TexelBorderCount::many() const {
