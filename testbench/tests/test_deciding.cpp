@@ -63,17 +63,17 @@ class GoldenCount : public tlm::tlm_analysis_if<datapath::TrianglePass> {
                 golden::evaluate_edge(dequantise_.vertex(pass.edge_begin(k)),
                                       dequantise_.vertex(pass.edge_end(k)), inputs_.map, inputs_.parameters);
             if (e.split) {
-                counts.split_by_normal += e.normal_test && !e.summed_height_test ? 1 : 0;
-                counts.split_by_summed_height += e.summed_height_test && !e.normal_test ? 1 : 0;
-                counts.split_by_both += e.normal_test && e.summed_height_test ? 1 : 0;
-                counts.split_by_highlight += !e.normal_test && !e.summed_height_test ? 1 : 0;
+                counts.split_by_normal += e.normal_test && !e.summed_height_test ? 1u : 0u;
+                counts.split_by_summed_height += e.summed_height_test && !e.normal_test ? 1u : 0u;
+                counts.split_by_both += e.normal_test && e.summed_height_test ? 1u : 0u;
+                counts.split_by_highlight += !e.normal_test && !e.summed_height_test ? 1u : 0u;
             } else if (e.normal_test || e.summed_height_test || e.highlight_test) {
                 const bool view = !e.view_test, tex_coord = !e.tex_coord_test,
                            generation = !e.generation_test;
-                counts.stopped_by_view_alone += view && !tex_coord && !generation ? 1 : 0;
-                counts.stopped_by_tex_coord_alone += tex_coord && !view && !generation ? 1 : 0;
-                counts.stopped_by_generation_alone += generation && !view && !tex_coord ? 1 : 0;
-                counts.stopped_by_several += int{view} + int{tex_coord} + int{generation} > 1 ? 1 : 0;
+                counts.stopped_by_view_alone += view && !tex_coord && !generation ? 1u : 0u;
+                counts.stopped_by_tex_coord_alone += tex_coord && !view && !generation ? 1u : 0u;
+                counts.stopped_by_generation_alone += generation && !view && !tex_coord ? 1u : 0u;
+                counts.stopped_by_several += int{view} + int{tex_coord} + int{generation} > 1 ? 1u : 0u;
             }
         }
     }
@@ -190,12 +190,13 @@ TEST_CASE("texel borders: edges with an end or a midpoint one LSB below a border
         return borders.count().below;
     };
     const datapath::TexCoord on{4096, 8192}, above{4097, 8193}, inside{2048, 6000};
+    const datapath::TexCoord left{4095, 6000}, under{6000, 8191}, corner{8191, 8191}, two_below{4094, 4094};
     CHECK(below({on, above, inside, on, above, inside}) == 0);
-    CHECK(below({on, on, on, {4095, 6000}, on, on}) == 1);
-    CHECK(below({on, on, on, on, {6000, 8191}, on}) == 1);
-    CHECK(below({{8191, 8191}, on, on, on, on, on}) == 2);  // an end of two edges
-    CHECK(below({{8191, 8191}, on, on, {4095, 0}, on, on}) == 2);
-    CHECK(below({on, on, on, {4094, 4094}, on, on}) == 0);
+    CHECK(below({on, on, on, left, on, on}) == 1);
+    CHECK(below({on, on, on, on, under, on}) == 1);
+    CHECK(below({corner, on, on, on, on, on}) == 2);  // an end of two edges
+    CHECK(below({corner, on, on, left, on, on}) == 2);
+    CHECK(below({on, on, on, two_below, on, on}) == 0);
 }
 
 TEST_CASE("texel borders: many are more than a hundredth and twice what chance gives") {

@@ -36,9 +36,63 @@ TEST_CASE("the default job leaves a complete run folder whose figures agree") {
     CHECK_THAT(end.out, Contains("18 base -> "));
     CHECK_THAT(end.out, Contains("0 mismatches"));
     CHECK_THAT(end.out, Contains("results in " + folder.string() + "\n"));
-    CHECK_THAT(end.out, !Contains("note:"));
+    CHECK_THAT(end.out, !Contains("note:") && !Contains("warning:"));
     CHECK_THAT(end.out, !Contains("\x1b"));
     CHECK_THAT(end.out, !Contains("SystemC"));
+}
+
+TEST_CASE("the summary says which test decided, in the statistics' figures") {
+    const TestFolder here;
+    // 6 edges of one quad, all split, and 24 of their children, which generation 1 stops.
+    const ProgramEnd end = run_well({"run",
+                                     "--set",
+                                     "mode=functional",
+                                     "--set",
+                                     "mesh.columns=1",
+                                     "--set",
+                                     "mesh.rows=1",
+                                     "--set",
+                                     "map.source=noise",
+                                     "--set",
+                                     "map.width=64",
+                                     "--set",
+                                     "map.height=64",
+                                     "--set",
+                                     "tests.normal_threshold=0",
+                                     "--set",
+                                     "tests.summed_height=false",
+                                     "--set",
+                                     "tests.generation_limit=1",
+                                     "--set",
+                                     "output.picture=false",
+                                     "--set",
+                                     "output.folder=out"},
+                                    here.path());
+    CHECK_THAT(end.out, Contains("split by                normal alone 6, summed height alone 0, both 0\n"));
+    CHECK_THAT(
+        end.out,
+        Contains(
+            "wanted, but stopped by  view alone 0, tex coord alone 0, generation alone 24, several 0\n"));
+    const RunFolder run(here.path() / "out");
+    CHECK(run.count("pass_or_tessellate", "split_by_normal") == 6);
+    CHECK(run.count("pass_or_tessellate", "stopped_by_view_alone") == 0);
+    CHECK(run.count("pass_or_tessellate", "stopped_by_tex_coord_alone") == 0);
+    CHECK(run.count("pass_or_tessellate", "stopped_by_generation_alone") == 24);
+    CHECK(run.count("pass_or_tessellate", "stopped_by_several") == 0);
+}
+
+TEST_CASE("a map that the mesh's quads do not divide: the run warns, and its remedy helps") {
+    const TestFolder here;
+    const auto run = [&](const char* side) {
+        return run_well({"run", "--set", "mode=functional", "--set", std::string("map.width=") + side,
+                         "--set", std::string("map.height=") + side, "--set", "check.golden=false", "--set",
+                         "check.end_to_end=false", "--set", "output.picture=false"},
+                        here.path())
+            .out;
+    };
+    CHECK_THAT(run("64"), Contains("warning: ") && Contains("one LSB below a texel's border") &&
+                              Contains("map.width = 72 (a multiple of 3 quads), or mesh.columns = 4"));
+    CHECK_THAT(run("72"), !Contains("warning: "));
 }
 
 TEST_CASE("two runs leave identical bytes, and so do the jobs they write down") {

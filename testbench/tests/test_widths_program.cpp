@@ -75,6 +75,22 @@ TEST_CASE("widths: a row of saturated screen positions has the run's count, and 
     CHECK_THAT(run.out, Contains("warning: screen position: ") && Contains("formats.screen_bits"));
 }
 
+TEST_CASE("widths: a map that the mesh's quads do not divide: the sweep warns") {
+    const TestFolder here;
+    const auto sweep = [&](const char* side) {
+        const std::string text =
+            succeed({"widths", "--quantity", "normal", "--bits", "14..14", "--output", "w.csv", "--set",
+                     std::string("map.width=") + side, "--set", std::string("map.height=") + side},
+                    here.path())
+                .out;
+        CHECK(read_json(here.path() / "w.json").contains("warning") ==
+              (text.find("warning: ") != std::string::npos));
+        return text;
+    };
+    CHECK_THAT(sweep("64"), Contains("warning: ") && Contains("map.height = 72"));
+    CHECK_THAT(sweep("72"), !Contains("warning: "));
+}
+
 TEST_CASE("widths: the same bytes again, with two threads, into a folder or a file") {
     const TestFolder here;
     const Arguments sweep =
