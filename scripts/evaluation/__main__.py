@@ -1,15 +1,14 @@
 """Runs the paper's evaluation; see scripts/figures."""
 import argparse
 import importlib
-import os
 import sys
 import traceback
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from page import write_page
-from section import FAILED, NOT_RUN, Claim, Section
-from study import ROOT, MissingData, ProgramError, Study
+from section import FAILED, Claim, Section
+from study import ROOT, ProgramError, Study
 
 # In the order of the page.
 NAMES = ["text_plane", "two_tests", "view_distances", "crater_lake", "teapot", "tex_coord_test", "generation_limit",
@@ -20,8 +19,6 @@ LONGEST_FIRST = ["crater_lake", "view_distances", "tests_units", "two_tests", "t
 def options_from(arguments):
     parser = argparse.ArgumentParser(prog="scripts/figures", description="Runs the paper's evaluation on tessera.")
     parser.add_argument("--output", type=Path, help="folder to leave (runs/figures; with --only runs/figures_only, so that the whole page stays)")
-    parser.add_argument("--data", type=Path, default=Path(os.environ.get("TESSERA_DATA", ROOT.parent / "shared/data")),
-                        help="folder of the inputs that are not part of the project (%(default)s)")
     parser.add_argument("--only", action="append", choices=NAMES, metavar="NAME", help="this experiment; may be repeated")
     parser.add_argument("--list", action="store_true", help="name the experiments and stop")
     parser.add_argument("--jobs", type=int, default=2, help="experiments at a time (%(default)s)")
@@ -38,14 +35,14 @@ def load(name):
 
 
 def perform(experiment, options):
-    """(Section, commands). Missing data and a failed command become claims, so that the rest still has its page."""
+    """(Section, commands). A failed command becomes a claim, so that the rest still has its page."""
     folder = (options.output / "runs" / experiment.name).resolve()
-    study = Study(options.program, options.data.resolve(), folder, options.picture_width)
+    study = Study(options.program, folder, options.picture_width)
 
     def nameless(text):
         """The page names no place of this machine."""
-        for place, name in ((f"{folder}/", f"runs/figures/runs/{experiment.name}/"), (str(study.data), "DATA"),
-                            (f"{ROOT}/", ""), (str(options.program), "tessera")):
+        for place, name in ((f"{folder}/", f"runs/figures/runs/{experiment.name}/"), (f"{ROOT}/", ""),
+                            (str(options.program), "tessera")):
             text = text.replace(place, name)
         return text
 
@@ -53,12 +50,11 @@ def perform(experiment, options):
     try:
         section = experiment.measure(study)
     except Exception as error:  # whatever it is, the other experiments' page is wanted
-        verdict = NOT_RUN if isinstance(error, MissingData) else FAILED
-        print(f"  {experiment.name}: {verdict}: {error}", file=sys.stderr, flush=True)
-        if not isinstance(error, (MissingData, ProgramError)):
+        print(f"  {experiment.name}: {FAILED}: {error}", file=sys.stderr, flush=True)
+        if not isinstance(error, ProgramError):
             traceback.print_exc()
         section = Section(claims=[Claim(f"{experiment.figure}: {experiment.title}", experiment.figure,
-                                        nameless(f"{type(error).__name__}: {error}"), verdict)])
+                                        nameless(f"{type(error).__name__}: {error}"), FAILED)])
     else:
         print(f"  {experiment.name}: done", file=sys.stderr, flush=True)
     return section, [nameless(command) for command in study.commands]
@@ -73,7 +69,7 @@ def main():
     names = [name for name in NAMES if not options.only or name in options.only]
     order = sorted(names, key=lambda name: LONGEST_FIRST.index(name) if name in LONGEST_FIRST else len(LONGEST_FIRST))
     options.output.mkdir(parents=True, exist_ok=True)
-    print(f"{len(names)} experiments, {options.jobs} at a time; data folder {options.data}", file=sys.stderr)
+    print(f"{len(names)} experiments, {options.jobs} at a time", file=sys.stderr)
     with ThreadPoolExecutor(options.jobs) as pool:
         pending = {name: pool.submit(perform, load(name), options) for name in order}
         results = {name: pending[name].result() for name in names}

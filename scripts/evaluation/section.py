@@ -6,7 +6,6 @@ REPRODUCED = "reproduced"
 PARTLY = "partly"
 NOT_REPRODUCED = "not reproduced"
 MEASURED = "measured"  # the paper makes no claim that could fail
-NOT_RUN = "not run"
 FAILED = "failed"  # the program refused or broke: the evaluation ends with an exit code
 
 
@@ -54,7 +53,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Experiment:
-    """`measure(study)` returns a Section; it may raise study.MissingData."""
+    """`measure(study)` returns a Section; it may raise study.ProgramError."""
 
     name: str
     title: str

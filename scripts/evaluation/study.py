@@ -11,10 +11,6 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 JOBS = ROOT / "testbench/jobs"
 
 
-class MissingData(Exception):
-    """An input that is not part of the project and was not found."""
-
-
 class ProgramError(Exception):
     """The program ended with an exit code it should not have."""
 
@@ -40,18 +36,11 @@ class Study:
     # The golden model checks every edge of every run; the files nobody reads here are left out.
     QUIET = {"mode": "functional", "check.end_to_end": False, "output.obj": False, "output.picture": False}
 
-    def __init__(self, program, data, folder, picture_width):
+    def __init__(self, program, folder, picture_width):
         self.program = program
-        self.data = data
         self.folder = folder
         self.picture_width = picture_width
         self.commands = []
-
-    def data_file(self, name):
-        path = self.data / name
-        if not path.is_file():
-            raise MissingData(f"{name} is not in the data folder (scripts/figures --data FOLDER)")
-        return path
 
     def call_highlight_study(self):
         """The program beside `tessera` that measures per-vertex light, on the half donut."""
@@ -70,7 +59,7 @@ class Study:
         self.folder.mkdir(parents=True, exist_ok=True)
         tuned = self.folder / f"{name}.toml"
         arguments = ["tune"] + ([] if job is None else [JOBS / f"{job}.toml"])
-        arguments += ["--triangles", triangles, "--tests", tests, "--output", tuned, "--data", self.data]
+        arguments += ["--triangles", triangles, "--tests", tests, "--output", tuned]
         if grid is not None:
             arguments += ["--grid", grid]
         for key, value in (settings or {}).items():
@@ -86,7 +75,6 @@ class Study:
         arguments = ["run"]
         if job is not None:
             arguments.append(job if isinstance(job, Path) else JOBS / f"{job}.toml")
-        arguments += ["--data", self.data]
         for key, value in {**self.QUIET, **(settings or {}), "output.folder": folder}.items():
             arguments += ["--set", f"{key}={toml(value)}"]
         done = self.call(*arguments, exit_codes=exit_codes)
@@ -121,13 +109,13 @@ class Run:
     @cached_property
     def error(self):
         """Against the densely displaced surface, the map interpolated: see `tessera compare`."""
-        self.study.call("compare", self.folder, "--data", self.study.data)
+        self.study.call("compare", self.folder)
         return figures_of(self.folder / "error.json")
 
     def render(self, view, name=None, **options):
         """A picture beside the mesh, or NAME.png; options as `tessera render` has them, underscores for hyphens."""
         output = self.folder / f"{name or view}.png"
-        arguments = ["render", self.folder, "--view", view, "--output", output, "--data", self.study.data]
+        arguments = ["render", self.folder, "--view", view, "--output", output]
         if "size" not in options:
             options["size"] = f"{self.study.picture_width}x{self.study.picture_width * 3 // 4}"
         for option, value in options.items():

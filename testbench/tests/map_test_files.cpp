@@ -122,15 +122,6 @@ void write_exr(const std::filesystem::path& path, const ExrImage& image) {
     }
 }
 
-std::filesystem::path shared_data(std::string_view name) {
-    std::filesystem::path path = std::filesystem::path(TESSERA_SOURCE_DIR "/../shared/data") / name;
-    if (!std::filesystem::exists(path)) {
-        WARN("skipped: " << path.string() << " is absent");
-        return {};
-    }
-    return path;
-}
-
 Outcome outcome_of(const std::filesystem::path& path) {
     try {
         const HeightMap map = read_height_map(path);

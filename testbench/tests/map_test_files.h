@@ -50,10 +50,6 @@ struct ExrImage {
 };
 void write_exr(const std::filesystem::path& path, const ExrImage& image);
 
-/// <source>/../shared/data/<name>, or an empty path, with a WARN that the case is skipped, where it is
-/// absent.
-std::filesystem::path shared_data(std::string_view name);
-
 /// What read_height_map() makes of a file.
 struct Outcome {
     enum class Kind { loaded, loaded_with_remark, refused, wrong_exception } kind;

@@ -160,15 +160,4 @@ fs::path source_folder() {
     return TESSERA_SOURCE_DIR;
 }
 
-fs::path shared_data() {
-    return (source_folder() / ".." / "shared" / "data").lexically_normal();
-}
-
-bool shared_data_is_there() {
-    const bool there = fs::is_directory(shared_data());
-    if (!there)
-        WARN("../shared/data is absent: this test is skipped");  // words CMakeLists.txt looks for
-    return there;
-}
-
 }  // namespace tessera

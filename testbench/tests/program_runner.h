@@ -60,11 +60,8 @@ std::string read_all(const std::filesystem::path& file);
 void write_all(const std::filesystem::path& file, const std::string& content);
 std::vector<std::string> lines_of(const std::string& text);
 
-/// The folder the project's sources lie in, and the data beside it.
+/// The folder the project's sources lie in.
 std::filesystem::path source_folder();
-std::filesystem::path shared_data();
-/// Whether the shared data is there; says that the test is skipped where it is not.
-bool shared_data_is_there();
 
 /// Memory of a program under a sanitizer says nothing, and its time little.
 constexpr bool sanitized =

@@ -15,18 +15,10 @@ using namespace tessera;
 // time, as ctest does.
 namespace {
 
-const std::filesystem::path data = TESSERA_SOURCE_DIR "/../shared/data";
+const std::filesystem::path jobs = TESSERA_SOURCE_DIR "/testbench/jobs";
 
-bool present(const std::string& file) {
-    if (std::filesystem::exists(data / file))
-        return true;
-    WARN("skipped: " << file << " is not there");
-    return false;
-}
-
-void expect_conformance(const Job& job, const HeightMap& map, const std::string& mesh_file = {}) {
-    const Setup setup =
-        make_setup(job, make_base_mesh(job.mesh, mesh_file.empty() ? "" : (data / mesh_file).string()), map);
+void expect_conformance(const Job& job, const HeightMap& map) {
+    const Setup setup = make_setup(job, make_base_mesh(job.mesh, (jobs / job.mesh.file).string()), map);
     const GoldenInputs inputs(setup);
     Scoreboard scoreboard(setup.registers, inputs);
     Simulation simulation(setup, 1000000);
@@ -54,7 +46,9 @@ Job with_highlight(Job job) {
 
 Job head() {
     Job job;
-    job.mesh.source = MeshSource::file;
+    job.mesh.source = MeshSource::cylinder;
+    job.mesh.radius = 0.582837;
+    job.mesh.height = 5.32;
     job.map.address_u = Addressing::repeat;
     job.displacement.scale = 1.891544222831726;
     job.camera.eye = {0, -6, 0};
@@ -66,8 +60,9 @@ Job crater_lake(std::int64_t columns, std::int64_t rows) {
     job.mesh.columns = columns;
     job.mesh.rows = rows;
     job.mesh.depth = 2 * 459 / 336.0;
-    job.displacement.scale = 2478 / 30.0 / 168;
+    job.displacement.scale = 65535 / 30.0 / 168;
     job.displacement.bias = -1533 / 30.0 / 168;
+    job.tests.summed_height_threshold *= 2478 / 65535.0;
     return job;
 }
 
@@ -106,34 +101,24 @@ TEST_CASE("sphere with repeated map and narrow normals") {
 }
 
 TEST_CASE("Crater Lake on 24 triangles") {
-    const std::string file = "maps/crater_lake_west_336x459.pgm";
-    if (present(file))
-        expect_conformance(crater_lake(3, 4), read_height_map(data / file));
+    expect_conformance(crater_lake(3, 4), read_height_map(jobs / "crater_lake_west.png"));
 }
 TEST_CASE("Crater Lake on 704 triangles") {
-    const std::string file = "maps/crater_lake_west_336x459.pgm";
-    if (present(file))
-        expect_conformance(crater_lake(16, 22), read_height_map(data / file));
+    expect_conformance(crater_lake(16, 22), read_height_map(jobs / "crater_lake_west.png"));
 }
 
 TEST_CASE("the head on its cylinder, repeated in u") {
-    const std::string map = "maps/head_lps_512.pgm", mesh = "meshes/cylinder_1800_lps.obj";
-    if (present(map) && present(mesh))
-        expect_conformance(head(), read_height_map(data / map), mesh);
+    expect_conformance(head(), read_height_map(jobs / "head_lee_perry_smith.png"));
 }
 TEST_CASE("the head on its cylinder with a Highlight Test") {
-    const std::string map = "maps/head_lps_512.pgm", mesh = "meshes/cylinder_1800_lps.obj";
-    if (present(map) && present(mesh))
-        expect_conformance(with_highlight(head()), read_height_map(data / map), mesh);
+    expect_conformance(with_highlight(head()), read_height_map(jobs / "head_lee_perry_smith.png"));
 }
 
 TEST_CASE("half donut on the teapot") {
-    const std::string mesh = "meshes/teapot_n4.obj";
-    if (!present(mesh))
-        return;
     Job job;
-    job.mesh.source = MeshSource::file;
+    job.mesh.source = MeshSource::patches;
+    job.mesh.file = "teapot_newell.txt";
     job.displacement.scale = 0.1;
     job.camera.eye = {0, -9, 5};
-    expect_conformance(job, half_donut_map(256, 256), mesh);
+    expect_conformance(job, half_donut_map(256, 256));
 }

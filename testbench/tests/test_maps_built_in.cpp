@@ -8,6 +8,7 @@
 #include "testbench/maps/read_height_map.h"
 #include "testbench/maps/stroke_font.h"
 #include "testbench/tests/map_test_files.h"
+#include "testbench/tests/shared_data.h"
 
 using namespace tessera;
 using namespace tessera::map_test;
@@ -60,8 +61,37 @@ TEST_CASE("half donut and ramp agree with the reference maps to one code of 16 b
     };
     CHECK(differ(half_donut_map(256, 256), read_height_map(folder / "half_torus_256.pgm")) <= 1);
     CHECK(differ(ramp_map(256, 256), read_height_map(folder / "ramp_256.pgm")) <= 1);
-    CHECK(read_height_map(folder / "crater_lake_west_336x459.pgm").at(0, 458) ==
-          static_cast<float>(1633 / 2478.0));
+}
+
+TEST_CASE("the maps of the project's jobs are those of the shared data") {
+    const std::filesystem::path shared = shared_data("maps"), ours = TESSERA_SOURCE_DIR "/testbench/jobs";
+    if (shared.empty())
+        return;
+    const HeightMap crater = read_height_map(ours / "crater_lake_west.png");
+    const HeightMap metres = read_height_map(shared / "crater_lake_west_336x459.pgm");
+    REQUIRE(crater.values.size() == metres.values.size());
+    std::size_t different = 0;
+    for (std::size_t k = 0; k < metres.values.size(); ++k)
+        different += code(crater.values[k]) != std::lround(2478 * static_cast<double>(metres.values[k]));
+    CHECK(different == 0);
+    CHECK(read_height_map(ours / "head_lee_perry_smith.png").values ==
+          read_height_map(shared / "head_lps_512.pgm").values);
+}
+
+TEST_CASE("the maps of the project's jobs hold what ORIGINS.txt says") {
+    const std::filesystem::path ours = TESSERA_SOURCE_DIR "/testbench/jobs";
+    const HeightMap crater = read_height_map(ours / "crater_lake_west.png");
+    REQUIRE(crater.width == 336);
+    REQUIRE(crater.height == 459);
+    const auto [lowest, highest] = std::minmax_element(crater.values.begin(), crater.values.end());
+    CHECK(code(*lowest) == 1533);
+    CHECK(code(*highest) == 2478);
+    CHECK(code(crater.at(0, 458)) == 1633);  // the file's first sample, top left
+    const HeightMap head = read_height_map(ours / "head_lee_perry_smith.png");
+    CHECK(head.width == 512);
+    CHECK(head.height == 512);
+    CHECK(*std::min_element(head.values.begin(), head.values.end()) == 0);
+    CHECK(*std::max_element(head.values.begin(), head.values.end()) == 1);
 }
 
 TEST_CASE("text is legible: inside the map, flat tops, soft edges, every character different") {

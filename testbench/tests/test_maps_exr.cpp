@@ -7,6 +7,7 @@
 #include "testbench/common/error.h"
 #include "testbench/maps/read_height_map.h"
 #include "testbench/tests/map_test_files.h"
+#include "testbench/tests/shared_data.h"
 
 using namespace tessera;
 using namespace tessera::map_test;

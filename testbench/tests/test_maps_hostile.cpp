@@ -10,6 +10,7 @@
 #include <string>
 
 #include "testbench/tests/map_test_files.h"
+#include "testbench/tests/shared_data.h"
 
 using namespace tessera;
 using namespace tessera::map_test;

@@ -8,6 +8,7 @@
 #include "testbench/meshes/built_in.h"
 #include "testbench/meshes/obj_reader.h"
 #include "testbench/tests/mesh_checks.h"
+#include "testbench/tests/shared_data.h"
 
 using namespace tessera;
 using Catch::Matchers::Contains;
@@ -15,16 +16,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path shared_data = fs::path(TESSERA_SOURCE_DIR) / "../shared/data";
-
-/// The files of a folder of the shared data, in order of name; none, with a warning, where it is absent.
+/// The files of a folder of the shared data, in order of name; none where it is absent.
 std::vector<fs::path> files_in(char const* folder) {
     std::vector<fs::path> files;
-    if (!fs::is_directory(shared_data / folder)) {
-        WARN("skipped: ../shared/data/" << folder << " is absent");
+    const fs::path path = shared_data(folder);
+    if (path.empty()) {
         return files;
     }
-    for (auto const& entry : fs::directory_iterator(shared_data / folder)) {
+    for (auto const& entry : fs::directory_iterator(path)) {
         files.push_back(entry.path());
     }
     std::sort(files.begin(), files.end());
@@ -84,9 +83,8 @@ TEST_CASE("the shared meshes are what tinyobjloader reads") {
 }
 
 TEST_CASE("the built-in plane is the shared plane of 18 triangles") {
-    const fs::path file = shared_data / "meshes/plane_18.obj";
-    if (!fs::exists(file)) {
-        WARN("skipped: ../shared/data/meshes/plane_18.obj is absent");
+    const fs::path file = shared_data("meshes/plane_18.obj");
+    if (file.empty()) {
         return;
     }
     const BaseMesh built_in = make_plane(3, 3, 2, 2), read = read_obj(file.string());
@@ -104,12 +102,12 @@ TEST_CASE("the built-in plane is the shared plane of 18 triangles") {
 }
 
 TEST_CASE("the shared cylinders close at their seam") {
-    for (char const* name : {"meshes/cylinder_1800.obj", "meshes/cylinder_1800_lps.obj"}) {
-        if (!fs::exists(shared_data / name)) {
-            WARN("skipped: ../shared/data/" << name << " is absent");
-            continue;
-        }
-        const BaseMesh mesh = read_obj((shared_data / name).string());
+    const fs::path folder = shared_data("meshes");
+    if (folder.empty()) {
+        return;
+    }
+    for (char const* name : {"cylinder_1800.obj", "cylinder_1800_lps.obj"}) {
+        const BaseMesh mesh = read_obj((folder / name).string());
         CHECK(mesh.vertices.size() == 961);
         CHECK(mesh.repairs.empty());
         const EdgeCounts edges = count_edges(mesh);

@@ -9,6 +9,7 @@
 #include "testbench/meshes/mesh_limits.h"
 #include "testbench/meshes/obj_reader.h"
 #include "testbench/tests/mesh_checks.h"
+#include "testbench/tests/shared_data.h"
 
 using namespace tessera;
 using Catch::Matchers::Contains;
@@ -98,9 +99,8 @@ TEST_CASE("patches: the teapot has 32 patches and 992 triangles, closed but for 
 }
 
 TEST_CASE("patches: the teapot is the one of the shared data") {
-    const fs::path file = fs::path(TESSERA_SOURCE_DIR) / "../shared/data/meshes/teapot_n4.obj";
-    if (!fs::is_regular_file(file)) {
-        WARN("skipped: " << file << " is absent");
+    const fs::path file = shared_data("meshes/teapot_n4.obj");
+    if (file.empty()) {
         return;
     }
     const BaseMesh expected = read_obj(file.string()), mesh = make_patch_mesh(teapot(), 4, 4, "teapot");

@@ -3,6 +3,7 @@
 
 #include "testbench/tests/program_runner.h"
 #include "testbench/tests/run_folder.h"
+#include "testbench/tests/shared_data.h"
 
 using namespace tessera;
 using Catch::Contains;
@@ -60,9 +61,10 @@ void try_file(const fs::path& file, const std::string& table, const std::vector<
 }
 
 void try_maps(const char* kind) {
-    if (!shared_data_is_there())
+    const fs::path folder = shared_data(std::string("hostile/") + kind);
+    if (folder.empty())
         return;
-    for (const fs::path& file : files_in(shared_data() / "hostile" / kind))
+    for (const fs::path& file : files_in(folder))
         try_file(file, "map", {"output.folder=out", "tests.generation_limit=2", "output.picture=false"});
 }
 
@@ -79,19 +81,21 @@ TEST_CASE("hostile PNG files end well or in one message") {
 }
 
 TEST_CASE("hostile OBJ files end well or in one message") {
-    if (!shared_data_is_there())
+    const fs::path folder = shared_data("hostile/obj");
+    if (folder.empty())
         return;
-    for (const fs::path& file : files_in(shared_data() / "hostile/obj"))
+    for (const fs::path& file : files_in(folder))
         try_file(file, "mesh",
                  {"output.folder=out", "map.width=16", "map.height=16", "tests.generation_limit=1",
                   "output.picture=false"});
 }
 
 TEST_CASE("good maps of every kind run") {
-    if (!shared_data_is_there())
+    const fs::path data = shared_data();
+    if (data.empty())
         return;
     for (const char* const folder : {"maps", "exr"}) {
-        for (const fs::path& file : files_in(shared_data() / folder)) {
+        for (const fs::path& file : files_in(data / folder)) {
             const std::string extension = file.extension().string();
             if (extension == ".pgm" || extension == ".png" || extension == ".exr")
                 try_file(file, "map",

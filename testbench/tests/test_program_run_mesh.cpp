@@ -250,14 +250,11 @@ TEST_CASE("a run that is cut short in its folder leaves the job and the mesh of 
 }
 
 TEST_CASE("the teapot's donuts take a second map") {
-    if (!shared_data_is_there())
-        return;
     const TestFolder here;
-    const std::string data = shared_data().string();
     const auto teapot = [&](const std::string& name, std::vector<std::string> settings) {
         std::vector<std::string> arguments = arguments_of(settings);
         arguments.insert(arguments.begin() + 1, (source_folder() / "testbench/jobs/teapot.toml").string());
-        arguments.insert(arguments.end(), {"--data", data, "--set", "output.folder=runs/" + name, "--set",
+        arguments.insert(arguments.end(), {"--set", "output.folder=runs/" + name, "--set",
                                            "check.end_to_end=false", "--set", "output.obj=false"});
         const ProgramEnd end = run_tessera(arguments, here.path());
         INFO(end.text());

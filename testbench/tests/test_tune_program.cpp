@@ -117,8 +117,6 @@ TEST_CASE("tune works where the surface is no height field") {
 }
 
 TEST_CASE("tune finds thresholds for Crater Lake") {
-    if (!shared_data_is_there())
-        return;
     const TestFolder here;
     const std::string job = (source_folder() / "testbench/jobs/crater_lake_704.toml").string();
     succeed(

@@ -155,8 +155,6 @@ TEST_CASE("widths: a sweep of which every width is refused is no result") {
 }
 
 TEST_CASE("widths: Crater Lake's Summed Height Table and positions") {
-    if (!shared_data_is_there())
-        return;
     const TestFolder here;
     const std::string job = (source_folder() / "testbench/jobs/crater_lake_24.toml").string();
     succeed({"widths", job, "--quantity", "summed_height,position", "--bits", "24..32", "--output", "w"},

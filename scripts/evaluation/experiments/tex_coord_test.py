@@ -1,7 +1,6 @@
 """Section 2.5: what the Tex Coord Test saves."""
 from section import Claim, Experiment, Picture, Section, Table, NOT_REPRODUCED, PARTLY, REPRODUCED
 from .view_distances import LICENCE, SOURCE
-from study import MissingData
 
 NOISE = {
     "map.source": "noise", "map.width": 64, "map.height": 64, "displacement.scale": 0.04,
@@ -13,15 +12,9 @@ HEAD = {"tests.view_threshold": 3}
 
 
 def measure(study):
-    section, rows, savings = Section(), [], {}
+    section, rows, savings = Section(sources=[SOURCE]), [], {}
     cases = [("noise", None, {**NOISE, "tests.view_threshold": threshold}) for threshold in VIEW_THRESHOLDS]
-    try:
-        study.data_file("maps/head_lps_512.pgm")
-        study.data_file("meshes/cylinder_1800_lps.obj")
-        cases.append(("head", "head", HEAD))
-        section.sources.append(SOURCE)
-    except MissingData as missing:
-        section.notes.append(f"Without the head: {missing}.")
+    cases.append(("head", "head", HEAD))
     for name, job, settings in cases:
         threshold = settings["tests.view_threshold"]
         runs = {state: study.run(f"{name}_{threshold}_{state}", job, {**settings, "tests.tex_coord": state == "on"})

@@ -7,7 +7,7 @@ from section import Claim, Experiment, Picture, Section, Table, reproduced_if
 LICENCE = "'Infinite, 3D Head Scan by Lee Perry-Smith, based on a work at www.triplegangers.com', CC BY 3.0"
 CHANGED = "ray-cast to a cylinder as a map of radii; licence: creativecommons.org/licenses/by/3.0"
 SOURCE = f"{LICENCE}; {CHANGED}"
-EYE, TARGET = np.array([2.5, 1.9, 10.5]), np.array([-0.07, 1.15, 0.12])
+EYE, TARGET = np.array([2.57, -10.38, 0.69]), np.array([0.0, 0.0, -0.06])
 DISTANCES = (1, 2, 4)
 # Where they are on the map, as fractions of its width and, from the top, of its height.
 REGIONS = {
@@ -27,8 +27,6 @@ def region(boxes, side=512):
 
 
 def measure(study):
-    study.data_file("maps/head_lps_512.pgm")
-    study.data_file("meshes/cylinder_1800_lps.obj")
     section = Section(sources=[SOURCE])
     rows, density_rows, triangles, runs = [], [], [], []
     for distance in DISTANCES:

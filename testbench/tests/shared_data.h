@@ -1,0 +1,18 @@
+#pragma once
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <string>
+
+namespace tessera {
+
+/// NAME in the data folder beside the checkout, ../shared/data; empty where it is absent. The calling test then returns
+/// before it checks anything: ctest counts a test that prints these words as skipped (CMakeLists.txt).
+inline std::filesystem::path shared_data(const std::string& name = ".") {
+    std::filesystem::path path = std::filesystem::path(TESSERA_SOURCE_DIR) / "../shared/data" / name;
+    if (std::filesystem::exists(path))
+        return path.lexically_normal();
+    WARN("this test is skipped: ../shared/data/" << name << " is absent");
+    return {};
+}
+
+}  // namespace tessera
