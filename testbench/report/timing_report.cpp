@@ -10,12 +10,12 @@ namespace tessera {
 
 namespace {
 
-double percent(double part, double whole) {
-    return whole > 0 ? 100 * part / whole : 0;
+double ratio(std::uint64_t part, std::uint64_t whole) {
+    return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
 double state_percent(const Unit& unit, State state, std::uint64_t cycles) {
-    return percent(static_cast<double>(unit.activity().cycles_in(state)), static_cast<double>(cycles));
+    return 100 * ratio(unit.activity().cycles_in(state), cycles);
 }
 
 bool is_memory(const Unit& unit) {
@@ -59,8 +59,7 @@ std::string unit_name(const sc_core::sc_object& unit) {
 
 double utilisation(const Unit& unit, std::uint64_t cycles) {
     // The last item's interval may reach beyond the run's end.
-    const std::uint64_t occupied = std::min(unit.occupied_cycles(), cycles);
-    return cycles == 0 ? 0 : static_cast<double>(occupied) / static_cast<double>(cycles);
+    return ratio(std::min(unit.occupied_cycles(), cycles), cycles);
 }
 
 bool is_queue_or_wire(const Unit& unit) {
@@ -131,8 +130,7 @@ std::string binding_text(const Pipeline& pipeline, std::uint64_t cycles, const B
     const auto [waiting, most] = longest_wait(pipeline, found.first.units[0]);
     if (waiting != nullptr)
         text += fmt::format("; {} waits for {} {:.1f} %", unit_name(*waiting),
-                            several ? unit_name(*found.first.units[0]) : "it",
-                            percent(static_cast<double>(most), static_cast<double>(cycles)));
+                            several ? unit_name(*found.first.units[0]) : "it", 100 * ratio(most, cycles));
     if (found.bound() > 0)
         text +=
             fmt::format("; without {} at most {:.1f} times faster, bounded by {}, {} {:.1f} %",
@@ -141,17 +139,17 @@ std::string binding_text(const Pipeline& pipeline, std::uint64_t cycles, const B
     return text;
 }
 
+double mean_stay(const Unit& unit) {
+    return ratio(unit.activity().item_cycles(), unit.activity().items_out());
+}
+
 /// The pipeline stage in which an item stays longest: not one that waits for others by its nature.
 const Unit& longest_stay(const Pipeline& pipeline) {
-    const auto stay = [](const Unit& unit) {
-        return percent(static_cast<double>(unit.activity().item_cycles()),
-                       static_cast<double>(unit.activity().items_out()));
-    };
     const Unit* longest = &pipeline.transform;
     for (const Unit* unit : pipeline.units()) {
         const bool waits =
             is_queue_or_wire(*unit) || unit == &pipeline.get_triangle || unit == &pipeline.pass_or_tessellate;
-        if (!waits && stay(*unit) > stay(*longest))
+        if (!waits && mean_stay(*unit) > mean_stay(*longest))
             longest = unit;
     }
     return *longest;
@@ -170,12 +168,10 @@ std::string latency_text(const Pipeline& pipeline, std::uint64_t cycles, const B
             : fmt::format("get_triangle is blocked {:.1f} %: larger buffers, timing.*_buffer", blocked);
     const Unit& longest = longest_stay(pipeline);
     return fmt::format(
-        "none: bound by latency; no unit has no room for more work in more than {:.1f} % of all cycles ({}); "
-        "at most {:.1f} times faster with more triangles in flight ({}) or shorter latencies (an item stays "
-        "{:.1f} cycles in {})",
-        100 * found.first.utilisation, found.first.names(), found.bound(), held_up,
-        static_cast<double>(longest.activity().item_cycles()) /
-            static_cast<double>(std::max<std::uint64_t>(longest.activity().items_out(), 1)),
+        "none: bound by latency; the most taken ({}) is so in {:.1f} % of all cycles; at most {:.1f} times "
+        "faster "
+        "with more triangles in flight ({}) or shorter latencies (an item stays {:.1f} cycles in {})",
+        found.first.names(), 100 * found.first.utilisation, found.bound(), held_up, mean_stay(longest),
         unit_name(longest));
 }
 
@@ -186,23 +182,19 @@ std::string without_trailing_blanks(std::string line) {
 
 std::string unit_line(const Unit& unit, std::uint64_t cycles) {
     const Activity& activity = unit.activity();
-    const auto all = static_cast<double>(cycles);
-    return without_trailing_blanks(fmt::format(
-        "{:<40}{:>10}{:>9.2f}{:>8.2f}{:>9.2f}{:>9.2f}{:>13.2f}{:>12.2f}{:>9.3f}{:>6}  {}", unit_name(unit),
-        activity.items_in(), state_percent(unit, State::busy, cycles),
-        state_percent(unit, State::waiting_for_memory, cycles), state_percent(unit, State::blocked, cycles),
-        state_percent(unit, State::starved, cycles), 100 * utilisation(unit, cycles),
-        10 * percent(static_cast<double>(activity.items_in()), all),
-        percent(static_cast<double>(activity.item_cycles()), all) / 100, activity.high_water_mark(),
-        whom(unit)));
+    return without_trailing_blanks(
+        fmt::format("{:<40}{:>10}{:>9.2f}{:>8.2f}{:>9.2f}{:>9.2f}{:>13.2f}{:>12.2f}{:>9.3f}{:>6}  {}",
+                    unit_name(unit), activity.items_in(), state_percent(unit, State::busy, cycles),
+                    state_percent(unit, State::waiting_for_memory, cycles),
+                    state_percent(unit, State::blocked, cycles), state_percent(unit, State::starved, cycles),
+                    100 * utilisation(unit, cycles), 1000 * ratio(activity.items_in(), cycles),
+                    ratio(activity.item_cycles(), cycles), activity.high_water_mark(), whom(unit)));
 }
 
 std::string queue_line(const Unit& unit, std::uint64_t cycles) {
     const Activity& activity = unit.activity();
-    const auto all = static_cast<double>(cycles);
     return fmt::format("{:<40}{:>10}{:>12.2f}{:>12.3f}{:>10}\n", unit_name(unit), activity.items_in(),
-                       10 * percent(static_cast<double>(activity.items_in()), all),
-                       percent(static_cast<double>(activity.item_cycles()), all) / 100,
+                       1000 * ratio(activity.items_in(), cycles), ratio(activity.item_cycles(), cycles),
                        activity.high_water_mark());
 }
 
