@@ -10,8 +10,8 @@ namespace tessera {
 /// What a unit does in a cycle. Exactly one of these, so that their cycles add up to the run's:
 ///
 ///   blocked             a finished item waits for its consumer to take it
-///   waiting for memory  none is blocked, and an item's table entries have been asked for and have not come
-///   busy                none of the above, and an item is being worked on
+///   busy                none is blocked, and an item is being worked on that has all it needs
+///   waiting for memory  none of the above, and an item's table entries have been asked for and have not come
 ///   starved             nothing to work on, or what is there lacks its other half (the screen positions the View Test
 ///                       waits for, the other branch in Pass or Tessellate)
 enum class State : std::uint8_t { starved, busy, waiting_for_memory, blocked };

@@ -121,7 +121,7 @@ class TableStage : public Unit {
         skip_finished();
         if (pipeline_.front_finished(cycle))
             activity_.set(cycle, State::blocked, output_.blocked_by());
-        else if (port_->under_way())
+        else if (waiting_ == 0 && port_->under_way())
             activity_.set(cycle, State::waiting_for_memory, port_->memory());
         else
             activity_.set(

@@ -64,9 +64,9 @@ class Stopwatch {
 };
 
 void write_run_folder(const std::filesystem::path& folder, const Job& job, const Setup& setup,
-                      const Simulation& simulation, const Checks& checks) {
+                      const Simulation& simulation, const MeshCounts& counts, const Checks& checks) {
     write_file(folder / "job.toml", dump_job(job, folder));
-    const std::vector<Figure> figures = collect_statistics(setup, simulation);
+    const std::vector<Figure> figures = collect_statistics(setup, simulation, counts);
     write_file(folder / "statistics.json", statistics_json(figures));
     write_file(folder / "statistics.csv", statistics_csv(figures));
     write_file(folder / "conformance.txt", conformance_text(checks));
@@ -74,7 +74,7 @@ void write_run_folder(const std::filesystem::path& folder, const Job& job, const
     const MeshUnits units{setup.registers.formats, setup.registers.map, setup.model_scale.scale,
                           setup.model_scale.centre};
     if (job.mode == Mode::timed) {
-        write_file(folder / "timing.txt", timing_text(simulation));
+        write_file(folder / "timing.txt", timing_text(simulation.pipeline, simulation.cycles()));
         write_file(folder / "queue_levels.csv",
                    queue_levels_csv(simulation.pipeline.triangle_queue.history()));
     }
@@ -273,15 +273,16 @@ Ending run_once(const Job& job, const Command& command, const std::string& name,
     progress.show("writing", 0.99);
     if (!output)
         output.emplace(folder);
-    write_run_folder(folder, job, setup, simulation, checks);
+    const MeshCounts counts = count_mesh(mesh);
+    write_run_folder(folder, job, setup, simulation, counts, checks);
     replace_run(replaced, files);
     output->keep();
     progress.clear();
 
-    return {
-        checks.passed() ? ExitCode::fine : ExitCode::check_failed,
-        fmt::format("{}{}  {}\n  results in {}\n", summary(setup, simulation, checks, seconds), traces_text,
-                    verdict(checks), std::filesystem::absolute(folder).lexically_normal().string())};
+    return {checks.passed() ? ExitCode::fine : ExitCode::check_failed,
+            fmt::format("{}{}  {}\n  results in {}\n", summary(setup, simulation, counts, checks, seconds),
+                        traces_text, verdict(checks),
+                        std::filesystem::absolute(folder).lexically_normal().string())};
 }
 
 }  // namespace

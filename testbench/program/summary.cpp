@@ -51,8 +51,9 @@ std::string checks_rows(const Checks& checks) {
     }
     if (checks.invariants) {
         const InvariantResult& i = *checks.invariants;
-        text += row("invariants", fmt::format("{} cracks, {} T-vertices, {} collapsed, {} turned over",
-                                              i.cracks, i.t_vertices, i.collapsed, i.turned_over));
+        text += row("invariants",
+                    fmt::format("{} cracks, {} T-vertices; in texture space {} collapsed, {} turned over",
+                                i.cracks, i.t_vertices, i.collapsed, i.turned_over));
         if (i.open_texture_seam_edges > 0)
             text += row(
                 "texture seams",
@@ -70,6 +71,21 @@ std::string checks_rows(const Checks& checks) {
     return text;
 }
 
+/// What was done over and over, beside what the mesh needs of it.
+std::string work_rows(const Simulation& simulation, const MeshCounts& mesh) {
+    const Pipeline& p = simulation.pipeline;
+    const double tests = mesh.tested_edges() == 0 ? 0
+                                                  : static_cast<double>(p.edges_tested()) /
+                                                        static_cast<double>(mesh.tested_edges());
+    return row("distinct edges",
+               fmt::format("{}, each tested {:.1f} times", count(mesh.tested_edges()), tests)) +
+           row("distinct vertices",
+               fmt::format("{}; {} were made and {} of them thrown away, {} normals transformed",
+                           count(mesh.vertices), count(p.transform.positions()),
+                           count(thrown_away_vertices(p, simulation.setup.base_triangles.size())),
+                           count(p.transform.normals())));
+}
+
 std::string timing_rows(const Simulation& simulation) {
     const Pipeline& p = simulation.pipeline;
     const auto per = [&](std::uint64_t count) {
@@ -82,7 +98,7 @@ std::string timing_rows(const Simulation& simulation) {
                     count(simulation.cycles()), per(p.pass_or_tessellate.counts().finished),
                     per(p.pass_or_tessellate.counts().passes), per(p.edges_tested()),
                     static_cast<double>(simulation.cycles()) * period * 1e3, 1e-6 / period));
-    text += row("bottleneck", bottleneck_text(simulation));
+    text += row("bottleneck", bottleneck_text(p, simulation.cycles()));
     if (p.triangle_queue.spilled() > 0)
         text +=
             row("spilled", fmt::format("{} triangles, at most {} on chip", count(p.triangle_queue.spilled()),
@@ -92,7 +108,8 @@ std::string timing_rows(const Simulation& simulation) {
 
 }  // namespace
 
-std::string summary(const Setup& setup, const Simulation& simulation, const Checks& checks, double seconds) {
+std::string summary(const Setup& setup, const Simulation& simulation, const MeshCounts& mesh,
+                    const Checks& checks, double seconds) {
     const Pipeline& p = simulation.pipeline;
     const auto& counts = p.pass_or_tessellate.counts();
     const std::uint64_t edges = p.edges_tested();
@@ -117,6 +134,7 @@ std::string summary(const Setup& setup, const Simulation& simulation, const Chec
                 fmt::format("view alone {}, tex coord alone {}, generation alone {}, several {}",
                             count(counts.stopped_by_view_alone), count(counts.stopped_by_tex_coord_alone),
                             count(counts.stopped_by_generation_alone), count(counts.stopped_by_several)));
+    text += work_rows(simulation, mesh);
     text += row("triangle queue", fmt::format("at most {} triangles waiting, {} bits each",
                                               count(p.triangle_queue.high_water_mark()), widths.triangle));
     text +=

@@ -7,6 +7,8 @@
 namespace tessera {
 
 /// The table a run prints: what came out, what it cost, what was checked.
-std::string summary(const Setup& setup, const Simulation& simulation, const Checks& checks, double seconds);
+/// mesh: of the simulation's. seconds: the run took.
+std::string summary(const Setup& setup, const Simulation& simulation, const MeshCounts& mesh,
+                    const Checks& checks, double seconds);
 
 }  // namespace tessera

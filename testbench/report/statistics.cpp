@@ -82,37 +82,14 @@ Collector memory_figures(const char* name, const datapath::TableLayout& table, s
     return c;
 }
 
-/// Vertices of the mesh, those that triangles share counted once: by a 64 bit hash of t and P', so that a million
-/// triangles cost 24 MB; two of a million vertices collide in one of 10^7 meshes.
-std::uint64_t distinct_vertices(const EmittedMesh& mesh) {
-    std::vector<std::uint64_t> hashes;
-    hashes.reserve(3 * mesh.triangles.size());
-    for (const EmittedTriangle& triangle : mesh.triangles) {
-        for (const EmittedTriangle::Corner& c : triangle.corners) {
-            std::uint64_t hash = 0;
-            for (const std::uint32_t part :
-                 {c.texture.u, c.texture.v, static_cast<std::uint32_t>(c.displaced.x),
-                  static_cast<std::uint32_t>(c.displaced.y), static_cast<std::uint32_t>(c.displaced.z)}) {
-                hash = (hash ^ part) * 0x9e3779b97f4a7c15u;
-                hash ^= hash >> 29;
-            }
-            hashes.push_back(hash);
-        }
-    }
-    std::sort(hashes.begin(), hashes.end());
-    return static_cast<std::uint64_t>(std::unique(hashes.begin(), hashes.end()) - hashes.begin());
-}
-
-Collector host_figures(const Setup& setup, const EmittedMesh& mesh) {
+Collector host_figures(const Setup& setup, std::uint64_t finished, std::uint64_t vertices) {
     const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
     const auto bytes = [](std::uint64_t bits) { return (bits + 7) / 8; };
-    const std::uint64_t finished = mesh.triangles.size();
     const std::uint64_t base = base_mesh_bytes(setup);
     const std::uint64_t tables = setup.registers.displacement_map.bytes() +
                                  setup.registers.normal_map.bytes() +
                                  setup.registers.summed_height_table.bytes();
     const std::uint64_t whole = bytes(finished * 3 * widths.finished_vertex);
-    const std::uint64_t vertices = distinct_vertices(mesh);
     const std::uint64_t indexed = bytes(vertices * widths.finished_vertex) + finished * 3 * 4;
     Collector c("host");
     c.add("base_triangles", setup.base_triangles.size(), "triangle", "sent to Get Triangle");
@@ -121,7 +98,8 @@ Collector host_figures(const Setup& setup, const EmittedMesh& mesh) {
     c.add("table_bytes", tables, "byte",
           "displacement map, normal map, Summed Height Table; once, the normal map again when the scale "
           "changes");
-    c.add("tessellated_vertices", vertices, "vertex", "distinct vertices of the finished mesh");
+    c.add("tessellated_vertices", vertices, "vertex",
+          "distinct vertices of the finished mesh, by t, P' and N'");
     c.add("tessellated_mesh_bytes", indexed, "byte",
           "the same mesh sent whole and indexed: distinct vertices of P', N', t, three 32 bit indices per "
           "triangle; every frame");
@@ -132,6 +110,34 @@ Collector host_figures(const Setup& setup, const EmittedMesh& mesh) {
     c.add("frames_to_pay_for_tables",
           indexed > base ? ratio(static_cast<double>(tables), static_cast<double>(indexed - base)) : 0.0,
           "frame", "after so many frames the tables' bytes are saved; 0: never");
+    return c;
+}
+
+/// What the machine does over and over, beside what the mesh needs of it.
+Collector useful_work_figures(const Pipeline& p, std::uint64_t base_triangles, const MeshCounts& mesh) {
+    const std::uint64_t made = p.transform.positions(), normals = p.transform.normals(),
+                        tested = p.edges_tested();
+    const auto per = [](std::uint64_t done, std::uint64_t needed) {
+        return ratio(static_cast<double>(done), static_cast<double>(needed));
+    };
+    Collector c("useful_work");
+    c.add("vertices", mesh.vertices, "vertex",
+          "distinct vertices of the finished mesh, by t, P' and N', culled triangles included");
+    c.add("vertices_made", made, "vertex",
+          "displaced and transformed: three a base triangle, and the midpoint of each edge tested");
+    c.add("vertices_thrown_away", thrown_away_vertices(p, base_triangles), "vertex",
+          "of these: midpoints of edges that were not split");
+    c.add("made_per_vertex", per(made, mesh.vertices), "times", "vertices made per distinct vertex");
+    c.add("normals_transformed", normals, "normal",
+          "N's: a vertex's again in each triangle whose parent did not have it");
+    c.add("normals_per_vertex", per(normals, mesh.vertices), "times",
+          "normals transformed per distinct vertex");
+    c.add(
+        "edges", mesh.tested_edges(), "edge",
+        "distinct edges that were tested, by their two vertices: those of the finished mesh, and those that "
+        "were split");
+    c.add("edge_tests", tested, "edge", "edges tested: one of a triangle, in each pass");
+    c.add("tests_per_edge", per(tested, mesh.tested_edges()), "times", "edge tests per distinct edge");
     return c;
 }
 
@@ -154,7 +160,13 @@ Collector mesh_figures(const EmittedMesh& mesh) {
 
 }  // namespace
 
-std::vector<Figure> collect_statistics(const Setup& setup, const Simulation& simulation) {
+std::uint64_t thrown_away_vertices(const Pipeline& pipeline, std::uint64_t base_triangles) {
+    return pipeline.transform.positions() - 3 * base_triangles -
+           pipeline.pass_or_tessellate.counts().edges_split;
+}
+
+std::vector<Figure> collect_statistics(const Setup& setup, const Simulation& simulation,
+                                       const MeshCounts& mesh) {
     const Pipeline& p = simulation.pipeline;
     const PassOrTessellate::Counts& counts = p.pass_or_tessellate.counts();
     const std::uint64_t edges = p.edges_tested();
@@ -177,7 +189,8 @@ std::vector<Figure> collect_statistics(const Setup& setup, const Simulation& sim
             "edges tested per finished triangle");
     take(std::move(run));
     take(format_figures(setup));
-    take(host_figures(setup, simulation.monitor.mesh));
+    take(useful_work_figures(p, setup.base_triangles.size(), mesh));
+    take(host_figures(setup, counts.finished, mesh.vertices));
 
     Collector get("get_triangle");
     get.add("host_triangles", p.get_triangle.host_triangles(), "triangle", "taken from the host");
@@ -186,9 +199,6 @@ std::vector<Figure> collect_statistics(const Setup& setup, const Simulation& sim
 
     Collector transform("transform");
     transform.add("positions", p.transform.positions(), "vertex", "positions transformed");
-    transform.add("positions_discarded",
-                  p.transform.positions() - 3 * setup.base_triangles.size() - counts.edges_split, "vertex",
-                  "of these: midpoints, transformed while their edge was tested, that were not inserted");
     transform.add("normals", p.transform.normals(), "normal", "normals transformed");
     take(std::move(transform));
 
@@ -292,14 +302,14 @@ std::string csv_cell(const std::string& value) {
 }  // namespace
 
 std::string statistics_csv(const std::vector<Figure>& figures) {
-    std::string heading, values;
+    std::string text = "name,value,unit,description\n";
     for (const Figure& figure : figures) {
-        const char* comma = heading.empty() ? "" : ",";
-        heading += fmt::format("{}{}.{}", comma, figure.group, figure.name);
-        values += comma + csv_cell(std::visit([](const auto& value) { return fmt::format("{}", value); },
-                                              figure.value));
+        const std::string value =
+            std::visit([](const auto& held) { return fmt::format("{}", held); }, figure.value);
+        text += fmt::format("{}.{},{},{},{}\n", figure.group, figure.name, csv_cell(value),
+                            csv_cell(figure.unit), csv_cell(figure.description));
     }
-    return heading + "\n" + values + "\n";
+    return text;
 }
 
 }  // namespace tessera

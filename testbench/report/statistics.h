@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "testbench/host/simulation.h"
+#include "testbench/report/mesh_counts.h"
 
 namespace tessera {
 
@@ -18,12 +19,17 @@ struct Figure {
 };
 
 /// The figures of a run, in the order of the pipeline. No wall-clock time: two runs give the same bytes.
-std::vector<Figure> collect_statistics(const Setup& setup, const Simulation& simulation);
+/// mesh: of the simulation's.
+std::vector<Figure> collect_statistics(const Setup& setup, const Simulation& simulation,
+                                       const MeshCounts& mesh);
+
+/// Midpoints that were displaced and transformed while their edge was tested, and not inserted.
+std::uint64_t thrown_away_vertices(const Pipeline& pipeline, std::uint64_t base_triangles);
 
 /// {"group": {"name": {"value": ..., "unit": "...", "description": "..."}}}
 std::string statistics_json(const std::vector<Figure>& figures);
 
-/// Two rows: "group.name" headings, values.
+/// A heading, then a row a figure: "group.name", value, unit, description.
 std::string statistics_csv(const std::vector<Figure>& figures);
 
 }  // namespace tessera

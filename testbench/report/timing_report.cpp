@@ -3,19 +3,19 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
-#include <vector>
+#include <iterator>
+#include <utility>
 
 namespace tessera {
 
 namespace {
 
-double percent(double part, double whole) {
-    return whole > 0 ? 100 * part / whole : 0;
+double ratio(std::uint64_t part, std::uint64_t whole) {
+    return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
 double state_percent(const Unit& unit, State state, std::uint64_t cycles) {
-    return percent(static_cast<double>(unit.activity().cycles_in(state)), static_cast<double>(cycles));
+    return 100 * ratio(unit.activity().cycles_in(state), cycles);
 }
 
 bool is_memory(const Unit& unit) {
@@ -59,91 +59,183 @@ std::string unit_name(const sc_core::sc_object& unit) {
 
 double utilisation(const Unit& unit, std::uint64_t cycles) {
     // The last item's interval may reach beyond the run's end.
-    const std::uint64_t occupied = std::min(unit.occupied_cycles(), cycles);
-    return cycles == 0 ? 0 : static_cast<double>(occupied) / static_cast<double>(cycles);
+    return ratio(std::min(unit.occupied_cycles(), cycles), cycles);
 }
 
-Bottleneck find_bottleneck(const Simulation& simulation) {
+bool is_queue_or_wire(const Unit& unit) {
+    return dynamic_cast<const TriangleQueue*>(&unit) != nullptr ||
+           dynamic_cast<const CollectTests*>(&unit) != nullptr;
+}
+
+std::string Limit::names() const {
+    std::string text;
+    for (std::size_t k = 0; k < units.size(); ++k)
+        text += (k == 0 ? "" : k + 1 == units.size() ? " and " : ", ") + unit_name(*units[k]);
+    return text;
+}
+
+double Bottleneck::bound() const {
+    const double remaining = binding ? next.utilisation : first.utilisation;
+    return remaining > 0 ? 1 / remaining : 0;
+}
+
+Bottleneck find_bottleneck(const Pipeline& pipeline, std::uint64_t cycles) {
+    std::vector<const Unit*> left;
+    for (const Unit* unit : pipeline.units())
+        if (utilisation(*unit, cycles) > 0)
+            left.push_back(unit);
+    const auto take_highest = [&] {
+        Limit limit;
+        for (const Unit* unit : left)
+            limit.utilisation = std::max(limit.utilisation, utilisation(*unit, cycles));
+        const auto ties = [&](const Unit* unit) {
+            return utilisation(*unit, cycles) >= 0.99 * limit.utilisation;
+        };
+        std::copy_if(left.begin(), left.end(), std::back_inserter(limit.units), ties);
+        left.erase(std::remove_if(left.begin(), left.end(), ties), left.end());
+        return limit;
+    };
     Bottleneck found;
-    for (const Unit* unit : simulation.pipeline.units()) {
-        const double of_it = utilisation(*unit, simulation.cycles());
-        if (found.unit == nullptr || of_it > found.utilisation) {
-            found.next = found.unit;
-            found.next_utilisation = found.utilisation;
-            found.unit = unit;
-            found.utilisation = of_it;
-        } else if (found.next == nullptr || of_it > found.next_utilisation) {
-            found.next = unit;
-            found.next_utilisation = of_it;
-        }
-    }
-    found.binding = found.utilisation >= binding_utilisation;
+    found.first = take_highest();
+    found.next = take_highest();
+    found.binding = found.first.utilisation >= binding_utilisation;
     return found;
 }
 
-std::string bottleneck_text(const Simulation& simulation) {
-    const std::uint64_t cycles = simulation.cycles();
-    const Bottleneck found = find_bottleneck(simulation);
-    if (found.unit == nullptr || cycles == 0)
-        return "nothing was done";
-    const Unit& get = simulation.pipeline.get_triangle;
-    if (!found.binding)
-        return fmt::format(
-            "none: the most taken, {}, is so in {:.1f} % of all cycles; too few triangles were under way "
-            "to hide the latencies (get_triangle starved {:.1f} %, blocked {:.1f} %)",
-            unit_name(*found.unit), 100 * found.utilisation, state_percent(get, State::starved, cycles),
-            state_percent(get, State::blocked, cycles));
-    std::string text =
-        fmt::format("{}: {} in {:.1f} % of all cycles", unit_name(*found.unit),
-                    is_memory(*found.unit) ? "its ports are taken" : "it has no room for more work",
-                    100 * found.utilisation);
-    const Unit* waiting = nullptr;
-    std::uint64_t most = 0;
-    for (const Unit* unit : simulation.pipeline.units()) {
+namespace {
+
+/// Who was held up longest by `by`, and for how many cycles.
+std::pair<const Unit*, std::uint64_t> longest_wait(const Pipeline& pipeline, const Unit* by) {
+    std::pair<const Unit*, std::uint64_t> longest{nullptr, 0};
+    for (const Unit* unit : pipeline.units()) {
         for (const Activity::Share& share : unit->activity().shares()) {
-            if (share.by == found.unit && share.cycles > most) {
-                most = share.cycles;
-                waiting = unit;
-            }
+            if (share.by == by && share.cycles > longest.second)
+                longest = {unit, share.cycles};
         }
     }
+    return longest;
+}
+
+std::string binding_text(const Pipeline& pipeline, std::uint64_t cycles, const Bottleneck& found) {
+    const bool several = found.first.units.size() > 1;
+    std::string text = found.first.names();
+    if (several)
+        text += fmt::format(", which tie: no room for more work in {:.1f} % of all cycles",
+                            100 * found.first.utilisation);
+    else
+        text += fmt::format(
+            ": {} in {:.1f} % of all cycles",
+            is_memory(*found.first.units[0]) ? "its ports are taken" : "it has no room for more work",
+            100 * found.first.utilisation);
+    const auto [waiting, most] = longest_wait(pipeline, found.first.units[0]);
     if (waiting != nullptr)
-        text += fmt::format("; {} waits for it {:.1f} %", unit_name(*waiting),
-                            percent(static_cast<double>(most), static_cast<double>(cycles)));
-    if (found.next != nullptr && found.next_utilisation > 0)
-        text += fmt::format("; without it the next limit is {}, at {:.1f} % now: up to {:.1f} times faster",
-                            unit_name(*found.next), 100 * found.next_utilisation,
-                            found.utilisation / found.next_utilisation);
+        text += fmt::format("; {} waits for {} {:.1f} %", unit_name(*waiting),
+                            several ? unit_name(*found.first.units[0]) : "it", 100 * ratio(most, cycles));
+    if (found.bound() > 0)
+        text +=
+            fmt::format("; without {} at most {:.1f} times faster, bounded by {}, {} {:.1f} %",
+                        several ? "them" : "it", found.bound(), found.next.names(),
+                        found.next.units.size() > 1 ? "which tie at" : "at", 100 * found.next.utilisation);
     return text;
 }
 
-std::string timing_text(const Simulation& simulation) {
-    const std::uint64_t cycles = simulation.cycles();
-    std::string text = fmt::format(
-        "{} cycles. Every cycle of a unit is one of busy, starved (nothing to do, or the other half is "
-        "lacking),\n"
-        "blocked (a finished item is not taken), memory (waiting for table entries); in per cent of all "
-        "cycles.\n"
-        "utilisation: cycles in which no more work could have been taken. occupancy: items in the unit, on "
-        "average.\n\n"
-        "{:<40}{:>10}{:>8}{:>9}{:>9}{:>8}{:>13}{:>11}{:>9}{:>6}  {}\n",
-        cycles, "unit", "items", "busy", "starved", "blocked", "memory", "utilisation", "items/kcyc",
-        "occup.", "most", "by whom");
-    for (const Unit* unit : simulation.pipeline.units()) {
-        const Activity& activity = unit->activity();
-        std::string line = fmt::format(
-            "{:<40}{:>10}{:>8.2f}{:>9.2f}{:>9.2f}{:>8.2f}{:>13.2f}{:>11.2f}{:>9.3f}{:>6}  {}",
-            unit_name(*unit), activity.items_in(), state_percent(*unit, State::busy, cycles),
-            state_percent(*unit, State::starved, cycles), state_percent(*unit, State::blocked, cycles),
-            state_percent(*unit, State::waiting_for_memory, cycles), 100 * utilisation(*unit, cycles),
-            1000 * percent(static_cast<double>(activity.items_in()), static_cast<double>(cycles)) / 100,
-            percent(static_cast<double>(activity.item_cycles()), static_cast<double>(cycles)) / 100,
-            activity.high_water_mark(), whom(*unit));
-        line.erase(line.find_last_not_of(' ') + 1);
-        text += line + "\n";
+double mean_stay(const Unit& unit) {
+    return ratio(unit.activity().item_cycles(), unit.activity().items_out());
+}
+
+/// The pipeline stage in which an item stays longest: not one that waits for others by its nature.
+const Unit& longest_stay(const Pipeline& pipeline) {
+    const Unit* longest = &pipeline.transform;
+    for (const Unit* unit : pipeline.units()) {
+        const bool waits =
+            is_queue_or_wire(*unit) || unit == &pipeline.get_triangle || unit == &pipeline.pass_or_tessellate;
+        if (!waits && mean_stay(*unit) > mean_stay(*longest))
+            longest = unit;
     }
-    text += "\nbottleneck: " + bottleneck_text(simulation) + "\n";
-    return text;
+    return *longest;
+}
+
+std::string latency_text(const Pipeline& pipeline, std::uint64_t cycles, const Bottleneck& found) {
+    const Unit& get = pipeline.get_triangle;
+    const double starved = state_percent(get, State::starved, cycles),
+                 blocked = state_percent(get, State::blocked, cycles);
+    const std::string held_up =
+        starved > blocked
+            ? fmt::format(
+                  "get_triangle is starved {:.1f} %: more base triangles, a higher "
+                  "hardware.queue_watermark",
+                  starved)
+            : fmt::format("get_triangle is blocked {:.1f} %: larger buffers, timing.*_buffer", blocked);
+    const Unit& longest = longest_stay(pipeline);
+    return fmt::format(
+        "none: bound by latency; the most taken ({}) is so in {:.1f} % of all cycles; at most {:.1f} times "
+        "faster "
+        "with more triangles in flight ({}) or shorter latencies (an item stays {:.1f} cycles in {})",
+        found.first.names(), 100 * found.first.utilisation, found.bound(), held_up, mean_stay(longest),
+        unit_name(longest));
+}
+
+std::string without_trailing_blanks(std::string line) {
+    line.erase(line.find_last_not_of(' ') + 1);
+    return line + "\n";
+}
+
+std::string unit_line(const Unit& unit, std::uint64_t cycles) {
+    const Activity& activity = unit.activity();
+    return without_trailing_blanks(
+        fmt::format("{:<40}{:>10}{:>9.2f}{:>8.2f}{:>9.2f}{:>9.2f}{:>13.2f}{:>12.2f}{:>9.3f}{:>6}  {}",
+                    unit_name(unit), activity.items_in(), state_percent(unit, State::busy, cycles),
+                    state_percent(unit, State::waiting_for_memory, cycles),
+                    state_percent(unit, State::blocked, cycles), state_percent(unit, State::starved, cycles),
+                    100 * utilisation(unit, cycles), 1000 * ratio(activity.items_in(), cycles),
+                    ratio(activity.item_cycles(), cycles), activity.high_water_mark(), whom(unit)));
+}
+
+std::string queue_line(const Unit& unit, std::uint64_t cycles) {
+    const Activity& activity = unit.activity();
+    return fmt::format("{:<40}{:>10}{:>12.2f}{:>12.3f}{:>10}\n", unit_name(unit), activity.items_in(),
+                       1000 * ratio(activity.items_in(), cycles), ratio(activity.item_cycles(), cycles),
+                       activity.high_water_mark());
+}
+
+}  // namespace
+
+std::string bottleneck_text(const Pipeline& pipeline, std::uint64_t cycles) {
+    const Bottleneck found = find_bottleneck(pipeline, cycles);
+    if (found.first.units.empty())
+        return "nothing was done";
+    return found.binding ? binding_text(pipeline, cycles, found) : latency_text(pipeline, cycles, found);
+}
+
+std::string timing_tables(const Pipeline& pipeline, std::uint64_t cycles) {
+    std::string text = fmt::format("{:<40}{:>10}{:>9}{:>8}{:>9}{:>9}{:>13}{:>12}{:>9}{:>6}  {}\n", "unit",
+                                   "items", "working", "memory", "blocked", "starved", "utilisation",
+                                   "items/kcyc", "occup.", "most", "by whom");
+    std::string queues = fmt::format("{:<40}{:>10}{:>12}{:>12}{:>10}\n", "queue or wire", "items",
+                                     "items/kcyc", "mean level", "most");
+    for (const Unit* unit : pipeline.units()) {
+        if (is_queue_or_wire(*unit))
+            queues += queue_line(*unit, cycles);
+        else
+            text += unit_line(*unit, cycles);
+    }
+    return text + "\n" + queues;
+}
+
+std::string timing_text(const Pipeline& pipeline, std::uint64_t cycles) {
+    return fmt::format(
+               "{} cycles. In each a unit is in one state, the first of these that applies, in per cent of "
+               "all cycles:\n"
+               "  blocked  a finished item is not taken\n"
+               "  working  an item is worked on that has all it needs; in a memory: a request is being "
+               "answered\n"
+               "  memory   table entries have been asked for and have not come\n"
+               "  starved  nothing to work on, or its other half is lacking\n"
+               "utilisation: cycles in which no more work could have been taken, in per cent. occup.: items "
+               "in the unit, on\naverage; most: at a time. Queues and wires do no work: they have a rate and "
+               "a level.\n\n",
+               cycles) +
+           timing_tables(pipeline, cycles) + "\nbottleneck: " + bottleneck_text(pipeline, cycles) + "\n";
 }
 
 std::string queue_levels_csv(const LevelHistory& history) {

@@ -1,7 +1,9 @@
 #pragma once
+#include <cstdint>
 #include <string>
+#include <vector>
 
-#include "testbench/host/simulation.h"
+#include "modules/pipeline.h"
 
 namespace tessera {
 
@@ -12,26 +14,44 @@ double utilisation(const Unit& unit, std::uint64_t cycles);
 /// "summed_height_table" of "tessera.summed_height_table": a unit's name within the machine.
 std::string unit_name(const sc_core::sc_object& unit);
 
+/// Does no work of its own, but passes items on: the Triangle Queue, Collect Tests.
+bool is_queue_or_wire(const Unit& unit);
+
+/// Units whose utilisation lies within a per cent of the highest among them.
+struct Limit {
+    std::vector<const Unit*> units;  ///< in the order of the pipeline; empty: nobody did anything
+    double utilisation = 0;          ///< the highest
+
+    /// "a, b and c".
+    std::string names() const;
+};
+
 /// What held a timed run back.
 struct Bottleneck {
-    const Unit* unit = nullptr;  ///< the one with the highest utilisation
-    double utilisation = 0;
-    const Unit* next = nullptr;  ///< the one after it
-    double next_utilisation = 0;
-    /// The unit is what the run's length follows from; else no unit is, and there was too little work under way.
+    Limit first;
+    Limit next;  ///< of the units that are not in `first`
+    /// `first` is what the run's length follows from. If not, latency is: too little was under way to keep any unit busy.
     bool binding = false;
+
+    /// How many times faster the run could be at most: without `first`, or, if latency binds, with no wait at all. The
+    /// next limit's work remains to be done. 0: there is none.
+    double bound() const;
 };
 
 /// A unit counts as binding from this utilisation on.
 constexpr double binding_utilisation = 0.85;
 
-Bottleneck find_bottleneck(const Simulation& simulation);
+Bottleneck find_bottleneck(const Pipeline& pipeline, std::uint64_t cycles);
 
 /// The same in words, one or two sentences.
-std::string bottleneck_text(const Simulation& simulation);
+std::string bottleneck_text(const Pipeline& pipeline, std::uint64_t cycles);
 
-/// Per unit and memory: cycles by state, by whom, utilisation, throughput, occupancy, as a table for people.
-std::string timing_text(const Simulation& simulation);
+/// Per unit and memory: cycles by state and by whom, utilisation, throughput, occupancy; per queue and wire: rate and
+/// level. Tables for people.
+std::string timing_tables(const Pipeline& pipeline, std::uint64_t cycles);
+
+/// timing.txt: what the columns mean, those tables, and the bottleneck.
+std::string timing_text(const Pipeline& pipeline, std::uint64_t cycles);
 
 /// The Triangle Queue's level over time: first cycle and highest level of at most 1024 stretches.
 std::string queue_levels_csv(const LevelHistory& history);

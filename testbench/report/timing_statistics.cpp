@@ -38,7 +38,7 @@ void run_figures(const Simulation& simulation, std::vector<Figure>& figures) {
     const Pipeline& p = simulation.pipeline;
     const auto& counts = p.pass_or_tessellate.counts();
     const std::uint64_t cycles = simulation.cycles();
-    const Bottleneck bottleneck = find_bottleneck(simulation);
+    const Bottleneck bottleneck = find_bottleneck(p, cycles);
     Group run(figures, "timing");
     run.count("cycles", cycles, "cycle", "from the start to the end of the last in which anything happened");
     run.count("clock_period", simulation.setup.design.timing.cycle_picoseconds, "ps", "one cycle");
@@ -55,9 +55,12 @@ void run_figures(const Simulation& simulation, std::vector<Figure>& figures) {
              "", "base triangles in all triangles that Get Triangle took");
     run.count("most_passes_under_way", p.passes.most_under_way(), "pass",
               "triangles in the pipeline at a time");
-    run.text("bottleneck", bottleneck.binding ? unit_name(*bottleneck.unit) : "none",
-             "the unit or memory with the highest utilisation, if that is at least 85 %");
-    run.text("bottleneck_in_words", bottleneck_text(simulation), "why");
+    run.text(
+        "bottleneck", bottleneck.binding ? bottleneck.first.names() : "none",
+        "the units or memories of the highest utilisation, if that is at least 85 %; none: latency binds");
+    run.real("bottleneck_bound", bottleneck.bound(), "times",
+             "how many times faster at most without it, or, if latency binds, without any wait");
+    run.text("bottleneck_in_words", bottleneck_text(p, cycles), "why");
 }
 
 void unit_figures(const Unit& unit, std::uint64_t cycles, std::vector<Figure>& figures) {
@@ -66,11 +69,11 @@ void unit_figures(const Unit& unit, std::uint64_t cycles, std::vector<Figure>& f
     group.count("items", activity.items_in(), "item", "started, or asked for");
     group.count("items_out", activity.items_out(), "item",
                 "finished and handed on, or dropped as not needed");
-    group.count("busy", activity.cycles_in(State::busy), "cycle", "working on an item");
+    group.count("busy", activity.cycles_in(State::busy), "cycle", "working on an item that has all it needs");
     group.count("starved", activity.cycles_in(State::starved), "cycle",
                 "nothing to work on, or its other half lacks");
     group.count("waiting_for_memory", activity.cycles_in(State::waiting_for_memory), "cycle",
-                "table entries have been asked for and have not come");
+                "no item has all it needs; table entries have been asked for and have not come");
     group.count("blocked", activity.cycles_in(State::blocked), "cycle", "a finished item is not taken");
     for (const Activity::Share& share : activity.shares()) {
         if (share.by == nullptr || share.cycles == 0)

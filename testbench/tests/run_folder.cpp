@@ -85,15 +85,18 @@ std::uint64_t RunFolder::obj_faces() const {
     return faces;
 }
 
-std::vector<std::pair<std::string, std::string>> RunFolder::read_csv() const {
-    const std::vector<std::string> rows = lines_of(read_all(folder_ / "statistics.csv"));
-    REQUIRE(rows.size() == 2);
-    const std::vector<std::string> headings = cells_of(rows[0]), values = cells_of(rows[1]);
-    REQUIRE(headings.size() == values.size());
-    std::vector<std::pair<std::string, std::string>> columns;
-    for (std::size_t k = 0; k < headings.size(); ++k)
-        columns.emplace_back(headings[k], values[k]);
-    return columns;
+std::vector<RunFolder::Row> RunFolder::read_csv() const {
+    const std::vector<std::string> lines = lines_of(read_all(folder_ / "statistics.csv"));
+    REQUIRE_FALSE(lines.empty());
+    CHECK(lines[0] == "name,value,unit,description");
+    std::vector<Row> rows;
+    for (std::size_t k = 1; k < lines.size(); ++k) {
+        const std::vector<std::string> cells = cells_of(lines[k]);
+        INFO(lines[k]);
+        REQUIRE(cells.size() == 4);
+        rows.push_back({cells[0], cells[1], cells[2], cells[3]});
+    }
+    return rows;
 }
 
 std::map<std::string, std::string> RunFolder::files() const {
@@ -194,22 +197,23 @@ void require_consistent(const RunFolder& run) {
     CHECK(timed == job_says("mode = \"timed\"\n"));
 
     // The table for spreadsheets has what the JSON has, in its order.
-    std::vector<std::pair<std::string, std::string>> figures;
+    const std::vector<RunFolder::Row> rows = run.read_csv();
+    std::size_t row = 0;
     for (const auto& [group, members] : run.statistics.items()) {
         for (const auto& [name, figure] : members.items()) {
+            INFO(group << '.' << name);
+            REQUIRE(row < rows.size());
+            const RunFolder::Row& r = rows[row++];
+            CHECK(r.name == group + "." + name);
+            CHECK(r.unit == figure.at("unit"));
+            CHECK(r.description == figure.at("description"));
             const auto& value = figure.at("value");
-            figures.emplace_back(group + "." + name,
-                                 value.is_string() ? value.get<std::string>() : value.dump());
+            const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+            if (r.value != text)  // 1.5 and 1.50 are one number
+                CHECK(std::stod(r.value) == std::stod(text));
         }
     }
-    const auto columns = run.read_csv();
-    REQUIRE(columns.size() == figures.size());
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-        INFO(columns[k].first);
-        CHECK(columns[k].first == figures[k].first);
-        if (columns[k].second != figures[k].second)  // 1.5 and 1.50 are one number
-            CHECK(std::stod(columns[k].second) == std::stod(figures[k].second));
-    }
+    CHECK(row == rows.size());
 
     // The report speaks of the same run.
     if (run.conformance.contains("conformance")) {

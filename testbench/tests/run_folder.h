@@ -27,8 +27,11 @@ class RunFolder {
     std::map<int, std::uint64_t> by_generation() const;
     PlyFacts read_ply() const;
     std::uint64_t obj_faces() const;
-    /// Heading and value of each column.
-    std::vector<std::pair<std::string, std::string>> read_csv() const;
+    struct Row {
+        std::string name, value, unit, description;
+    };
+    /// statistics.csv, without its heading.
+    std::vector<Row> read_csv() const;
     /// Name to content of every file.
     std::map<std::string, std::string> files() const;
 

@@ -115,6 +115,26 @@ TEST_CASE("a machine that waits for a million cycles is none") {
     CHECK(simulation.cycles() > 1'000'000);
 }
 
+// First in first out: all of a generation is decided before any of the next, so the first triangle is lit after
+// 18 * (1 + 4 + 16 + 64) passes of 36 cycles.
+TEST_CASE("a triangle decided is progress, though none is lit for long") {
+    const Setup setup = setup_of(full_split_job(3, 4));
+    Simulation simulation(setup, 1'000'000, 1000);
+    run_timed(simulation);
+    CHECK(simulation.cycles() > 1530 * 36);
+}
+
+// Lighting, one triangle in 500 cycles, has places for all that wait for it: most are lit when the last has long been decided,
+// and each takes more than one cycle in which something is called.
+TEST_CASE("a triangle lit is progress, though none is decided any more") {
+    Setup setup = setup_of(full_split_job(2, 2));
+    setup.design.timing.lighting = {4, 500, 128};
+    Simulation simulation(setup, 1'000'000, 100);
+    run_timed(simulation);
+    CHECK(simulation.rasteriser.triangles() == 128);
+    CHECK(simulation.cycles() > 127 * 500);
+}
+
 TEST_CASE("the bound on progress does not end a run that just keeps it") {
     Job job = timed_job();
     job.mesh.columns = job.mesh.rows = 1;

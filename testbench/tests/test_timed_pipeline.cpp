@@ -159,6 +159,49 @@ TEST_CASE("one triangle, four ports on the Summed Height Table: no faster than t
     expect_derived(timing, 42 + 38 + 1);
 }
 
+// What the header of each unit says, and the sums above rest on. The tests' own figures do not hold the defaults of units off
+// the critical path.
+TEST_CASE("the paper's design: latency, interval and buffer of every unit and memory") {
+    const Timing t;
+    struct Default {
+        const char* name;
+        UnitTiming is;
+        unsigned latency, buffer;
+    };
+    for (const Default& unit : {Default{"get_triangle", t.get_triangle, 1, 1},
+                                {"calculate_new_p", t.calculate_new_p, 1, 1},
+                                {"displace_vertex", t.displace_vertex, 6, 1},
+                                {"transform", t.transform, 20, 1},
+                                {"calculate_new_u", t.calculate_new_u, 1, 1},
+                                {"tex_coord_test", t.tex_coord_test, 1, 1},
+                                {"summed_height_test", t.summed_height_test, 3, 1},
+                                {"normal_test", t.normal_test, 9, 1},
+                                {"view_test", t.view_test, 1, 1},
+                                {"pass_or_tessellate", t.pass_or_tessellate, 1, 8},
+                                {"tessellation", t.tessellation, 1, 1},
+                                {"triangle_queue", t.triangle_queue, 1, 1},
+                                {"lighting", t.lighting, 4, 1}}) {
+        INFO(unit.name);
+        CHECK(unit.is.latency == unit.latency);
+        CHECK(unit.is.interval == 1);
+        CHECK(unit.is.buffer == unit.buffer);
+    }
+    for (const MemoryTiming& memory : {t.displacement_map, t.normal_map, t.summed_height_table}) {
+        CHECK(memory.ports == 1);
+        CHECK(memory.banks == 1);
+        CHECK(memory.latency == 1);
+        CHECK(memory.width == 0);
+        CHECK(memory.buffer == 1);
+    }
+    CHECK(t.cycle_picoseconds == 5000);
+    CHECK(t.highlight_test_latency == 1);
+    CHECK(t.results_buffer == 4);
+    CHECK(t.off_chip_memory.latency == 40);
+    CHECK(t.off_chip_memory.bandwidth == 16);
+    CHECK(t.off_chip_memory.buffer == 4);
+    CHECK(t.stalls.per_mille == 0);
+}
+
 // Each unit with a latency of its own, all different: what is forgotten or counted twice shows.
 // V = 3 + 2 + 5 + 7 + 11 + 40 = 68, A = 3 + 2 + 2 + 4 = 11, W = 68 (edge 2 waits at the end of Calculate New U), S = 68,
 // J = max(71, 68 + 4 + 13, 68 + 11 + 9 + 17, 70 + 6) = 105,
@@ -181,7 +224,28 @@ TEST_CASE("one triangle, every latency another") {
     timing.tessellation.latency = 10;
     timing.triangle_queue.latency = 12;
     timing.lighting.latency = 14;
-    expect_derived(timing, 105 + 113 + 1);
+    const Setup setup = one_triangle(timing);
+    Simulation simulation(setup, 1000);
+    run_timed(simulation);
+    CHECK(derived_cycles(timing) == 105 + 113 + 1);
+    CHECK(simulation.cycles() == 105 + 113 + 1);
+
+    // and each unit keeps each item for its own latency, on the way or beside it
+    const Pipeline& p = simulation.pipeline;
+    const TessellationTests& tests = p.tessellation_tests[0];
+    const std::pair<const Unit*, std::uint64_t> stays[] = {
+        {&p.calculate_new_p, 9 * 5}, {&p.displace_vertex, 6 * (7 + 11) + 3 * 11},
+        {&p.transform, 9 * 40},      {&tests.tex_coord_test, 3 * 3},
+        {&tests.view_test, 3 * 6},   {&tests.normal_test, 6 * (4 + 13)},
+        {&p.tessellation, 10},       {&p.triangle_queue, 12},
+        {&p.lighting, 14},           {&p.displacement_map, 6 * 7},
+        {&p.normal_map, 6 * 4},
+    };
+    for (const auto& [unit, item_cycles] : stays) {
+        INFO(unit->name());
+        CHECK(unit->activity().cycles_in(State::blocked) == 0);
+        CHECK(unit->activity().item_cycles() == item_cycles);
+    }
 }
 
 // Three Tessellation Tests units: each has one vertex and one edge, sent in G and G + 1 on its branch; geometry as

@@ -25,6 +25,9 @@ def measure(study):
                   + (f"tables paid for in {-(-row[6] // 1):,.0f} frame{'s' if row[6] > 1 else ''}" if row[6] > 0 else
                      "tables never paid for") for row in rows),
         reproduced_if(min(savings) > 2)))
+    section.notes.append("All this while the displacement's scale stays. One that changes in every frame has the normal map "
+                         "sent each time, and the host may send more than the tessellated meshes: see the displacement's scale "
+                         "between frames.")
     section.charts.append(Chart(charts.bars([row[0] for row in rows], savings,
                                             "bytes of the tessellated mesh / bytes of the base mesh"),
                                 "Saving per frame, once the tables are there"))

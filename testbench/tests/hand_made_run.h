@@ -1,0 +1,83 @@
+#pragma once
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <initializer_list>
+
+#include "testbench/tests/timed_checks.h"
+
+namespace tessera::testing {
+
+/// A machine that has decided passes made by hand, so that each of its counts is another number. Functional mode, no base
+/// triangles; culling and the Highlight Test are on.
+///
+///   passes 11, of three edges: 33 tested; by edges split 1 x 1, 2 x 2, 4 x 3: 17 split
+///   split by: normal alone 3 * 3 + 1, summed height alone 2 * 2, both 1, highlight alone 2; in the highlight 3
+///   stopped by: view 3, tex coord 3 + 2, generation 1 + 1; edges that nobody wanted to split are not stopped
+///   finished: 4 passes without a split, 5 that went round for normals: 9, of which 2 are culled
+///   vertices made 33, thrown away 33 - 17; normals 3 * 5; children 2 + 2 * 3 + 4 * 4 = 24, all waiting
+class HandMadeRun {
+  public:
+    Setup setup = make();
+    Simulation simulation{setup, 1000};
+
+    HandMadeRun() {
+        using namespace datapath;
+        sc_core::sc_start(sc_core::SC_ZERO_TIME);
+        const unsigned n = normal_bit, s = summed_height_bit, h = highlight_bit, all = allowing_bits;
+        for (int k = 0; k < 3; ++k)
+            decide({n | all, n | all, n | all});
+        for (int k = 0; k < 2; ++k)
+            decide({s | all, s | all, all});
+        decide({n | s | all, all, all});
+        decide({h | all, h | all, n | h | all});
+        decide({n | tex_coord_bit | generation_bit, s | tex_coord_bit | generation_bit,
+                n | s | tex_coord_bit | generation_bit});
+        decide({n | view_bit | generation_bit, n | view_bit | generation_bit, n | view_bit});
+        decide({n | view_bit | generation_bit, h | view_bit | generation_bit, 0});
+        decide({s | view_bit | tex_coord_bit, view_bit, 0});
+        for (int k = 0; k < 5; ++k)
+            fetch_normals(k < 2);
+    }
+
+  private:
+    static Setup make() {
+        Job job;
+        job.mode = Mode::functional;
+        job.map.width = job.map.height = 8;
+        job.tests.highlight = true;
+        job.hardware.culling = Culling::back;
+        Setup setup = setup_of(job);
+        setup.base_triangles.clear();
+        return setup;
+    }
+    static Pass known_pass() {
+        Pass pass;
+        for (datapath::Vertex& vertex : pass.triangle.vertices)
+            vertex.displaced_known = vertex.screen_normal_known = true;
+        return pass;
+    }
+    void decide(std::initializer_list<unsigned> tests) {
+        Pass pass = known_pass();
+        pass.tested = true;
+        std::size_t edge = 0;
+        for (const unsigned bits : tests)
+            pass.edges[edge++].tests = static_cast<std::uint8_t>(bits);
+        Work work{&pass, edge_parts};
+        sc_core::sc_time delay;
+        simulation.pipeline.displace_vertex.to_transform->b_transport(work, delay);
+        simulation.pipeline.tessellation_tests[0].collect_tests.to_pass_or_tessellate->b_transport(work,
+                                                                                                   delay);
+    }
+    void fetch_normals(bool turned_away) {
+        Pass pass = known_pass();
+        pass.triangle.finished = true;
+        pass.triangle.vertices[0].screen = {0, 0, 1, true};
+        pass.triangle.vertices[turned_away ? 2 : 1].screen = {1, 0, 1, true};
+        pass.triangle.vertices[turned_away ? 1 : 2].screen = {0, 1, 1, true};
+        Work work{&pass, normal_parts};
+        sc_core::sc_time delay;
+        simulation.pipeline.displace_vertex.to_transform->b_transport(work, delay);
+    }
+};
+
+}  // namespace tessera::testing
