@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 
 #include "modules/datapath/map_address.h"
@@ -11,6 +12,14 @@ namespace tessera::datapath {
 /// Absolute difference of two integers of up to 62 bits.
 constexpr std::uint64_t absolute_difference(std::int64_t a, std::int64_t b) {
     return static_cast<std::uint64_t>(a > b ? a - b : b - a);
+}
+
+/// The largest of the six differences of N'_ij from N'_i and N'_j, by component.
+constexpr std::uint64_t largest_difference(const Direction& i, const Direction& j, const Direction& ij) {
+    const std::uint64_t x = std::max(absolute_difference(ij.x, i.x), absolute_difference(ij.x, j.x));
+    const std::uint64_t y = std::max(absolute_difference(ij.y, i.y), absolute_difference(ij.y, j.y));
+    const std::uint64_t z = std::max(absolute_difference(ij.z, i.z), absolute_difference(ij.z, j.z));
+    return std::max({x, y, z});
 }
 
 /// Some component of N'_ij differs from that of N'_i or N'_j by more than the threshold (normal's format).
@@ -46,23 +55,37 @@ constexpr bool highlight_test(const Direction& i, const Direction& j, const Dire
            (in_highlight(i, parameters) || in_highlight(j, parameters) || in_highlight(ij, parameters));
 }
 
+/// What SHT compares: | 2 S_ij - (S_i + S_j) |.
+constexpr std::uint64_t summed_height_difference(std::uint64_t sum_i, std::uint64_t sum_j,
+                                                 std::uint64_t sum_ij) {
+    const auto ends = static_cast<std::int64_t>(sum_i + sum_j);
+    return absolute_difference(static_cast<std::int64_t>(2 * sum_ij), ends);
+}
+
+/// What SHT compares it with. With `area` the threshold is a height: times width * height.
+constexpr std::uint64_t summed_height_limit(const RectangleSize& size, const TestParameters& parameters) {
+    return parameters.summed_height_unit == SummedHeightUnit::sum
+               ? parameters.summed_height_threshold
+               : parameters.summed_height_threshold * size.width * size.height;
+}
+
 /// SHT (paper 2.3) on the three sums: | S_ij / 2 - (S_i + S_j) / 4 | > threshold, both sides times 4, so that the
-/// divisions cost no rounding: they are wires. With `area` the threshold is a height: times width * height.
+/// divisions cost no rounding: they are wires.
 constexpr bool summed_height_test(std::uint64_t sum_i, std::uint64_t sum_j, std::uint64_t sum_ij,
                                   const RectangleSize& size, const TestParameters& parameters) {
-    const std::uint64_t difference =
-        absolute_difference(static_cast<std::int64_t>(2 * sum_ij), static_cast<std::int64_t>(sum_i + sum_j));
-    const std::uint64_t limit = parameters.summed_height_unit == SummedHeightUnit::sum
-                                    ? parameters.summed_height_threshold
-                                    : parameters.summed_height_threshold * size.width * size.height;
-    return difference > limit;
+    return summed_height_difference(sum_i, sum_j, sum_ij) > summed_height_limit(size, parameters);
+}
+
+/// Manhattan length on the screen, in the screen's format, of an edge whose ends both have a screen position.
+constexpr std::uint64_t screen_length(const ScreenPosition& i, const ScreenPosition& j) {
+    return absolute_difference(i.x, j.x) + absolute_difference(i.y, j.y);
 }
 
 /// VT (paper 2.4): Manhattan length in pixels. A vertex on or behind the near plane has no screen position: an edge
 /// with one such end counts as long, with two as invisible (algorithm 3.3 D).
 constexpr bool view_test(const ScreenPosition& i, const ScreenPosition& j, const TestParameters& parameters) {
     if (i.in_front && j.in_front)
-        return absolute_difference(i.x, j.x) + absolute_difference(i.y, j.y) > parameters.view_threshold;
+        return screen_length(i, j) > parameters.view_threshold;
     return i.in_front || j.in_front;
 }
 

@@ -74,6 +74,7 @@ void MemoryPort::request(const std::uint64_t* addresses, unsigned count) {
     if (on_offer_)
         stream_protocol_error(socket.name(), "BEGIN_REQ before END_REQ of the request before", clock_);
     ++under_way_;
+    ++requests_;
     reads_ += count;
     Slot& slot = last();
     slot.taken = false;

@@ -96,6 +96,8 @@ class MemoryPort : public tlm::tlm_mm_interface {
     }
     void pop_answer();
 
+    /// Requests made in timed mode; entries read in either.
+    std::uint64_t requests() const { return requests_; }
     std::uint64_t reads() const { return reads_; }
     unsigned entry_bytes() const { return entry_bytes_; }
 
@@ -139,6 +141,7 @@ class MemoryPort : public tlm::tlm_mm_interface {
     unsigned entry_bytes_;
     std::uint64_t mask_;
     bool use_direct_memory_;
+    std::uint64_t requests_ = 0;
     std::uint64_t reads_ = 0;
     const unsigned char* direct_ = nullptr;
     std::uint64_t direct_start_ = 0;

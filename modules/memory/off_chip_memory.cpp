@@ -130,6 +130,7 @@ void OffChipMemory::step() {
 void OffChipMemory::show(Signals& signals) const {
     Unit::show(signals);
     signals.pulse("served", channel_cycles_);
+    signals.value("requests", 32, activity_.items_in());
     signals.value("address", 32, last_address_);
     signals.flag("write", last_is_write_);
     signals.flag("stalled", at_the_door_ != nullptr);

@@ -263,10 +263,13 @@ unsigned TableMemory::transport_dbg(int, tlm::tlm_generic_payload& payload) {
     return payload.get_data_length();
 }
 
-/// Shows the request served last, of which data is the first entry.
+/// Shows the request served last, of which data is the first entry, and how many requests have come and entries have
+/// been read: several in a cycle, or in cycles that follow each other, are one pulse.
 void TableMemory::show(Signals& signals) const {
     Unit::show(signals);
     signals.pulse("served", slots_taken_);
+    signals.value("requests", 32, activity_.items_in());
+    signals.value("reads", 32, transactions_);
     signals.group(signals.changed(slots_taken_) && signals.running(), [&] {
         // Answers leave the ring in order, so the newest stays where it is until the ring comes round.
         const Request& last =

@@ -1,6 +1,8 @@
 #include "modules/trace/recorder.h"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 namespace tessera {
 
@@ -17,6 +19,17 @@ const char* state_name(State state) {
     }
     return "";
 }
+
+namespace {
+
+/// Of one part; "" of none.
+const char* part_name(Parts part) {
+    constexpr std::array<const char*, 9> names = {"vertex 0", "vertex 1", "vertex 2", "normal 0", "normal 1",
+                                                  "normal 2", "edge 0",   "edge 1",   "edge 2"};
+    return part == 0 ? "" : names.at(static_cast<std::size_t>(__builtin_ctz(part)));
+}
+
+}  // namespace
 
 Recorder::Recorder(Pipeline& pipeline, VcdWriter* vcd, TimelineWriter* timeline, TraceWindow window,
                    const std::vector<const Unit*>& units)
@@ -38,8 +51,7 @@ Recorder::Recorder(Pipeline& pipeline, VcdWriter* vcd, TimelineWriter* timeline,
     if (timeline_ != nullptr) {
         const std::size_t top = std::string(pipeline.name()).size() + 1;
         for (Unit* unit : pipeline.units())
-            tracks_.emplace_back(unit->activity(), *timeline_, timeline_->add_track(unit->name() + top),
-                                 window.last);
+            tracks_.emplace_back(*unit, *timeline_, timeline_->add_track(unit->name() + top), window.last);
     }
     pipeline.clock.observe(this, window.first, window.last);
 }
@@ -47,14 +59,84 @@ Recorder::Recorder(Pipeline& pipeline, VcdWriter* vcd, TimelineWriter* timeline,
 Recorder::~Recorder() {
     pipeline_.clock.observe(nullptr);
     for (Track& track : tracks_)
-        track.activity.observe(nullptr);
+        track.unit.activity().observe(nullptr);
 }
 
 void Recorder::Track::stretch(State state, const sc_core::sc_object* by, std::uint64_t begin,
                               std::uint64_t end) {
-    timeline.interval(number, state_name(state), by == nullptr ? "" : by->basename(), begin, end);
+    TimelineWriter::Item its_item;
+    if (named)
+        its_item = {item->triangle, item->base, part_name(item->part)};
+    timeline.interval(number, state_name(state), by == nullptr ? "" : by->basename(), begin, end,
+                      named ? &its_item : nullptr);
+    if (step)
+        timeline.flow(number, *step, item->triangle, begin);
+    step.reset();
+    named = named && !unit.idle();
     if (end > last)
-        activity.observe(nullptr);
+        unit.activity().observe(nullptr);
+}
+
+/// What was begun on before the window and is still there.
+void Recorder::enter_window() {
+    const PassOrTessellate::Counts& counts = pipeline_.pass_or_tessellate.counts();
+    culled_ = counts.culled;
+    sent_to_lighting_ = counts.finished - counts.culled;
+    to_lighting_.resize(sent_to_lighting_ - pipeline_.lighting.activity().items_in());
+    for (Track& track : tracks_) {
+        track.unit.activity().observe(&track);
+        const Begun begun = track.unit.begun();
+        track.count = begun.count;
+        track.named = begun.count > 0 && !track.unit.idle() && &track.unit != &pipeline_.lighting;
+        if (track.named)
+            track.item = begun;
+    }
+}
+
+void Recorder::name_items(std::uint64_t cycle, std::uint64_t called) {
+    for (Track& track : tracks_) {
+        if (!show_every_unit_ && (called & Clock::bit_of(track.unit)) == 0)
+            continue;
+        const Begun begun = track.unit.begun();
+        if (begun.count == track.count)
+            continue;
+        track.unit.activity().split(cycle);
+        const std::uint64_t many = begun.count - std::exchange(track.count, begun.count);
+        const std::optional<Begun> before = std::exchange(track.item, begun);
+        const FlowStep step =
+            &track.unit == &pipeline_.lighting ? begin_to_light(track, many) : step_at(track);
+        track.named = track.item.has_value();
+        const bool followed = track.named && first_flow_ && track.item->triangle >= *first_flow_;
+        if (followed && (!before || before->triangle != track.item->triangle))
+            track.step = step;
+    }
+}
+
+/// What a flow does where the unit has begun on a triangle.
+TimelineWriter::FlowStep Recorder::step_at(const Track& track) {
+    if (&track.unit == &pipeline_.get_triangle) {
+        if (!first_flow_)
+            first_flow_ = track.item->triangle;
+        return FlowStep::begin;
+    }
+    if (&track.unit == &pipeline_.tessellation)
+        return FlowStep::end;
+    if (&track.unit != &pipeline_.pass_or_tessellate)
+        return FlowStep::pass;
+    const PassOrTessellate::Counts& counts = pipeline_.pass_or_tessellate.counts();
+    const std::uint64_t sent_to_lighting = counts.finished - counts.culled;
+    if (std::exchange(sent_to_lighting_, sent_to_lighting) != sent_to_lighting)
+        to_lighting_.push_back(track.item);
+    return std::exchange(culled_, counts.culled) != counts.culled ? FlowStep::end : FlowStep::pass;
+}
+
+/// Lighting, which gets triangles without their numbers, has begun on so many more.
+TimelineWriter::FlowStep Recorder::begin_to_light(Track& lighting, std::uint64_t many) {
+    for (; many > 0; --many) {
+        lighting.item = to_lighting_.front();
+        to_lighting_.pop_front();
+    }
+    return FlowStep::end;
 }
 
 void Recorder::show_all() {
@@ -99,8 +181,7 @@ void Recorder::begin(std::uint64_t cycle) {
         end_cycles_before(std::min(cycle, end_of_window()));
     }
     if (timeline_ != nullptr) {
-        for (Track& track : tracks_)
-            track.activity.observe(&track);
+        enter_window();
         show_queue_level(window_.first);
     }
 }
@@ -111,7 +192,10 @@ void Recorder::end_of_cycle(std::uint64_t cycle, std::uint64_t called) {
         show_called(called);
         end_cycles_before(cycle + 1);
     }
-    if (timeline_ != nullptr && pipeline_.triangle_queue.waiting() != shown_level_)
+    if (timeline_ == nullptr)
+        return;
+    name_items(cycle, called);
+    if (pipeline_.triangle_queue.waiting() != shown_level_)
         show_queue_level(cycle);
 }
 

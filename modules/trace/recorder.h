@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
 #include <systemc>
 #include <vector>
@@ -19,7 +20,9 @@ namespace tessera {
 ///
 /// Waveforms: the signals of the chosen units (Unit::show), at the end of each cycle in which they were called; and the
 /// cycle (tessera.clock.cycle) and the passes under way. Timeline: a track per unit with its states, by whom it is
-/// blocked, for whom it waits or who it lacks; the Triangle Queue's level.
+/// blocked, for whom it waits or who it lacks, and the item it has begun on last; the Triangle Queue's level. A flow
+/// leads from unit to unit, in the order of time, through the intervals in which each began on a triangle: from Get
+/// Triangle to Tessellation, to Lighting, or if it is culled to Pass or Tessellate.
 /// Cost: none before and after the window, when the clock and the units are not observed. What is simulated does not
 /// depend on it.
 class Recorder : public CycleObserver {
@@ -39,18 +42,23 @@ class Recorder : public CycleObserver {
         std::uint64_t bit;
         Signals signals;
     };
+    using FlowStep = TimelineWriter::FlowStep;
     /// Hands a unit's stretches on, up to the one that reaches the window's end.
     struct Track : ActivityObserver {
-        Track(Activity& its_activity, TimelineWriter& its_timeline, TimelineWriter::Track its_number,
+        Track(Unit& its_unit, TimelineWriter& its_timeline, TimelineWriter::Track its_number,
               std::uint64_t last_cycle)
-            : activity(its_activity), timeline(its_timeline), number(its_number), last(last_cycle) {}
+            : unit(its_unit), timeline(its_timeline), number(its_number), last(last_cycle) {}
         void stretch(State state, const sc_core::sc_object* by, std::uint64_t begin,
                      std::uint64_t end) override;
 
-        Activity& activity;
+        Unit& unit;
         TimelineWriter& timeline;
         TimelineWriter::Track number;
         std::uint64_t last;
+        std::uint64_t count = 0;       // items begun on
+        std::optional<Begun> item;     // the last of them, if it is known
+        bool named = false;            // the present stretch is about it
+        std::optional<FlowStep> step;  // and this is what a flow does there
     };
 
     void begin(std::uint64_t cycle) override;
@@ -62,6 +70,10 @@ class Recorder : public CycleObserver {
         return window_.last == UINT64_MAX ? window_.last : window_.last + 1;
     }
     void show_queue_level(std::uint64_t cycle);
+    void enter_window();
+    void name_items(std::uint64_t cycle, std::uint64_t called);
+    FlowStep step_at(const Track& track);
+    FlowStep begin_to_light(Track& lighting, std::uint64_t many);
 
     Pipeline& pipeline_;
     VcdWriter* vcd_;
@@ -73,6 +85,10 @@ class Recorder : public CycleObserver {
     VcdWriter::Signal passes_signal_ = 0;
     std::vector<TracedUnit> traced_;
     std::deque<Track> tracks_;
+    std::deque<std::optional<Begun>> to_lighting_;  // decided and not begun on there; null: before the window
+    std::uint64_t sent_to_lighting_ = 0;
+    std::uint64_t culled_ = 0;
+    std::optional<std::uint32_t> first_flow_;  // triangles before it were under way when the window began
     std::size_t shown_level_ = 0;
     bool began_ = false;
     std::uint64_t next_cycle_ = 0;  // the first whose waveforms are not complete

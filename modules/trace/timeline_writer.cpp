@@ -5,6 +5,7 @@
 #include <charconv>
 #include <ostream>
 #include <stdexcept>
+#include <utility>
 
 namespace tessera {
 namespace {
@@ -67,7 +68,7 @@ TimelineWriter::Track TimelineWriter::add_track(const std::string& name) {
 }
 
 void TimelineWriter::interval(Track track, const char* state, const char* detail, std::uint64_t begin,
-                              std::uint64_t end) {
+                              std::uint64_t end, const Item* item) {
     check_open();
     if (track >= tracks_)
         throw std::logic_error("TimelineWriter: an interval of no track");
@@ -86,11 +87,49 @@ void TimelineWriter::interval(Track track, const char* state, const char* detail
     buffer_ += ",\"cname\":\"";
     buffer_ += colour_of(state);
     buffer_ += '"';
-    if (*detail != '\0') {
-        buffer_ += ",\"args\":{\"detail\":";
+    if (item != nullptr || *detail != '\0')
+        write_arguments(detail, item);
+    end_event();
+}
+
+void TimelineWriter::write_arguments(std::string_view detail, const Item* item) {
+    const char* before = ",\"args\":{";
+    const auto name = [&](const char* of) {
+        buffer_ += std::exchange(before, ",");
+        buffer_ += of;
+    };
+    if (!detail.empty()) {
+        name("\"detail\":");
         write_string(detail);
-        buffer_ += '}';
     }
+    if (item != nullptr) {
+        name("\"triangle\":");
+        write_number(item->triangle);
+        if (!item->part.empty()) {
+            name("\"part\":");
+            write_string(item->part);
+        }
+        name("\"base\":");
+        write_number(item->base);
+    }
+    buffer_ += '}';
+}
+
+void TimelineWriter::flow(Track track, FlowStep step, std::uint64_t triangle, std::uint64_t cycle) {
+    check_open();
+    if (track >= tracks_)
+        throw std::logic_error("TimelineWriter: a flow through no track");
+    if (cycle < window_.first || cycle > window_.last)
+        return;
+    begin_event(step == FlowStep::begin ? "s" : step == FlowStep::pass ? "t" : "f", "triangle");
+    buffer_ += ",\"cat\":\"triangle\",\"id\":";
+    write_number(triangle);
+    buffer_ += ",\"tid\":";
+    write_number(track + 1);
+    buffer_ += ",\"ts\":";
+    write_time(cycle * cycle_picoseconds_ + cycle_picoseconds_ / 2);
+    if (step == FlowStep::end)
+        buffer_ += ",\"bp\":\"e\"";
     end_event();
 }
 
@@ -183,13 +222,13 @@ void TimelineWriter::write_number(std::uint64_t number) {
     buffer_.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr);
 }
 
-void TimelineWriter::write_microseconds(std::uint64_t cycles) {
-    constexpr std::uint64_t picoseconds = 1'000'000;
-    const std::uint64_t time = cycles * cycle_picoseconds_;
-    write_number(time / picoseconds);
+/// In microseconds.
+void TimelineWriter::write_time(std::uint64_t picoseconds) {
+    constexpr std::uint64_t microsecond = 1'000'000;
+    write_number(picoseconds / microsecond);
     std::array<char, 7> digits{'.'};
     std::size_t used = 0;
-    std::uint64_t rest = time % picoseconds;
+    std::uint64_t rest = picoseconds % microsecond;
     for (std::size_t place = 6; place > 0; --place, rest /= 10) {
         digits[place] = static_cast<char>('0' + rest % 10);
         if (used == 0 && digits[place] != '0')

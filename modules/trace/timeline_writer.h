@@ -13,7 +13,8 @@ namespace tessera {
 /// Writes what each unit did and when in the Chrome trace event format (JSON), for Perfetto and chrome://tracing.
 ///
 /// Use: add_track(), interval() and counter() in any order, each counter's cycles never decreasing; finish().
-/// Window: intervals are cut to it; a counter has at its beginning the value it came in with.
+/// Window: intervals are cut to it, flow steps outside it left out; a counter has at its beginning the value it came in
+/// with.
 /// Time: microseconds, exact to the picosecond. Perfetto rounds to nanoseconds; with a period that is not a whole
 /// number of them it may drop an interval that then overlaps its neighbour.
 /// Colours: chrome://tracing takes ours; Perfetto ignores them and colours by name. So a state, always in the same
@@ -22,6 +23,15 @@ namespace tessera {
 class TimelineWriter {
   public:
     using Track = std::uint32_t;
+
+    /// What an interval is about: a triangle, the base triangle it descends from, and which part of it if not the whole.
+    struct Item {
+        std::uint64_t triangle = 0;
+        std::uint64_t base = 0;
+        std::string_view part;
+    };
+    /// A flow's way: where it begins, what it passes and where it ends.
+    enum class FlowStep : std::uint8_t { begin, pass, end };
 
     TimelineWriter(std::ostream& out, std::uint64_t cycle_picoseconds, TraceWindow window = {});
     TimelineWriter(const TimelineWriter&) = delete;
@@ -32,7 +42,14 @@ class TimelineWriter {
 
     /// The track is in `state` from the beginning of cycle `begin` to that of `end`. Known states have colours of their
     /// own: "busy", "blocked", "waiting for memory", "starved". detail: "", or for instance who blocks.
-    void interval(Track track, const char* state, const char* detail, std::uint64_t begin, std::uint64_t end);
+    /// item: null: none.
+    void interval(Track track, const char* state, const char* detail, std::uint64_t begin, std::uint64_t end,
+                  const Item* item = nullptr);
+
+    /// Flow `triangle` comes to the track's interval that begins at `cycle`, to be called after that. Viewers draw an
+    /// arrow from each step to the next. The time is half a cycle later, so that no viewer takes the interval that ends
+    /// at `cycle`.
+    void flow(Track track, FlowStep step, std::uint64_t triangle, std::uint64_t cycle);
 
     /// The series' value from `cycle` on. chrome://tracing shows a name's first series only, Perfetto each.
     void counter(const char* name, const char* series, std::uint64_t cycle, std::uint64_t value);
@@ -43,11 +60,13 @@ class TimelineWriter {
     void check_open() const;
     void write_counter(std::string_view name, std::string_view series, std::uint64_t cycle,
                        std::uint64_t value);
+    void write_arguments(std::string_view detail, const Item* item);
     void begin_event(const char* phase, std::string_view name);
     void end_event();
     void write_string(std::string_view text);
     void write_number(std::uint64_t number);
-    void write_microseconds(std::uint64_t cycles);
+    void write_microseconds(std::uint64_t cycles) { write_time(cycles * cycle_picoseconds_); }
+    void write_time(std::uint64_t picoseconds);
 
     std::ostream& out_;
     std::uint64_t cycle_picoseconds_;

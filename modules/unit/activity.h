@@ -56,6 +56,9 @@ class Activity {
         integrate(cycle);
     }
 
+    /// The present stretch ends at `cycle` and another like it begins.
+    void split(std::uint64_t cycle) { close(cycle); }
+
     State state() const { return state_; }
     const sc_core::sc_object* by() const { return by_; }
     std::uint64_t cycles_in(State state) const { return cycles_[static_cast<std::size_t>(state)]; }

@@ -35,7 +35,8 @@ class TableStage : public Unit {
     }
     std::uint64_t occupied_cycles() const override { return activity_.items_in() * timing_.interval; }
 
-    /// Shows the item started last, the read made last, and the item whose last read came last.
+    /// Shows the item started last, the request made last, how many requests and reads there were, and the item whose
+    /// last read came last.
     void show(Signals& signals) const override {
         Unit::show(signals);
         signals.input(*input_);
@@ -43,7 +44,9 @@ class TableStage : public Unit {
             signals.work(pipeline_.newest().work);
             unit().trace_item(signals, pipeline_.newest());
         });
-        signals.pulse("request", port_->reads());
+        signals.pulse("request", port_->requests());
+        signals.value("requests", 32, port_->requests());
+        signals.value("reads", 32, port_->reads());
         signals.flag("request_held", port_->on_offer());
         signals.value("requests_under_way", 16, port_->requests_under_way());
         signals.group(signals.changed(port_->reads()) && port_->under_way(),
@@ -55,6 +58,7 @@ class TableStage : public Unit {
             unit().trace_answered(signals, item);
         });
     }
+    Begun begun() const override { return Begun::of(activity_.items_in(), pipeline_.newest().work); }
 
   protected:
     TableStage(const sc_core::sc_module_name& name, Clock& clock, const UnitTiming& timing,

@@ -7,6 +7,7 @@
 #include "modules/clock/clock.h"
 #include "modules/timing.h"
 #include "modules/unit/activity.h"
+#include "modules/unit/begun.h"
 
 namespace tessera {
 
@@ -31,6 +32,10 @@ class Unit : public Clocked, public sc_core::sc_module {
     /// Declares the unit's signals, or shows their values at the end of a cycle (modules/unit/signals.h). Of every unit:
     /// its state, who it is blocked by, waits for or lacks, and the items in it.
     virtual void show(Signals& signals) const;
+
+    /// Valid in a cycle in which the unit has begun on an item, and while it holds any. Units that hold many triangles
+    /// at once, memories and the Triangle Queue, name none.
+    virtual Begun begun() const { return {}; }
 
   protected:
     Unit(const sc_core::sc_module_name& name, Clock& clock) : sc_module(name), clock_(clock) {}

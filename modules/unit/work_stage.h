@@ -31,6 +31,7 @@ class WorkStage : public Unit {
             unit().trace_item(signals, pipeline_.newest());
         });
     }
+    Begun begun() const override { return Begun::of(activity_.items_in(), pipeline_.newest()); }
 
   protected:
     /// servers: pipelines side by side.

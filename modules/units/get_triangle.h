@@ -49,6 +49,7 @@ class GetTriangle : public Unit {
         return one_at_a_time_cycles(timing_, activity_.items_in(), parts_sent_);
     }
     void show(Signals& signals) const override;
+    Begun begun() const override { return Begun::of(activity_.items_in(), {pass_, 0}); }
 
     /// Sets what has to be sent on: the unit's whole decision.
     static void prepare(datapath::TrianglePass& pass);

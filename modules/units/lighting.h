@@ -42,6 +42,8 @@ class Lighting : public Unit {
     std::string holds() const override;
     std::uint64_t occupied_cycles() const override { return activity_.items_in() * timing_.interval; }
     void show(Signals& signals) const override;
+    /// Counts only: a triangle comes without its number.
+    Begun begun() const override { return {activity_.items_in()}; }
 
   private:
     void b_transport(datapath::Triangle& triangle, sc_core::sc_time& delay);

@@ -73,6 +73,10 @@ class PassOrTessellate : public Unit {
     std::string holds() const override;
     std::uint64_t occupied_cycles() const override { return activity_.items_out() * timing_.interval; }
     void show(Signals& signals) const override;
+    /// The triangle decided last.
+    Begun begun() const override {
+        return Begun::of(counts_.passes + counts_.normal_passes, {pipeline_.newest().work.pass, 0});
+    }
 
   private:
     enum class Way : std::uint8_t { tessellation, lighting, dropped };

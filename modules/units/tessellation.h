@@ -44,6 +44,7 @@ class Tessellation : public Unit {
         return one_at_a_time_cycles(timing_, activity_.items_in(), children());
     }
     void show(Signals& signals) const override;
+    Begun begun() const override { return {activity_.items_in(), number_, children_[0].base}; }
 
   private:
     void b_transport(Work& work, sc_core::sc_time& delay);
@@ -53,8 +54,9 @@ class Tessellation : public Unit {
     UnitTiming timing_;
     PassPool& passes_;
     std::array<datapath::Triangle, 4> children_;
-    unsigned made_ = 0;  // children of the pass that is being worked on
-    unsigned sent_ = 0;  // of these, sent
+    std::uint32_t number_ = 0;  // of the pass that is being worked on
+    unsigned made_ = 0;         // children of the pass that is being worked on
+    unsigned sent_ = 0;         // of these, sent
     std::uint64_t next_ = 0;
     std::array<std::uint64_t, 5> made_into_{};
     datapath::Saturations saturations_;

@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <regex>
 #include <sstream>
 #include <thread>
 
@@ -88,6 +89,11 @@ void redirect(const char* file, int flags, int descriptor) {
     ::_exit(127);
 }
 
+std::string without_progress(const std::string& text) {
+    static const std::regex line("tessera: after \\d+ s at [^\n]*\n");
+    return std::regex_replace(text, line, "");
+}
+
 }  // namespace
 
 ProgramEnd run_program(const std::vector<std::string>& command, const fs::path& folder,
@@ -116,7 +122,7 @@ ProgramEnd run_program(const std::vector<std::string>& command, const fs::path& 
         end.signal = WTERMSIG(status);
     end.peak_mib = static_cast<double>(usage.ru_maxrss) / 1024;
     end.out = read_all(outputs.path() / "out");
-    end.err = read_all(outputs.path() / "err");
+    end.err = without_progress(read_all(outputs.path() / "err"));
     return end;
 }
 

@@ -27,7 +27,8 @@ struct ProgramEnd {
     int exit_code = -1;  ///< -1: a signal ended it
     int signal = 0;
     bool timed_out = false;
-    std::string out, err;
+    std::string out;
+    std::string err;      ///< without the lines of progress: how many there are is the machine's affair
     double peak_mib = 0;  ///< resident memory
 
     std::string text() const;  ///< all of it, for a failed check's message

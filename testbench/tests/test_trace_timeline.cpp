@@ -32,16 +32,26 @@ TEST_CASE("Timeline: a whole small file") {
     std::ostringstream out;
     TimelineWriter writer(out, 2500);
     const auto track = writer.add_track("Transform");
-    writer.interval(track, "busy", "", 2, 4);
-    writer.interval(track, "blocked", "Pass or Tessellate", 4, 1'000'004);
+    const TimelineWriter::Item edge{12, 3, "edge 1"};
+    const TimelineWriter::Item whole{13, 4, ""};
+    writer.interval(track, "busy", "", 2, 4, &edge);
+    writer.flow(track, TimelineWriter::FlowStep::begin, 12, 2);
+    writer.interval(track, "blocked", "Pass or Tessellate", 4, 8, &whole);
+    writer.flow(track, TimelineWriter::FlowStep::pass, 13, 4);
+    writer.interval(track, "blocked", "Pass or Tessellate", 8, 1'000'008);
+    writer.flow(track, TimelineWriter::FlowStep::end, 13, 8);
     writer.counter("Triangle Queue", "triangles", 4, 17);
     writer.finish();
     REQUIRE(out.str() == R"({"displayTimeUnit":"ns","traceEvents":[
 {"ph":"M","pid":1,"name":"process_name","args":{"name":"tessera"}},
 {"ph":"M","pid":1,"name":"thread_name","tid":1,"args":{"name":"Transform"}},
 {"ph":"M","pid":1,"name":"thread_sort_index","tid":1,"args":{"sort_index":0}},
-{"ph":"X","pid":1,"name":"busy","tid":1,"ts":0.005,"dur":0.005,"cname":"good"},
-{"ph":"X","pid":1,"name":"blocked","tid":1,"ts":0.01,"dur":2500,"cname":"terrible","args":{"detail":"Pass or Tessellate"}},
+{"ph":"X","pid":1,"name":"busy","tid":1,"ts":0.005,"dur":0.005,"cname":"good","args":{"triangle":12,"part":"edge 1","base":3}},
+{"ph":"s","pid":1,"name":"triangle","cat":"triangle","id":12,"tid":1,"ts":0.00625},
+{"ph":"X","pid":1,"name":"blocked","tid":1,"ts":0.01,"dur":0.01,"cname":"terrible","args":{"detail":"Pass or Tessellate","triangle":13,"base":4}},
+{"ph":"t","pid":1,"name":"triangle","cat":"triangle","id":13,"tid":1,"ts":0.01125},
+{"ph":"X","pid":1,"name":"blocked","tid":1,"ts":0.02,"dur":2500,"cname":"terrible","args":{"detail":"Pass or Tessellate"}},
+{"ph":"f","pid":1,"name":"triangle","cat":"triangle","id":13,"tid":1,"ts":0.02125,"bp":"e"},
 {"ph":"C","pid":1,"name":"Triangle Queue","ts":0.01,"args":{"triangles":17}}
 ]}
 )");
@@ -95,6 +105,21 @@ TEST_CASE("Timeline: intervals are cut to the window") {
         CAPTURE(i, window.first, window.last);
         REQUIRE(written == expected);
     }
+}
+
+TEST_CASE("Timeline: a flow has no steps outside the window") {
+    std::ostringstream out;
+    TimelineWriter writer(out, 1'000'000, {5, 8});
+    const auto track = writer.add_track("a");
+    for (std::uint64_t cycle = 3; cycle < 11; ++cycle)
+        writer.flow(track, TimelineWriter::FlowStep::pass, 1, cycle);
+    CHECK_THROWS_AS(writer.flow(track + 1, TimelineWriter::FlowStep::pass, 1, 5), std::logic_error);
+    writer.finish();
+    CHECK_THROWS_AS(writer.flow(track, TimelineWriter::FlowStep::pass, 1, 5), std::logic_error);
+    std::vector<double> times;
+    for (const json& event : events_of(out.str(), "t"))
+        times.push_back(event.at("ts"));
+    CHECK(times == std::vector<double>{5.5, 6.5, 7.5, 8.5});
 }
 
 TEST_CASE("Timeline: a counter enters the window with its value") {

@@ -39,6 +39,54 @@ std::uint64_t count(const nlohmann::json& statistics, const std::string& group, 
     return statistics.at(group).at(name).at("value").get<std::uint64_t>();
 }
 
+/// A timeline read back: what each unit did, and the flows by triangle in the order of time.
+struct Timeline {
+    struct Slice {
+        std::string track;
+        double begin, end;
+        nlohmann::json arguments;
+    };
+    struct Step {
+        std::string phase, track;
+        double time;
+    };
+
+    explicit Timeline(const fs::path& file) {
+        const nlohmann::json all = nlohmann::json::parse(read_all(file));
+        for (const nlohmann::json& event : all.at("traceEvents")) {
+            const std::string phase = event.at("ph");
+            if (event.at("name") == "thread_name")
+                tracks[event.at("tid")] = event.at("args").at("name");
+            if (phase == "X") {
+                const double begin = event.at("ts");
+                slices.push_back({tracks.at(event.at("tid")), begin, begin + event.at("dur").get<double>(),
+                                  event.value("args", nlohmann::json::object())});
+            } else if (phase == "s" || phase == "t" || phase == "f") {
+                CHECK(event.at("name") == "triangle");
+                CHECK(event.at("cat") == "triangle");
+                CHECK((event.value("bp", "") == "e") == (phase == "f"));
+                flows[event.at("id")].push_back({phase, tracks.at(event.at("tid")), event.at("ts")});
+            }
+        }
+        for (auto& [triangle, steps] : flows)
+            std::stable_sort(steps.begin(), steps.end(),
+                             [](const Step& a, const Step& b) { return a.time < b.time; });
+        for (const Slice& slice : slices)
+            by_begin[slice.track].emplace(slice.begin, &slice);
+    }
+    const Slice* slice_at(const std::string& track, double time) const {
+        const auto& its = by_begin.at(track);
+        const auto after = its.upper_bound(time);
+        return after == its.begin() || std::prev(after)->second->end <= time ? nullptr
+                                                                             : std::prev(after)->second;
+    }
+
+    std::map<int, std::string> tracks;
+    std::vector<Slice> slices;
+    std::map<std::uint64_t, std::vector<Step>> flows;
+    std::map<std::string, std::map<double, const Slice*>> by_begin;
+};
+
 }  // namespace
 
 TEST_CASE("tracing changes nothing but its own files, and those are the same every time") {
@@ -100,8 +148,9 @@ TEST_CASE("a window shows the cycles it names, with the values they have in the 
                 continue;
             }
             CHECK(signal.initial == 0);
-            for (const char* const exact : {"state", "blocked_by", "occupancy", "valid", "ready", "stalled",
-                                            "waiting", "level", "request", "under_way", "served", "held_up"})
+            for (const char* const exact :
+                 {"state", "blocked_by", "occupancy", "valid", "ready", "stalled", "waiting", "level",
+                  "request", "requests", "reads", "under_way", "served", "held_up", "threshold"})
                 CHECK_FALSE(name.substr(name.rfind('.') + 1) == exact);
         }
     }
@@ -148,6 +197,123 @@ TEST_CASE("waveforms count what the statistics count") {
         for (std::uint64_t state = 0; state < 4; ++state)
             CHECK(cycles_in(group.substr(7), state) == members.at(names[state]).at("value"));
     }
+}
+
+TEST_CASE("every read request can be counted in the waveforms") {
+    const TestFolder here;
+    const std::string ports = GENERATE("1", "2", "4");
+    const std::string banks = GENERATE("1", "2", "4");
+    INFO(ports << " ports, " << banks << " banks");
+    std::vector<std::string> arguments{"--vcd", "--trace", "0:1000000"};
+    for (const char* const table : {"displacement_map", "normal_map", "summed_height_table"}) {
+        for (const auto& [key, value] : {std::pair{"_ports=", ports}, std::pair{"_banks=", banks}}) {
+            arguments.emplace_back("--set");
+            arguments.push_back("timing." + std::string(table) + key + value);
+        }
+    }
+    require_fine(run_small(here, arguments));
+    const VcdFile vcd(here.path() / "out/trace.vcd");
+    const nlohmann::json statistics = statistics_of(here);
+    // What the signal counted; each change is one more, or several more in one cycle.
+    const auto counted = [&](const std::string& name) {
+        const VcdFile::Signal& signal = vcd["tessera." + name];
+        std::uint64_t value = signal.initial;
+        CHECK(value == 0);
+        for (const auto& change : signal.changes)
+            value += change.second > value ? change.second - value : UINT64_MAX / 2;
+        return value;
+    };
+    for (const auto& [unit, memory] :
+         {std::pair{"displace_vertex", "displacement_map"},
+          std::pair{"tessellation_tests_0.normal_test", "normal_map"},
+          std::pair{"tessellation_tests_0.summed_height_test", "summed_height_table"}}) {
+        const std::string its = unit, of_memory = memory;
+        INFO(its);
+        const std::uint64_t reads = count(statistics, of_memory, "reads");
+        const std::uint64_t requests = counted(its + ".requests");
+        CHECK(counted(its + ".reads") == reads);
+        CHECK(counted(of_memory + ".reads") == reads);
+        CHECK(counted(of_memory + ".requests") == requests);
+        // A rectangle of the Summed Height Table is one request.
+        CHECK(requests ==
+              (of_memory == "summed_height_table" ? 3 * count(statistics, "run", "edges_tested") : reads));
+        CHECK(vcd["tessera." + its + ".requests"].changes.size() ==
+              vcd["tessera." + its + ".request"].high_cycles(period, vcd.end));
+    }
+}
+
+TEST_CASE("waveforms show what each test compares, and with what") {
+    const TestFolder here;
+    const std::string unit = GENERATE("sum", "area");
+    require_fine(run_small(
+        here, {"--vcd", "--trace", "0:1000000", "--set", "tests.summed_height_unit=" + unit, "--set",
+               "tests.summed_height_threshold=" + std::string(unit == "sum" ? "1" : "0.01")}));
+    const VcdFile vcd(here.path() / "out/trace.vcd");
+    const auto signal = [&](const std::string& test, const std::string& name) -> const VcdFile::Signal& {
+        return vcd["tessera.tessellation_tests_0." + test + "." + name];
+    };
+    const auto sign_extended = [](std::uint64_t value, unsigned bits) {
+        return static_cast<std::int64_t>(value << (64 - bits)) >> (64 - bits);
+    };
+    const auto distance = [](std::int64_t a, std::int64_t b) {
+        return static_cast<std::uint64_t>(std::abs(a - b));
+    };
+    std::uint64_t time = 0;
+    const auto at = [&](const std::string& test, const std::string& name) {
+        const VcdFile::Signal& its = signal(test, name);
+        const bool is_signed = name.rfind("n_", 0) == 0 || name.rfind("screen_", 0) == 0;
+        return is_signed ? sign_extended(its.at(time), its.bits) : static_cast<std::int64_t>(its.at(time));
+    };
+    std::set<bool> normal, summed_height, view, generation;
+    for (const auto& change : signal("normal_test", "difference").changes) {
+        time = change.first;
+        std::uint64_t largest = 0;
+        for (const char* const axis : {"x", "y", "z"}) {
+            const std::int64_t middle = at("normal_test", std::string("n_ij_") + axis);
+            for (const char* const end : {"n_i_", "n_j_"})
+                largest = std::max(largest, distance(middle, at("normal_test", std::string(end) + axis)));
+        }
+        if (at("normal_test", "answered_part") < 6) {
+            CHECK(change.second == 0);
+            continue;
+        }
+        CHECK(change.second == largest);
+        const bool differs = change.second > signal("normal_test", "threshold").at(time);
+        CHECK(differs == (at("normal_test", "normal") == 1));
+        normal.insert(differs);
+    }
+    for (const auto& change : signal("summed_height_test", "difference").changes) {
+        time = change.first;
+        const char* const test = "summed_height_test";
+        CHECK(change.second == distance(2 * at(test, "sum_ij"), at(test, "sum_i") + at(test, "sum_j")));
+        const std::uint64_t limit = signal(test, "limit").at(time);
+        const bool differs = change.second > limit;
+        CHECK(differs == (at(test, "summed_height") == 1));
+        summed_height.insert(differs);
+        // The rectangle shown is the item's that was started last; its area has changed the limit if it is one's.
+        CHECK((limit == signal(test, "threshold").at(time) || unit == "area"));
+    }
+    CHECK((signal("summed_height_test", "limit").changes.size() > 1) == (unit == "area"));
+    for (const auto& change : signal("view_test", "length").changes) {
+        time = change.first;
+        CHECK(change.second == distance(at("view_test", "screen_i_x"), at("view_test", "screen_j_x")) +
+                                   distance(at("view_test", "screen_i_y"), at("view_test", "screen_j_y")));
+        const bool is_long = change.second > signal("view_test", "threshold").at(time);
+        CHECK(is_long == (at("view_test", "view") == 1));
+        view.insert(is_long);
+    }
+    for (const auto& change : signal("tex_coord_test", "generation_ij").changes) {
+        time = change.first;
+        CHECK(change.second ==
+              1 + static_cast<std::uint64_t>(
+                      std::max(at("tex_coord_test", "generation_i"), at("tex_coord_test", "generation_j"))));
+        const bool allowed = change.second <= signal("tex_coord_test", "generation_limit").at(time);
+        CHECK(allowed == (at("tex_coord_test", "generation") == 1));
+        generation.insert(allowed);
+    }
+    CHECK(normal.size() == 2);
+    CHECK(summed_height.size() == 2);
+    CHECK(view.size() + generation.size() >= 3);
 }
 
 TEST_CASE("waveforms of off-chip memory show what a queue of four triangles spills and gets back") {
@@ -237,6 +403,84 @@ TEST_CASE("the timeline's stretches tile the window and agree with the statistic
                                                 {"blocked", "blocked"}})
             CHECK((spent[{name, state}]) == count(statistics, "timing." + name, figure));
     }
+}
+
+TEST_CASE("a triangle can be followed through the timeline") {
+    const TestFolder here;
+    const auto design = GENERATE(
+        std::vector<std::string>{},
+        std::vector<std::string>{"--set", "timing.stalls_per_mille=200", "--set", "hardware.tests_units=3"},
+        std::vector<std::string>{"--set", "hardware.culling=true"});
+    const bool whole = GENERATE(true, false);
+    std::vector<std::string> arguments{"--timeline", "--trace", whole ? "0:1000000" : "500:2000"};
+    arguments.insert(arguments.end(), design.begin(), design.end());
+    require_fine(run_small(here, arguments));
+    const Timeline timeline(here.path() / "out/timeline.json");
+    const nlohmann::json statistics = statistics_of(here);
+
+    // Each slice names a triangle of one base, and the units that take parts name each part once.
+    std::map<std::uint64_t, std::uint64_t> base_of;
+    std::map<std::string, std::set<std::pair<std::uint64_t, std::string>>> items;
+    for (const Timeline::Slice& slice : timeline.slices) {
+        if (!slice.arguments.contains("triangle"))
+            continue;
+        const std::uint64_t triangle = slice.arguments.at("triangle");
+        const std::uint64_t base = slice.arguments.at("base");
+        CHECK(base_of.emplace(triangle, base).first->second == base);
+        items[slice.track].emplace(triangle, slice.arguments.value("part", ""));
+    }
+    CHECK(std::max_element(base_of.begin(), base_of.end(), [](const auto& a, const auto& b) {
+              return a.second < b.second;
+          })->second > 0);
+    const std::set<std::string> without{"triangle_queue", "displacement_map", "normal_map",
+                                        "summed_height_table", "off_chip_memory"};
+    const std::set<std::string> take_all{"get_triangle", "pass_or_tessellate", "tessellation", "lighting"};
+    for (const auto& [number, unit] : timeline.tracks) {
+        INFO(unit);
+        CHECK((items.count(unit) == 0) == (without.count(unit) == 1));
+        const std::string last = unit.substr(unit.rfind('.') + 1);
+        if (whole && last != "collect_tests" && without.count(unit) == 0)  // it may let several by in a cycle
+            CHECK(items[unit].size() == count(statistics, "timing." + unit, "items"));
+        for (const auto& [triangle, part] : items[unit])
+            CHECK(part.empty() == (take_all.count(unit) == 1));
+    }
+
+    // Each step stands in a slice of its triangle. A flow begins once, in Get Triangle; ends once, where no unit follows.
+    std::map<std::string, std::uint64_t> ends;
+    std::size_t unfinished = 0;
+    for (const auto& [triangle, steps] : timeline.flows) {
+        INFO("triangle " << triangle);
+        std::set<std::string> units;
+        for (std::size_t k = 0; k < steps.size(); ++k) {
+            const Timeline::Step& step = steps[k];
+            CHECK(units.insert(step.track).second);
+            const Timeline::Slice* const slice = timeline.slice_at(step.track, step.time);
+            REQUIRE(slice != nullptr);
+            CHECK(slice->arguments.value("triangle", UINT64_MAX) == triangle);
+            CHECK((step.phase == "s") == (k == 0));
+            CHECK((step.phase == "s") == (step.track == "get_triangle"));
+            CHECK((step.phase != "f" || k + 1 == steps.size()));
+            if (k > 0)
+                CHECK(steps[k - 1].time <= step.time);
+        }
+        if (steps.back().phase != "f") {
+            ++unfinished;
+            continue;
+        }
+        ++ends[steps.back().track];
+        for (const char* const unit :
+             {"calculate_new_p", "displace_vertex", "transform", "pass_or_tessellate"})
+            CHECK(units.count(unit) == 1);
+    }
+    CHECK((unfinished == 0) == whole);
+    if (!whole)
+        return;
+    CHECK(timeline.flows.size() == count(statistics, "timing.get_triangle", "items"));
+    CHECK(ends["tessellation"] == count(statistics, "timing.tessellation", "items"));
+    CHECK(ends["lighting"] == count(statistics, "timing.lighting", "items"));
+    CHECK(ends["pass_or_tessellate"] == timeline.flows.size() - ends["tessellation"] - ends["lighting"]);
+    CHECK((ends["pass_or_tessellate"] > 0) ==
+          (design.size() == 2 && design[1].find("culling") != std::string::npos));
 }
 
 TEST_CASE("a deadlock leaves its traces, and nothing of a run before it") {

@@ -59,17 +59,25 @@ std::vector<std::pair<std::string, unsigned>> signals_in(const fs::path& save_fi
 
 }  // namespace
 
-TEST_CASE("every signal a save file shows is in the default job's waveforms and changes") {
+TEST_CASE(
+    "every signal a save file shows is in the default job's waveforms and changes, but for thresholds") {
     const TestFolder here;
-    const ProgramEnd end =
-        run_tessera({"run", "--vcd", "--set", "output.folder=out", "--set", "check.golden=false", "--set",
-                     "check.end_to_end=false", "--set", "output.picture=false"},
-                    here.path());
+    const ProgramEnd end = run_tessera(
+        {"run", "--vcd", "--set", "output.folder=out", "--set", "check.golden=false", "--set",
+         "check.end_to_end=false", "--set", "output.picture=false", "--set", "tests.normal_threshold=0.125",
+         "--set", "tests.view_threshold=5", "--set", "tests.generation_limit=7"},
+        here.path());
     INFO(end.text());
     REQUIRE(end.exit_code == 0);
     const VcdFile vcd(here.path() / "out/trace.vcd");
     const std::vector<fs::path> views = files_ending_in(".gtkw");
     std::set<std::string> names;
+    // Thresholds chosen such that their registers are exact: 14 fraction bits, and 8.
+    const std::map<std::string, std::uint64_t> constant{
+        {"tessera.tessellation_tests_0.normal_test.threshold", (1u << 14) / 8},
+        {"tessera.tessellation_tests_0.view_test.threshold", 5 << 8},
+        {"tessera.tessellation_tests_0.tex_coord_test.generation_limit", 7}};
+    std::size_t constants = 0;
     for (const fs::path& view : views) {
         INFO(view);
         names.insert(view.stem());
@@ -78,10 +86,17 @@ TEST_CASE("every signal a save file shows is in the default job's waveforms and 
         for (const auto& [name, bits] : signals) {
             INFO(name);
             CHECK(vcd[name].bits == bits);
-            CHECK_FALSE(vcd[name].changes.empty());
+            if (constant.count(name) == 0) {
+                CHECK_FALSE(vcd[name].changes.empty());
+                continue;
+            }
+            CHECK(vcd[name].changes.empty());
+            CHECK(vcd[name].initial == constant.at(name));
+            ++constants;
         }
     }
     CHECK(names == std::set<std::string>{"memories", "overview", "queue", "tests"});
+    CHECK(constants == constant.size());
 }
 
 TEST_CASE("save files depend on no machine and on no file beside them but filters") {

@@ -32,6 +32,7 @@ class CollectTests : public Unit {
     std::string holds() const override;
     std::uint64_t occupied_cycles() const override { return activity_.items_in(); }
     void show(Signals& signals) const override;
+    Begun begun() const override { return Begun::of(activity_.items_in(), leaving_); }
 
   private:
     void b_transport(Work& work, sc_core::sc_time& delay);

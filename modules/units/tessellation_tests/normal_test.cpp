@@ -112,11 +112,18 @@ void NormalTest::receive(TableItem& item, unsigned) {
         test_for_highlight(item.work);
 }
 
+void NormalTest::show(Signals& signals) const {
+    TableStage::show(signals);
+    signals.value("threshold", 18, registers_.tests.normal_threshold);
+    if (registers_.tests.highlight_test)
+        signals.value("highlight_threshold", 18, registers_.tests.highlight_normal_threshold);
+}
+
 void NormalTest::trace_item(Signals& signals, const TableItem& item) const {
     signals.edge_textures(item.work);
 }
 
-/// A corner that was bumped shows as its own edge's ends.
+/// A corner that was bumped shows as its own edge's ends, which do not differ.
 void NormalTest::trace_answered(Signals& signals, const TableItem& item) const {
     const datapath::EdgeTests& edge = Signals::pass_of(item.work).edges[Signals::index_of(item.work)];
     const datapath::Direction& i = Signals::begin_of(item.work).displaced_normal;
@@ -124,6 +131,10 @@ void NormalTest::trace_answered(Signals& signals, const TableItem& item) const {
     signals.direction("n_i_x", "n_i_y", "n_i_z", i);
     signals.direction("n_j_x", "n_j_y", "n_j_z", Signals::end_of(item.work).displaced_normal);
     signals.direction("n_ij_x", "n_ij_y", "n_ij_z", is_edge ? edge.displaced_normal : i);
+    signals.value(
+        "difference", 19,
+        is_edge ? largest_difference(i, Signals::end_of(item.work).displaced_normal, edge.displaced_normal)
+                : 0);
     signals.flag("normal", is_edge && (edge.tests & datapath::normal_bit) != 0);
     if (registers_.tests.highlight_test)
         signals.flag("highlight", is_edge && (edge.tests & datapath::highlight_bit) != 0);

@@ -41,6 +41,8 @@ class NormalTest : public TableStage<NormalTest, TableItem> {
 
     const datapath::Saturations& saturations() const { return saturations_; }
 
+    void show(Signals& signals) const override;
+
   private:
     friend class TableStage<NormalTest, TableItem>;
     void b_transport(Work& work, sc_core::sc_time& delay);

@@ -86,6 +86,11 @@ void SummedHeightTest::receive(SummedHeightItem& item, unsigned k) {
         decide(*item.work.pass, item.edge, item.size, item.sums);
 }
 
+void SummedHeightTest::show(Signals& signals) const {
+    TableStage::show(signals);
+    signals.value("threshold", 64, registers_.tests.summed_height_threshold);
+}
+
 void SummedHeightTest::trace_item(Signals& signals, const SummedHeightItem& item) const {
     signals.edge_textures(item.work);
     signals.value("width", 16, item.size.width);
@@ -96,6 +101,9 @@ void SummedHeightTest::trace_answered(Signals& signals, const SummedHeightItem& 
     signals.value("sum_i", 48, item.sums[0]);
     signals.value("sum_j", 48, item.sums[1]);
     signals.value("sum_ij", 48, item.sums[2]);
+    signals.value("difference", 64,
+                  datapath::summed_height_difference(item.sums[0], item.sums[1], item.sums[2]));
+    signals.value("limit", 64, summed_height_limit(item.size, registers_.tests));
     const unsigned tests = Signals::pass_of(item.work).edges[item.edge].tests;
     signals.flag("summed_height", (tests & datapath::summed_height_bit) != 0);
 }

@@ -33,6 +33,8 @@ class SummedHeightTest : public TableStage<SummedHeightTest, struct SummedHeight
     SummedHeightTest(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
                      const Timing& timing, bool use_direct_memory);
 
+    void show(Signals& signals) const override;
+
   private:
     friend class TableStage<SummedHeightTest, SummedHeightItem>;
     void b_transport(Work& work, sc_core::sc_time& delay);

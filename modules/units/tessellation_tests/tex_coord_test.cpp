@@ -33,11 +33,17 @@ void TexCoordTest::b_transport(Work& work, sc_core::sc_time& delay) {
     output->b_transport(work, delay);
 }
 
+void TexCoordTest::show(Signals& signals) const {
+    WorkStage::show(signals);
+    signals.value("generation_limit", 32, registers_.tests.generation_limit);
+}
+
 void TexCoordTest::trace_item(Signals& signals, const Work& work) const {
     const unsigned tests = Signals::pass_of(work).edges[Signals::index_of(work)].tests;
     signals.edge_textures(work);
     signals.value("generation_i", 8, Signals::begin_of(work).generation);
     signals.value("generation_j", 8, Signals::end_of(work).generation);
+    signals.value("generation_ij", 8, inserted_generation(Signals::begin_of(work), Signals::end_of(work)));
     signals.flag("tex_coord", (tests & datapath::tex_coord_bit) != 0);
     signals.flag("generation", (tests & datapath::generation_bit) != 0);
 }

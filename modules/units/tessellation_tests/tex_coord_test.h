@@ -25,6 +25,8 @@ class TexCoordTest : public WorkStage<TexCoordTest> {
     TexCoordTest(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
                  const Timing& timing);
 
+    void show(Signals& signals) const override;
+
   private:
     friend class WorkStage<TexCoordTest>;
     void b_transport(Work& work, sc_core::sc_time& delay);

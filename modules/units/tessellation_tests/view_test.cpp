@@ -66,11 +66,16 @@ void ViewTest::step() {
 void ViewTest::show(Signals& signals) const {
     WorkStage::show(signals);
     signals.input(from_transform, "from_transform");
+    signals.value("threshold", 33, registers_.tests.view_threshold);
 }
 
+/// An edge that has no length on the screen, for an end is not in front of the near plane, shows 0.
 void ViewTest::trace_item(Signals& signals, const Work& work) const {
-    signals.screen("screen_i_x", "screen_i_y", Signals::begin_of(work).screen);
-    signals.screen("screen_j_x", "screen_j_y", Signals::end_of(work).screen);
+    const datapath::ScreenPosition& i = Signals::begin_of(work).screen;
+    const datapath::ScreenPosition& j = Signals::end_of(work).screen;
+    signals.screen("screen_i_x", "screen_i_y", i);
+    signals.screen("screen_j_x", "screen_j_y", j);
+    signals.value("length", 33, i.in_front && j.in_front ? screen_length(i, j) : 0);
     const unsigned tests = Signals::pass_of(work).edges[Signals::index_of(work)].tests;
     signals.flag("view", (tests & datapath::view_bit) != 0);
 }
