@@ -4,6 +4,13 @@
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.." && pwd)
 cores=$(nproc)
 
+# What was compiled before, here or in another clone, is not compiled again. No use where the cache cannot be written.
+if command -v ccache >/dev/null && mkdir -p "$(ccache --get-config cache_dir)" 2>/dev/null; then
+    export CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER-ccache}
+    # Clones lie in different places: paths below the project count as relative, the build folder's does not count.
+    export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$root} CCACHE_NOHASHDIR=1 CCACHE_MAXSIZE=${CCACHE_MAXSIZE:-5G}
+fi
+
 # configured PRESET [-DNAME=VALUE...]: whether its build folder is complete, of this place, and has these values.
 configured() {
     local folder="$root/build/$1" setting name
