@@ -554,13 +554,16 @@ class TableCheck {
         }
     }
 
+    std::size_t texel_of(std::uint32_t x, std::uint32_t y) const {
+        return std::size_t{y} * static_cast<std::size_t>(golden_.map().width()) + x;
+    }
+
     void check_displacement_map() {
         Judge judge(result_, "displacement map", "every code, to nearest");
         const golden::Map& map = golden_.map();
         each_entry(judge, host_.displacement_map, registers_.displacement_map, map.width(), map.height(),
                    [&](std::uint32_t x, std::uint32_t y, std::uint64_t code) {
-                       const double golden =
-                           golden_.unrounded_code(std::size_t{y} * registers_.map.width + x);
+                       const double golden = golden_.unrounded_code(texel_of(x, y));
                        judge.judge([&] { return fmt::format("({}, {})", x, y); }, number(code), golden,
                                    to_nearest, double_rounding * golden);
                    });
@@ -577,7 +580,7 @@ class TableCheck {
         const double slope_error = (full > 0 ? 0.5 / full : 0) + double_rounding;
         each_entry(judge, host_.normal_map, registers_.normal_map, map.width(), map.height(),
                    [&](std::uint32_t x, std::uint32_t y, std::uint64_t entry) {
-                       const glm::dvec2 slope = map.slope(std::size_t{y} * registers_.map.width + x);
+                       const glm::dvec2 slope = map.slope(texel_of(x, y));
                        const datapath::Direction n = datapath::unpack_normal(entry, format.bits);
                        const NormalRange range(slope, slope_error);
                        const auto component = [&](const char* name, double hardware, double low,
