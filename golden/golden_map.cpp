@@ -28,33 +28,33 @@ std::int64_t first_texel(double centre, std::int64_t length, std::int64_t size, 
 }
 
 // Checked before the table is built from them.
-std::vector<double> checked(int width, int height, std::vector<double> codes) {
+std::vector<std::uint32_t> checked(int width, int height, const std::vector<double>& codes) {
     if (width < 1 || height < 1 ||
         codes.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
         throw std::invalid_argument("golden map: size and number of codes do not agree");
     }
     double sum = 0;
     for (const double code : codes) {
-        if (!(code >= 0) || code != std::floor(code)) {
-            throw std::invalid_argument("golden map: codes must be integers of at least 0");
+        if (!(code >= 0 && code < 0x1p32) || code != std::floor(code)) {
+            throw std::invalid_argument("golden map: codes must be integers from 0 to 2^32 - 1");
         }
         sum += code;
     }
     if (!(sum < 0x1p52)) {
         throw std::invalid_argument("golden map: the sum of all codes must stay below 2^52");
     }
-    return codes;
+    return {codes.begin(), codes.end()};
 }
 
 }  // namespace
 
-Map::Map(int width, int height, AddressMode address_u, AddressMode address_v, std::vector<double> codes)
+Map::Map(int width, int height, AddressMode address_u, AddressMode address_v,
+         const std::vector<double>& codes)
     : width_(width),
       height_(height),
       address_u_(address_u),
       address_v_(address_v),
-      codes_(checked(width, height, std::move(codes))),
-      normals_(codes_.size(), glm::dvec3(0, 0, 1)),
+      codes_(checked(width, height, codes)),
       sums_(width, height, codes_) {}
 
 std::size_t Map::texel(const glm::dvec2& t) const {
@@ -63,9 +63,16 @@ std::size_t Map::texel(const glm::dvec2& t) const {
     return static_cast<std::size_t>(y * width_ + x);
 }
 
-void Map::compute_normals(double scale_per_code, const glm::dvec2& texel_size) {
-    const auto height_at = [&](std::int64_t x, std::int64_t y) {
-        return scale_per_code * codes_[static_cast<std::size_t>(y * width_ + x)];
+void Map::derive_normals(double scale_per_code, const glm::dvec2& texel_size) {
+    scale_per_code_ = scale_per_code;
+    texel_size_ = texel_size;
+    normals_.clear();
+}
+
+glm::dvec2 Map::slope(std::size_t texel) const {
+    const auto x = static_cast<std::int64_t>(texel) % width_, y = static_cast<std::int64_t>(texel) / width_;
+    const auto code_at = [&](std::int64_t column, std::int64_t row) {
+        return static_cast<double>(codes_[static_cast<std::size_t>(row * width_ + column)]);
     };
     // The two neighbours of `at` along an axis and how many texels apart they are.
     const auto neighbours = [](std::int64_t at, std::int64_t size, AddressMode mode) {
@@ -73,18 +80,14 @@ void Map::compute_normals(double scale_per_code, const glm::dvec2& texel_size) {
         const std::int64_t distance = mode == AddressMode::repeat ? 2 : std::max<std::int64_t>(high - low, 1);
         return std::array<std::int64_t, 3>{low, high, distance};
     };
-    for (std::int64_t y = 0; y < height_; ++y) {
-        const auto [below, above, distance_v] = neighbours(y, height_, address_v_);
-        for (std::int64_t x = 0; x < width_; ++x) {
-            const auto [left, right, distance_u] = neighbours(x, width_, address_u_);
-            const double slope_u =
-                (height_at(right, y) - height_at(left, y)) / (static_cast<double>(distance_u) * texel_size.x);
-            const double slope_v = (height_at(x, above) - height_at(x, below)) /
-                                   (static_cast<double>(distance_v) * texel_size.y);
-            const glm::dvec3 n(-slope_u, -slope_v, 1);
-            normals_[static_cast<std::size_t>(y * width_ + x)] = n / glm::length(n);
-        }
-    }
+    const auto [left, right, distance_u] = neighbours(x, width_, address_u_);
+    const auto [below, above, distance_v] = neighbours(y, height_, address_v_);
+    const glm::dvec2 difference(code_at(right, y) - code_at(left, y), code_at(x, above) - code_at(x, below));
+    return scale_per_code_ * difference / (glm::dvec2(distance_u, distance_v) * texel_size_);
+}
+
+glm::dvec3 Map::normal(std::size_t texel) const {
+    return normals_.empty() ? glm::normalize(glm::dvec3(-slope(texel), 1)) : normals_[texel];
 }
 
 void Map::set_normals(std::vector<glm::dvec3> normals) {

@@ -15,9 +15,10 @@ enum class AddressMode { clamp, repeat };
 /// Row 0 is v = 0, the bottom. Texture coordinates are in texels: texel x covers [x, x + 1).
 class Map {
   public:
-    /// `codes` row by row from the bottom: integers >= 0, all sums below 2^52. Throws std::invalid_argument
+    /// `codes` row by row from the bottom: integers 0 .. 2^32 - 1, all sums below 2^52. Throws std::invalid_argument
     /// otherwise. The normal map starts flat.
-    Map(int width, int height, AddressMode address_u, AddressMode address_v, std::vector<double> codes);
+    Map(int width, int height, AddressMode address_u, AddressMode address_v,
+        const std::vector<double>& codes);
 
     int width() const { return width_; }
     int height() const { return height_; }
@@ -25,18 +26,21 @@ class Map {
     AddressMode address_v() const { return address_v_; }
 
     double code(std::size_t texel) const { return codes_[texel]; }
-    const glm::dvec3& normal(std::size_t texel) const { return normals_[texel]; }
+    /// N_d: flat until derive_normals() or set_normals().
+    glm::dvec3 normal(std::size_t texel) const;
+    /// dh/du and dh/dv, h the displacement in world units (derive_normals()). Central differences; a clamped border has
+    /// only one neighbour and divides by 1, an axis of one texel has slope 0.
+    glm::dvec2 slope(std::size_t texel) const;
 
     /// Nearest texel of t: its integer part, addressed. On the last border (u = width) that is the last texel
     /// (clamp) or the first (repeat).
     std::size_t texel(const glm::dvec2& t) const;
 
-    /// The normal map N_d by finite differences of the displacement in world units,
+    /// From now on the normal map N_d is that of finite differences of the displacement in world units,
     ///     N_d = normalise(-dh/du, -dh/dv, 1),     h = scale_per_code * code,
-    /// `texel_size` the world size of a texel per axis. Central differences; a clamped border has only one
-    /// neighbour and divides by 1, an axis of one texel has slope 0. To be called again when the scale
-    /// changes.
-    void compute_normals(double scale_per_code, const glm::dvec2& texel_size);
+    /// `texel_size` the world size of a texel per axis. To be called again when the scale changes. Nothing is stored: a
+    /// normal is calculated when it is asked for.
+    void derive_normals(double scale_per_code, const glm::dvec2& texel_size);
     /// A normal map from elsewhere, e.g. the hardware's, dequantised.
     void set_normals(std::vector<glm::dvec3> normals);
 
@@ -56,8 +60,10 @@ class Map {
   private:
     int width_, height_;
     AddressMode address_u_, address_v_;
-    std::vector<double> codes_;
-    std::vector<glm::dvec3> normals_;
+    std::vector<std::uint32_t> codes_;
+    double scale_per_code_ = 0;
+    glm::dvec2 texel_size_{1, 1};
+    std::vector<glm::dvec3> normals_;  // set_normals()'s; else empty
     SummedAreaTable sums_;
 };
 

@@ -71,6 +71,9 @@ Insertion insert_vertex(const Vertex& i, const Vertex& j, const Map& map, const 
     // One triangle has one handedness; the minimum only keeps a mixed edge commutative.
     v.handedness = std::min(i.handedness, j.handedness);
     v.texture = (i.texture + j.texture) / 2.0;
+    if (parameters.texture_step > 0) {
+        v.texture = glm::floor(v.texture / parameters.texture_step) * parameters.texture_step;
+    }
     v.generation = std::max(i.generation, j.generation) + 1;
     result.mean_normal_length = normal.length;
     result.mean_tangent_length = tangent.length;

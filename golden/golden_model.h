@@ -44,6 +44,10 @@ struct Parameters {
 
     Diagonal diagonal = Diagonal::shorter;
 
+    /// Grid to which an inserted vertex's texture coordinate is rounded down, in texels; 0: none. Nothing else is
+    /// rounded: what lies on a texel's border reads one texel or the other, and a difference of any size decides which.
+    double texture_step = 0;
+
     /// World to screen: with p = (P', 1) and w = dot(row_w, p), screen = (dot(row_x, p), dot(row_y, p)) / w
     /// in pixels; in front iff w > near_plane (>= 0). The default is a parallel view along z, one pixel per
     /// world unit.

@@ -19,12 +19,12 @@ struct Rectangle {
 /// Exact: unsigned 64 bit arithmetic wraps, so differences are right wherever S(r) itself fits.
 class SummedAreaTable {
   public:
-    SummedAreaTable(int width, int height, const std::vector<double>& codes)
+    SummedAreaTable(int width, int height, const std::vector<std::uint32_t>& codes)
         : width_(width), height_(height), table_(index(0, std::int64_t{height} + 1), 0) {
         for (std::int64_t y = 0; y < height_; ++y) {
             std::uint64_t row = 0;
             for (std::int64_t x = 0; x < width_; ++x) {
-                row += static_cast<std::uint64_t>(codes[static_cast<std::size_t>(y * width_ + x)]);
+                row += codes[static_cast<std::size_t>(y * width_ + x)];
                 table_[index(x + 1, y + 1)] = table_[index(x + 1, y)] + row;
             }
         }

@@ -1,16 +1,20 @@
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include "testbench/check/golden_inputs.h"
+#include "testbench/check/golden_job.h"
 #include "testbench/host/emitted_mesh.h"
 #include "testbench/host/setup.h"
 
 namespace tessera {
 
-/// The hardware's mesh against the golden model's own, run end to end from the same base triangles.
+/// The hardware's mesh against the golden model's own, run end to end.
 ///
-/// A decision that flips near its threshold leads to another local mesh of the same surface: counts and
-/// distances tell how much that amounts to. They are measured, not judged.
+/// A decision that flips near its threshold leads to another local mesh of the same surface: counts and distances tell how
+/// much that amounts to.
 struct EndToEndResult {
     /// From points on one surface (every vertex, every triangle's centroid) to the nearest point of the
     /// other.
@@ -19,6 +23,11 @@ struct EndToEndResult {
         double max_world = 0, rms_world = 0;                ///< the machine's world units
         double max_position_lsb = 0, rms_position_lsb = 0;  ///< LSB of the position's format
         double max_model = 0, rms_model = 0;                ///< the model's units
+    };
+    /// What the result is judged by.
+    struct Allowed {
+        double triangles = 100;       ///< percent more or fewer than golden's
+        double rms_model = INFINITY;  ///< model units, either way
     };
 
     std::uint64_t hardware_triangles = 0;
@@ -30,10 +39,32 @@ struct EndToEndResult {
 
     Distance hardware_to_golden;
     Distance golden_to_hardware;
+    Allowed allowed;
+
+    /// Golden's triangles beyond the hardware's, in percent of these.
+    double more_triangles() const;
+    double rms_model() const { return std::max(hardware_to_golden.rms_model, golden_to_hardware.rms_model); }
+    double max_model() const { return std::max(hardware_to_golden.max_model, golden_to_hardware.max_model); }
+    bool passed() const;
 };
 
-/// Deterministic, single-threaded. Memory: about 300 bytes per triangle of both meshes together.
+/// Golden from the job itself (GoldenJob), judged. Camera, heights, normal map and thresholds are golden's own, positions
+/// and normals are not rounded. Texture coordinates are, as in the hardware (the base's to nearest, midpoints down):
+/// reading a texel is discontinuous, so that without it an LSB would decide on a whole texel.
+/// `base_triangles`: which of the mesh's triangles the machine was given (SetupResult).
+/// `allowed_triangles`: in percent. The distance's bound follows from it:
+///     RMS <= r + sqrt(f) h
+/// r: what rounding moves a vertex by, at most (G / 2 + 2) LSB of the position and, by the normal, 2 (G + 1) LSB of it times
+/// the largest displacement, after G generations, per axis. f: the share of the surface that may be triangulated
+/// otherwise, `allowed_triangles`. h: there, both surfaces lie between the lowest and the highest displacement.
+EndToEndResult compare_end_to_end(const Setup& setup, const GoldenJob& golden,
+                                  const std::vector<std::uint32_t>& base_triangles,
+                                  const EmittedMesh& hardware, double allowed_triangles);
+
+/// Golden from the machine's own registers, tables and base triangles, dequantised. Not judged.
 EndToEndResult compare_end_to_end(const Setup& setup, const GoldenInputs& inputs,
                                   const EmittedMesh& hardware);
+
+// Both: deterministic, single-threaded. Memory: about 300 bytes per triangle of both meshes together.
 
 }  // namespace tessera

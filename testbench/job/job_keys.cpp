@@ -352,10 +352,11 @@ std::vector<KeyTable> declare_keys() {
     list.table("timing", &Job::timing, "Timed mode: the datasheet figures of every unit and memory.", [](const auto& key) { add_timing(key); });
     list.table("check", &Job::check, "Conformance to the golden model.", [](const auto& key) {
         using Check = Job::Check;
-        key.add("golden", &Check::golden, "Scoreboard: every edge's decision against the golden model");
+        key.add("golden", &Check::golden, "Every edge's decision against the golden model (scoreboard), and every register and table entry against what golden derives from the job by itself");
         key.add("end_to_end", &Check::end_to_end, "Golden run of the whole mesh, compared with the hardware's");
         key.add("invariants", &Check::invariants, "The emitted mesh is closed, without T-vertices, and covers the texture");
         key.add("allowed_flips", &Check::allowed_flips, "percent of edges", between(0, 100), "Decisions that differ within the formats' error bound; more fail the run");
+        key.add("allowed_triangles", &Check::allowed_triangles, "percent of triangles", between(0, 1000), "Triangles that the golden run of the whole mesh may have more or fewer than the hardware; further apart fails the run, and so do surfaces further apart than follows from it");
         key.add("work", &Check::work, "No triangle is lost, doubled or altered on its way through the machine, and what goes into a unit comes out of another");
         key.add("reads", &Check::reads, "Every table read against what the memory holds; in functional mode reads then go by transaction, which is slow");
     });

@@ -25,6 +25,10 @@ double percent(std::uint64_t part, std::uint64_t whole) {
 
 std::string checks_rows(const Checks& checks) {
     std::string text;
+    if (checks.setup)
+        text += row("set-up",
+                    fmt::format("{} registers, base vertices' fields and table entries compared, {} wrong",
+                                count(checks.setup->compared()), count(checks.setup->wrong())));
     if (checks.conformance) {
         const ConformanceResult& c = *checks.conformance;
         std::string verdict;
@@ -40,14 +44,12 @@ std::string checks_rows(const Checks& checks) {
         const EndToEndResult& e = *checks.end_to_end;
         text += row(
             "golden mesh",
-            fmt::format("{} triangles ({:+.2f} %); surfaces at most {:.3g} model units apart, RMS {:.3g}",
-                        count(e.golden_triangles),
-                        e.hardware_triangles == 0 ? 0.0
-                                                  : 100.0 * (static_cast<double>(e.golden_triangles) /
-                                                                 static_cast<double>(e.hardware_triangles) -
-                                                             1),
-                        std::max(e.hardware_to_golden.max_model, e.golden_to_hardware.max_model),
-                        std::max(e.hardware_to_golden.rms_model, e.golden_to_hardware.rms_model)));
+            e.bound_hit
+                ? fmt::format("more than {} triangles, where its run was stopped", count(e.bound))
+                : fmt::format("{} triangles ({:+.2f} %, allowed {} %); surfaces at most {:.3g} model units "
+                              "apart, RMS {:.3g} (allowed {:.3g})",
+                              count(e.golden_triangles), e.more_triangles(), e.allowed.triangles,
+                              e.max_model(), e.rms_model(), e.allowed.rms_model));
     }
     if (checks.invariants) {
         const InvariantResult& i = *checks.invariants;

@@ -5,6 +5,7 @@
 #include "testbench/benchmark/bare_recursion.h"
 #include "testbench/check/invariants.h"
 #include "testbench/check/scoreboard.h"
+#include "testbench/check/setup_check.h"
 #include "testbench/host/simulation.h"
 #include "testbench/random_cases/lineage_check.h"
 
@@ -69,7 +70,9 @@ void CaseFigures::add(const CaseFigures& other) {
 CaseResult run_case(const RandomCase& random_case, Mode mode) {
     RandomCase with_mode = random_case;
     with_mode.job.mode = mode;
-    const Setup setup = with_mode.setup();
+    const BaseMesh base_mesh = with_mode.base_mesh();
+    const HeightMap height_map = with_mode.height_map();
+    const Setup setup = make_setup(with_mode.job, base_mesh, height_map);
     const GoldenInputs golden(setup);
     Simulation simulation(setup, RandomCase::most_edges,
                           static_cast<std::uint64_t>(with_mode.job.limits.cycles_without_progress));
@@ -88,6 +91,10 @@ CaseResult run_case(const RandomCase& random_case, Mode mode) {
     if (!invariants.passed())
         fail(fmt::format("{} violations of the invariants: {}", invariants.violations(),
                          invariants.first_violation));
+    const SetupResult checked_setup =
+        check_setup(setup, GoldenJob(with_mode.job, base_mesh, height_map, setup.model_scale), simulation);
+    if (!checked_setup.passed())
+        fail(fmt::format("the set-up: {}", checked_setup.first_wrong));
     const ConformanceResult conformance = scoreboard.result();
     if (conformance.mismatches > 0)
         fail(fmt::format("{} mismatches: {}", conformance.mismatches, conformance.first_mismatch));

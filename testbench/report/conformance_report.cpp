@@ -70,13 +70,31 @@ std::string distance_text(const char* name, const EndToEndResult::Distance& d) {
 
 std::string end_to_end_text(const EndToEndResult& result) {
     std::string text = fmt::format(
-        "End to end: the golden model run by itself from the same base triangles. Measured, not judged.\n\n"
-        "  triangles: hardware {}, golden {}{}\n",
-        result.hardware_triangles, result.golden_triangles,
-        result.bound_hit ? fmt::format(" (stopped at its bound of {})", result.bound) : "");
+        "End to end: {}. The golden model run by itself from the job: its own camera, heights, normal map "
+        "and "
+        "thresholds,\nnothing rounded but texture coordinates. Allowed: {} % more or fewer triangles, an RMS "
+        "distance of {:.6g} model units.\n\n"
+        "  triangles: hardware {}, golden {}\n",
+        verdict(result.passed()), result.allowed.triangles, result.allowed.rms_model,
+        result.hardware_triangles,
+        result.bound_hit ? fmt::format("more than {}, where its run was stopped", result.bound)
+                         : fmt::format("{} ({:+.4f} %)", result.golden_triangles, result.more_triangles()));
     if (!result.bound_hit)
         text += distance_text("hardware to golden", result.hardware_to_golden) +
                 distance_text("golden to hardware", result.golden_to_hardware);
+    return text;
+}
+
+std::string setup_text(const SetupResult& result) {
+    std::string text = fmt::format(
+        "Set-up: {}. What the host set against what the golden model derives from the job by itself; each "
+        "value within\nthe bound of its format's rounding.\n\n  {:<22}{:>12}{:>10}{:>14}  {}\n",
+        verdict(result.passed()), "set by the host", "compared", "wrong", "worst [LSB]", "");
+    for (const SetupResult::Part& part : result.parts)
+        text += fmt::format("  {:<22}{:>12}{:>10}{:>14.6f}  {}\n", part.name, part.compared, part.wrong,
+                            part.worst_error, part.description);
+    if (!result.passed())
+        text += "\nFirst wrong:\n" + result.first_wrong + "\n";
     return text;
 }
 
@@ -161,6 +179,8 @@ std::string conformance_text(const Checks& checks) {
     std::string text = fmt::format("Conformance report: {}\n\n", verdict(checks.passed()));
     if (checks.fault)
         text += fault_text(*checks.fault) + "\n";
+    text +=
+        checks.setup ? setup_text(*checks.setup) + "\n" : "Set-up: not checked (check.golden and check.end_to_end = false).\n\n";
     if (checks.conformance)
         text += decisions_text(*checks.conformance, checks.allowed_flips) + "\n" +
                 values_text(*checks.conformance) + "\n";
@@ -183,12 +203,28 @@ std::string conformance_text(const Checks& checks) {
 
 std::string conformance_json(const Checks& checks) {
     Json json = {{"passed", checks.passed()}, {"remarks", checks.remarks}};
+    if (checks.setup) {
+        Json part = {{"passed", checks.setup->passed()},
+                     {"compared", checks.setup->compared()},
+                     {"wrong", checks.setup->wrong()},
+                     {"first_wrong", checks.setup->first_wrong}};
+        for (const SetupResult::Part& p : checks.setup->parts)
+            part["parts"][p.name] = {{"compared", p.compared},
+                                     {"wrong", p.wrong},
+                                     {"worst_error_lsb", p.worst_error},
+                                     {"description", p.description}};
+        json["setup"] = std::move(part);
+    }
     if (checks.conformance)
         json["conformance"] = conformance_part(*checks.conformance, checks.allowed_flips);
     if (checks.end_to_end) {
         const EndToEndResult& e = *checks.end_to_end;
-        json["end_to_end"] = {{"hardware_triangles", e.hardware_triangles},
+        json["end_to_end"] = {{"passed", e.passed()},
+                              {"hardware_triangles", e.hardware_triangles},
                               {"golden_triangles", e.golden_triangles},
+                              {"more_triangles_percent", e.more_triangles()},
+                              {"allowed_triangles_percent", e.allowed.triangles},
+                              {"allowed_rms_model", e.allowed.rms_model},
                               {"golden_bound_hit", e.bound_hit},
                               {"hardware_to_golden", distance_json(e.hardware_to_golden)},
                               {"golden_to_hardware", distance_json(e.golden_to_hardware)}};

@@ -7,6 +7,7 @@
 #include "testbench/check/end_to_end.h"
 #include "testbench/check/invariants.h"
 #include "testbench/check/read_check.h"
+#include "testbench/check/setup_check.h"
 #include "testbench/check/work_check.h"
 #include "testbench/faults/fault_report.h"
 
@@ -14,6 +15,7 @@ namespace tessera {
 
 /// What was checked of a run and how it came out; a part that the job switched off is absent.
 struct Checks {
+    std::optional<SetupResult> setup;
     std::optional<ConformanceResult> conformance;
     std::optional<EndToEndResult> end_to_end;
     std::optional<InvariantResult> invariants;
@@ -26,9 +28,10 @@ struct Checks {
 
     /// A run with a fault never passes.
     bool passed() const {
-        return !fault && (!conformance || conformance->passed(allowed_flips)) &&
-               (!invariants || invariants->passed()) && (!work || work->passed()) &&
-               (!reads || reads->passed());
+        return !fault && (!setup || setup->passed()) &&
+               (!conformance || conformance->passed(allowed_flips)) &&
+               (!end_to_end || end_to_end->passed()) && (!invariants || invariants->passed()) &&
+               (!work || work->passed()) && (!reads || reads->passed());
     }
 };
 

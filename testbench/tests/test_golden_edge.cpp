@@ -204,7 +204,7 @@ TEST_CASE("constant map splits nothing, wherever the edge lies") {
                 Map map(width, height, mode, mode, constant_codes(width, height, code));
                 Parameters p;
                 p.scale = 0.37;
-                map.compute_normals(p.scale, {0.1, 0.2});
+                map.derive_normals(p.scale, {0.1, 0.2});
                 for (int k = 0; k < 200; ++k) {
                     Vertex i = random_vertex(random, -2.0 * width, 3.0 * width, -2.0 * height, 3.0 * height);
                     Vertex j = random_vertex(random, -2.0 * width, 3.0 * width, -2.0 * height, 3.0 * height);
@@ -248,7 +248,7 @@ TEST_CASE("edge: deciding (i,j) is deciding (j,i), to the last bit") {
     for (const auto& [width, height] : sizes) {
         for (const AddressMode mode : both_modes) {
             Map map(width, height, mode, mode, random_codes(width, height, random));
-            map.compute_normals(1e-4, {0.1, 0.2});
+            map.derive_normals(1e-4, {0.1, 0.2});
             for (int k = 0; k < 2000; ++k) {
                 Parameters p;
                 p.scale = random.real(0, 1e-3);
@@ -272,7 +272,7 @@ TEST_CASE("edge: deciding (i,j) is deciding (j,i), to the last bit") {
 TEST_CASE("repeat: an edge any number of periods away decides alike") {
     Random random;
     Map map(12, 19, AddressMode::repeat, AddressMode::repeat, random_codes(12, 19, random));
-    map.compute_normals(1e-4, {0.1, 0.2});
+    map.derive_normals(1e-4, {0.1, 0.2});
     Parameters p;
     p.scale = 1e-4;
     for (int k = 0; k < 5000; ++k) {

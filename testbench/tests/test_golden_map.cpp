@@ -117,18 +117,18 @@ TEST_CASE("normal map: central differences, borders, thin axes") {
         }
     }
     Map clamped(5, 4, AddressMode::clamp, AddressMode::clamp, ramp);
-    clamped.compute_normals(scale, {su, sv});
+    clamped.derive_normals(scale, {su, sv});
     for (std::size_t texel = 0; texel < 20; ++texel) {  // a ramp's one-sided border slope is its slope
         CHECK(glm::distance(clamped.normal(texel), expected(10 * scale / su, 30 * scale / sv)) < 1e-15);
     }
     Map repeated(5, 4, AddressMode::repeat, AddressMode::repeat, ramp);
-    repeated.compute_normals(scale, {su, sv});
+    repeated.derive_normals(scale, {su, sv});
     CHECK(glm::distance(repeated.normal(6), expected(10 * scale / su, 30 * scale / sv)) < 1e-15);
     CHECK(glm::distance(repeated.normal(0),
                         expected((10 - 40) / 2.0 * scale / su, (30 - 90) / 2.0 * scale / sv)) < 1e-15);
     for (const AddressMode mode : both_modes) {
         Map thin(1, 3, mode, AddressMode::clamp, {0, 7, 20});
-        thin.compute_normals(scale, {su, sv});
+        thin.derive_normals(scale, {su, sv});
         CHECK(glm::distance(thin.normal(0), expected(0, 7 * scale / sv)) < 1e-15);
         CHECK(glm::distance(thin.normal(1), expected(0, 10 * scale / sv)) < 1e-15);
         CHECK(glm::distance(thin.normal(2), expected(0, 13 * scale / sv)) < 1e-15);

@@ -32,7 +32,7 @@ Map half_donut(double ring, double tube) {
         }
     }
     Map map(donut_size, donut_size, AddressMode::clamp, AddressMode::clamp, codes);
-    map.compute_normals(tube / 65535, {2.0 / donut_size, 2.0 / donut_size});
+    map.derive_normals(tube / 65535, {2.0 / donut_size, 2.0 / donut_size});
     return map;
 }
 
@@ -290,7 +290,7 @@ TEST_CASE("cylinder: repeat closes the seam, clamp opens it") {
         p.summed_height_threshold = 20000;
         p.enabled.view = false;
         p.generation_limit = 6;
-        map.compute_normals(p.scale, {4 * std::acos(-1.0) / width, double(up) / height});
+        map.derive_normals(p.scale, {4 * std::acos(-1.0) / width, double(up) / height});
         using Key = std::tuple<double, double, double>;
         const auto key = [](const glm::dvec3& d) { return Key{d.x, d.y, d.z}; };
         DirectedEdges<Key> edges;

@@ -88,7 +88,7 @@ ExactModel::ExactModel(const Job& job, const BaseMesh& mesh, const HeightMap& ma
     parameters_.view_threshold = tests.view_threshold;
     parameters_.highlight_cosine = std::cos(tests.highlight_angle * pi / 180);
     parameters_.highlight_normal_threshold = tests.highlight_normal_threshold;
-    map_.compute_normals(parameters_.scale, setup.texel_size);
+    map_.derive_normals(parameters_.scale, setup.texel_size);
 
     const glm::dvec2 shift(whole_periods(mesh, 0, job.map.address_u),
                            whole_periods(mesh, 1, job.map.address_v));
