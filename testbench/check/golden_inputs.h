@@ -55,8 +55,8 @@ class Dequantise {
 /// plane, 64 bit integers that a double rounds at the 53rd bit.
 golden::Parameters golden_parameters(const datapath::Registers& registers);
 
-/// What the golden model works on: map and registers as the hardware holds them, dequantised. Nothing is
-/// derived from the job again, so that the two can differ in arithmetic only. Memory: 40 bytes per texel.
+/// What golden works on for the scoreboard: map and registers as the hardware holds them, dequantised, so that the two can
+/// differ in arithmetic only. Sound, as each entry is judged against golden's own (setup_check.h). Memory: 36 bytes per texel.
 struct GoldenInputs {
     golden::Map map;
     golden::Parameters parameters;

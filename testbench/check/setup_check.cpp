@@ -41,7 +41,8 @@ class Judge {
         SetupResult::Part& part = result_.parts[part_];
         ++part.compared;
         const double error = hardware - golden;
-        part.worst_error = std::max(part.worst_error, std::abs(error));
+        if (const double most = std::max(-bound.low, bound.high) + leeway; most > 0)
+            part.worst_ratio = std::max(part.worst_ratio, std::abs(error) / most);
         if ((bound.low_allowed ? error >= bound.low - leeway : error > bound.low - leeway) &&
             error <= bound.high + leeway)
             return;
@@ -100,8 +101,8 @@ class RegisterCheck {
           judge_(result, "registers", "every register; rounded as its format says") {}
 
     void run() {
-        check_formats();
         check_model_scale();
+        check_formats();
         check_map();
         check_tests();
         check_displacement();

@@ -19,7 +19,7 @@ struct SetupResult {
         std::string description;     ///< what is compared, and within which bound
         std::uint64_t compared = 0;  ///< values
         std::uint64_t wrong = 0;     ///< beyond their bound
-        double worst_error = 0;      ///< LSB of the value's format
+        double worst_ratio = 0;      ///< largest error / bound; 0 where all are compared exactly
     };
     std::vector<Part> parts;
     std::string first_wrong;  ///< its name, index, value and what is allowed; empty: none
@@ -45,7 +45,8 @@ struct SetupResult {
 ///                          LSB of the position, so a slope s by |s| / (2 |S|): each component lies between the least and
 ///                          the greatest over those slopes, and 1/2
 ///     exact                formats, flags, the map's size and addressing, the Summed Height Table modulo 2^bits
-/// To each, what double precision itself may be off by, 2^-48 of the terms.
+/// To each, what double precision itself may be off by: 2^-48 of the terms. In a fourth column of the transform, which is
+/// finer than a double where the eye is far, that is more than an LSB.
 ///
 /// The host's own choice, of which only soundness is judged: the model's scale (a power of two with which the displaced
 /// mesh fits the position's format), the transform's exponent (entries reach 1/2 and not beyond 1), the view distance's

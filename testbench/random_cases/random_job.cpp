@@ -119,7 +119,7 @@ void make_random_job(Random& random, const JobContext& context, Job& job) {
     job.displacement.scale =
         context.size * random.one_of({0.0, 0.02, 0.1, 0.1, 0.3, 1.0, -0.1, -0.5, 3.0, 0.0001});
     job.displacement.bias = context.size * random.one_of({0.0, 0.0, 0.1, -0.05, 1.0});
-    job.check.end_to_end = false;   // another mesh of the same surface: measured, not judged
+    job.check.end_to_end = false;   // narrow formats lead to another mesh of the same surface
     job.check.allowed_flips = 100;  // narrow formats flip often; each flip is judged by its bound
     job.limits.cycles_without_progress = 200000;
 }

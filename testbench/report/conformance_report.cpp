@@ -88,11 +88,11 @@ std::string end_to_end_text(const EndToEndResult& result) {
 std::string setup_text(const SetupResult& result) {
     std::string text = fmt::format(
         "Set-up: {}. What the host set against what the golden model derives from the job by itself; each "
-        "value within\nthe bound of its format's rounding.\n\n  {:<22}{:>12}{:>10}{:>14}  {}\n",
-        verdict(result.passed()), "set by the host", "compared", "wrong", "worst [LSB]", "");
+        "value within\nthe bound of its format's rounding.\n\n  {:<22}{:>12}{:>10}{:>10}  {}\n",
+        verdict(result.passed()), "set by the host", "compared", "wrong", "of bound", "");
     for (const SetupResult::Part& part : result.parts)
-        text += fmt::format("  {:<22}{:>12}{:>10}{:>14.6f}  {}\n", part.name, part.compared, part.wrong,
-                            part.worst_error, part.description);
+        text += fmt::format("  {:<22}{:>12}{:>10}{:>9.0f}%  {}\n", part.name, part.compared, part.wrong,
+                            100 * part.worst_ratio, part.description);
     if (!result.passed())
         text += "\nFirst wrong:\n" + result.first_wrong + "\n";
     return text;
@@ -179,8 +179,8 @@ std::string conformance_text(const Checks& checks) {
     std::string text = fmt::format("Conformance report: {}\n\n", verdict(checks.passed()));
     if (checks.fault)
         text += fault_text(*checks.fault) + "\n";
-    text +=
-        checks.setup ? setup_text(*checks.setup) + "\n" : "Set-up: not checked (check.golden and check.end_to_end = false).\n\n";
+    text += checks.setup ? setup_text(*checks.setup) + "\n"
+                         : "Set-up: not checked (check.golden and check.end_to_end = false).\n\n";
     if (checks.conformance)
         text += decisions_text(*checks.conformance, checks.allowed_flips) + "\n" +
                 values_text(*checks.conformance) + "\n";
@@ -211,7 +211,7 @@ std::string conformance_json(const Checks& checks) {
         for (const SetupResult::Part& p : checks.setup->parts)
             part["parts"][p.name] = {{"compared", p.compared},
                                      {"wrong", p.wrong},
-                                     {"worst_error_lsb", p.worst_error},
+                                     {"worst_ratio", p.worst_ratio},
                                      {"description", p.description}};
         json["setup"] = std::move(part);
     }

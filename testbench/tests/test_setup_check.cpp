@@ -154,13 +154,16 @@ std::vector<Mistake> register_mistakes() {
         "displacement.bias", [](auto& r) -> auto& { return r.displacement.bias; });
 
     for (std::size_t k = 0; k < 4; ++k) {
-        const std::string index = "[" + std::to_string(k) + "]";
-        add(
-            "transform.row_x" + index, [k](auto& r) -> auto& { return r.transform.row_x[k]; });
-        add(
-            "transform.row_y" + index, [k](auto& r) -> auto& { return r.transform.row_y[k]; });
-        add(
-            "transform.row_w" + index, [k](auto& r) -> auto& { return r.transform.row_w[k]; });
+        // The fourth column is finer than a double here.
+        const std::int64_t step = k < 3 ? 1 : 4096;
+        const auto row = [&](const std::string& name, auto member) {
+            for (const std::int64_t error : {step, -step})
+                list.push_back({"transform." + name + "[" + std::to_string(k) + "]",
+                                [=](Setup& s) { (s.registers.transform.*member)[k] += error; }});
+        };
+        row("row_x", &datapath::TransformParameters::row_x);
+        row("row_y", &datapath::TransformParameters::row_y);
+        row("row_w", &datapath::TransformParameters::row_w);
     }
     add(
         "transform.", [](auto& r) -> auto& { return r.transform.exponent; });
