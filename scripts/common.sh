@@ -31,10 +31,16 @@ configure() {
     (cd "$root" && cmake --preset "$1" "${fresh[@]}" "${@:2}")
 }
 
-# build PRESET [TARGET...]: everything, or the targets. Ninja reconfigures by itself where a CMake file changed.
+# build PRESET [TARGET...]: everything, or the targets. Ninja reconfigures by itself where a CMake file changed. A build
+# folder that cannot be written is left alone if nothing is to be built.
 build() {
     local folder="$root/build/$1" targets=()
     (($# > 1)) && targets=(--target "${@:2}")
+    if [[ ! -w "$folder" ]]; then
+        cmake --build "$folder" "${targets[@]}" -- -n | grep -qx 'ninja: no work to do.' && return 0
+        echo "$folder is not up to date and cannot be written: make it writable, or build in another checkout" >&2
+        return 2
+    fi
     # Two builds in one folder at a time would overwrite each other's objects.
     (
         flock 9

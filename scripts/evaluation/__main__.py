@@ -68,6 +68,11 @@ def main():
         return 0
     names = [name for name in NAMES if not options.only or name in options.only]
     order = sorted(names, key=lambda name: LONGEST_FIRST.index(name) if name in LONGEST_FIRST else len(LONGEST_FIRST))
+    for taken in ("pictures", "tables"):
+        if (options.output / taken).exists() and not (options.output / "index.html").is_file():
+            print(f"scripts/figures: --output {options.output}: {options.output / taken} would be replaced, and no evaluation left "
+                  "it: there is no index.html beside it; choose another folder", file=sys.stderr)
+            return 2
     options.output.mkdir(parents=True, exist_ok=True)
     print(f"{len(names)} experiments, {options.jobs} at a time", file=sys.stderr)
     with ThreadPoolExecutor(options.jobs) as pool:

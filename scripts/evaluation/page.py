@@ -60,5 +60,6 @@ def write_page(folder, parts):
     text = environment.get_template("page.html").render(
         parts=parts, vocabulary=vocabulary, style=(HERE / "page.css").read_text(encoding="utf-8"))
     partial = folder / "index.html.part"
+    partial.unlink(missing_ok=True)  # a link is replaced, not followed
     partial.write_text(text, encoding="utf-8")
     partial.rename(folder / "index.html")

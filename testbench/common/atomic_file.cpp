@@ -6,7 +6,11 @@
 
 #include <atomic>
 #include <cerrno>
+#include <csignal>
+#include <regex>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include "testbench/common/atomic_set.h"
 #include "testbench/common/error.h"
@@ -33,22 +37,26 @@ bool is_shortage(int error) {
     }
 }
 
+/// The process that a name of an unfinished or put aside file holds: .tessera-<process>[-<number>].part, .fst.part or
+/// .old; 0 for any other name.
+pid_t process_of(const std::string& name) {
+    static const std::regex ours("\\.tessera-([0-9]{1,9})(-[0-9]+)?(\\.part|\\.fst\\.part|\\.old)");
+    std::smatch parts;
+    return std::regex_match(name, parts, ours) ? std::stoi(parts[1]) : 0;
+}
+
 }  // namespace
 
-AtomicFile::AtomicFile(const fs::path& path) : path_(path), target_(path) {
+AtomicFile::AtomicFile(const fs::path& path) : path_(path) {
     std::error_code problem;
-    const fs::file_status status = fs::status(path, problem);
-    if (fs::exists(status) && !fs::is_regular_file(status))
+    const fs::file_status status = fs::symlink_status(path, problem);
+    if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_symlink(status))
         throw InputError(fmt::format("{}: cannot write: it is a {}, not a file", path.string(),
                                      fs::is_directory(status) ? "folder" : "device"));
-    if (fs::exists(status) && fs::is_symlink(fs::symlink_status(path, problem))) {
-        target_ = fs::canonical(path, problem);
-        if (problem)
-            fail("cannot write", problem.value());
-    }
+    remove_left_overs(path.has_parent_path() ? path.parent_path() : fs::path("."));
     static std::atomic<unsigned> number{0};
     do {
-        unfinished_ = target_;
+        unfinished_ = path_;
         unfinished_.replace_filename(fmt::format(".tessera-{}-{}.part", ::getpid(), number++));
         looked_after_.emplace(unfinished_);
         file_ = ::open(unfinished_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -95,7 +103,7 @@ void AtomicFile::commit() {
         fail("writing failed", errno);
     AtomicSet* const set = AtomicSet::current();
     std::optional<AtomicSet> alone;
-    (set != nullptr ? *set : alone.emplace()).add(unfinished_, target_);
+    (set != nullptr ? *set : alone.emplace()).add(unfinished_, path_);
     unfinished_.clear();
     looked_after_.reset();
     if (alone)
@@ -119,6 +127,18 @@ void AtomicFile::discard() noexcept {
         ::unlink(unfinished_.c_str());
     unfinished_.clear();
     looked_after_.reset();
+}
+
+void remove_left_overs(const fs::path& folder) {
+    std::error_code failed;
+    std::vector<fs::path> left;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
+        const pid_t process = process_of(entry.path().filename().string());
+        if (process > 0 && ::kill(process, 0) != 0 && errno == ESRCH && entry.is_regular_file(failed))
+            left.push_back(entry.path());
+    }
+    for (const fs::path& file : left)
+        ::unlink(file.c_str());
 }
 
 void write_file(const fs::path& path, std::string_view content) {

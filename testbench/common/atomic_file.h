@@ -15,8 +15,9 @@ namespace tessera {
 ///
 /// Destroyed without commit(), after an error or an Interruption it leaves nothing. Only a process that is killed can
 /// leave the unfinished file: a program that wants to live with `ulimit -f` must ignore SIGXFSZ. While an AtomicSet
-/// lives, commit() hands the complete file to it instead of renaming it. A link to a file
-/// is followed; what is neither file nor absent (a folder, a device) is refused. Errors, with file and the
+/// lives, commit() hands the complete file to it instead of renaming it. A link is
+/// replaced, never followed; a folder or a device is refused. What earlier processes that were killed left unfinished in
+/// the folder is removed. Errors, with file and the
 /// system's reason: ResourceError if disk, quota, file size or memory ran out or the disk failed, else
 /// InputError (no such folder, not writable).
 class AtomicFile {
@@ -36,13 +37,15 @@ class AtomicFile {
     [[noreturn]] void fail(const char* what, int error);
     void discard() noexcept;
 
-    std::filesystem::path path_;    // as the user knows it, for messages
-    std::filesystem::path target_;  // where it leads
+    std::filesystem::path path_;
     std::filesystem::path unfinished_;
     std::optional<Unfinished> looked_after_;
     int file_ = -1;
     std::string buffer_;
 };
+
+/// Removes the unfinished files in a folder whose process no longer runs.
+void remove_left_overs(const std::filesystem::path& folder);
 
 /// A whole file at once.
 void write_file(const std::filesystem::path& path, std::string_view content);

@@ -100,6 +100,10 @@ class Steps {
     std::vector<fs::path> kept_;
 };
 
+bool is_job(const fs::path& file) {
+    return file.filename() == "job.toml";
+}
+
 fs::path folder_of(const fs::path& file) {
     return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
@@ -140,14 +144,14 @@ void AtomicSet::commit() {
     std::set<fs::path> folders;
     {
         Steps steps;
-        const fs::path last = files_.empty() ? fs::path() : files_.front().to;
-        for (const fs::path& file : taken_away_)
-            if (file != last)
-                steps.put_aside(file);
-        if (taken_away_.count(last) > 0)
-            steps.put_aside(last);
-        for (const File& file : files_)
-            steps.replace(file.from, file.to);
+        for (const bool job : {false, true})
+            for (const fs::path& file : taken_away_)
+                if (is_job(file) == job)
+                    steps.put_aside(file);
+        for (const bool job : {true, false})
+            for (const File& file : files_)
+                if (is_job(file.to) == job)
+                    steps.replace(file.from, file.to);
     }
     for (const File& file : files_)
         folders.insert(folder_of(file.to));

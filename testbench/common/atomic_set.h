@@ -13,7 +13,7 @@ namespace tessera {
 /// commit() none appears, and what stood under the names stays. One at a time.
 ///
 /// A process that is killed within commit() can leave a part: of the files taken away before any is new, then of the new
-/// ones. The first file added appears first, and the one of its name goes last.
+/// ones. In each folder job.toml appears first and goes last: a folder with any of a run's files has it.
 class AtomicSet {
   public:
     AtomicSet();

@@ -31,7 +31,7 @@ Job moved_to(const std::filesystem::path& folder, const Job& job) {
 }  // namespace
 
 std::string dump_job(const Job& job) {
-    std::string out = "# A tessera job: every key with its value.\n";
+    std::string out = fmt::format("{}\n", dumped_job_heading);
     for (const KeyTable& table : job_tables()) {
         if (!table.name.empty()) {
             out += fmt::format("\n# {}\n[{}]\n", table.description, table.name);

@@ -1,10 +1,14 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "testbench/job/job.h"
 
 namespace tessera {
+
+/// The first line of what dump_job() gives.
+inline constexpr std::string_view dumped_job_heading = "# A tessera job: every key with its value.";
 
 /// Every key of the job as TOML, with description, unit, range and default as comments. Reads back to the
 /// same settings, and dumping those gives the same bytes. Paths stay relative to Job::folder.

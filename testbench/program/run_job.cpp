@@ -310,6 +310,7 @@ ExitCode run_job(const Command& command) {
         throw InputError(
             fmt::format("{} chooses what to trace, and nothing is traced: add --vcd, --timeline or both",
                         command.trace_option));
+    require_run_folder(job, command.job_file);
     require_inputs_stay(job, command.data_folder);
     record_fingerprints(job, command.data_folder);
     if (job.frames.count > 1)

@@ -1,4 +1,5 @@
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -12,6 +13,7 @@
 #include <sstream>
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include <tiny_obj_loader.h>
 
@@ -344,12 +346,37 @@ TEST_CASE("an atomic file appears complete or not at all") {
         CHECK(read_all(path) == "new");
         CHECK(folder.entries() == 1);
     }
-    SECTION("follows a link") {
+    SECTION("replaces a link, and never what it leads to") {
         write_file(folder.path / "real", "old");
-        fs::create_symlink("real", path);
+        for (const char* const target : {"real", "nowhere", "."}) {
+            fs::remove(path);
+            fs::create_symlink(target, path);
+            write_file(path, "new");
+            CHECK(fs::is_regular_file(fs::symlink_status(path)));
+            CHECK(read_all(path) == "new");
+        }
+        CHECK(read_all(folder.path / "real") == "old");
+        CHECK(folder.entries() == 2);
+    }
+    SECTION("removes what processes that were killed left unfinished, and nothing else") {
+        const pid_t ended = ::fork();
+        if (ended == 0)
+            ::_exit(0);
+        REQUIRE(::waitpid(ended, nullptr, 0) == ended);
+        const std::string dead = std::to_string(ended), alive = std::to_string(::getppid());
+        for (const std::string& name : {".tessera-" + dead + "-0.part", ".tessera-" + dead + "-12.old",
+                                        ".tessera-" + dead + ".fst.part"})
+            std::ofstream(folder.path / name) << "unfinished";
+        const std::vector<std::string> others{
+            ".tessera-" + alive + "-0.part", ".tessera-" + dead + "-0.party", "x.tessera-" + dead + "-0.part",
+            ".tessera-" + dead + "-.part",   ".tessera-" + dead + "-0",       ".tessera--0.part"};
+        for (const std::string& name : others)
+            std::ofstream(folder.path / name) << "another's";
+        fs::create_directory(folder.path / (".tessera-" + dead + "-1.part"));
         write_file(path, "new");
-        CHECK(fs::is_symlink(path));
-        CHECK(read_all(folder.path / "real") == "new");
+        for (const std::string& name : others)
+            CHECK(fs::exists(folder.path / name));
+        CHECK(folder.entries() == others.size() + 2);  // the folder, and the new file
     }
     SECTION("two at once for one name do not meet") {
         AtomicFile one(path), two(path);

@@ -4,6 +4,7 @@
 #include <csignal>
 #include <map>
 
+#include "testbench/tests/checkout.h"
 #include "testbench/tests/program_runner.h"
 
 using namespace tessera;
@@ -149,7 +150,128 @@ TEST_CASE("a run that is killed leaves no half file, and no job beside another's
             all_new = all_new && new_run.count(name) > 0 && new_run.at(name) == content;
         }
         CHECK((all_old || all_new));
+        const ProgramEnd next = run_tessera(run_arguments("1"), here.path());
+        INFO(next.text());
+        CHECK(next.exit_code == 0);
+        CHECK(files_in(here.path() / "out") == new_run);
     }
+}
+
+TEST_CASE("a folder that is not for a run is refused") {
+    const TestFolder here;
+    for (const char* const folder : {"mine", "runs/frame_001"})
+        fs::create_directories(here.path() / "work/deep" / folder);
+    const auto refused = [&](const std::string& folder, const std::vector<std::string>& more = {}) {
+        std::vector<std::string> arguments{"run"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        arguments.insert(arguments.end(), {"--set", "output.folder=" + folder, "--set", "map.width=16"});
+        const ProgramEnd end = run_tessera(arguments, here.path() / "work/deep");
+        INFO(end.text());
+        CHECK(end.exit_code == 2);
+        CHECK(lines_of(end.err).size() == 1);
+        CHECK_THAT(end.err, Contains("output.folder = \"" + folder + "\""));
+        return end.err;
+    };
+    for (const std::string& folder :
+         {std::string("/"), std::string(".."), std::string("../.."), here.path().string()})
+        CHECK_THAT(refused(folder), Contains("holds the working folder"));
+
+    write_all(here.path() / "work/deep/runs/frame_001/mesh.ply", "mine");
+    CHECK_THAT(refused("runs", {"--set", "frames.count=2"}), Contains("runs/frame_001/mesh.ply"));
+
+    // The default job, every key with its value: what --dump-config gave is no run's.
+    const ProgramEnd dumped = run_tessera({"run", "--dump-config"}, here.path());
+    write_all(here.path() / "work/deep/mine/job.toml", dumped.out);
+    CHECK_THAT(refused("mine", {"mine/job.toml"}), Contains("its own job, mine/job.toml"));
+    CHECK(read_all(here.path() / "work/deep/mine/job.toml") == dumped.out);
+}
+
+TEST_CASE("an output that is a link is replaced, and what it leads to stays") {
+    const TestFolder here;
+    files_after(run_arguments("1"), here.path());
+    const fs::path run = here.path() / "out/run", input = here.path() / "input";
+    const auto link_all = [&](const std::vector<fs::path>& names) {
+        write_all(input, "mine");
+        for (const fs::path& name : names) {
+            fs::remove(name);
+            fs::create_symlink(input, name);
+        }
+    };
+    const auto check_replaced = [&](const std::vector<std::string>& arguments,
+                                    const std::vector<fs::path>& names) {
+        link_all(names);
+        const ProgramEnd end = run_tessera(arguments, here.path());
+        INFO(end.text());
+        CHECK(end.exit_code == 0);
+        CHECK(read_all(input) == "mine");
+        for (const fs::path& name : names) {
+            INFO(name);
+            CHECK(fs::is_regular_file(fs::symlink_status(name)));
+            CHECK(fs::file_size(name) > 4);
+        }
+    };
+    check_replaced(run_arguments("1"), {run / "mesh.ply", run / "statistics.json", run / "trace.vcd"});
+    check_replaced({"compare", "out/run"}, {run / "error.txt", run / "error.json"});
+    check_replaced({"render", "out/run", "--size", "64x64", "--view", "shaded"}, {run / "shaded.png"});
+    const fs::path out = here.path() / "out";
+    check_replaced({"bake", (source_folder() / "testbench/surfaces/examples/dome.toml").string(), "--size",
+                    "16x16", "--output", "out/baked.png"},
+                   {out / "baked.png"});
+    check_replaced({"tune", "--triangles", "60", "--set", "map.width=16", "--set", "map.height=16",
+                    "--output", "out/tuned.toml"},
+                   {out / "tuned.toml", out / "tuned.json"});
+    check_replaced({"widths", "--quantity", "normal", "--bits", "16..16", "--set", "map.width=16", "--set",
+                    "map.height=16", "--output", "out/widths.csv"},
+                   {out / "widths.csv", out / "widths.json"});
+}
+
+TEST_CASE("an input whose name lies in the output folder stays, wherever it leads") {
+    const TestFolder here;
+    files_after(run_arguments("1"), here.path());
+    write_all(here.path() / "map.pgm", "P2 2 2 9\n0 9 5 1\n");
+    fs::create_symlink(here.path() / "map.pgm", here.path() / "out/run/picture.png");
+    std::vector<std::string> arguments = run_arguments("1");
+    arguments.insert(arguments.end(), {"--set", "map.source=file", "--set", "map.file=out/run/picture.png"});
+    const ProgramEnd end = run_tessera(arguments, here.path());
+    INFO(end.text());
+    CHECK(end.exit_code == 2);
+    CHECK_THAT(end.err, Contains("would take away its own map"));
+    CHECK(fs::is_symlink(here.path() / "out/run/picture.png"));
+}
+
+TEST_CASE("a built checkout that cannot be written runs") {
+    const TestFolder here;
+    const Checkout checkout;
+    // What ninja says of a build folder in which nothing is to be done.
+    write_all(checkout.root() / "tools/cmake",
+              "#!/bin/sh\necho \"ninja: $(cat " + (here.path() / "state").string() + ")\"\n");
+    write_all(checkout.root() / "build/release/build.ninja", "");
+    write_all(checkout.root() / "build/release/CMakeCache.txt",
+              "CMAKE_HOME_DIRECTORY:INTERNAL=" + checkout.root().string() + "\n");
+    const auto run = [&](const std::string& state, const std::string& folder) {
+        write_all(here.path() / "state", state);
+        return checkout.run(
+            "unshare --mount --map-root-user sh -c '"
+            "mount --bind . . && mount -o remount,bind,ro . && cd \"$PWD\" && exec scripts/run"
+            " --set map.width=16 --set map.height=16" +
+            (folder.empty() ? "" : " --set output.folder=" + folder) + "'");
+    };
+    const fs::path elsewhere = here.path() / "run";
+    const ProgramEnd good = run("no work to do.", elsewhere.string());
+    if (good.err.find("unshare:") != std::string::npos || good.err.find("mount:") != std::string::npos) {
+        WARN("this test is skipped: no folder can be made read-only here");
+        return;
+    }
+    INFO(good.text());
+    CHECK(good.exit_code == 0);
+    CHECK(fs::exists(elsewhere / "mesh.ply"));
+    const ProgramEnd own = run("no work to do.", "");
+    CHECK(own.exit_code == 2);
+    CHECK_THAT(own.err, Contains("output.folder = \"runs/half_donut\": cannot write there") &&
+                            Contains("Read-only file system"));
+    const ProgramEnd old = run("Entering directory", elsewhere.string());
+    CHECK(old.exit_code == 2);
+    CHECK_THAT(old.err, Contains("build/release is not up to date and cannot be written"));
 }
 
 TEST_CASE("what cannot be taken away or replaced leaves the earlier run as it was") {
@@ -166,21 +288,26 @@ TEST_CASE("what cannot be taken away or replaced leaves the earlier run as it wa
 
     // A folder that never held a run keeps what it has.
     fs::remove_all(here.path() / "out");
-    fs::create_directories(run);
-    for (const char* const name : {"error.txt", "shaded.png", "frames.csv"})
+    for (const char* const name : {"error.txt", "shaded.png", "mesh.ply", "job.toml"}) {
+        fs::create_directories(run);
         write_all(run / name, "mine");
-    const ProgramEnd beside = run_tessera(run_arguments("1"), here.path());
-    INFO(beside.text());
-    CHECK(beside.exit_code == 0);
-    for (const char* const name : {"error.txt", "shaded.png", "frames.csv"})
-        CHECK(read_all(run / name) == "mine");
+        const Files mine = files_in(run);
+        const ProgramEnd refused = run_tessera(run_arguments("1"), here.path());
+        INFO(refused.text());
+        CHECK(refused.exit_code == 2);
+        CHECK_THAT(refused.err, Contains("output.folder = \"out/run\"") &&
+                                    Contains(std::string("out/run/") + name) &&
+                                    Contains("move the file away, or choose another"));
+        CHECK(files_in(run) == mine);
+        fs::remove_all(run);
+    }
 
     // A link that leads into a folder nobody may write to: the last file of all that cannot be replaced.
     if (::geteuid() == 0)
         return;  // whom permissions do not stop
     old_run = files_after(run_arguments("2"), here.path());
     fs::create_directories(run / "frame_000");
-    write_all(run / "frame_000/job.toml", "another run's");
+    fs::copy_file(run / "job.toml", run / "frame_000/job.toml");
     fs::permissions(run / "frame_000", fs::perms::owner_read | fs::perms::owner_exec);
     const ProgramEnd refused = run_tessera(run_arguments("1"), here.path());
     fs::permissions(run / "frame_000", fs::perms::owner_all);
