@@ -68,7 +68,7 @@ bool shared_data_is_there();
 
 /// Memory of a program under a sanitizer says nothing, and its time little.
 constexpr bool sanitized =
-#ifdef __SANITIZE_ADDRESS__
+#ifdef TESSERA_SANITIZE
     true;
 #else
     false;
