@@ -12,6 +12,7 @@ if(TESSERA_SANITIZE)
   set(sanitize -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   # The instrumentation hides from gcc's warnings what the code makes sure of: no errors here.
   target_compile_options(tessera_options INTERFACE ${sanitize} -Wno-error)
+  target_compile_definitions(tessera_options INTERFACE TESSERA_SANITIZE)
   target_link_options(tessera_options INTERFACE ${sanitize})
 endif()
 if(TESSERA_COVERAGE)

@@ -66,7 +66,7 @@ std::filesystem::path source_folder();
 
 /// Memory of a program under a sanitizer says nothing, and its time little.
 constexpr bool sanitized =
-#ifdef __SANITIZE_ADDRESS__
+#ifdef TESSERA_SANITIZE
     true;
 #else
     false;
