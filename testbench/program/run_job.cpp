@@ -39,17 +39,27 @@ namespace tessera {
 namespace {
 
 /// What was mended in the job's mesh and map on the way in joins the setup's own remarks.
-Setup load_setup(const Job& job, const std::filesystem::path& data_folder) {
-    const BaseMesh mesh = load_mesh(job, data_folder);
-    const HeightMap map = load_map(job, data_folder);
-    Setup setup = make_setup(job, mesh, map);
+Setup set_up(const Inputs& inputs) {
+    Setup setup = make_setup(inputs.resolved.job, inputs.mesh, inputs.map);
     std::vector<std::string> remarks;
-    for (const std::string& repair : mesh.repairs)
+    for (const std::string& repair : inputs.mesh.repairs)
         remarks.push_back("mesh: " + repair);
-    for (const std::string& repair : map.repairs)
+    for (const std::string& repair : inputs.map.repairs)
         remarks.push_back("map: " + repair);
     setup.remarks.insert(setup.remarks.begin(), remarks.begin(), remarks.end());
     return setup;
+}
+
+/// The setup, the job it is of, and which of the job's values were found, for the summary.
+struct Loaded {
+    Setup setup;
+    Job job;
+    std::string found;
+};
+
+Loaded load(const Job& asked, const std::filesystem::path& data_folder) {
+    const Inputs inputs = load_inputs(asked, data_folder);
+    return {set_up(inputs), inputs.resolved.job, found_text(inputs.resolved.found)};
 }
 
 class Stopwatch {
@@ -180,14 +190,16 @@ Ending run_faulty(const Job& job, const Setup& setup, Simulation& simulation, Ch
 
 /// `name` tells the run from others, on the line that shows its progress. What it leaves takes the place of an earlier
 /// run in `replaced`: job.output.folder, or one above it.
-Ending run_once(const Job& job, const Command& command, const std::string& name,
+Ending run_once(const Job& asked, const Command& command, const std::string& name,
                 const std::filesystem::path& replaced) {
-    const std::filesystem::path folder = job.output.folder;
+    const std::filesystem::path folder = asked.output.folder;
     check_output_folder(folder);
 
     Progress progress(name);
     progress.show("reading mesh and map", 0);
-    const Setup setup = load_setup(job, command.data_folder);
+    const Loaded loaded = load(asked, command.data_folder);
+    const Setup& setup = loaded.setup;
+    const Job& job = loaded.job;
 
     std::optional<CheckedWiring> wiring;
     if (CheckedWiring::wanted(job))
@@ -273,10 +285,10 @@ Ending run_once(const Job& job, const Command& command, const std::string& name,
     output->keep();
     progress.clear();
 
-    return {
-        checks.passed() ? ExitCode::fine : ExitCode::check_failed,
-        fmt::format("{}{}  {}\n  results in {}\n", summary(setup, simulation, checks, seconds), traces_text,
-                    verdict(checks), std::filesystem::absolute(folder).lexically_normal().string())};
+    return {checks.passed() ? ExitCode::fine : ExitCode::check_failed,
+            fmt::format("{}{}{}  {}\n  results in {}\n", loaded.found,
+                        summary(setup, simulation, checks, seconds), traces_text, verdict(checks),
+                        std::filesystem::absolute(folder).lexically_normal().string())};
 }
 
 }  // namespace
