@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "testbench/host/resolve_job.h"
+
 namespace tessera {
 
 namespace {
@@ -13,8 +15,10 @@ glm::dvec3 vector(const std::array<double, 3>& a) {
 }
 
 /// The displacement in model units that a map value means.
-double displacement_of(double value, const Job& job) {
-    return job.displacement.bias + job.displacement.scale * value;
+double displacement_of(double value, const Job& job, const HeightMap& map) {
+    const double span = map.span_high - map.span_low;
+    const double part = span > 0 ? (value - map.span_low) / span : 0;
+    return job.displacement.bias + job.displacement.scale * part;
 }
 
 golden::Scene make_scene(const Job& job, const HeightMap& map, const ModelScale& model_scale) {
@@ -24,8 +28,8 @@ golden::Scene make_scene(const Job& job, const HeightMap& map, const ModelScale&
                     vector(camera.up),  camera.field_of_view,
                     camera.near_plane,  {camera.viewport_width, camera.viewport_height}};
     scene.placement = {model_scale.centre, model_scale.scale};
-    scene.lowest = displacement_of(map.range_low, job);
-    scene.highest = displacement_of(map.range_high, job);
+    scene.lowest = displacement_of(map.range_low, job, map);
+    scene.highest = displacement_of(map.range_high, job, map);
     scene.highest_code = std::ldexp(1.0, static_cast<int>(job.formats.displacement_bits)) - 1;
 
     const Job::Tests& tests = job.tests;
@@ -71,12 +75,12 @@ golden::Map make_map(const Job& job, const HeightMap& height_map, const BaseMesh
 
 GoldenJob::GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& height_map,
                      const ModelScale& model_scale)
-    : job_(job),
+    : job_(resolve_job(job, mesh, height_map).job),
       mesh_(mesh),
       height_map_(height_map),
-      scene_(make_scene(job, height_map, model_scale)),
+      scene_(make_scene(job_, height_map, model_scale)),
       parameters_(golden::make_parameters(scene_)),
-      map_(make_map(job, height_map, mesh, scene_, parameters_.scale)) {}
+      map_(make_map(job_, height_map, mesh, scene_, parameters_.scale)) {}
 
 golden::Vertex GoldenJob::vertex(std::uint32_t index) const {
     const BaseVertex& given = mesh_.vertices[index];

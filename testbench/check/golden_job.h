@@ -11,7 +11,8 @@
 namespace tessera {
 
 /// A job, its mesh and its map as the golden model is told of them: field by field, nothing of the host's but where it
-/// puts the model in the world (ModelScale), which is its own to choose. What the host made of the same job is judged
+/// puts the model in the world (ModelScale), which is its own to choose, and the camera and scale that a job leaves to the
+/// program (resolve_job.h). What the host made of the same job is judged
 /// against this (setup_check.h), and golden's own run starts here (end_to_end.h).
 ///
 /// The map's codes are golden's own, of the width that the job asks for: what that width costs is for `tessera widths` to

@@ -4,6 +4,7 @@
 #include "testbench/host/fingerprint.h"
 #include "testbench/job/job_paths.h"
 #include "testbench/maps/built_in_maps.h"
+#include "testbench/maps/map_displacement.h"
 #include "testbench/maps/read_height_map.h"
 #include "testbench/meshes/make_base_mesh.h"
 
@@ -17,8 +18,9 @@ BaseMesh load_mesh(const Job& job, const std::filesystem::path& data_folder) {
     return make_base_mesh(job.mesh, file);
 }
 
-HeightMap load_map(const Job& job, const std::filesystem::path& data_folder) {
-    check_map_fingerprint(job, data_folder);
+namespace {
+
+HeightMap make_map(const Job& job, const std::filesystem::path& data_folder) {
     const Job::Map& map = job.map;
     switch (map.source) {
         case MapSource::half_donut:
@@ -35,6 +37,21 @@ HeightMap load_map(const Job& job, const std::filesystem::path& data_folder) {
             break;
     }
     return read_height_map(resolve_path(map.file, job.folder, data_folder), map.channel);
+}
+
+}  // namespace
+
+HeightMap load_map(const Job& job, const std::filesystem::path& data_folder) {
+    check_map_fingerprint(job, data_folder);
+    HeightMap map = make_map(job, data_folder);
+    span_values(map, job.map.range);
+    return map;
+}
+
+Inputs load_inputs(const Job& job, const std::filesystem::path& data_folder) {
+    Inputs inputs{load_mesh(job, data_folder), load_map(job, data_folder), {}};
+    inputs.resolved = resolve_job(job, inputs.mesh, inputs.map);
+    return inputs;
 }
 
 }  // namespace tessera

@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 
+#include "testbench/host/resolve_job.h"
 #include "testbench/job/job.h"
 #include "testbench/maps/height_map.h"
 #include "testbench/meshes/base_mesh.h"
@@ -11,5 +12,13 @@ namespace tessera {
 /// Throws InputError, ResourceError as the readers do, and InputError on a file of another fingerprint than the job's.
 BaseMesh load_mesh(const Job& job, const std::filesystem::path& data_folder);
 HeightMap load_map(const Job& job, const std::filesystem::path& data_folder);
+
+/// Both, and the job with what it leaves to the program found from them.
+struct Inputs {
+    BaseMesh mesh;
+    HeightMap map;
+    ResolvedJob resolved;
+};
+Inputs load_inputs(const Job& job, const std::filesystem::path& data_folder);
 
 }  // namespace tessera

@@ -9,7 +9,10 @@
 #include "modules/datapath/map_entry.h"
 #include "modules/datapath/rectangle.h"
 #include "testbench/common/error.h"
+#include "testbench/host/resolve_job.h"
 #include "testbench/host/unit_vector.h"
+#include "testbench/maps/map_displacement.h"
+#include "testbench/meshes/whole_periods.h"
 
 namespace tessera {
 
@@ -63,8 +66,24 @@ struct Heights {
 };
 
 Heights model_heights(const Job& job, const HeightMap& map) {
-    return {job.displacement.bias + job.displacement.scale * map.range_low,
-            job.displacement.scale * (map.range_high - map.range_low)};
+    const MapDisplacement displacement = MapDisplacement::from(job.displacement, map);
+    return {displacement.of(map.range_low), displacement.scale * (map.range_high - map.range_low)};
+}
+
+/// A map whose values are few of those that the scale spans makes a nearly flat surface: metres in 16 bits.
+void note_unused_range(const MapRange& range, const HeightMap& map, Setup& setup) {
+    constexpr double least_part = 1.0 / 8;
+    const auto [lowest, highest] = std::minmax_element(map.values.begin(), map.values.end());
+    const double low = static_cast<double>(*lowest), high = static_cast<double>(*highest);
+    const double part = (high - low) / (map.span_high - map.span_low);
+    if (range.kind == MapRange::Kind::data || high == low || part >= least_part)
+        return;
+    setup.remarks.push_back(
+        fmt::format("the map's values, {:.6g} to {:.6g}, are {:.2g} % of the {:.6g} to {:.6g} that "
+                    "displacement.scale spans: "
+                    "map.range = \"data\" lets it span what occurs",
+                    low * map.source_units, high * map.source_units, 100 * part,
+                    map.span_low * map.source_units, map.span_high * map.source_units));
 }
 
 /// Centre and scale that put the displaced model into half of the position's range: nothing saturates, and the eye
@@ -119,26 +138,24 @@ std::uint32_t to_texture(double coordinate, std::uint32_t size, datapath::Addres
     return static_cast<std::uint32_t>(fixed);
 }
 
-/// Whole periods to add so that no coordinate of a repeated axis is negative.
-double whole_periods(const BaseMesh& mesh, int axis, datapath::AddressMode mode) {
-    if (mode != datapath::AddressMode::repeat)
-        return 0;
-    double low = 0;
-    for (const BaseVertex& vertex : mesh.vertices)
-        low = std::min(low, vertex.texture[axis]);
-    return std::ceil(-low);
+/// Texture coordinates as near to 0 as whole periods bring them, so that they fit their format.
+BaseMesh with_low_texture(const BaseMesh& mesh, const datapath::MapGeometry& map, const Format& format) {
+    const double texels = std::ldexp(1.0, format.bits - 1 - format.fraction);
+    return bring_down_texture(
+        mesh,
+        {map.address_u == datapath::AddressMode::repeat, map.address_v == datapath::AddressMode::repeat},
+        {texels / map.width, texels / map.height});
 }
 
-void make_base_triangles(const BaseMesh& mesh, Setup& setup) {
+void make_base_triangles(const BaseMesh& original, Setup& setup) {
     const datapath::Formats& formats = setup.registers.formats;
     const datapath::MapGeometry& map = setup.registers.map;
-    const double shift_u = whole_periods(mesh, 0, map.address_u);
-    const double shift_v = whole_periods(mesh, 1, map.address_v);
+    const BaseMesh mesh = with_low_texture(original, map, formats.texture);
+    bool clamped_u = false, clamped_v = false;
     std::vector<datapath::Vertex> vertices;
     vertices.reserve(mesh.vertices.size());
     for (const BaseVertex& base : mesh.vertices) {
         const glm::dvec3 world = setup.model_scale.to_world(base.position);
-        bool clamped = false;
         datapath::Vertex vertex;
         InputSaturations& saturated = setup.input_saturations;
         vertex.position = {to_format(world.x, formats.position, saturated.position),
@@ -147,10 +164,12 @@ void make_base_triangles(const BaseMesh& mesh, Setup& setup) {
         vertex.normal = to_direction(base.normal, formats.normal, saturated.normal);
         vertex.tangent = to_direction(base.tangent, formats.normal, saturated.normal);
         vertex.handedness = base.handedness < 0 ? std::int8_t{-1} : std::int8_t{1};
-        vertex.texture = {
-            to_texture(base.texture.x + shift_u, map.width, map.address_u, formats.texture, clamped),
-            to_texture(base.texture.y + shift_v, map.height, map.address_v, formats.texture, clamped)};
-        setup.texture_clamped += clamped ? 1 : 0;
+        bool beyond_u = false, beyond_v = false;
+        vertex.texture = {to_texture(base.texture.x, map.width, map.address_u, formats.texture, beyond_u),
+                          to_texture(base.texture.y, map.height, map.address_v, formats.texture, beyond_v)};
+        setup.texture_clamped += beyond_u || beyond_v ? 1 : 0;
+        clamped_u = clamped_u || beyond_u;
+        clamped_v = clamped_v || beyond_v;
         vertices.push_back(vertex);
     }
     const auto same = [](const datapath::Vertex& a, const datapath::Vertex& b) {
@@ -177,10 +196,13 @@ void make_base_triangles(const BaseMesh& mesh, Setup& setup) {
             fmt::format("{} base triangles collapsed when rounded to the hardware's formats and were dropped",
                         setup.base_dropped));
     if (setup.texture_clamped > 0)
-        setup.remarks.push_back(
-            fmt::format("{} base vertices have texture coordinates outside 0..1 on an axis that clamps; they "
-                        "were set to the border (map.address_u and map.address_v = \"repeat\" have none)",
-                        setup.texture_clamped));
+        setup.remarks.push_back(fmt::format(
+            "{} base vertices have texture coordinates outside 0..1, and were set to the map's border; if "
+            "they tile, {}",
+            setup.texture_clamped,
+            !clamped_v   ? "set map.address_u = \"repeat\""
+            : !clamped_u ? "set map.address_v = \"repeat\""
+                         : "set map.address_u = \"repeat\" and map.address_v = \"repeat\""));
 }
 
 /// The largest sum any edge's rectangle can have. An inserted vertex's texture coordinate lies between those of its
@@ -446,7 +468,8 @@ datapath::TestParameters make_tests(const Job& job, const datapath::Formats& for
     return result;
 }
 
-Setup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& map) {
+Setup make_setup(const Job& asked, const BaseMesh& mesh, const HeightMap& map) {
+    const Job job = resolve_job(asked, mesh, map).job;
     Setup setup;
     datapath::Registers& registers = setup.registers;
     registers.formats = make_formats(job.formats);
@@ -455,6 +478,7 @@ Setup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& map) {
     registers.map = setup.map.geometry;
 
     const Heights heights = model_heights(job, map);
+    note_unused_range(job.map.range, map, setup);
     setup.model_scale = fit(job, mesh, heights, registers.formats.position);
     registers.displacement = make_displacement(heights, setup);
     setup.height_per_code = std::ldexp(static_cast<double>(registers.displacement.scale),

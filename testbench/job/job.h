@@ -1,6 +1,8 @@
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include "modules/timing.h"
@@ -39,6 +41,24 @@ constexpr bool reads_file(MeshSource source) {
     return source == MeshSource::file || source == MeshSource::patches || source == MeshSource::run;
 }
 
+/// A number, or vector, that the job leaves to the program ("auto"): host/resolve_job.h finds it from mesh and map.
+inline constexpr double automatic = std::numeric_limits<double>::quiet_NaN();
+inline constexpr std::array<double, 3> automatic_vector{automatic, automatic, automatic};
+
+inline bool is_automatic(double value) {
+    return std::isnan(value);
+}
+inline bool is_automatic(const std::array<double, 3>& value) {
+    return std::isnan(value[0]) && std::isnan(value[1]) && std::isnan(value[2]);
+}
+
+/// Which map values displacement.scale spans.
+struct MapRange {
+    enum class Kind { full, data, given };
+    Kind kind = Kind::full;
+    double low = 0, high = 1;  // given: in the map's own units (HeightMap::source_units)
+};
+
 /// One run of tessera: what a job file says. Every key's unit, default, range and description are declared
 /// once, in job_keys.cpp; the defaults are the initialisers below and make the default job (the half donut on
 /// the plane of 18 triangles).
@@ -65,13 +85,14 @@ struct Job {
         double value = 0.5;            // constant map, 0..1
         std::int64_t seed = 1;         // noise map
         std::string text = "tessera";  // text map
+        MapRange range;
         Addressing address_u = Addressing::clamp;
         Addressing address_v = Addressing::clamp;
     } map;
 
     struct Displacement {
-        double scale = 0.25;  // model units for one unit of map value
-        double bias = 0;      // model units
+        double scale = automatic;  // model units from the low to the high end of map.range
+        double bias = 0;           // model units, at the low end
     } displacement;
 
     struct Frames {
@@ -80,12 +101,11 @@ struct Job {
     } frames;
 
     struct Camera {
-        // 20 degrees right of the front, 38 up, as far away as puts the displaced plane into 90 % of the viewport.
-        std::array<double, 3> eye{1.0695277931745295, -2.9385034612261536, 2.568150522748748};
-        std::array<double, 3> target{0, 0, 0.125};  // centre of the displaced plane
-        std::array<double, 3> up{0, 0, 1};
-        double field_of_view = 36;                // vertical, degrees
-        double near_plane = 0.00396833425618588;  // model units; a thousandth of the eye's distance
+        std::array<double, 3> eye = automatic_vector;
+        std::array<double, 3> target = automatic_vector;
+        std::array<double, 3> up = automatic_vector;
+        double field_of_view = 36;      // vertical, degrees
+        double near_plane = automatic;  // model units
         std::int64_t viewport_width = 1024;
         std::int64_t viewport_height = 768;
     } camera;

@@ -17,21 +17,51 @@ namespace tessera {
 
 namespace {
 
-constexpr double any_length = 1e6;     // model units; keeps products of lengths far from overflow
-constexpr double least_length = 1e-6;  // and quotients far from infinity
+constexpr double any_length = 1e6;       // model units; keeps products of lengths far from overflow
+constexpr double least_length = 1e-6;    // and quotients far from infinity
+constexpr double any_coordinate = 1e12;  // of a camera: what maps of a country or of a cell may have
 constexpr double any_count = 2147483647;
 constexpr double most_trace = 9e15;         // cycles; whole numbers a double holds
 constexpr std::size_t longest_text = 4096;  // bytes; what paths may have on Linux
 
 constexpr KeyRange length_range{least_length, any_length};
-constexpr KeyRange coordinate_range{-any_length, any_length};
+constexpr KeyRange coordinate_range{-any_coordinate, any_coordinate};
+constexpr KeyRange distance_range{1 / any_coordinate, any_coordinate};
 
 KeyRange between(double low, double high) {
-    return {low, high, false};
+    return {low, high};
 }
 KeyRange zero_or_between(double low, double high) {
     return {low, high, true};
 }
+KeyRange auto_or(KeyRange range) {
+    range.or_auto = true;
+    return range;
+}
+
+template <typename T>
+JobValue value_or_auto(const T& value, const KeyRange& range) {
+    if constexpr (std::is_floating_point_v<T> || std::is_same_v<T, std::array<double, 3>>) {
+        if (range.or_auto && is_automatic(value)) {
+            return std::string(auto_word);
+        }
+    }
+    return value;
+}
+
+template <typename T>
+T from_value(const JobValue& value) {
+    if constexpr (std::is_same_v<T, double>) {
+        return std::holds_alternative<double>(value) ? std::get<double>(value) : automatic;
+    } else if constexpr (std::is_same_v<T, std::array<double, 3>>) {
+        return std::holds_alternative<T>(value) ? std::get<T>(value) : automatic_vector;
+    } else {
+        return std::get<T>(value);
+    }
+}
+
+/// In the order of MapRange::Kind.
+constexpr std::array<std::string_view, 2> range_names{"full", "data"};
 
 /// Fills one table; `Group` is the struct of Job whose members the keys set.
 template <typename Group, typename Select>
@@ -56,6 +86,28 @@ class TableWriter {
     }
     void add(const char* leaf, std::string Group::*member, KeyKind kind, const char* description) const {
         add_plain(leaf, member, kind, "-", {}, description);
+    }
+    void add(const char* leaf, MapRange Group::*member, const char* unit, KeyRange range,
+             const char* description) const {
+        Key& key = push(leaf, KeyKind::span, unit, description);
+        key.range = range;
+        key.choices = {range_names.begin(), range_names.end()};
+        key.get = [select = select_, member](const Job& job) -> JobValue {
+            const MapRange& it = select(job).*member;
+            if (it.kind == MapRange::Kind::given) {
+                return std::array<double, 2>{it.low, it.high};
+            }
+            return std::string(range_names.at(static_cast<std::size_t>(it.kind)));
+        };
+        key.set = [select = select_, member](Job& job, const JobValue& value) {
+            MapRange& it = select(job).*member;
+            it = {};
+            if (const auto* const ends = std::get_if<std::array<double, 2>>(&value)) {
+                it = {MapRange::Kind::given, (*ends)[0], (*ends)[1]};
+            } else if (std::get<std::string>(value) == range_names.back()) {
+                it.kind = MapRange::Kind::data;
+            }
+        };
     }
     template <typename Enum, typename = std::enable_if_t<std::is_enum_v<Enum>>>
     void add(const char* leaf, Enum Group::*member, const char* description) const {
@@ -92,9 +144,11 @@ class TableWriter {
                    const char* description) const {
         Key& key = push(leaf, kind, unit, description);
         key.range = range;
-        key.get = [select = select_, member](const Job& job) { return select(job).*member; };
+        key.get = [select = select_, member, range](const Job& job) {
+            return value_or_auto(select(job).*member, range);
+        };
         key.set = [select = select_, member](Job& job, const JobValue& value) {
-            select(job).*member = std::get<T>(value);
+            select(job).*member = from_value<T>(value);
         };
     }
 
@@ -260,7 +314,7 @@ std::vector<KeyTable> declare_keys() {
     });
     list.table("mesh", &Job::mesh, "The base mesh.", [](const auto& key) {
         using Mesh = Job::Mesh;
-        key.add("source", &Mesh::source, "Built-in shape, file for the mesh in mesh.file, patches for the Bezier patches in it, or run for the mesh that an earlier run left");
+        key.add("source", &Mesh::source, "Built-in shape, file for the mesh in mesh.file (what it is if mesh.file alone is given), patches for the Bezier patches in it, or run for the mesh that an earlier run left");
         key.add("file", &Mesh::file, KeyKind::file, "OBJ file, with mesh.source = \"file\"; with \"patches\" one of bicubic Bezier patches as Newell's teapot has it; with \"run\" the folder of an earlier run");
         key.add("fingerprint", &Mesh::fingerprint, KeyKind::text, "64-bit FNV-1a hash of the file (of a run's mesh.ply), 16 hexadecimal digits; another file is refused. A run writes it into its job.toml; empty: any file");
         key.add("columns", &Mesh::columns, "quads", between(0, 2048), "Quads along u; 0: 3 for the plane, 4 for each patch, 30 for cylinder and sphere, which need 3 or more");
@@ -272,7 +326,7 @@ std::vector<KeyTable> declare_keys() {
     });
     list.table("map", &Job::map, "The displacement map.", [](const auto& key) {
         using Map = Job::Map;
-        key.add("source", &Map::source, "Built-in map, or file for the image in map.file");
+        key.add("source", &Map::source, "Built-in map, or file for the image in map.file (what it is if map.file alone is given)");
         key.add("file", &Map::file, KeyKind::file, "EXR, PNG or PGM file, with map.source = \"file\"");
         key.add("fingerprint", &Map::fingerprint, KeyKind::text, "64-bit FNV-1a hash of the file, 16 hexadecimal digits; another file is refused. A run writes it into its job.toml; empty: any file");
         key.add("channel", &Map::channel, KeyKind::text, "Channel of an EXR file; empty: Y, else R, else the only one");
@@ -281,13 +335,14 @@ std::vector<KeyTable> declare_keys() {
         key.add("value", &Map::value, "full scale", between(0, 1), "Value of the constant map");
         key.add("seed", &Map::seed, "-", between(0, 4294967295.0), "Seed of the noise map");
         key.add("text", &Map::text, KeyKind::text, "What the text map says");
+        key.add("range", &Map::range, "the map's own units", coordinate_range, "Which map values displacement.scale spans: full, what the source can hold (0 to the maximum value of a PGM, to 255 or 65535 of a PNG; 0 to 1 of an EXR and of built-in maps); data, the lowest to the highest that occurs; or [low, high]. Values beyond it go on in proportion");
         key.add("address_u", &Map::address_u, "Beyond the map's left and right border; repeat closes a cylinder's seam");
         key.add("address_v", &Map::address_v, "Beyond the map's lower and upper border");
     });
-    list.table("displacement", &Job::displacement, "From map value d to height: scale * d + bias along the normal.", [](const auto& key) {
+    list.table("displacement", &Job::displacement, "From map value to height along the normal: bias + scale * (value - low) / (high - low), with low and high of map.range.", [](const auto& key) {
         using Displacement = Job::Displacement;
-        key.add("scale", &Displacement::scale, "model units", coordinate_range, "Height of a full-scale map value");
-        key.add("bias", &Displacement::bias, "model units", coordinate_range, "Height of a map value of 0");
+        key.add("scale", &Displacement::scale, "model units", auto_or(coordinate_range), "Height from the low to the high end of map.range; auto: an eighth of the base mesh's largest extent if it is flat (its smallest extent under a tenth of the next), else a twentieth; less where values go beyond map.range, so that they reach no higher");
+        key.add("bias", &Displacement::bias, "model units", coordinate_range, "Height at the low end of map.range");
     });
     list.table("frames", &Job::frames, "Several frames that differ in the displacement's scale, each a run folder of its own: frame_000, ... in output.folder.", [](const auto& key) {
         using Frames = Job::Frames;
@@ -296,11 +351,11 @@ std::vector<KeyTable> declare_keys() {
     });
     list.table("camera", &Job::camera, "The view, on which the View Test depends.", [](const auto& key) {
         using Camera = Job::Camera;
-        key.add("eye", &Camera::eye, "model units", coordinate_range, "Where the camera stands");
-        key.add("target", &Camera::target, "model units", coordinate_range, "What it looks at");
-        key.add("up", &Camera::up, "-", coordinate_range, "Direction that is up in the picture, of any length");
+        key.add("eye", &Camera::eye, "model units", auto_or(coordinate_range), "Where the camera stands; auto: 20 degrees to the right of the front and 38 degrees above it, as near as the displaced model's bounding box fits into 90 % of the picture's width and height. Front is -y, or z where up is y");
+        key.add("target", &Camera::target, "model units", auto_or(coordinate_range), "What it looks at; auto: the centre of the displaced model's bounding box");
+        key.add("up", &Camera::up, "-", auto_or(coordinate_range), "Direction that is up in the picture, of any length; auto: z, but y for an OBJ file that is not flat, and for one that is flat the axis it is flat in, on the side of its normals");
         key.add("field_of_view", &Camera::field_of_view, "degrees", between(0.1, 179), "Vertical opening angle");
-        key.add("near_plane", &Camera::near_plane, "model units", length_range, "Distance of the near plane; vertices on or behind it have no screen position");
+        key.add("near_plane", &Camera::near_plane, "model units", auto_or(distance_range), "Distance of the near plane; vertices on or behind it have no screen position; auto: a thousandth of the distance from eye to target");
         key.add("viewport_width", &Camera::viewport_width, "pixels", between(1, 16384), "Width of the picture");
         key.add("viewport_height", &Camera::viewport_height, "pixels", between(1, 16384), "Height of the picture");
     });
@@ -393,6 +448,10 @@ std::string range_numbers(const Key& key) {
     return key.range.or_zero ? "0 or " + range : range;
 }
 
+std::string auto_text(const Key& key) {
+    return key.range.or_auto ? "auto or " : "";
+}
+
 std::string joined(const std::vector<std::string_view>& names) {
     return fmt::format("{}", fmt::join(names, ", "));
 }
@@ -422,7 +481,7 @@ struct Fault {
     }
 
     std::string text(const std::string& value) const {
-        if (key.kind == KeyKind::choice) {
+        if (key.kind == KeyKind::choice || key.kind == KeyKind::span) {
             return choice(value);
         }
         if (value.size() > longest_text) {
@@ -443,6 +502,7 @@ struct Fault {
         }
         const std::string near = nearest_name(value, {key.choices.begin(), key.choices.end()});
         return "is not a choice; the choices are " + joined(key.choices) +
+               (key.kind == KeyKind::span ? ", or two numbers [low, high]" : "") +
                (near.empty() ? "" : "; did you mean \"" + near + "\"?");
     }
 
@@ -452,6 +512,17 @@ struct Fault {
     }
     std::string operator()(double value) const {
         return key.kind == KeyKind::number ? number(value) : wrong_kind();
+    }
+    std::string operator()(const std::array<double, 2>& value) const {
+        if (key.kind != KeyKind::span) {
+            return wrong_kind();
+        }
+        for (const double end : value) {
+            if (std::string fault = number(end); !fault.empty()) {
+                return fault;
+            }
+        }
+        return value[0] < value[1] ? "" : "has its low end not below its high end";
     }
     std::string operator()(const std::array<double, 3>& value) const {
         if (key.kind != KeyKind::vector) {
@@ -465,8 +536,12 @@ struct Fault {
         return "";
     }
     std::string operator()(const std::string& value) const {
-        const bool textual = key.kind == KeyKind::choice || key.kind == KeyKind::text ||
-                             key.kind == KeyKind::file || key.kind == KeyKind::folder;
+        const bool textual = key.kind == KeyKind::choice || key.kind == KeyKind::span ||
+                             key.kind == KeyKind::text || key.kind == KeyKind::file ||
+                             key.kind == KeyKind::folder;
+        if (key.range.or_auto && value == auto_word) {
+            return "";
+        }
         return textual ? text(value) : wrong_kind();
     }
 
@@ -515,9 +590,11 @@ std::string range_text(const Key& key) {
             return "true, false";
         case KeyKind::integer:
         case KeyKind::number:
-            return range_numbers(key);
+            return auto_text(key) + range_numbers(key);
         case KeyKind::vector:
-            return "[x, y, z], each " + range_numbers(key);
+            return auto_text(key) + "[x, y, z], each " + range_numbers(key);
+        case KeyKind::span:
+            return joined(key.choices) + " or [low, high], each " + range_numbers(key);
         case KeyKind::choice:
             return joined(key.choices);
         case KeyKind::text:
@@ -537,9 +614,13 @@ std::string wanted_text(const Key& key) {
         case KeyKind::integer:
             return "an integer, " + WithUnit{key}(range_numbers(key));
         case KeyKind::number:
-            return "a number, " + WithUnit{key}(range_numbers(key));
+            return auto_text(key) + "a number, " + WithUnit{key}(range_numbers(key));
         case KeyKind::vector:
-            return "three numbers, " + WithUnit{key}(range_text(key));
+            return auto_text(key) + "three numbers, " +
+                   WithUnit{key}("[x, y, z], each " + range_numbers(key));
+        case KeyKind::span:
+            return "one of " + joined(key.choices) + ", or two numbers, " +
+                   WithUnit{key}("[low, high], each " + range_numbers(key));
         case KeyKind::choice:
             return "one of " + joined(key.choices);
         case KeyKind::text:
@@ -560,6 +641,17 @@ void set_value(Job& job, const Key& key, const JobValue& value) {
         throw InputError(fault);
     }
     key.set(job, value);
+}
+
+std::string automatic_key(const Job& job) {
+    for (const KeyTable& table : job_tables()) {
+        for (const Key& key : table.keys) {
+            if (key.range.or_auto && key.get(job) == JobValue(std::string(auto_word))) {
+                return key.name;
+            }
+        }
+    }
+    return {};
 }
 
 bool same_settings(const Job& a, const Job& b) {

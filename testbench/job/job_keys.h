@@ -12,25 +12,31 @@
 
 namespace tessera {
 
+/// How a job file writes `automatic`, in quotes.
+inline constexpr std::string_view auto_word = "auto";
+
 /// A key's value as a job file writes it; a choice is its name.
-using JobValue = std::variant<bool, std::int64_t, double, std::array<double, 3>, std::string>;
+using JobValue =
+    std::variant<bool, std::int64_t, double, std::array<double, 2>, std::array<double, 3>, std::string>;
 
 enum class KeyKind {
     flag,
     integer,
     number,
     vector,  ///< three numbers
+    span,    ///< a choice, or two numbers, the first lower
     choice,
     text,
     file,    ///< a path read by the rules of job_paths.h
     folder,  ///< a path relative to the current directory
 };
 
-/// What a number, or each component of a vector, may be: low .. high, both included.
+/// What a number, or each component of a vector or span, may be: low .. high, both included.
 struct KeyRange {
     double low = -std::numeric_limits<double>::infinity();
     double high = std::numeric_limits<double>::infinity();
     bool or_zero = false;  ///< 0 is allowed besides
+    bool or_auto = false;  ///< "auto" is allowed instead: the member is `automatic`
 };
 
 struct Key {
@@ -73,6 +79,9 @@ std::string complaint(const Key& key, const JobValue& value);
 
 /// Throws InputError with the complaint.
 void set_value(Job& job, const Key& key, const JobValue& value);
+
+/// The first key that is "auto"; empty: none is.
+std::string automatic_key(const Job& job);
 
 /// Equal in every key; doubles bit for bit.
 bool same_settings(const Job& a, const Job& b);

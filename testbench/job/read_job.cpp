@@ -69,9 +69,10 @@ std::string suggestion(std::string_view unknown_name) {
                : fmt::format("; did you mean `{}`?", near);
 }
 
-std::optional<std::array<double, 3>> to_vector(const toml::node& node) {
+template <std::size_t Size>
+std::optional<std::array<double, Size>> to_numbers(const toml::node& node) {
     const toml::array* array = node.as_array();
-    std::array<double, 3> vector{};
+    std::array<double, Size> vector{};
     if (array == nullptr || array->size() != vector.size()) {
         return {};
     }
@@ -91,8 +92,12 @@ std::optional<JobValue> optional_value(const std::optional<T>& value) {
 }
 
 /// Nothing if the node's type does not fit the key's kind.
-std::optional<JobValue> to_value(const toml::node& node, KeyKind kind) {
-    switch (kind) {
+std::optional<JobValue> to_value(const toml::node& node, const Key& key) {
+    const std::optional<std::string> word = node.value_exact<std::string>();
+    if (word && (key.kind == KeyKind::span || (key.range.or_auto && *word == auto_word))) {
+        return *word;
+    }
+    switch (key.kind) {
         case KeyKind::flag:
             return optional_value(node.value_exact<bool>());
         case KeyKind::integer:
@@ -100,19 +105,21 @@ std::optional<JobValue> to_value(const toml::node& node, KeyKind kind) {
         case KeyKind::number:
             return optional_value(to_number(node));
         case KeyKind::vector:
-            return optional_value(to_vector(node));
+            return optional_value(to_numbers<3>(node));
+        case KeyKind::span:
+            return optional_value(to_numbers<2>(node));
         case KeyKind::choice:
         case KeyKind::text:
         case KeyKind::file:
         case KeyKind::folder:
-            return optional_value(node.value_exact<std::string>());
+            return optional_value(word);
     }
     return {};
 }
 
 /// Sets the key from the node; returns what is wrong, empty if nothing.
 std::string set_from_node(Job& job, const Key& key, const toml::node& node) {
-    const std::optional<JobValue> value = to_value(node, key.kind);
+    const std::optional<JobValue> value = to_value(node, key);
     if (!value) {
         return fmt::format("`{}` is {}; wanted is {}", key.name, found_text(node), wanted_text(key));
     }
@@ -132,6 +139,15 @@ std::string written_key(std::string_view key) {
     return bare ? printable(key) : printable(toml_string(key));
 }
 
+/// A file named without a source is an OBJ file, or an image.
+void choose_source(Job& job, std::string_view table) {
+    if (table == "mesh" && !job.mesh.file.empty()) {
+        job.mesh.source = MeshSource::file;
+    } else if (table == "map" && !job.map.file.empty()) {
+        job.map.source = MapSource::file;
+    }
+}
+
 class TableReader {
   public:
     void read_top_level(const toml::table& table) {
@@ -142,6 +158,9 @@ class TableReader {
             } else if (const toml::table* keys = node.as_table()) {
                 for (const auto& [inner_name, inner_node] : *keys) {
                     read_key(inner->name + '.', inner_name, inner_node);
+                }
+                if (!keys->contains("source")) {
+                    choose_source(job_, inner->name);
                 }
             } else {
                 faults_.push_back(
@@ -200,9 +219,26 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-bool takes_bare_word(const Key& key) {
-    return key.kind == KeyKind::choice || key.kind == KeyKind::text || key.kind == KeyKind::file ||
-           key.kind == KeyKind::folder;
+bool is_bare_word(const Key& key, std::string_view value) {
+    switch (key.kind) {
+        case KeyKind::choice:
+        case KeyKind::text:
+        case KeyKind::file:
+        case KeyKind::folder:
+            return value.empty() || (value.front() != '"' && value.front() != '\'');
+        case KeyKind::span:
+            return std::find(key.choices.begin(), key.choices.end(), value) != key.choices.end();
+        case KeyKind::flag:
+        case KeyKind::integer:
+        case KeyKind::number:
+        case KeyKind::vector:
+            break;
+    }
+    return key.range.or_auto && value == auto_word;
+}
+
+std::string table_of(const Key& key) {
+    return key.name.substr(0, key.name.find('.'));
 }
 
 /// Sets the key from the text of one TOML value.
@@ -236,7 +272,7 @@ void set_key(Job& job, std::string_view name, std::string_view value) {
     if (key == nullptr) {
         throw InputError(fmt::format("unknown key `{}`{}", printable(name), suggestion(name)));
     }
-    if (takes_bare_word(*key) && (value.empty() || (value.front() != '"' && value.front() != '\''))) {
+    if (is_bare_word(*key, value)) {
         set_value(job, *key, std::string(value));
     } else if (value.empty()) {
         throw InputError(fmt::format("`{}` has no value; wanted is {}", name, wanted_text(*key)));
@@ -245,6 +281,10 @@ void set_key(Job& job, std::string_view name, std::string_view value) {
     }
     if (key->kind == KeyKind::file) {
         set_value(job, *key, rebase_path(std::get<std::string>(key->get(job)), "", job.folder));
+        if (const Key* source = find_key(table_of(*key) + ".source");
+            source != nullptr && source->get(job) == default_of(*source)) {
+            choose_source(job, table_of(*key));
+        }
     }
 }
 

@@ -127,19 +127,21 @@ void check_map(const Job& job, Faults& faults) {
 
 void check_camera(const Job& job, Faults& faults) {
     const Job::Camera& camera = job.camera;
+    const bool known = !is_automatic(camera.eye) && !is_automatic(camera.target);
     const Vector view = difference(camera.target, camera.eye);
     const double size = std::max(length(camera.eye), length(camera.target));
-    const bool apart = length(view) > 1e-9 * size;
+    const bool apart = !known || length(view) > 1e-9 * size;
     faults.unless(apart, "`camera.eye` = {} and `camera.target` = {} are the same point: move one of them",
                   text_of(camera.eye), text_of(camera.target));
-    const double up = length(camera.up);
+    const double up = is_automatic(camera.up) ? 1 : length(camera.up);
     faults.unless(up > 0, "`camera.up` = {} has no direction: give it one, such as [0, 0, 1]",
                   text_of(camera.up));
     // Below a sine of 1e-6 the picture's roll would be rounding error.
     const auto sine = [](const Vector& a, const Vector& b) {
         return length(cross(a, b)) / (length(a) * length(b));
     };
-    const bool parallel = apart && up > 0 && sine(direction(view), direction(camera.up)) <= 1e-6;
+    const bool parallel = known && !is_automatic(camera.up) && apart && up > 0 &&
+                          sine(direction(view), direction(camera.up)) <= 1e-6;
     faults.unless(
         !parallel,
         "`camera.up` = {} is parallel to the view direction {} (camera.target - camera.eye): turn up by "

@@ -22,6 +22,11 @@ struct HeightMap {
     double range_low = 0;
     double range_high = 1;
 
+    /// What displacement.scale spans, in the unit of `values`: the whole range of the source, unless map.range says
+    /// otherwise (span_values()).
+    double span_low = 0;
+    double span_high = 1;
+
     /// How many of its source's own units one unit of value is: PGM's maximum value, 255 or 65535 for PNG, 1 for the
     /// others. An elevation of 1533 m in a PGM of maximum value 2478 is the value 0.6186 here, and 1533 units.
     double source_units = 1;

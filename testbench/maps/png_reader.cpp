@@ -214,7 +214,9 @@ HeightMap PngDecoder::decode() {
         png_set_read_fn(png_, this, on_read);
         png_set_user_limits(png_, largest_map_side, largest_map_side);
         png_set_chunk_malloc_max(png_, 8U << 20);
-        png_set_crc_action(png_, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+        // Of ancillary chunks only tRNS is looked at: a damaged colour profile, or comment, is no reason to refuse.
+        png_set_crc_action(png_, PNG_CRC_ERROR_QUIT, PNG_CRC_WARN_DISCARD);
+        png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
         png_read_info(png_, info_);
         transparency_chunk_ = png_get_valid(png_, info_, PNG_INFO_tRNS) != 0;
         if (png_get_color_type(png_, info_) == PNG_COLOR_TYPE_PALETTE) {

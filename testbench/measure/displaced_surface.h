@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "testbench/job/job.h"
-#include "testbench/maps/height_map.h"
+#include "testbench/maps/map_displacement.h"
 #include "testbench/meshes/base_mesh.h"
 
 namespace tessera {
@@ -22,13 +22,14 @@ namespace tessera {
 /// headline because it tells the two causes apart: small against this and large against the other is addressing.
 enum class Sampling : std::uint8_t { interpolated, nearest_texel };
 
-/// What turns map values into displacement: bias + scale * value, model units (Job::displacement).
+/// What turns map values into displacement, and how the map goes on beyond its borders.
 struct DisplacementOf {
-    double scale = 1, bias = 0;
+    double scale = 1, bias = 0;  // of MapDisplacement
     Addressing address_u = Addressing::clamp, address_v = Addressing::clamp;
 
-    static DisplacementOf from(const Job& job) {
-        return {job.displacement.scale, job.displacement.bias, job.map.address_u, job.map.address_v};
+    static DisplacementOf from(const Job& job, const HeightMap& map) {
+        const MapDisplacement displacement = MapDisplacement::from(job.displacement, map);
+        return {displacement.scale, displacement.bias, job.map.address_u, job.map.address_v};
     }
     double of(double value) const { return bias + scale * value; }
 };

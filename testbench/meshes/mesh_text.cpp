@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -56,6 +57,45 @@ std::string quoted(std::string_view token) {
         }
     }
     return text + (token.size() > longest ? "...'" : "'");
+}
+
+std::string_view foreign_mesh_kind(std::string_view content) {
+    using namespace std::string_view_literals;
+    constexpr std::array<std::array<std::string_view, 2>, 9> kinds{{
+        {"ply\n"sv, "a PLY file"sv},
+        {"ply\r"sv, "a PLY file"sv},
+        {"glTF"sv, "a GLB file (binary glTF)"sv},
+        {"Kaydara FBX"sv, "an FBX file"sv},
+        {"BLENDER"sv, "a Blender file"sv},
+        {"OFF"sv, "an OFF file"sv},
+        {"PK\x03\x04"sv, "a ZIP archive (3MF and USDZ are such)"sv},
+        {"<"sv, "an XML file or a web page (COLLADA and X3D are such)"sv},
+        {"version https://git-lfs"sv, "a Git LFS pointer, not the file itself (git lfs pull fetches it)"sv},
+    }};
+    for (const auto& [start, kind] : kinds) {
+        if (content.substr(0, start.size()) == start) {
+            return kind;
+        }
+    }
+    const std::size_t first = std::min(content.find_first_not_of(" \t\r\n"), content.size());
+    if (content.substr(first, 1) == "{" && content.find("\"asset\"") != std::string_view::npos) {
+        return "a glTF file";
+    }
+    if (content.substr(first, 6) == "solid " && content.find("facet") != std::string_view::npos) {
+        return "an STL file";
+    }
+    // Binary STL: 80 bytes of any text, the number of triangles, 50 bytes for each.
+    constexpr std::size_t header = 84, triangle = 50;
+    if (content.size() >= header) {
+        std::uint64_t triangles = 0;
+        for (std::size_t k = 0; k < 4; ++k) {
+            triangles |= std::uint64_t{static_cast<unsigned char>(content[80 + k])} << (8 * k);
+        }
+        if (triangles > 0 && content.size() == header + triangle * triangles) {
+            return "an STL file";
+        }
+    }
+    return {};
 }
 
 std::optional<double> to_number(std::string_view token) {

@@ -10,6 +10,9 @@ namespace tessera {
 /// A piece of the file for a message: printable, short.
 std::string quoted(std::string_view token);
 
+/// What other kind of mesh file this is, by its content: "a PLY file"; empty: none that is known.
+std::string_view foreign_mesh_kind(std::string_view content);
+
 /// Locale-independent, correctly rounded; nothing where the token is not a number from end to end. Beyond a double's
 /// range: 0 or HUGE_VAL.
 std::optional<double> to_number(std::string_view token);

@@ -46,6 +46,13 @@ class Reader {
         if (text_.substr(0, 3) == "\xef\xbb\xbf"sv) {
             text_.remove_prefix(3);
         }
+        if (const std::string_view kind = foreign_mesh_kind(text_); !kind.empty()) {
+            throw InputError(
+                fmt::format("{}: this is {}, and mesh.file takes OBJ: open it in Blender, MeshLab or the "
+                            "like, export it as OBJ "
+                            "with texture coordinates, and name that file",
+                            name_, kind));
+        }
         const std::size_t zero = text_.find('\0');
         if (zero != std::string_view::npos) {
             const auto lines =

@@ -19,7 +19,7 @@ ExitCode compare_run(const Command& command) {
     const BaseMesh base = load_mesh(run.job, command.data_folder);
     const HeightMap map = load_map(run.job, command.data_folder);
     progress.show("measuring", 0.1);
-    const MeshError error = measure_error(base, map, DisplacementOf::from(run.job), run.mesh);
+    const MeshError error = measure_error(base, map, DisplacementOf::from(run.job, map), run.mesh);
     progress.clear();
 
     const std::string text = error_text(run.job, run.mesh, error);

@@ -25,6 +25,7 @@
 #include "testbench/program/frame_table.h"
 #include "testbench/program/output_folder.h"
 #include "testbench/program/progress.h"
+#include "testbench/program/summary.h"
 
 namespace tessera {
 
@@ -49,11 +50,12 @@ Setup set_up(const Frame& frame, const BaseMesh& mesh, const HeightMap& map) {
 }
 
 /// All frames, refused together if one cannot be, with what the host sends for each.
-std::vector<Frame> plan_frames(const Job& job, const fs::path& data_folder) {
+std::vector<Frame> plan_frames(const Job& asked, const fs::path& data_folder, std::string& found) {
     Progress progress;
     progress.show("reading mesh and map", 0);
-    const BaseMesh mesh = load_mesh(job, data_folder);
-    const HeightMap map = load_map(job, data_folder);
+    const auto [mesh, map, resolved] = load_inputs(asked, data_folder);
+    const Job& job = resolved.job;
+    found = found_text(resolved.found);
     std::vector<Frame> frames;
     std::optional<Setup> before;
     for (std::int64_t k = 0; k < job.frames.count; ++k) {
@@ -131,10 +133,11 @@ void print_failure(const Frame& frame, const std::string& why) {
 }  // namespace
 
 ExitCode run_frames(const Job& job, const fs::path& data_folder, const RunFrame& run) {
-    std::vector<Frame> frames = plan_frames(job, data_folder);
+    std::string found;
+    std::vector<Frame> frames = plan_frames(job, data_folder, found);
     const fs::path folder = job.output.folder;
     std::string text = frames_heading();
-    fmt::print("{}", text);
+    fmt::print("{}{}", found, text);
     ExitCode worst = ExitCode::fine;
     std::vector<FrameRow> rows;
     for (Frame& frame : frames) {

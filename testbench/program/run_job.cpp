@@ -40,23 +40,23 @@ namespace tessera {
 namespace {
 
 /// A job's mesh and map, and what the host makes of them.
-struct Inputs {
-    BaseMesh mesh;
-    HeightMap map;
+struct Loaded {
+    Inputs inputs;
     Setup setup;
 };
 
 /// What was mended in the job's mesh and map on the way in joins the setup's own remarks.
-Inputs load_inputs(const Job& job, const std::filesystem::path& data_folder) {
-    Inputs inputs{load_mesh(job, data_folder), load_map(job, data_folder), {}};
-    inputs.setup = make_setup(job, inputs.mesh, inputs.map);
+Loaded load(const Job& asked, const std::filesystem::path& data_folder) {
+    Loaded loaded{load_inputs(asked, data_folder), {}};
+    const Inputs& inputs = loaded.inputs;
+    loaded.setup = make_setup(inputs.resolved.job, inputs.mesh, inputs.map);
     std::vector<std::string> remarks;
     for (const std::string& repair : inputs.mesh.repairs)
         remarks.push_back("mesh: " + repair);
     for (const std::string& repair : inputs.map.repairs)
         remarks.push_back("map: " + repair);
-    inputs.setup.remarks.insert(inputs.setup.remarks.begin(), remarks.begin(), remarks.end());
-    return inputs;
+    loaded.setup.remarks.insert(loaded.setup.remarks.begin(), remarks.begin(), remarks.end());
+    return loaded;
 }
 
 class Stopwatch {
@@ -187,15 +187,17 @@ Ending run_faulty(const Job& job, const Setup& setup, Simulation& simulation, Ch
 
 /// `name` tells the run from others, on the line that shows its progress. What it leaves takes the place of an earlier
 /// run in `replaced`: job.output.folder, or one above it.
-Ending run_once(const Job& job, const Command& command, const std::string& name,
+Ending run_once(const Job& asked, const Command& command, const std::string& name,
                 const std::filesystem::path& replaced) {
-    const std::filesystem::path folder = job.output.folder;
+    const std::filesystem::path folder = asked.output.folder;
     check_output_folder(folder);
 
     Progress progress(name);
     progress.show("reading mesh and map", 0);
-    const Inputs inputs = load_inputs(job, command.data_folder);
-    const Setup& setup = inputs.setup;
+    const Loaded loaded = load(asked, command.data_folder);
+    const Inputs& inputs = loaded.inputs;
+    const Setup& setup = loaded.setup;
+    const Job& job = inputs.resolved.job;
 
     std::optional<CheckedWiring> wiring;
     if (CheckedWiring::wanted(job))
@@ -293,8 +295,8 @@ Ending run_once(const Job& job, const Command& command, const std::string& name,
     progress.clear();
 
     return {checks.passed() ? ExitCode::fine : ExitCode::check_failed,
-            fmt::format("{}{}  {}\n  results in {}\n", summary(setup, simulation, counts, checks, seconds),
-                        traces_text, verdict(checks),
+            fmt::format("{}{}{}  {}\n  results in {}\n", found_text(inputs.resolved.found),
+                        summary(setup, simulation, counts, checks, seconds), traces_text, verdict(checks),
                         std::filesystem::absolute(folder).lexically_normal().string())};
 }
 

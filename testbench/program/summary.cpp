@@ -110,6 +110,13 @@ std::string timing_rows(const Simulation& simulation) {
 
 }  // namespace
 
+std::string found_text(const std::vector<FoundValue>& found) {
+    std::string text;
+    for (const FoundValue& it : found)
+        text += row(it.key.c_str(), fmt::format("{} ({})", it.value, it.rule));
+    return text;
+}
+
 std::string summary(const Setup& setup, const Simulation& simulation, const MeshCounts& mesh,
                     const Checks& checks, double seconds) {
     const Pipeline& p = simulation.pipeline;

@@ -1,10 +1,15 @@
 #pragma once
 #include <string>
+#include <vector>
 
+#include "testbench/host/resolve_job.h"
 #include "testbench/report/conformance_report.h"
 #include "testbench/report/statistics.h"
 
 namespace tessera {
+
+/// The values that the job left to the program, each with its rule.
+std::string found_text(const std::vector<FoundValue>& found);
 
 /// The table a run prints: what came out, what it cost, what was checked.
 /// mesh: of the simulation's. seconds: the run took.

@@ -141,14 +141,14 @@ std::string all_refused(const WidthSweep& sweep) {
 }  // namespace
 
 ExitCode widths_command(const WidthsOrder& order, const fs::path& data_folder) {
-    const WidthRequest request = request_of(order);
+    WidthRequest request = request_of(order);
     const Output output = output_of(order);
     require_inputs_kept(order.output, {output.csv, output.json}, order.job_file, request.job, data_folder);
 
     Progress progress;
     progress.show("reading mesh and map", 0);
-    const BaseMesh mesh = load_mesh(request.job, data_folder);
-    const HeightMap map = load_map(request.job, data_folder);
+    const auto [mesh, map, resolved] = load_inputs(request.job, data_folder);
+    request.job = resolved.job;
     const WidthSweep sweep = sweep_widths(
         request, mesh, map, [&](const std::string& what, double part) { progress.show(what, part); });
     progress.clear();

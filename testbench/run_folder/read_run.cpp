@@ -4,6 +4,7 @@
 
 #include "testbench/common/error.h"
 #include "testbench/job/job_choices.h"
+#include "testbench/job/job_keys.h"
 #include "testbench/job/job_paths.h"
 #include "testbench/job/read_job.h"
 #include "testbench/job/validate_job.h"
@@ -49,6 +50,10 @@ Job read_run_job(const fs::path& folder) {
             folder.string()));
     Job job = read_job(job_file);
     validate(job);
+    if (const std::string key = automatic_key(job); !key.empty())
+        throw InputError(
+            fmt::format("{}: {} = \"auto\", which no run writes into its folder: run the job again",
+                        job_file.string(), key));
     if (job.frames.count > 1)
         throw InputError(fmt::format("{}: holds {} frames, each a run's folder; name one of them, from {} on",
                                      folder.string(), job.frames.count, (folder / "frame_000").string()));

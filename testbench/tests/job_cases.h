@@ -109,6 +109,10 @@ inline JobValue random_value(const Key& key) {
         case KeyKind::vector:
             return std::array<double, 3>{random_number(key.range), random_number(key.range),
                                          random_number(key.range)};
+        case KeyKind::span: {
+            const double a = random_number(key.range), b = random_number(key.range);
+            return a < b ? std::array<double, 2>{a, b} : std::array<double, 2>{key.range.low, key.range.high};
+        }
         case KeyKind::choice:
             return std::string(*rc::gen::elementOf(key.choices));
         case KeyKind::text:

@@ -55,9 +55,11 @@ JobValue another_value(const Key& key) {
             return std::get<std::int64_t>(given) == low ? low + 1 : low;
         }
         case KeyKind::number:
-            return std::get<double>(given) == key.range.low ? key.range.high : key.range.low;
+            return given == JobValue(key.range.low) ? key.range.high : key.range.low;
         case KeyKind::vector:
             return std::array<double, 3>{0.1, -1e-7, 12345.678};
+        case KeyKind::span:
+            return std::array<double, 2>{-0.5, 1533.25};
         case KeyKind::choice:
             return std::string(key.choices.back() == std::get<std::string>(given) ? key.choices.front()
                                                                                   : key.choices.back());
@@ -147,11 +149,17 @@ TEST_CASE("every key reads, sets itself only, dumps and round-trips") {
         REQUIRE_THAT(complaint(key, value), Equals(""));
         const Job job = parse_job(one_key(key, toml_value(value)), "job.toml");
         CHECK(key.get(job) == value);
+        CHECK((key.name != "mesh.file" || job.mesh.source == MeshSource::file));
+        CHECK((key.name != "map.file" || job.map.source == MapSource::file));
         const bool only_choice = key.kind == KeyKind::choice && key.choices.size() == 1;
         CHECK(same_settings(job, Job{}) == only_choice);
 
         Job restored = job;
         key.set(restored, default_of(key));
+        if (key.kind == KeyKind::file) {
+            restored.mesh.source = MeshSource::plane;
+            restored.map.source = MapSource::half_donut;
+        }
         CHECK(same_settings(restored, Job{}));
 
         const std::string dump = dump_job(job);
@@ -166,6 +174,81 @@ TEST_CASE("every key reads, sets itself only, dumps and round-trips") {
             CHECK(same_settings(set, job));
         }
     }
+}
+
+TEST_CASE("what may be left to the program reads as auto, and is so by default") {
+    std::vector<std::string> automatic_keys;
+    for (const Key& key : all_keys()) {
+        INFO(key.name);
+        const std::string fault = parse_error_of(one_key(key, "\"auto\""));
+        if (!key.range.or_auto) {
+            const bool text =
+                key.kind == KeyKind::text || key.kind == KeyKind::file || key.kind == KeyKind::folder;
+            CHECK(fault.empty() == text);
+            continue;
+        }
+        automatic_keys.push_back(key.name);
+        CHECK_THAT(fault, Equals(""));
+        CHECK(toml_value(default_of(key)) == "\"auto\"");
+        CHECK_THAT(range_text(key), Contains("auto or "));
+        for (const std::string value : {"auto", "\"auto\"", "'auto'"}) {
+            Job job;
+            key.set(job, another_value(key));
+            CHECK(automatic_key(job) != key.name);
+            apply_setting(job, key.name + "=" + value);
+            CHECK(same_settings(job, Job{}));
+        }
+        CHECK_THAT(set_error_of(key.name + "=automatic"), Contains("wanted is auto or "));
+    }
+    CHECK(automatic_keys == std::vector<std::string>{"displacement.scale", "camera.eye", "camera.target",
+                                                     "camera.up", "camera.near_plane"});
+    CHECK(automatic_key(Job{}) == "displacement.scale");
+    Job set;
+    for (const char* const setting :
+         {"displacement.scale=1", "camera.eye=[1, 2, 3]", "camera.target=[0, 0, 0]", "camera.up=[0, 0, 1]",
+          "camera.near_plane=0.1"}) {
+        CHECK_FALSE(automatic_key(set).empty());
+        apply_setting(set, setting);
+    }
+    CHECK(automatic_key(set).empty());
+}
+
+TEST_CASE("the map's range is full, data or two ends") {
+    CHECK(Job{}.map.range.kind == MapRange::Kind::full);
+    CHECK(parse_job("map.range = \"data\"", "a").map.range.kind == MapRange::Kind::data);
+    CHECK(parse_job("map.range = \"full\"", "a").map.range.kind == MapRange::Kind::full);
+    Job job = parse_job("map.range = [-1.5, 2478]", "a");
+    CHECK(job.map.range.kind == MapRange::Kind::given);
+    CHECK(job.map.range.low == -1.5);
+    CHECK(job.map.range.high == 2478);
+    apply_setting(job, "map.range=data");
+    CHECK(job.map.range.kind == MapRange::Kind::data);
+    apply_setting(job, "map.range=[3, 4]");
+    CHECK(job.map.range.low == 3);
+    CHECK_THAT(set_error_of("map.range=[2, 2]"), Contains("its low end not below its high end"));
+    CHECK_THAT(set_error_of("map.range=[1, nan]"), Contains("not a finite number"));
+    CHECK_THAT(set_error_of("map.range=[1, 2, 3]"), Contains("or two numbers"));
+    CHECK_THAT(set_error_of("map.range=\"dat\""), Contains("did you mean \"data\"?"));
+    CHECK_THAT(set_error_of("map.range=1"), Contains("one of full, data, or two numbers"));
+}
+
+TEST_CASE("a file named without a source is an OBJ file, or an image") {
+    const Job job = parse_job("[mesh]\nfile = \"a.obj\"\n[map]\nfile = \"b.png\"\n", "a");
+    CHECK(job.mesh.source == MeshSource::file);
+    CHECK(job.map.source == MapSource::file);
+    Job set;
+    apply_setting(set, "mesh.file=a.obj");
+    apply_setting(set, "map.file=b.png");
+    CHECK(set.mesh.source == MeshSource::file);
+    CHECK(set.map.source == MapSource::file);
+    CHECK(parse_job("[mesh]\nfile = \"a.txt\"\nsource = \"patches\"", "a").mesh.source ==
+          MeshSource::patches);
+    CHECK(parse_job("[mesh]\nfile = \"a.txt\"\nsource = \"sphere\"", "a").mesh.source == MeshSource::sphere);
+    CHECK(parse_job("[mesh]\nfile = \"\"", "a").mesh.source == MeshSource::plane);
+    Job patches;
+    apply_setting(patches, "mesh.source=patches");
+    apply_setting(patches, "mesh.file=a.txt");
+    CHECK(patches.mesh.source == MeshSource::patches);
 }
 
 TEST_CASE("every choice reads and keeps its name") {

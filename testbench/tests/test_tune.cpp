@@ -55,7 +55,7 @@ struct Ground {
           map(load_map(job, {})),
           base(load_mesh(job, {})),
           setup(make_setup(job, base, map)),
-          errors(setup, map, DisplacementOf::from(job)),
+          errors(setup, map, DisplacementOf::from(job, map)),
           forest(setup, &errors) {}
 
     Outcome measure(const Job& of) {

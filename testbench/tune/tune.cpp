@@ -35,7 +35,7 @@ struct Ground {
            const std::filesystem::path& data_folder)
         : job(job_with_base(request.job, base)),
           setup(make_setup(job, base_mesh_of(job, base, map, data_folder), map)),
-          errors(setup, map, DisplacementOf::from(job)),
+          errors(setup, map, DisplacementOf::from(job, map)),
           forest(setup, &errors) {}
 };
 

@@ -9,7 +9,7 @@
 namespace tessera {
 
 ErrorUnit error_unit(const Job& job, const BaseMesh& base, const HeightMap& map) {
-    const DisplacementOf displacement = DisplacementOf::from(job);
+    const DisplacementOf displacement = DisplacementOf::from(job, map);
     std::string why;
     ErrorUnit unit;
     unit.height_field = find_height_field(base, map, displacement, why).has_value();
@@ -41,7 +41,7 @@ RecordedMesh recorded_mesh(const EmittedMesh& mesh, const Setup& setup) {
 
 TunedFigures measure_tuned(const Job& job, const BaseMesh& base, const HeightMap& map, const Setup& setup,
                            const EmittedMesh& mesh) {
-    const DisplacementOf displacement = DisplacementOf::from(job);
+    const DisplacementOf displacement = DisplacementOf::from(job, map);
     const RecordedMesh recorded = recorded_mesh(mesh, setup);
     TunedFigures figures;
     figures.triangles = recorded.triangles.size();

@@ -5,6 +5,9 @@
 #include <stdexcept>
 
 #include "testbench/check/golden_inputs.h"
+#include "testbench/host/resolve_job.h"
+#include "testbench/maps/map_displacement.h"
+#include "testbench/meshes/whole_periods.h"
 
 namespace tessera {
 
@@ -44,14 +47,6 @@ Job with_widest_normals(Job job) {
     return job;
 }
 
-double whole_periods(const BaseMesh& mesh, int axis, Addressing mode) {
-    double low = 0;
-    if (mode == Addressing::repeat)
-        for (const BaseVertex& vertex : mesh.vertices)
-            low = std::min(low, vertex.texture[axis]);
-    return std::ceil(-low);
-}
-
 /// To 2^-30 texels, so that midpoints are exact in a double; upwards, so that what is a whole number in rational
 /// arithmetic (three quarters of a third of 256 texels) is not just below it.
 glm::dvec2 exact_texels(const glm::dvec2& t) {
@@ -73,15 +68,16 @@ bool within_half_lsb(const golden::Vertex& exact, const datapath::Vertex& rounde
 
 }  // namespace
 
-ExactModel::ExactModel(const Job& job, const BaseMesh& mesh, const HeightMap& map)
-    : map_(exact_map(job, map)) {
-    const Setup setup = make_setup(with_widest_normals(job), mesh, map);
+ExactModel::ExactModel(const Job& asked, const BaseMesh& original, const HeightMap& map)
+    : map_(exact_map(asked, map)) {
+    const Job job = resolve_job(asked, original, map).job;
+    const Setup setup = make_setup(with_widest_normals(job), original, map);
     model_scale_ = setup.model_scale;
     parameters_ = golden_parameters(setup.registers);  // transform, tests that are on, diagonal
     const double highest = highest_code(map);
-    parameters_.scale =
-        job.displacement.scale * (map.range_high - map.range_low) * model_scale_.scale / highest;
-    parameters_.bias = (job.displacement.bias + job.displacement.scale * map.range_low) * model_scale_.scale;
+    const MapDisplacement displacement = MapDisplacement::from(job.displacement, map);
+    parameters_.scale = displacement.scale * (map.range_high - map.range_low) * model_scale_.scale / highest;
+    parameters_.bias = displacement.of(map.range_low) * model_scale_.scale;
     const Job::Tests& tests = job.tests;
     parameters_.normal_threshold = tests.normal_threshold;
     parameters_.summed_height_threshold = tests.summed_height_threshold * highest;
@@ -90,23 +86,24 @@ ExactModel::ExactModel(const Job& job, const BaseMesh& mesh, const HeightMap& ma
     parameters_.highlight_normal_threshold = tests.highlight_normal_threshold;
     map_.derive_normals(parameters_.scale, setup.texel_size);
 
-    const glm::dvec2 shift(whole_periods(mesh, 0, job.map.address_u),
-                           whole_periods(mesh, 1, job.map.address_v));
+    const double texels = std::ldexp(1.0, static_cast<int>(job.formats.texture_integer));
+    const BaseMesh mesh = bring_down_texture(
+        original, {job.map.address_u == Addressing::repeat, job.map.address_v == Addressing::repeat},
+        {texels / map.width, texels / map.height});
     base_.reserve(mesh.triangles.size());
     for (const auto& corners : mesh.triangles)
-        base_.push_back({base_vertex(mesh.vertices[corners[0]], shift),
-                         base_vertex(mesh.vertices[corners[1]], shift),
-                         base_vertex(mesh.vertices[corners[2]], shift)});
+        base_.push_back({base_vertex(mesh.vertices[corners[0]]), base_vertex(mesh.vertices[corners[1]]),
+                         base_vertex(mesh.vertices[corners[2]])});
 }
 
-golden::Vertex ExactModel::base_vertex(const BaseVertex& vertex, const glm::dvec2& shift) const {
+golden::Vertex ExactModel::base_vertex(const BaseVertex& vertex) const {
     const glm::dvec2 size(map_.width(), map_.height());
     golden::Vertex result;
     result.position = model_scale_.to_world(vertex.position);
     result.normal = vertex.normal;
     result.tangent = vertex.tangent;
     result.handedness = vertex.handedness < 0 ? -1 : 1;
-    result.texture = exact_texels((vertex.texture + shift) * size);
+    result.texture = exact_texels(vertex.texture * size);
     if (map_.address_u() == golden::AddressMode::clamp)
         result.texture.x = std::clamp(result.texture.x, 0.0, size.x);
     if (map_.address_v() == golden::AddressMode::clamp)

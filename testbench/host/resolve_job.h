@@ -1,0 +1,29 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "testbench/job/job.h"
+#include "testbench/maps/height_map.h"
+#include "testbench/meshes/base_mesh.h"
+
+namespace tessera {
+
+/// A value that the job left to the program.
+struct FoundValue {
+    std::string key;    ///< camera.eye
+    std::string value;  ///< as a job file writes it
+    std::string rule;   ///< what it follows from, in words
+};
+
+/// A job without `automatic` values.
+struct ResolvedJob {
+    Job job;
+    std::vector<FoundValue> found;
+};
+
+/// Finds camera and displacement's scale from mesh and map, by the rules that job_keys.cpp states, where the job leaves
+/// them automatic. Numbers are rounded to six digits. Throws InputError, naming the key to set, if a value lies beyond its
+/// key's range, or the camera that follows cannot be.
+ResolvedJob resolve_job(const Job& job, const BaseMesh& mesh, const HeightMap& map);
+
+}  // namespace tessera
