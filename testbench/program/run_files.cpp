@@ -64,12 +64,6 @@ std::vector<std::string> names_taken(const fs::path& folder) {
     return names;
 }
 
-/// The place of the name itself: a link at its end is not followed.
-fs::path place_of_name(const fs::path& path) {
-    const fs::path absolute = fs::absolute(path).lexically_normal();
-    return real_place(absolute.parent_path()) / absolute.filename();
-}
-
 /// Whether a run into `output` has `folder` to itself: it is that, or a frame in it.
 bool is_of(const fs::path& folder, const fs::path& output) {
     return folder == output || (folder.parent_path() == output && is_frame_name(folder.filename().string()));
@@ -83,6 +77,11 @@ fs::path real_place(const fs::path& path) {
     const fs::path canonical = fs::weakly_canonical(absolute, failed);
     const fs::path& result = failed ? absolute : canonical;
     return result.has_filename() ? result : result.parent_path();
+}
+
+fs::path place_of_name(const fs::path& path) {
+    const fs::path absolute = fs::absolute(path).lexically_normal();
+    return real_place(absolute.parent_path()) / absolute.filename();
 }
 
 void take_away_run(const fs::path& folder, AtomicSet& files) {

@@ -11,6 +11,9 @@ namespace tessera {
 /// A path that names one place in one way, whether or not it is there; without a slash at its end.
 std::filesystem::path real_place(const std::filesystem::path& path);
 
+/// The same of the name itself, where a file is written: a link there is not followed.
+std::filesystem::path place_of_name(const std::filesystem::path& path);
+
 /// What `files` holds appears in the place of all that a run before it, of one frame or of several, left in `folder`: a job
 /// beside the mesh or the picture of another would be believed. What others left there stays: all files of a folder that
 /// no run left (its job.toml does not begin with dumped_job_heading), what has no name of a run's file, what is no plain

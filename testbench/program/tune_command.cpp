@@ -158,7 +158,7 @@ void check_places(const TuneOrder& order, const Job& job, const fs::path& data_f
     require_inputs_kept(order.output, written, order.job_file, job, data_folder);
     for (std::size_t k = 0; k < written.size(); ++k)
         for (std::size_t other = 0; other < k; ++other)
-            if (real_place(written[k]) == real_place(written[other]))
+            if (place_of_name(written[k]) == place_of_name(written[other]))
                 throw InputError(fmt::format("--tried {}: is written with the tuned job; choose another name",
                                              order.tried));
     std::ifstream mesh(obj_file);

@@ -73,3 +73,12 @@ TEST_CASE("figures: an experiment nobody knows is refused, with those there are"
     CHECK(end.exit_code == 2);
     CHECK_THAT(end.err, Contains("two_tests") && Contains("crater_lake"));
 }
+
+TEST_CASE("figures: a folder of pictures that no evaluation left is refused") {
+    const Checkout checkout;
+    const ProgramEnd end =
+        checkout.run("mkdir -p mine/pictures && scripts/figures --only text_plane --output mine");
+    CHECK(end.exit_code == 2);
+    CHECK_THAT(end.err, Contains("mine/pictures would be replaced"));
+    CHECK(fs::exists(checkout.root() / "mine/pictures"));
+}
