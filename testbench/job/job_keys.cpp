@@ -411,7 +411,7 @@ std::vector<KeyTable> declare_keys() {
         key.add("end_to_end", &Check::end_to_end, "Golden run of the whole mesh, compared with the hardware's");
         key.add("invariants", &Check::invariants, "The emitted mesh is closed, without T-vertices, and covers the texture");
         key.add("allowed_flips", &Check::allowed_flips, "percent of edges", between(0, 100), "Decisions that differ within the formats' error bound; more fail the run");
-        key.add("allowed_triangles", &Check::allowed_triangles, "percent of triangles", between(0, 1000), "Triangles that the golden run of the whole mesh may have more or fewer than the hardware; further apart fails the run, and so do surfaces further apart than follows from it");
+        key.add("allowed_triangles", &Check::allowed_triangles, "percent of triangles", between(0, 1000), "Triangles that the golden run of the whole mesh may have more or fewer than the hardware; beyond it the run fails, and so it does where the surfaces lie further apart than follows from it. Saturated values and thresholds finer than the formats need more");
         key.add("work", &Check::work, "No triangle is lost, doubled or altered on its way through the machine, and what goes into a unit comes out of another");
         key.add("reads", &Check::reads, "Every table read against what the memory holds; in functional mode reads then go by transaction, which is slow");
     });

@@ -121,7 +121,8 @@ TEST_CASE("the queue's order and watermark, and the way to memory, change no tri
 TEST_CASE("thresholds of zero end at the map's resolution, the generation limit or the triangle limit") {
     const std::vector<std::string> zero{"tests.normal_threshold=0", "tests.summed_height_threshold=0",
                                         "tests.view_threshold=0",
-                                        "check.allowed_flips=100"};  // much lies at 0 itself
+                                        // much lies at 0 itself
+                                        "check.allowed_flips=100", "check.allowed_triangles=100"};
     const auto with = [&](std::vector<std::string> more) {
         more.insert(more.end(), zero.begin(), zero.end());
         return Attempt(more);
@@ -143,7 +144,8 @@ TEST_CASE("thresholds of zero end at the map's resolution, the generation limit 
 
 TEST_CASE("the narrowest and widest formats run or say what does not fit") {
     const auto settles = [](std::vector<std::string> settings) {
-        settings.emplace_back("check.allowed_flips=100");  // that many lie within so coarse a bound
+        // that many lie within so coarse a bound
+        settings.insert(settings.end(), {"check.allowed_flips=100", "check.allowed_triangles=100"});
         const Attempt attempt(settings);
         INFO(attempt.end.text());
         if (attempt.end.exit_code == 0) {

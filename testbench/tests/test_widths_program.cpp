@@ -64,10 +64,11 @@ TEST_CASE("widths: a row of saturated screen positions has the run's count, and 
         Arguments{"widths", "--quantity", "screen_range", "--bits", "18", "--output", "s.csv"} + near + small,
         here.path());
     const Json row = read_json(here.path() / "s.json").at("quantities").at("screen_range").at("rows").at(0);
-    const ProgramEnd run = succeed(Arguments{"run", "--set", "formats.screen_bits=18", "--set",
-                                             "output.folder=run", "--set", "output.picture=false"} +
-                                       near + small,
-                                   here.path());
+    const ProgramEnd run =
+        succeed(Arguments{"run", "--set", "formats.screen_bits=18", "--set", "check.allowed_triangles=100",
+                          "--set", "output.folder=run", "--set", "output.picture=false"} +
+                    near + small,
+                here.path());
     const Json statistics = read_json(here.path() / "run/statistics.json");
     const Json counted = statistics.at("saturations").at("screen_position").at("value");
     CHECK(counted > 100);
