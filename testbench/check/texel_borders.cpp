@@ -81,10 +81,9 @@ std::string texel_borders_warning(const TexelBorderCount& count, const Job& job,
         return {};
     return fmt::format(
         "{} of {} edges ({:.1f} %) have an end or midpoint that rounding puts one LSB below a texel's "
-        "border, where it "
-        "reads the texel before; wider formats do not help. Use {}",
-        count.below, count.edges, 100.0 * static_cast<double>(count.below) / static_cast<double>(count.edges),
-        remedy);
+        "border, "
+        "where it reads the texel before; wider formats do not help. Use {}",
+        count.below, count.edges, 100 * share, remedy);
 }
 
 }  // namespace tessera
