@@ -11,6 +11,10 @@ namespace tessera {
 
 namespace {
 
+/// A file's coordinates are decimals. Those of thirds, cut off, lie beside a border in exact arithmetic, too: the head's
+/// 10 % of edges below one make 0.2 % of its decisions differ, the 67 % of 256 texels on 3 quads 15.6 %.
+constexpr double least_share_of_a_file = 0.2;
+
 /// Whether an axis of `quads` has its base vertices on coordinates that the format holds: quads divide texels * 2^fraction.
 bool held(std::int64_t texels, std::int64_t quads, std::int64_t fraction) {
     return (texels << fraction) % quads == 0;
@@ -60,6 +64,7 @@ std::string texel_borders_warning(const TexelBorderCount& count, const Job& job,
     if (!count.many())
         return {};
     const auto [columns, rows] = quads_of(job.mesh);
+    const double share = static_cast<double>(count.below) / static_cast<double>(count.edges);
     std::string remedy;
     if (columns > 0) {
         remedy = axis_remedy(job, "map.width", "mesh.columns", width, columns);
@@ -67,17 +72,18 @@ std::string texel_borders_warning(const TexelBorderCount& count, const Job& job,
         if (!remedy.empty() && !other.empty())
             remedy += "; ";
         remedy += other;
-    }
-    if (remedy.empty())
+    } else if (share > least_share_of_a_file) {
         remedy =
             fmt::format("texture coordinates of the mesh that are whole texels, multiples of 1/{} and 1/{}",
                         width, height);
+    }
+    if (remedy.empty())
+        return {};
     return fmt::format(
         "{} of {} edges ({:.1f} %) have an end or midpoint that rounding puts one LSB below a texel's "
-        "border, where it "
-        "reads the texel before; wider formats do not help. Use {}",
-        count.below, count.edges, 100.0 * static_cast<double>(count.below) / static_cast<double>(count.edges),
-        remedy);
+        "border, "
+        "where it reads the texel before; wider formats do not help. Use {}",
+        count.below, count.edges, 100 * share, remedy);
 }
 
 }  // namespace tessera

@@ -12,15 +12,16 @@ struct JobResult {
     std::uint64_t splits;     ///< edges
     std::uint64_t edges;      ///< tested
     std::uint64_t cycles;     ///< timed mode
-    std::uint64_t mesh;       ///< 64 bit FNV-1a of mesh.ply's lines after "end_header", sorted as the file has them
+    std::uint64_t
+        mesh;  ///< 64 bit FNV-1a of mesh.ply's lines after "end_header", sorted as the file has them
 };
 
 inline constexpr std::array<JobResult, 5> job_results{{
-    {"crater_lake_24", 0, 0, 0, 0, 0},
-    {"crater_lake_704", 0, 0, 0, 0, 0},
-    {"half_donut", 0, 0, 0, 0, 0},
-    {"head", 0, 0, 0, 0, 0},
-    {"teapot", 0, 0, 0, 0, 0},
+    {"crater_lake_24", 13906, 13882, 69381, 832589, 0xd173c8e2cff0eee9},
+    {"crater_lake_704", 13480, 12776, 66966, 803609, 0xad0ca088dee075da},
+    {"half_donut", 11948, 11930, 59100, 709217, 0xd542341843ddeb42},
+    {"head", 21160, 19360, 100359, 1206000, 0x6c1452fe5b8b14be},
+    {"teapot", 83959, 82967, 402216, 4826617, 0xe43464d87e28f74b},
 }};
 
 }  // namespace tessera

@@ -38,7 +38,7 @@ PassOrTessellate::Counts counts_of(const Job& job) {
 
 void expect_split(const PassOrTessellate::Counts& c, std::uint64_t normal, std::uint64_t summed_height,
                   std::uint64_t both) {
-    CHECK(c.edges_split == normal + summed_height + both);
+    CHECK(c.edges_split == normal + summed_height + both + c.split_by_highlight);
     CHECK(c.split_by_normal == normal);
     CHECK(c.split_by_summed_height == summed_height);
     CHECK(c.split_by_both == both);
@@ -63,6 +63,7 @@ class GoldenCount : public tlm::tlm_analysis_if<datapath::TrianglePass> {
                 golden::evaluate_edge(dequantise_.vertex(pass.edge_begin(k)),
                                       dequantise_.vertex(pass.edge_end(k)), inputs_.map, inputs_.parameters);
             if (e.split) {
+                ++counts.edges_split;
                 counts.split_by_normal += e.normal_test && !e.summed_height_test ? 1u : 0u;
                 counts.split_by_summed_height += e.summed_height_test && !e.normal_test ? 1u : 0u;
                 counts.split_by_both += e.normal_test && e.summed_height_test ? 1u : 0u;
@@ -224,6 +225,8 @@ TEST_CASE("texel borders: the warning names the next map size and number of quad
     job.map.source = MapSource::file;  // has its size
     CHECK_THAT(texel_borders_warning(many, job, 100, 100),
                Contains("Use mesh.columns = 8 for a map of 100 texels") && !Contains("map.width"));
-    job.mesh.source = MeshSource::file;  // has its coordinates
-    CHECK_THAT(texel_borders_warning(many, job, 100, 50), Contains("multiples of 1/100 and 1/50"));
+    CHECK(texel_borders_warning(many, job, 700, 100).empty());  // quads divide both sides
+    job.mesh.source = MeshSource::file;                         // has its coordinates, decimals
+    CHECK(texel_borders_warning({12, 1000, 200}, job, 100, 50).empty());
+    CHECK_THAT(texel_borders_warning({12, 1000, 201}, job, 100, 50), Contains("multiples of 1/100 and 1/50"));
 }
