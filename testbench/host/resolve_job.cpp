@@ -22,7 +22,7 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double azimuth = 20 * pi / 180;                       // to the right of the front
 constexpr double elevation = 38 * pi / 180;                     // above it
 constexpr double filled = 0.9;                                  // of the picture's width and height
-constexpr double flat_scale = 1.0 / 8, round_scale = 1.0 / 20;  // of the largest extent
+constexpr double flat_scale = 1.0 / 8, round_scale = 1.0 / 40;  // of the largest extent
 constexpr double flatness = 0.1;                                // smallest extent over the next
 constexpr double near_part = 1.0 / 1000;                        // of the distance from eye to target
 
@@ -165,7 +165,7 @@ class Resolver {
         scale = rounded(scale, scale);
         found("displacement.scale",
               fmt::format("{} of the base mesh's largest extent, {:.6g}{}",
-                          flat_ >= 0 ? "flat: an eighth" : "a twentieth", base_.largest(),
+                          flat_ >= 0 ? "flat: an eighth" : "a fortieth", base_.largest(),
                           reach > span ? ", less because values go beyond map.range" : ""));
     }
 
