@@ -11,7 +11,6 @@
 #include "testbench/host/unit_vector.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/job/toml_text.h"
-#include "testbench/job/validate_job.h"
 #include "testbench/maps/map_displacement.h"
 
 namespace tessera {
@@ -142,8 +141,7 @@ class Resolver {
     ResolvedJob result() {
         find_scale();
         find_camera();
-        if (!result_.found.empty())
-            check();
+        check();
         return std::move(result_);
     }
 
@@ -213,16 +211,12 @@ class Resolver {
     }
 
     void check() const {
-        try {
-            validate(result_.job);
-        } catch (const InputError& error) {
-            std::string keys;
-            for (const FoundValue& value : result_.found)
-                keys += (keys.empty() ? "" : ", ") + value.key;
-            throw InputError(
-                fmt::format("{}\nfound by the program are {}, for a base mesh of {:.6g} model units: set "
-                            "what does not suit",
-                            error.what(), keys, base_.largest()));
+        for (const FoundValue& value : result_.found) {
+            const Key& key = *find_key(value.key);
+            if (const std::string fault = complaint(key, key.get(result_.job)); !fault.empty())
+                throw InputError(
+                    fmt::format("{}: it follows from a base mesh of {:.6g} model units; scale the mesh",
+                                fault, base_.largest()));
         }
     }
 

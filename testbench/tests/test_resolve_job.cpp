@@ -190,6 +190,7 @@ TEST_CASE("a model beyond what a camera can be set to is refused with what to do
         FAIL("not refused");
     } catch (const InputError& error) {
         CHECK_THAT(error.what(),
-                   Contains("out of range") && Contains("for a base mesh of 2e+20 model units"));
+                   Contains("out of range") &&
+                       Contains("it follows from a base mesh of 2e+20 model units; scale the mesh"));
     }
 }
