@@ -276,12 +276,19 @@ TEST_CASE("mirrored texture turns the handedness; mixed points take the majority
     require_complete(mixed);
 }
 
-TEST_CASE("texture without area gives perpendicular tangents and a repair") {
+TEST_CASE("a triangle without area in texture space gives perpendicular tangents and a repair") {
+    const BaseMesh mesh = parse(square + "v 2 0 0\nf 1/1 2/2 3/3 4/4\nf 2/1 5/1 3/1\n");
+    require_complete(mesh);
+    CHECK_THAT(all_repairs(mesh), Contains("1 triangle(s) have no area in texture space"));
+}
+
+TEST_CASE("a mesh without any area in texture space gets the map laid over it") {
     const BaseMesh mesh = parse(square + "f 1/1 2/1 3/1 4/1\n");
     require_complete(mesh);
     CHECK_THAT(all_repairs(mesh),
-               Contains("2 triangle(s) have no area in texture space") && Contains("4 point(s) without"));
-    CHECK_THAT(all_repairs(mesh), Contains("No triangle has an area in texture space"));
+               Contains("No triangle has an area in texture space: the map was laid over the "
+                        "mesh's bounding box along z."));
+    CHECK(mesh.vertices[2].texture == glm::dvec2(1, 1));
     CHECK(mesh.texture_scale.mean_u == 1);
 }
 
