@@ -3,6 +3,7 @@
 #include "testbench/common/error.h"
 #include "testbench/host/fingerprint.h"
 #include "testbench/job/job_paths.h"
+#include "testbench/job/validate_job.h"
 #include "testbench/maps/built_in_maps.h"
 #include "testbench/maps/map_displacement.h"
 #include "testbench/maps/read_height_map.h"
@@ -51,6 +52,7 @@ HeightMap load_map(const Job& job, const std::filesystem::path& data_folder) {
 Inputs load_inputs(const Job& job, const std::filesystem::path& data_folder) {
     Inputs inputs{load_mesh(job, data_folder), load_map(job, data_folder), {}};
     inputs.resolved = resolve_job(job, inputs.mesh, inputs.map);
+    validate(inputs.resolved.job);
     return inputs;
 }
 

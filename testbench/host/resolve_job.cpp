@@ -11,7 +11,6 @@
 #include "testbench/host/unit_vector.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/job/toml_text.h"
-#include "testbench/job/validate_job.h"
 #include "testbench/maps/map_displacement.h"
 
 namespace tessera {
@@ -22,7 +21,7 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double azimuth = 20 * pi / 180;                       // to the right of the front
 constexpr double elevation = 38 * pi / 180;                     // above it
 constexpr double filled = 0.9;                                  // of the picture's width and height
-constexpr double flat_scale = 1.0 / 8, round_scale = 1.0 / 20;  // of the largest extent
+constexpr double flat_scale = 1.0 / 8, round_scale = 1.0 / 40;  // of the largest extent
 constexpr double flatness = 0.1;                                // smallest extent over the next
 constexpr double near_part = 1.0 / 1000;                        // of the distance from eye to target
 
@@ -142,8 +141,7 @@ class Resolver {
     ResolvedJob result() {
         find_scale();
         find_camera();
-        if (!result_.found.empty())
-            check();
+        check();
         return std::move(result_);
     }
 
@@ -165,7 +163,7 @@ class Resolver {
         scale = rounded(scale, scale);
         found("displacement.scale",
               fmt::format("{} of the base mesh's largest extent, {:.6g}{}",
-                          flat_ >= 0 ? "flat: an eighth" : "a twentieth", base_.largest(),
+                          flat_ >= 0 ? "flat: an eighth" : "a fortieth", base_.largest(),
                           reach > span ? ", less because values go beyond map.range" : ""));
     }
 
@@ -213,16 +211,12 @@ class Resolver {
     }
 
     void check() const {
-        try {
-            validate(result_.job);
-        } catch (const InputError& error) {
-            std::string keys;
-            for (const FoundValue& value : result_.found)
-                keys += (keys.empty() ? "" : ", ") + value.key;
-            throw InputError(
-                fmt::format("{}\nfound by the program are {}, for a base mesh of {:.6g} model units: set "
-                            "what does not suit",
-                            error.what(), keys, base_.largest()));
+        for (const FoundValue& value : result_.found) {
+            const Key& key = *find_key(value.key);
+            if (const std::string fault = complaint(key, key.get(result_.job)); !fault.empty())
+                throw InputError(
+                    fmt::format("{}: it follows from a base mesh of {:.6g} model units; scale the mesh",
+                                fault, base_.largest()));
         }
     }
 

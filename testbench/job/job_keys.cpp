@@ -341,7 +341,7 @@ std::vector<KeyTable> declare_keys() {
     });
     list.table("displacement", &Job::displacement, "From map value to height along the normal: bias + scale * (value - low) / (high - low), with low and high of map.range.", [](const auto& key) {
         using Displacement = Job::Displacement;
-        key.add("scale", &Displacement::scale, "model units", auto_or(coordinate_range), "Height from the low to the high end of map.range; auto: an eighth of the base mesh's largest extent if it is flat (its smallest extent under a tenth of the next), else a twentieth; less where values go beyond map.range, so that they reach no higher");
+        key.add("scale", &Displacement::scale, "model units", auto_or(coordinate_range), "Height from the low to the high end of map.range; auto: an eighth of the base mesh's largest extent if it is flat (its smallest extent under a tenth of the next), else a fortieth; less where values go beyond map.range, so that they reach no higher");
         key.add("bias", &Displacement::bias, "model units", coordinate_range, "Height at the low end of map.range");
     });
     list.table("frames", &Job::frames, "Several frames that differ in the displacement's scale, each a run folder of its own: frame_000, ... in output.folder.", [](const auto& key) {

@@ -1,6 +1,7 @@
 #include "testbench/maps/exr_header.h"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -139,7 +140,8 @@ class HeaderReader {
     void read_window(std::string_view box);
     void check_present() const;
     void check_claims() const;
-    void check_line_offsets();
+    std::uint64_t chunk_bytes(std::uint64_t i) const;
+    void check_chunks();
     std::uint64_t chunk_count() const;
     std::uint64_t block_bytes() const;
 
@@ -411,9 +413,59 @@ void HeaderReader::check_claims() const {
     }
 }
 
+/// Bytes of pixels that chunk number i holds when decoded.
+std::uint64_t HeaderReader::chunk_bytes(std::uint64_t i) const {
+    const std::int64_t lines = compressions[header_.compression].lines;
+    const std::int64_t across =
+        header_.tiled ? (header_.width + header_.tile_width - 1) / header_.tile_width : 1;
+    const std::int64_t wide = header_.tiled ? header_.tile_width : header_.width;
+    const std::int64_t high = header_.tiled ? header_.tile_height : lines;
+    const std::int64_t left = static_cast<std::int64_t>(i) % across * wide;
+    const std::int64_t top = static_cast<std::int64_t>(i) / across * high;
+    const std::int64_t columns = std::min(wide, header_.width - left),
+                       rows = std::min(high, header_.height - top);
+    // A channel sampled every n pixels has those at multiples of n.
+    const auto samples = [](std::int64_t first, std::int64_t count, std::int64_t every) {
+        const auto below = [every](std::int64_t end) {
+            return end / every + (end > 0 && end % every != 0 ? 1 : 0);
+        };
+        return static_cast<std::uint64_t>(below(first + count) - below(first));
+    };
+    std::uint64_t bytes = 0;
+    for (const ExrChannel& channel : header_.channels) {
+        bytes += samples(header_.left + left, columns, channel.x_sampling) *
+                 samples(header_.top + top, rows, channel.y_sampling) * pixel_type_sizes[channel.type];
+    }
+    return bytes;
+}
+
+/// Bytes that a chunk's payload decodes to, if it is of a compression whose shortfall libOpenEXR does not see: it takes
+/// what is missing for zeros. Of a damaged payload, `expected`: the library finds that.
+std::uint64_t decoded_bytes(std::string_view compression, const std::string& payload,
+                            std::uint64_t expected) {
+    if (compression == "none" || payload.size() >= expected) {
+        return payload.size();
+    }
+    if (compression == "RLE") {
+        std::uint64_t decoded = 0;
+        for (std::size_t at = 0; at < payload.size();) {
+            const int count = static_cast<signed char>(payload[at]);
+            decoded += static_cast<std::uint64_t>(count < 0 ? -count : count + 1);
+            at += count < 0 ? static_cast<std::size_t>(1 - count) : 2;
+        }
+        return decoded;
+    }
+    std::vector<Bytef> pixels(expected);
+    uLongf size = expected;
+    const int result =
+        uncompress(pixels.data(), &size, reinterpret_cast<const Bytef*>(payload.data()), payload.size());
+    return result == Z_OK ? size : expected;
+}
+
 // libOpenEXR does not look at the table as long as it reads scan lines in order, so it reads a damaged
-// table's file without a word. (It uses a tiled file's table, and rebuilds one with zeros.)
-void HeaderReader::check_line_offsets() {
+// table's file without a word. (It uses a tiled file's table, and rebuilds one with zeros.) Nor does it see that a chunk
+// decodes to less than its pixels.
+void HeaderReader::check_chunks() {
     const std::uint64_t chunks = chunk_count();
     const std::string table = bytes(chunks * 8);
     std::vector<std::uint64_t> offsets;
@@ -424,24 +476,42 @@ void HeaderReader::check_line_offsets() {
             return;
         }
     }
+    const std::size_t head = header_.tiled ? 20 : 8;  // coordinates, then the payload's size
+    const Compression& compression = compressions[header_.compression];
+    const bool sizes_matter = compression.name == "none" || compression.name == "RLE" ||
+                              compression.name == "ZIPS" || compression.name == "ZIP";
     for (std::size_t i = 0; i < chunks; ++i) {
-        const std::int64_t line =
-            header_.top + static_cast<std::int64_t>(i) * compressions[header_.compression].lines;
-        std::string found(4, '\0');
-        if (offsets[i] < file_size_ && file_size_ - offsets[i] >= 8) {
+        const std::int64_t line = header_.top + static_cast<std::int64_t>(i) * compression.lines;
+        const std::string what =
+            header_.tiled ? fmt::format("tile {}", i) : fmt::format("scan line {}", line);
+        std::string found(head, '\0');
+        if (offsets[i] < file_size_ && file_size_ - offsets[i] >= head) {
             file_.seekg(static_cast<std::streamoff>(offsets[i]));
-            file_.read(found.data(), 4);
+            file_.read(found.data(), static_cast<std::streamsize>(head));
         } else {
-            refuse(fmt::format(
-                "the EXR file's offset table puts scan line {} at byte {}, but the file has {}. It was cut "
-                "off or is damaged.",
-                line, offsets[i], file_size_));
+            refuse(
+                fmt::format("the EXR file's offset table puts {} at byte {}, but the file has {}. It was cut "
+                            "off or is damaged.",
+                            what, offsets[i], file_size_));
         }
-        if (static_cast<std::int32_t>(little_endian_32(found, 0)) != line) {
+        if (!header_.tiled && static_cast<std::int32_t>(little_endian_32(found, 0)) != line) {
+            refuse(
+                fmt::format("the EXR file's offset table puts {} at byte {}, where another begins or none. "
+                            "It is damaged.",
+                            what, offsets[i]));
+        }
+        const std::uint64_t size = little_endian_32(found, head - 4), expected = chunk_bytes(i);
+        if (!sizes_matter || size > file_size_ - offsets[i] - head) {
+            continue;  // the library finds it cut off
+        }
+        std::string payload(size, '\0');
+        file_.read(payload.data(), static_cast<std::streamsize>(size));
+        const std::uint64_t decoded = decoded_bytes(compression.name, payload, expected);
+        if (decoded < expected) {
             refuse(fmt::format(
-                "the EXR file's offset table puts scan line {} at byte {}, where another begins or none. "
-                "It is damaged.",
-                line, offsets[i]));
+                "the EXR file's chunk at {} holds {} bytes of pixels of {}. It is damaged: save or "
+                "download it anew.",
+                what, decoded, expected));
         }
     }
 }
@@ -453,9 +523,7 @@ ExrHeader HeaderReader::read() {
     }
     check_present();
     check_claims();
-    if (!header_.tiled) {
-        check_line_offsets();
-    }
+    check_chunks();
     for (const Required& required : required_attributes) {
         if (names_.count(std::string(required.name)) == 0) {
             header_.absent.emplace_back(required.name);

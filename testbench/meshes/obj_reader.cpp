@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "testbench/common/error.h"
 #include "testbench/meshes/equal_groups.h"
@@ -13,6 +14,7 @@
 #include "testbench/meshes/smooth_normals.h"
 #include "testbench/meshes/surface_flaws.h"
 #include "testbench/meshes/tangent_frames.h"
+#include "testbench/meshes/texture_gradient.h"
 #include "testbench/meshes/texture_scale.h"
 #include "testbench/meshes/triangle_geometry.h"
 
@@ -250,10 +252,19 @@ class Assembler {
                             "export the mesh with them (vt lines, f v/vt)",
                             name_, bare.first_line));
         }
-        project_texture(without_texture, bare);
+        std::string why = fmt::format("{} vertices have no texture coordinates, first used in line {}",
+                                      bare.count, bare.first_line);
+        const auto has_area = [this](Triangle const& t) { return texture_gradient(mesh_, t).has_value(); };
+        if (without_texture.empty() && missing_ == MissingTexture::project &&
+            std::none_of(mesh_.triangles.begin(), mesh_.triangles.end(), has_area)) {
+            without_texture.resize(mesh_.vertices.size());
+            std::iota(without_texture.begin(), without_texture.end(), 0u);
+            why = "No triangle has an area in texture space";
+        }
+        project_texture(without_texture, why);
     }
 
-    void project_texture(std::vector<std::uint32_t> const& vertices, Tally const& bare) {
+    void project_texture(std::vector<std::uint32_t> const& vertices, std::string const& why) {
         glm::dvec3 low = mesh_.vertices.front().position, high = low;
         for (BaseVertex const& vertex : mesh_.vertices) {
             low = glm::min(low, vertex.position);
@@ -281,9 +292,7 @@ class Assembler {
                               (vertex.position[up] - low[up]) / size[up]};
         }
         mesh_.repairs.push_back(
-            fmt::format("{} vertices have no texture coordinates, first used in line {}: the map was laid "
-                        "over the mesh's bounding box along {}.",
-                        bare.count, bare.first_line, "xyz"[thinnest]));
+            fmt::format("{}: the map was laid over the mesh's bounding box along {}.", why, "xyz"[thinnest]));
     }
 
     void repair(Tally const& tally, char const* sentence) {

@@ -206,8 +206,9 @@ ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
 
     Progress progress;
     progress.show("reading mesh and map", 0);
-    const auto [mesh, map, resolved] = load_inputs(request.job, data_folder);
-    request.job = resolved.job;
+    const Inputs inputs = load_inputs(request.job, data_folder);
+    const HeightMap& map = inputs.map;
+    request.job = inputs.resolved.job;
     if (order.grids.empty())
         request.bases.emplace_back();
     for (const std::string& grid : order.grids)

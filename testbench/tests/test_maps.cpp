@@ -177,6 +177,14 @@ TEST_CASE("a damaged PNG map is refused, a longer one remarked on") {
     write_bytes(folder / "crc.png", bad);
     CHECK_THROWS_WITH(read_height_map(folder / "crc.png"), Contains("libpng cannot read") && Contains("CRC"));
 
+    // A colour profile that is none, with a wrong checksum and with a right one, is nothing to a map of heights.
+    for (const std::string& checksum : {std::string(4, '\0'), std::string("\0\xcc\xe6\x19", 4)}) {
+        bad = good;
+        bad.insert(33, std::string("\0\0\0\x08iCCPbad\0\0\x01\x02\x03", 16) + checksum);
+        write_bytes(folder / "profile.png", bad);
+        CHECK(read_height_map(folder / "profile.png").values == read_height_map(folder / "a.png").values);
+    }
+
     bad = good;
     bad.insert(33, std::string("\x3f\xff\xff\xfftEXtKey\0text", 16));
     write_bytes(folder / "chunk.png", bad);

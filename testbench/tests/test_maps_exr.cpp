@@ -1,3 +1,6 @@
+#include <zlib.h>
+
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -23,6 +26,16 @@ ExrImage steps() {
     ExrImage image{19, 21, std::vector<float>(std::size_t{19} * 21)};
     std::iota(image.values.begin(), image.values.end(), 3.F);
     return image;
+}
+
+/// So many zeros, as ZIP compression stores them.
+std::string deflated(std::size_t count) {
+    const std::vector<Bytef> zeros(count);
+    std::string result(compressBound(count), '\0');
+    uLongf size = result.size();
+    compress(reinterpret_cast<Bytef*>(result.data()), &size, zeros.data(), count);
+    result.resize(size);
+    return result;
 }
 
 }  // namespace
@@ -173,4 +186,46 @@ TEST_CASE("the OpenEXR project's own test images are read") {
     const HeightMap t02 = read_height_map(folder / "oexr_t02.exr");
     CHECK(t02.values == read_height_map(folder / "oexr_t05.exr").values);
     CHECK(t02.values == read_height_map(folder / "oexr_t08.exr").values);
+}
+
+TEST_CASE("an EXR chunk that holds less than its pixels is refused, whatever its compression") {
+    const TemporaryFolder folder;
+    const auto [compression, tiled] =
+        GENERATE(table<int, bool>({{0, false}, {0, true}, {2, false}, {3, false}, {3, true}}));
+    ExrImage image{16, 16, std::vector<float>(256)};
+    for (std::size_t k = 0; k < image.values.size(); ++k)
+        image.values[k] = static_cast<float>(k / 2);  // shrinks under every compression
+    image.compression = compression;
+    image.tiled = tiled;
+    write_exr(folder / "good.exr", image);
+    CHECK(read_height_map(folder / "good.exr").at(15, 15) == 7);
+
+    // The offset table ends where its own first entry points.
+    const std::string good = read_bytes(folder / "good.exr");
+    const std::size_t head = tiled ? 20 : 8;
+    std::size_t chunk = 0;
+    for (std::size_t at = 8; at + 8 <= good.size() && chunk == 0; ++at) {
+        std::uint64_t offset = 0;
+        for (std::size_t k = 0; k < 8; ++k)
+            offset |= std::uint64_t{static_cast<unsigned char>(good[at + k])} << (8 * k);
+        const std::size_t chunks = tiled ? 4 : compression == 3 ? 1 : 16;
+        if (offset == at + 8 * chunks)
+            chunk = offset;
+    }
+    REQUIRE(chunk > 0);
+    std::string bad = good;
+    if (compression == 0) {
+        bad[chunk + head - 4] = static_cast<char>(tiled ? 252 : 60);  // a pixel less
+        bad[chunk + head - 3] = 0;
+    } else {
+        // Half of the first chunk's pixels, deflated anew.
+        const std::string half = deflated(compression == 2 ? 32 : tiled ? 128 : 512);
+        REQUIRE(half.size() <= static_cast<unsigned char>(bad[chunk + head - 4]) + 256u);
+        bad[chunk + head - 4] = static_cast<char>(half.size());
+        bad[chunk + head - 3] = 0;
+        bad.replace(chunk + head, std::min(half.size(), bad.size() - chunk - head), half);
+    }
+    write_bytes(folder / "bad.exr", bad);
+    CHECK_THROWS_WITH(read_height_map(folder / "bad.exr"),
+                      Contains("bytes of pixels of ") && Contains("It is damaged"));
 }

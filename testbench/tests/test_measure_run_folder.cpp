@@ -218,6 +218,13 @@ TEST_CASE("a run's folder is read back, with paths that hold from there") {
     job.map.source = MapSource::file;
     job.map.file = "map.pgm";
     write_file(run / "job.toml", dump_job(job, run));
+    CHECK_THROWS_WITH(read_run(run, {}), Contains("displacement.scale = \"auto\", which no run writes"));
+    job.displacement.scale = 1;
+    job.camera.eye = {0, -1, 1};
+    job.camera.target = {0, 0, 0};
+    job.camera.up = {0, 0, 1};
+    job.camera.near_plane = 0.1;
+    write_file(run / "job.toml", dump_job(job, run));
     const auto read = [&] { return read_run(run, here.path() / "data"); };
     CHECK_THROWS_WITH(read(), Contains("mesh.ply") && Contains("got stuck"));
     write_ply(run / "mesh.ply", small_mesh(), units());

@@ -276,12 +276,19 @@ TEST_CASE("mirrored texture turns the handedness; mixed points take the majority
     require_complete(mixed);
 }
 
-TEST_CASE("texture without area gives perpendicular tangents and a repair") {
+TEST_CASE("a triangle without area in texture space gives perpendicular tangents and a repair") {
+    const BaseMesh mesh = parse(square + "v 2 0 0\nf 1/1 2/2 3/3 4/4\nf 2/1 5/1 3/1\n");
+    require_complete(mesh);
+    CHECK_THAT(all_repairs(mesh), Contains("1 triangle(s) have no area in texture space"));
+}
+
+TEST_CASE("a mesh without any area in texture space gets the map laid over it") {
     const BaseMesh mesh = parse(square + "f 1/1 2/1 3/1 4/1\n");
     require_complete(mesh);
     CHECK_THAT(all_repairs(mesh),
-               Contains("2 triangle(s) have no area in texture space") && Contains("4 point(s) without"));
-    CHECK_THAT(all_repairs(mesh), Contains("No triangle has an area in texture space"));
+               Contains("No triangle has an area in texture space: the map was laid over the "
+                        "mesh's bounding box along z."));
+    CHECK(mesh.vertices[2].texture == glm::dvec2(1, 1));
     CHECK(mesh.texture_scale.mean_u == 1);
 }
 
@@ -511,4 +518,28 @@ TEST_CASE("random triangle soups of all sizes keep the promises of a base mesh")
         loaded += survives(text);
     }
     CHECK(loaded > 1900);
+}
+
+TEST_CASE("a mesh file of another kind is named, with what to do") {
+    using namespace std::string_literals;
+    std::string binary_stl(84 + 2 * 50, '\x3f');
+    binary_stl.replace(0, 5, "solid");  // as some exporters begin it
+    binary_stl.replace(80, 4, "\2\0\0\0"s);
+    const std::vector<std::pair<std::string, std::string>> files{
+        {"ply\nformat ascii 1.0\nelement vertex 8\n", "a PLY file"},
+        {"ply\r\nformat binary_little_endian 1.0\r\n", "a PLY file"},
+        {"glTF\2\0\0\0\x10\0\0\0"s, "a GLB file (binary glTF)"},
+        {"{\n  \"asset\" : { \"version\" : \"2.0\" }\n}\n", "a glTF file"},
+        {" solid cube\n facet normal 0 0 1\n", "an STL file"},
+        {binary_stl, "an STL file"},
+        {"OFF\n8 6 12\n", "an OFF file"},
+        {"<?xml version=\"1.0\"?><COLLADA/>", "an XML file"},
+        {"Kaydara FBX Binary  \0"s, "an FBX file"},
+    };
+    for (const auto& [content, kind] : files) {
+        INFO(kind);
+        CHECK_THROWS_WITH(parse(content),
+                          StartsWith("test.obj: this is " + kind) && Contains("export it as OBJ"));
+    }
+    CHECK_NOTHROW(parse("# solid facet ply glTF\n" + square + "f 1/1 2/2 3/3\n"));
 }

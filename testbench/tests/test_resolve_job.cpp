@@ -76,7 +76,7 @@ std::vector<glm::dvec3> corners(const glm::dvec3& low, const glm::dvec3& high) {
 
 }  // namespace
 
-TEST_CASE("the scale is an eighth of a flat mesh's largest extent, and a twentieth of another's") {
+TEST_CASE("the scale is an eighth of a flat mesh's largest extent, and a fortieth of another's") {
     const auto scale_of = [](const BaseMesh& mesh, const HeightMap& map, const Job& job) {
         return resolve_job(job, mesh, map).job.displacement.scale;
     };
@@ -84,10 +84,10 @@ TEST_CASE("the scale is an eighth of a flat mesh's largest extent, and a twentie
     CHECK(scale_of(make_plane(3, 3, 2, 2), map, Job{}) == 0.25);
     CHECK(scale_of(make_plane(3, 3, 12, 3), map, Job{}) == 1.5);
     CHECK(scale_of(box(4, 3, 0.2), map, file_job()) == 0.5);  // 0.2 is less than a tenth of 3
-    CHECK(scale_of(box(4, 3, 0.4), map, file_job()) == 0.2);
-    CHECK(scale_of(box(40, 1, 0.4), map, file_job()) == 2);  // a rod is not flat
-    CHECK(scale_of(make_sphere(8, 4, 500), map, Job{}) == 50);
-    CHECK(scale_of(make_sphere(8, 4, 1e-3), map, Job{}) == 1e-4);
+    CHECK(scale_of(box(4, 3, 0.4), map, file_job()) == 0.1);
+    CHECK(scale_of(box(40, 1, 0.4), map, file_job()) == 1);  // a rod is not flat
+    CHECK(scale_of(make_sphere(8, 4, 500), map, Job{}) == 25);
+    CHECK(scale_of(make_sphere(8, 4, 1e-3), map, Job{}) == 5e-5);
     // A map in metres, 0..1 wanted: heights reach no further than the same part.
     CHECK(scale_of(make_plane(3, 3, 2, 2), map_of(0, 1000), Job{}) == 0.25 / 1000);
     CHECK(scale_of(make_plane(3, 3, 2, 2), map_of(-1, 1), Job{}) == 0.125);
@@ -190,6 +190,7 @@ TEST_CASE("a model beyond what a camera can be set to is refused with what to do
         FAIL("not refused");
     } catch (const InputError& error) {
         CHECK_THAT(error.what(),
-                   Contains("out of range") && Contains("for a base mesh of 2e+20 model units"));
+                   Contains("out of range") &&
+                       Contains("it follows from a base mesh of 2e+20 model units; scale the mesh"));
     }
 }

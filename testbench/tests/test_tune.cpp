@@ -25,6 +25,7 @@ Job small_job() {
     Job job;
     job.map.width = 48;
     job.map.height = 40;
+    job.displacement.scale = 0.25;
     job.tests.view = false;
     return job;
 }

@@ -19,6 +19,7 @@ Job small_job() {
     Job job;
     job.mode = Mode::functional;
     job.map.width = job.map.height = 48;
+    job.displacement.scale = 0.25;
     job.tests.generation_limit = 6;
     return job;
 }
