@@ -1,11 +1,13 @@
 #include "testbench/report/statistics.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "modules/datapath/widths.h"
 #include "testbench/tests/hand_made_run.h"
 
 // statistics.json and .csv: every figure of small runs by hand, and each counter of the machine in its own figure.
@@ -129,7 +131,7 @@ TEST_CASE("statistics: two triangles split once, by hand") {
                                           {"reads_per_edge", 12}});
     f.require_all("mesh", {{"triangles", 8}, {"generation_0", 0}, {"generation_1", 8}});
 
-    // A base vertex: P of 3 * 24 bits, N and T of 3 * 16, handedness, t of 2 * 24 or so: the widths are tested on their own.
+    // the widths have tests of their own
     const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
     const auto bytes = [](std::uint64_t bits) { return static_cast<double>((bits + 7) / 8); };
     const double tables = 8 * 8 * 2 + 8 * 8 * 6 + 81.0 * static_cast<double>(sum);
