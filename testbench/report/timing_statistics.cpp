@@ -97,7 +97,8 @@ void queue_figures(const Simulation& simulation, std::vector<Figure>& figures) {
     const std::uint64_t entry = datapath::packed_triangle_bytes(simulation.setup.registers.formats);
     Group group(figures, "timing.triangle_queue");
     group.count("capacity", simulation.setup.design.queue.capacity, "triangle", "on chip; 0: unbounded");
-    group.count("on_chip_high_water_mark", queue.on_chip_high_water_mark(), "triangle", "most on chip");
+    group.count("on_chip_high_water_mark", queue.on_chip_high_water_mark(), "triangle",
+                "most on chip, one on its way out not counted");
     group.count("spilled", queue.spilled(), "triangle", "written to off-chip memory");
     group.count("refilled", queue.refilled(), "triangle", "read back");
     group.count("spill_bytes", (queue.spilled() + queue.refilled()) * entry, "byte", "both directions");

@@ -1,11 +1,13 @@
 #include "testbench/report/statistics.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "modules/datapath/widths.h"
 #include "testbench/tests/hand_made_run.h"
 
 // statistics.json and .csv: every figure of small runs by hand, and each counter of the machine in its own figure.
@@ -129,7 +131,7 @@ TEST_CASE("statistics: two triangles split once, by hand") {
                                           {"reads_per_edge", 12}});
     f.require_all("mesh", {{"triangles", 8}, {"generation_0", 0}, {"generation_1", 8}});
 
-    // A base vertex: P of 3 * 24 bits, N and T of 3 * 16, handedness, t of 2 * 24 or so: the widths are tested on their own.
+    // the widths have tests of their own
     const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
     const auto bytes = [](std::uint64_t bits) { return static_cast<double>((bits + 7) / 8); };
     const double tables = 8 * 8 * 2 + 8 * 8 * 6 + 81.0 * static_cast<double>(sum);
@@ -220,7 +222,7 @@ TEST_CASE("statistics: one triangle's cycles, unit by unit, by hand") {
              // each part a cycle: six and three in a row
              Books{"calculate_new_p", 9, 6 + 3, 0, 0, 9, 9, 1},
              // six parts of 1 + 6, the first alone with its read for a cycle: 2 to 13; three of 6: 52 to 59
-             Books{"displace_vertex", 9, 11 + 8, 1, 0, 9, 6 * 7 + 3 * 6, 7},
+             Books{"displace_vertex", 9, 11 + 8, 1, 0, 9, 6 * 7 + 3 * 6, 6},
              Books{"transform", 9, 25 + 22, 0, 0, 9, 9 * 20, 6},
              // edges 0 and 1 pass on the third vertex' heels; edge 2 is held back from 6 to 31
              Books{"tessellation_tests_0.tex_coord_test", 3, 3, 0, 0, 3, 3, 1},
@@ -251,8 +253,9 @@ TEST_CASE("statistics: one triangle's cycles, unit by unit, by hand") {
     f.require("timing.tessellation_tests_0.calculate_new_u",
               {{"blocked", 31 - 6}, {"blocked_by_tessellation_tests_0.view_test", 31 - 6}});
     f.require("timing.displace_vertex", {{"waiting_for_displacement_map", 1}});
+    // it is on its way out in the cycle in which it comes
     f.require("timing.triangle_queue", {{"capacity", 0},
-                                        {"on_chip_high_water_mark", 1},
+                                        {"on_chip_high_water_mark", 0},
                                         {"spilled", 0},
                                         {"refilled", 0},
                                         {"spill_bytes", 0}});
