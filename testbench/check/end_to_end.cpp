@@ -3,8 +3,14 @@
 #include <cmath>
 
 #include "testbench/check/surface_distance.h"
+#include "testbench/common/parallel.h"
 
 namespace tessera {
+namespace {
+
+constexpr std::size_t most_side_by_side = 2'000'000;  // triangles: beyond, memory for one search at a time
+
+}  // namespace
 
 EndToEndResult compare_end_to_end(const Setup& setup, const GoldenInputs& inputs,
                                   const EmittedMesh& hardware) {
@@ -39,11 +45,18 @@ EndToEndResult compare_end_to_end(const Setup& setup, const GoldenInputs& inputs
         const SurfaceDistance d = distance_between(from, to);
         const double lsb = std::ldexp(1.0, setup.registers.formats.position.fraction);
         const double model = 1 / setup.model_scale.scale;
-        return EndToEndResult::Distance{d.points,    d.max,         d.rms,        d.max * lsb,
+        return EndToEndResult::Distance{d.points,    d.measured,    d.unseen(EndToEndResult::confidence),
+                                        d.max,       d.rms,         d.max * lsb,
                                         d.rms * lsb, d.max * model, d.rms * model};
     };
-    result.hardware_to_golden = measure(hardware_soup, golden_soup);
-    result.golden_to_hardware = measure(golden_soup, hardware_soup);
+    const auto there = [&] { result.hardware_to_golden = measure(hardware_soup, golden_soup); };
+    const auto back = [&] { result.golden_to_hardware = measure(golden_soup, hardware_soup); };
+    if (hardware_soup.size() + golden_soup.size() > most_side_by_side) {
+        there();
+        back();
+    } else {
+        for_each_chunk(2, [&] { return [&](std::size_t direction) { direction == 0 ? there() : back(); }; });
+    }
     return result;
 }
 

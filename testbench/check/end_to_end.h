@@ -16,10 +16,14 @@ struct EndToEndResult {
     /// other.
     struct Distance {
         std::uint64_t points = 0;
+        std::uint64_t measured = 0;  ///< of them; fewer than all where that would take too long (surface_distance.h)
+        double unseen = 0;  ///< with the confidence below, at most this part of the points is farther away than the maximum
         double max_world = 0, rms_world = 0;                ///< the machine's world units
         double max_position_lsb = 0, rms_position_lsb = 0;  ///< LSB of the position's format
         double max_model = 0, rms_model = 0;                ///< the model's units
     };
+
+    static constexpr double confidence = 0.999;
 
     std::uint64_t hardware_triangles = 0;
     std::uint64_t golden_triangles = 0;
@@ -32,7 +36,7 @@ struct EndToEndResult {
     Distance golden_to_hardware;
 };
 
-/// Deterministic, single-threaded. Memory: about 300 bytes per triangle of both meshes together.
+/// Deterministic, on both cores. Memory: about 300 bytes per triangle of both meshes together.
 EndToEndResult compare_end_to_end(const Setup& setup, const GoldenInputs& inputs,
                                   const EmittedMesh& hardware);
 

@@ -4,6 +4,53 @@
 #include <cmath>
 
 namespace tessera {
+namespace {
+
+// A box about a triangle across the axes has some ten times its area, about a long thin one far more.
+constexpr double least_thin = 16;
+constexpr int most_halvings = 5;
+
+/// Boxes in all: where there are many triangles, memory is dearer than time.
+std::size_t most_parts(std::size_t triangles) {
+    constexpr std::size_t many = 1'000'000;
+    return triangles < many ? 8 * triangles : 2 * triangles;
+}
+
+BoxHierarchy::Box box_about(const std::array<glm::dvec3, 3>& triangle) {
+    BoxHierarchy::Box box;
+    for (const glm::dvec3& corner : triangle)
+        box.add(corner);
+    return box;
+}
+
+/// Calls at(part) for the parts of a triangle, halved at its longest edge as long as its box has more than `thin` times
+/// its area.
+template <class At>
+void for_each_part(const std::array<glm::dvec3, 3>& triangle, double thin, int halvings, const At& at) {
+    const auto& [a, b, c] = triangle;
+    const BoxHierarchy::Box box = box_about(triangle);
+    const glm::dvec3 side = box.high - box.low;
+    const double surface = 2 * (side.x * side.y + side.y * side.z + side.z * side.x);
+    if (halvings == 0 || !(surface > thin * glm::length(glm::cross(b - a, c - a)) / 2)) {
+        at(triangle);
+        return;
+    }
+    const auto squared = [](const glm::dvec3& edge) { return glm::dot(edge, edge); };
+    const double ab = squared(b - a), bc = squared(c - b), ca = squared(a - c);
+    const auto halve = [&](const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& opposite) {
+        const glm::dvec3 middle = from / 2.0 + to / 2.0;
+        for_each_part({from, middle, opposite}, thin, halvings - 1, at);
+        for_each_part({middle, to, opposite}, thin, halvings - 1, at);
+    };
+    if (ab >= bc && ab >= ca)
+        halve(a, b, c);
+    else if (bc >= ca)
+        halve(b, c, a);
+    else
+        halve(c, a, b);
+}
+
+}  // namespace
 
 // Ericson, Real-Time Collision Detection, 5.1.5: by the Voronoi region of corner, edge or face that p lies
 // in.
@@ -37,45 +84,100 @@ glm::dvec3 closest_point(const std::array<glm::dvec3, 3>& triangle, const glm::d
     return a + vb / sum * ab + vc / sum * ac;
 }
 
-NearestTriangle::NearestTriangle(const TriangleSoup& soup)
-    : soup_(soup), boxes_(soup.size(), [&](std::size_t triangle) {
-          BoxHierarchy::Box box;
-          for (const glm::dvec3& corner : soup[triangle])
-              box.add(corner);
-          return box;
+NearestTriangle::Parts NearestTriangle::cut(const TriangleSoup& soup) {
+    double thin = least_thin;
+    std::size_t count = 0;
+    const std::size_t most = most_parts(soup.size());
+    for (;; thin *= 2) {
+        count = 0;
+        for (const auto& t : soup)
+            for_each_part(t, thin, most_halvings, [&](const auto&) { ++count; });
+        if (count <= most)
+            break;
+    }
+    Parts parts;
+    parts.boxes.reserve(count);
+    parts.triangles.reserve(count);
+    for (std::size_t k = 0; k < soup.size(); ++k)
+        for_each_part(soup[k], thin, most_halvings, [&](const std::array<glm::dvec3, 3>& part) {
+            BoxHierarchy::Box box = box_about(part);
+            if (part != soup[k]) {  // its new corners were rounded
+                const glm::dvec3 rounding =
+                    0x1p-50 * glm::max(glm::abs(box.low), glm::abs(box.high));
+                box.low -= rounding;
+                box.high += rounding;
+            }
+            parts.boxes.push_back(box);
+            parts.triangles.push_back(static_cast<std::uint32_t>(k));
+        });
+    return parts;
+}
+
+NearestTriangle::NearestTriangle(const TriangleSoup& soup) : NearestTriangle(soup, cut(soup)) {}
+
+NearestTriangle::NearestTriangle(const TriangleSoup& soup, Parts parts)
+    : soup_(soup), triangles_(std::move(parts.triangles)), boxes_(triangles_.size(), [&](std::size_t box) {
+          return parts.boxes[box];
       }) {}
 
-NearestTriangle::Found NearestTriangle::nearest(const glm::dvec3& p) {
-    Found found{last_, squared_distance(soup_[last_], p)};
+NearestTriangle::Found NearestTriangle::nearest(const glm::dvec3& p, Guess& guess) const {
+    Found found{guess.triangle, squared_distance(soup_[guess.triangle], p)};
     double radius = std::sqrt(found.squared);
-    boxes_.visit_near(p, radius, [&](std::size_t triangle) {
-        const double squared = squared_distance(soup_[triangle], p);
-        if (found.is_beaten_by(squared, triangle)) {
-            found = {triangle, squared};
-            radius = std::sqrt(squared);
-        }
-        return radius;
-    });
-    last_ = found.triangle;
+    const auto look_within = [&](double within) {
+        boxes_.visit_near(p, within, [&](std::size_t box) {
+            const std::size_t triangle = triangles_[box];
+            const double squared = squared_distance(soup_[triangle], p);
+            if (found.is_beaten_by(squared, triangle)) {
+                found = {triangle, squared};
+                radius = std::sqrt(squared);
+            }
+            return std::min(radius, within);
+        });
+    };
+    // As near as the last point was, or a little farther: most likely that is enough, and much less than to the
+    // triangle that was nearest to that point.
+    const double near = 4 * guess.distance;
+    if (near < radius)
+        look_within(near);
+    if (!(radius <= near))
+        look_within(radius);
+    guess = {found.triangle, radius};
     return found;
+}
+
+std::size_t NearestTriangle::boxes_around(const glm::dvec3& p) const {
+    std::size_t count = 0;
+    boxes_.visit_near(p, 0, [&](std::size_t) {
+        ++count;
+        return 0.0;
+    });
+    return count;
 }
 
 bool NearestTriangle::within(const glm::dvec3& p, double radius, std::size_t most,
                              std::vector<Found>& found) const {
     found.clear();
     const double largest = radius * radius * rounding_slack;
+    const auto drop_doubles = [&] {
+        std::sort(found.begin(), found.end(),
+                  [](const Found& a, const Found& b) { return a.triangle < b.triangle; });
+        found.erase(std::unique(found.begin(), found.end(),
+                                [](const Found& a, const Found& b) { return a.triangle == b.triangle; }),
+                    found.end());
+    };
     bool all = true;
-    boxes_.visit_near(p, radius, [&](std::size_t triangle) {
-        if (!all)
-            return 0.0;
+    boxes_.visit_near(p, radius, [&](std::size_t box) {
+        const std::size_t triangle = triangles_[box];
         const double squared = squared_distance(soup_[triangle], p);
         if (squared > largest)
             return radius;
-        all = found.size() < most;
-        if (all)
-            found.push_back({triangle, squared});
+        found.push_back({triangle, squared});
+        if (found.size() > most)
+            drop_doubles();
+        all = found.size() <= most;
         return all ? radius : 0.0;
     });
+    drop_doubles();
     return all;
 }
 

@@ -56,6 +56,7 @@ class ReferenceToMesh {
     Sampling sampling_;
     const TriangleSoup& soup_;
     std::optional<NearestTriangle> nearest_;
+    NearestTriangle::Guess guess_;
 
     ReferenceLattice::Points points_;
     DisplacedSurface::Corners corners_;
