@@ -19,6 +19,7 @@ EndToEndResult compare_end_to_end(const Setup& setup, const GoldenInputs& inputs
     result.bound = 4 * result.hardware_triangles + 1000;
 
     TriangleSoup golden_soup;
+    golden_soup.reserve(hardware.triangles.size() + hardware.triangles.size() / 8);
     const golden::Tessellation run =
         golden::tessellate(golden_base_triangles(setup), inputs.map, inputs.parameters, result.bound,
                            [&](const golden::Triangle& t) {

@@ -56,15 +56,13 @@ class NearestTriangle {
     bool within(const glm::dvec3& p, double radius, std::size_t most, std::vector<Found>& found) const;
 
   private:
-    struct Parts {
-        std::vector<BoxHierarchy::Box> boxes;
-        std::vector<std::uint32_t> triangles;  // that they are parts of
+    struct Part {
+        std::uint32_t triangle, path;  // how it was cut out of the triangle
     };
-    static Parts cut(const TriangleSoup& soup);
-    NearestTriangle(const TriangleSoup& soup, Parts parts);
+    static std::vector<Part> cut(const TriangleSoup& soup);
 
     const TriangleSoup& soup_;
-    std::vector<std::uint32_t> triangles_;  // by box
+    std::vector<Part> parts_;  // by box
     BoxHierarchy boxes_;
 };
 

@@ -13,11 +13,9 @@ constexpr std::size_t smallest_block = 3;  // in smaller ones every sample asks 
 
 }  // namespace
 
-ReferenceToMesh::ReferenceToMesh(const ReferenceLattice& lattice, Sampling sampling, const TriangleSoup& soup)
-    : lattice_(lattice), sampling_(sampling), soup_(soup) {
-    if (!soup.empty())
-        nearest_.emplace(soup);
-}
+ReferenceToMesh::ReferenceToMesh(const ReferenceLattice& lattice, Sampling sampling, const TriangleSoup& soup,
+                                 const NearestTriangle* nearest)
+    : lattice_(lattice), sampling_(sampling), soup_(soup), nearest_(nearest) {}
 
 BoxHierarchy::Box ReferenceToMesh::start(std::size_t tile) {
     const ReferenceLattice::Tile& which = lattice_.tiles()[tile];
