@@ -3,8 +3,14 @@
 #include <cmath>
 
 #include "testbench/check/surface_distance.h"
+#include "testbench/common/parallel.h"
 
 namespace tessera {
+namespace {
+
+constexpr std::size_t most_side_by_side = 2'000'000;  // triangles: beyond, memory for one search at a time
+
+}  // namespace
 
 namespace {
 
@@ -18,6 +24,7 @@ EndToEndResult compare(const Setup& setup, const BaseTriangles& base, const gold
     result.bound = 4 * result.hardware_triangles + 1000;
 
     TriangleSoup golden_soup;
+    golden_soup.reserve(hardware.triangles.size() + hardware.triangles.size() / 8);
     const golden::Tessellation run =
         golden::tessellate(base, map, parameters, result.bound, [&](const golden::Triangle& t) {
             const auto& v = t.vertices;
@@ -43,11 +50,18 @@ EndToEndResult compare(const Setup& setup, const BaseTriangles& base, const gold
         const SurfaceDistance d = distance_between(from, to);
         const double lsb = std::ldexp(1.0, setup.registers.formats.position.fraction);
         const double model = 1 / setup.model_scale.scale;
-        return EndToEndResult::Distance{d.points,    d.max,         d.rms,        d.max * lsb,
+        return EndToEndResult::Distance{d.points,    d.measured,    d.unseen(EndToEndResult::confidence),
+                                        d.max,       d.rms,         d.max * lsb,
                                         d.rms * lsb, d.max * model, d.rms * model};
     };
-    result.hardware_to_golden = measure(hardware_soup, golden_soup);
-    result.golden_to_hardware = measure(golden_soup, hardware_soup);
+    const auto there = [&] { result.hardware_to_golden = measure(hardware_soup, golden_soup); };
+    const auto back = [&] { result.golden_to_hardware = measure(golden_soup, hardware_soup); };
+    if (hardware_soup.size() + golden_soup.size() > most_side_by_side) {
+        there();
+        back();
+    } else {
+        for_each_chunk(2, [&] { return [&](std::size_t direction) { direction == 0 ? there() : back(); }; });
+    }
     return result;
 }
 

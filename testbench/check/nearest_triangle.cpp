@@ -2,8 +2,77 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tessera {
+namespace {
+
+// A box about a triangle across the axes has some ten times its area, about a long thin one far more.
+constexpr double least_thin = 16, most_thin = 4096;
+constexpr unsigned most_halvings = 5;
+
+using Corners = std::array<glm::dvec3, 3>;
+
+/// Boxes in all: where there are many triangles, memory is dearer than time.
+std::size_t most_parts(std::size_t triangles) {
+    constexpr std::size_t many = 1'000'000;
+    return triangles < many ? 8 * triangles : 2 * triangles;
+}
+
+BoxHierarchy::Box box_about(const Corners& triangle) {
+    BoxHierarchy::Box box;
+    for (const glm::dvec3& corner : triangle)
+        box.add(corner);
+    return box;
+}
+
+/// At its longest edge.
+std::array<Corners, 2> halves(const Corners& triangle) {
+    const auto& [a, b, c] = triangle;
+    const auto squared = [](const glm::dvec3& edge) { return glm::dot(edge, edge); };
+    const auto halve = [](const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& opposite) {
+        const glm::dvec3 middle = from / 2.0 + to / 2.0;
+        return std::array<Corners, 2>{{{from, middle, opposite}, {middle, to, opposite}}};
+    };
+    const double ab = squared(b - a), bc = squared(c - b), ca = squared(a - c);
+    if (ab >= bc && ab >= ca)
+        return halve(a, b, c);
+    return bc >= ca ? halve(b, c, a) : halve(c, a, b);
+}
+
+/// Calls at(path) for the parts of a triangle, halved as long as a part's box has more than `thin` times its area. A
+/// path is a 1 and then, from the first halving, a bit for each: the second half or not.
+template <class At>
+void for_each_part(const Corners& triangle, double thin, unsigned path, const At& at) {
+    const BoxHierarchy::Box box = box_about(triangle);
+    const glm::dvec3 side = box.high - box.low;
+    const double surface = 2 * (side.x * side.y + side.y * side.z + side.z * side.x);
+    const double area = glm::length(glm::cross(triangle[1] - triangle[0], triangle[2] - triangle[0])) / 2;
+    if (path >> most_halvings != 0 || !(surface > thin * area)) {
+        at(path);
+        return;
+    }
+    const std::array<Corners, 2> half = halves(triangle);
+    for (unsigned k = 0; k < 2; ++k)
+        for_each_part(half[k], thin, 2 * path + k, at);
+}
+
+BoxHierarchy::Box box_of_part(Corners triangle, unsigned path) {
+    if (path == 1)
+        return box_about(triangle);
+    unsigned bit = most_halvings;
+    while (path >> bit == 0)
+        --bit;
+    while (bit-- > 0)
+        triangle = halves(triangle)[path >> bit & 1];
+    BoxHierarchy::Box box = box_about(triangle);
+    const glm::dvec3 rounding = 0x1p-50 * glm::max(glm::abs(box.low), glm::abs(box.high));  // of new corners
+    box.low -= rounding;
+    box.high += rounding;
+    return box;
+}
+
+}  // namespace
 
 // Ericson, Real-Time Collision Detection, 5.1.5: by the Voronoi region of corner, edge or face that p lies
 // in.
@@ -37,45 +106,91 @@ glm::dvec3 closest_point(const std::array<glm::dvec3, 3>& triangle, const glm::d
     return a + vb / sum * ab + vc / sum * ac;
 }
 
+std::vector<NearestTriangle::Part> NearestTriangle::cut(const TriangleSoup& soup) {
+    double thin = least_thin;
+    std::size_t count = 0;
+    for (;; thin *= 2) {
+        if (thin > most_thin)  // most triangles have no area, and halving them brings nothing
+            thin = std::numeric_limits<double>::infinity();
+        count = 0;
+        for (const auto& t : soup)
+            for_each_part(t, thin, 1, [&](unsigned) { ++count; });
+        if (count <= most_parts(soup.size()))
+            break;
+    }
+    std::vector<Part> parts;
+    parts.reserve(count);
+    for (std::size_t k = 0; k < soup.size(); ++k)
+        for_each_part(soup[k], thin, 1, [&](unsigned path) {
+            parts.push_back({static_cast<std::uint32_t>(k), path});
+        });
+    return parts;
+}
+
 NearestTriangle::NearestTriangle(const TriangleSoup& soup)
-    : soup_(soup), boxes_(soup.size(), [&](std::size_t triangle) {
-          BoxHierarchy::Box box;
-          for (const glm::dvec3& corner : soup[triangle])
-              box.add(corner);
-          return box;
+    : soup_(soup), parts_(cut(soup)), boxes_(parts_.size(), [&](std::size_t box) {
+          return box_of_part(soup[parts_[box].triangle], parts_[box].path);
       }) {}
 
-NearestTriangle::Found NearestTriangle::nearest(const glm::dvec3& p) {
-    Found found{last_, squared_distance(soup_[last_], p)};
+NearestTriangle::Found NearestTriangle::nearest(const glm::dvec3& p, Guess& guess) const {
+    Found found{guess.triangle, squared_distance(soup_[guess.triangle], p)};
     double radius = std::sqrt(found.squared);
-    boxes_.visit_near(p, radius, [&](std::size_t triangle) {
-        const double squared = squared_distance(soup_[triangle], p);
-        if (found.is_beaten_by(squared, triangle)) {
-            found = {triangle, squared};
-            radius = std::sqrt(squared);
-        }
-        return radius;
-    });
-    last_ = found.triangle;
+    const auto look_within = [&](double within) {
+        boxes_.visit_near(p, within, [&](std::size_t box) {
+            const std::size_t triangle = parts_[box].triangle;
+            const double squared = squared_distance(soup_[triangle], p);
+            if (found.is_beaten_by(squared, triangle)) {
+                found = {triangle, squared};
+                radius = std::sqrt(squared);
+            }
+            return std::min(radius, within);
+        });
+    };
+    // As near as the last point was, or a little farther: most likely that is enough, and much less than to the
+    // triangle that was nearest to that point.
+    const double near = 4 * guess.distance;
+    const bool far = !(near < radius);
+    if (!far)
+        look_within(near);
+    if (far || radius > near)
+        look_within(radius);
+    guess = {found.triangle, radius};
     return found;
+}
+
+std::size_t NearestTriangle::boxes_around(const glm::dvec3& p) const {
+    std::size_t count = 0;
+    boxes_.visit_near(p, 0, [&](std::size_t) {
+        ++count;
+        return 0.0;
+    });
+    return count;
 }
 
 bool NearestTriangle::within(const glm::dvec3& p, double radius, std::size_t most,
                              std::vector<Found>& found) const {
     found.clear();
     const double largest = radius * radius * rounding_slack;
+    const auto drop_doubles = [&] {
+        std::sort(found.begin(), found.end(),
+                  [](const Found& a, const Found& b) { return a.triangle < b.triangle; });
+        found.erase(std::unique(found.begin(), found.end(),
+                                [](const Found& a, const Found& b) { return a.triangle == b.triangle; }),
+                    found.end());
+    };
     bool all = true;
-    boxes_.visit_near(p, radius, [&](std::size_t triangle) {
-        if (!all)
-            return 0.0;
+    boxes_.visit_near(p, radius, [&](std::size_t box) {
+        const std::size_t triangle = parts_[box].triangle;
         const double squared = squared_distance(soup_[triangle], p);
         if (squared > largest)
             return radius;
-        all = found.size() < most;
-        if (all)
-            found.push_back({triangle, squared});
+        found.push_back({triangle, squared});
+        if (found.size() > most)
+            drop_doubles();
+        all = found.size() <= most;
         return all ? radius : 0.0;
     });
+    drop_doubles();
     return all;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -24,7 +25,8 @@ inline double squared_distance(const std::array<glm::dvec3, 3>& triangle, const 
 inline constexpr double rounding_slack = 1 + 1e-12;
 
 /// Looks up the triangle nearest to a point. Of triangles equally near the first in the soup is it, so the answer
-/// depends on the soup alone. Quick if points come in an order in which neighbours are neighbours in space.
+/// depends on the soup alone. Long thin triangles are sorted by boxes about parts of them: a box about a whole one holds
+/// mostly what is far from it. Several threads may ask at once, each with a guess of its own.
 class NearestTriangle {
   public:
     struct Found {
@@ -39,16 +41,29 @@ class NearestTriangle {
     /// `soup` must outlive this and not be empty.
     explicit NearestTriangle(const TriangleSoup& soup);
 
-    Found nearest(const glm::dvec3& p);
+    /// What was found last: where to begin. Quick if points come in an order in which neighbours are neighbours in space.
+    struct Guess {
+        std::size_t triangle = 0;
+        double distance = std::numeric_limits<double>::infinity();
+    };
+    Found nearest(const glm::dvec3& p, Guess& guess) const;
 
-    /// Every triangle within `radius` of p, in no useful order; false, and not all of them, if there are more than
+    /// How many boxes p lies in: what nearest(p) looks at, at least.
+    std::size_t boxes_around(const glm::dvec3& p) const;
+
+    /// Every triangle within `radius` of p, each once, by its place in the soup; false, and not all of them, if there are more than
     /// `most`.
     bool within(const glm::dvec3& p, double radius, std::size_t most, std::vector<Found>& found) const;
 
   private:
+    struct Part {
+        std::uint32_t triangle, path;  // how it was cut out of the triangle
+    };
+    static std::vector<Part> cut(const TriangleSoup& soup);
+
     const TriangleSoup& soup_;
+    std::vector<Part> parts_;  // by box
     BoxHierarchy boxes_;
-    std::size_t last_ = 0;  // a neighbour's nearest triangle is a good first guess
 };
 
 }  // namespace tessera

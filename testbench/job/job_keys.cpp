@@ -431,8 +431,8 @@ std::vector<KeyTable> declare_keys() {
         using Output = Job::Output;
         key.add("folder", &Output::folder, KeyKind::folder, "Folder of the run");
         key.add("ply", &Output::ply, "Write the mesh as binary PLY");
-        key.add("obj", &Output::obj, "Write the mesh as OBJ");
-        key.add("picture", &Output::picture, "Write a picture");
+        key.add("obj", &Output::obj, "Write the mesh as OBJ too: text, some five times as large as mesh.ply");
+        key.add("picture", &Output::picture, "Write picture.png");
         key.add("vcd", &Output::vcd, "Timed mode: write waveforms, trace.vcd");
         key.add("timeline", &Output::timeline, "Timed mode: write activity per unit in the Chrome trace format, timeline.json");
         key.add("trace_from", &Output::trace_from, "cycles", between(0, most_trace), "First cycle of waveforms and timeline");

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,11 +29,12 @@ namespace tessera {
 ///                         space, to the nearest facet of the lattice. RMS over the parts, weighted by their area on
 ///                         the emitted mesh; vertices and centroids count for the maximum only.
 ///
-/// All sums run in a fixed order in double precision: the same run gives the same bytes.
+/// All sums run in a fixed order in double precision: the same run gives the same bytes, on any number of threads.
 struct MeasureLimits {
     std::uint64_t reference_samples = std::uint64_t{1}
-                                      << 26;              ///< 67 million: 2048 x 2048 texels at full density
-    std::uint64_t mesh_samples = std::uint64_t{1} << 23;  ///< beyond, parts are larger than a texel
+                                      << 23;              ///< 8.4 million: 724 x 724 texels at full density
+    std::uint64_t mesh_samples = std::uint64_t{1} << 21;  ///< beyond, parts are larger than a texel
+    std::function<void(double)> progress;                 ///< told the part done, 0..1, now and then
 };
 
 /// Where a maximum is, and what the hardware did there.
@@ -77,8 +79,8 @@ struct MeshError {
     std::string no_vertical;                ///< why there is none
 };
 
-/// One core takes about 25 s for a map of 1024 x 1024 texels and 200,000 triangles, twice that where the map is white
-/// noise as high as 128 texels; memory: about 250 bytes a triangle and 60 MB. Errors: InputError if the mesh names base
+/// Takes some seconds a walk on two cores, whatever the map and mesh: their samples are limited. Memory: about 250 bytes a
+/// triangle and 60 MB a core. Errors: InputError if the mesh names base
 /// triangles the base mesh lacks; ResourceError beyond reference_lattice.h's and height_field.h's limits and when
 /// Embree's memory runs out.
 MeshError measure_error(const BaseMesh& base, const HeightMap& map, const DisplacementOf& displacement,

@@ -13,11 +13,9 @@ constexpr std::size_t smallest_block = 3;  // in smaller ones every sample asks 
 
 }  // namespace
 
-ReferenceToMesh::ReferenceToMesh(const ReferenceLattice& lattice, Sampling sampling, const TriangleSoup& soup)
-    : lattice_(lattice), sampling_(sampling), soup_(soup) {
-    if (!soup.empty())
-        nearest_.emplace(soup);
-}
+ReferenceToMesh::ReferenceToMesh(const ReferenceLattice& lattice, Sampling sampling, const TriangleSoup& soup,
+                                 const NearestTriangle* nearest)
+    : lattice_(lattice), sampling_(sampling), soup_(soup), nearest_(nearest) {}
 
 BoxHierarchy::Box ReferenceToMesh::start(std::size_t tile) {
     const ReferenceLattice::Tile& which = lattice_.tiles()[tile];
@@ -52,12 +50,12 @@ void ReferenceToMesh::measure_block(std::size_t first_a, std::size_t first_b, st
     if (size <= smallest_block) {
         for (std::size_t b = first_b; b < end_b; ++b)
             for (std::size_t a = first_a; a < end_a && points_.has(a, b); ++a)
-                found_[Points::number(a, b)] = nearest_->nearest(points_.point[Points::number(a, b)]);
+                found_[Points::number(a, b)] = nearest_->nearest(points_.point[Points::number(a, b)], guess_);
         return;
     }
     const glm::dvec3 centre = (box.low + box.high) / 2.0;
     const double radius = glm::length(box.high - box.low) / 2;
-    const double from_mesh = std::sqrt(nearest_->nearest(centre).squared);
+    const double from_mesh = std::sqrt(nearest_->nearest(centre, guess_).squared);
     if (!nearest_->within(centre, (from_mesh + 2 * radius) * rounding_slack, most_candidates, within_)) {
         ++blocks_cut_;
         const std::size_t half = (size + 1) / 2;

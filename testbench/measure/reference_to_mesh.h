@@ -1,5 +1,4 @@
 #pragma once
-#include <optional>
 #include <vector>
 
 #include "testbench/check/nearest_triangle.h"
@@ -7,7 +6,7 @@
 
 namespace tessera {
 
-/// From every sample of a reference lattice to the nearest point of a mesh, a tile at a time.
+/// From every sample of a reference lattice to the nearest point of a mesh, a tile at a time. One a thread.
 ///
 /// Samples are so dense that asking for each alone would take minutes. Of a block of samples only the centre asks: if it
 /// is d from the mesh and the block's radius is r, no sample's nearest triangle is farther than d + 2 r from the centre.
@@ -22,8 +21,10 @@ class ReferenceToMesh {
         double weight = 0;         ///< the base surface's area it stands for in this tile
     };
 
-    /// Lattice and soup must outlive this. With an empty soup tiles are evaluated, nothing measured.
-    ReferenceToMesh(const ReferenceLattice& lattice, Sampling sampling, const TriangleSoup& soup);
+    /// Lattice, soup and the search through it must outlive this. With an empty soup, and no search, tiles are evaluated,
+    /// nothing measured.
+    ReferenceToMesh(const ReferenceLattice& lattice, Sampling sampling, const TriangleSoup& soup,
+                    const NearestTriangle* nearest);
 
     /// Calls take(sample) for all points of a tile, in a fixed order; those on the border between tiles come in each.
     /// Gives the box about the tile's points.
@@ -55,7 +56,8 @@ class ReferenceToMesh {
     const ReferenceLattice& lattice_;
     Sampling sampling_;
     const TriangleSoup& soup_;
-    std::optional<NearestTriangle> nearest_;
+    const NearestTriangle* nearest_;
+    NearestTriangle::Guess guess_;
 
     ReferenceLattice::Points points_;
     DisplacedSurface::Corners corners_;

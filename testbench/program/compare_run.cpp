@@ -18,8 +18,9 @@ ExitCode compare_run(const Command& command) {
     const RecordedRun run = read_run(command.run_folder, command.data_folder);
     const BaseMesh base = load_mesh(run.job, command.data_folder);
     const HeightMap map = load_map(run.job, command.data_folder);
-    progress.show("measuring", 0.1);
-    const MeshError error = measure_error(base, map, DisplacementOf::from(run.job, map), run.mesh);
+    MeasureLimits limits;
+    limits.progress = [&](double part) { progress.show("measuring distances", 0.1 + 0.9 * part); };
+    const MeshError error = measure_error(base, map, DisplacementOf::from(run.job, map), run.mesh, limits);
     progress.clear();
 
     const std::string text = error_text(run.job, run.mesh, error);

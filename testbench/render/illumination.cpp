@@ -8,8 +8,8 @@ namespace {
 
 constexpr double golden_angle = 2.39996322972865332;
 
-constexpr std::size_t sky_directions = 128;
-constexpr std::size_t key_directions = 64;
+constexpr std::size_t sky_directions = 48;
+constexpr std::size_t key_directions = 32;
 constexpr double key_radius = 0.15;  // tangent of the angle to the lamp's edge
 // A warm sun and a cool sky: shadows differ from the lit side in hue, too.
 const glm::dvec3 key_strength(0.80, 0.765, 0.70);
@@ -65,20 +65,21 @@ Illumination::Illumination(const View& view, const Style& style, const RayScene&
 }
 
 void Illumination::add(const Lamp& lamp, const std::vector<ShadingPoint>& points,
-                       std::vector<Light>& lights) {
-    rays_.clear();
-    of_ray_.clear();
+                       std::vector<Light>& lights, Scratch& scratch) const {
+    auto& [rays, of_ray, occluded] = scratch;
+    rays.clear();
+    of_ray.clear();
     for (std::size_t i = 0; i < points.size(); ++i)
         if (glm::dot(points[i].normal, lamp.direction) > 0) {
-            rays_.push_back({points[i].ray_origin, lamp.direction, 0});
-            of_ray_.push_back(i);
+            rays.push_back({points[i].ray_origin, lamp.direction, 0});
+            of_ray.push_back(i);
         }
-    scene_.occlusions(rays_, occluded_);
+    scene_.occlusions(rays, occluded);
     const glm::dvec3 half = glm::normalize(lamp.direction + eye_);
-    for (std::size_t r = 0; r < rays_.size(); ++r)
-        if (!occluded_[r]) {
-            const glm::dvec3& normal = points[of_ray_[r]].normal;
-            Light& light = lights[of_ray_[r]];
+    for (std::size_t r = 0; r < rays.size(); ++r)
+        if (!occluded[r]) {
+            const glm::dvec3& normal = points[of_ray[r]].normal;
+            Light& light = lights[of_ray[r]];
             light.diffuse += lamp.diffuse * glm::dot(normal, lamp.direction);
             if (lamp.highlight > 0)
                 light.highlight += lamp.highlight * to_the_16th(std::max(0.0, glm::dot(normal, half)));
@@ -86,12 +87,12 @@ void Illumination::add(const Lamp& lamp, const std::vector<ShadingPoint>& points
 }
 
 void Illumination::light(std::size_t sample, const std::vector<ShadingPoint>& points,
-                         std::vector<Light>& lights) {
+                         std::vector<Light>& lights, Scratch& scratch) const {
     lights.assign(points.size(), Light{});
     for (std::size_t i = 0; i < points.size(); ++i)
         lights[i].diffuse = least + fill_strength * std::max(0.0, glm::dot(points[i].normal, fill_));
     for (const Lamp& lamp : lamps_[sample])
-        add(lamp, points, lights);
+        add(lamp, points, lights, scratch);
 }
 
 }  // namespace tessera

@@ -24,8 +24,16 @@ class Illumination {
   public:
     Illumination(const View& view, const Style& style, const RayScene& scene);
 
+    /// What light() uses, kept for its memory: one a thread.
+    struct Scratch {
+        std::vector<Ray> rays;
+        std::vector<std::size_t> of_ray;
+        std::vector<std::uint8_t> occluded;
+    };
+
     /// The light at points that share a sub-pixel position; quick if they are neighbours.
-    void light(std::size_t sample, const std::vector<ShadingPoint>& points, std::vector<Light>& lights);
+    void light(std::size_t sample, const std::vector<ShadingPoint>& points, std::vector<Light>& lights,
+               Scratch& scratch) const;
 
   private:
     struct Lamp {
@@ -34,15 +42,13 @@ class Illumination {
         double highlight = 0;
     };
 
-    void add(const Lamp& lamp, const std::vector<ShadingPoint>& points, std::vector<Light>& lights);
+    void add(const Lamp& lamp, const std::vector<ShadingPoint>& points, std::vector<Light>& lights,
+             Scratch& scratch) const;
 
     const RayScene& scene_;
     glm::dvec3 eye_;  ///< direction towards the viewer, good enough for highlights
     glm::dvec3 fill_;
     std::vector<Lamp> lamps_[samples_per_pixel];
-    std::vector<Ray> rays_;
-    std::vector<std::size_t> of_ray_;
-    std::vector<std::uint8_t> occluded_;
 };
 
 }  // namespace tessera

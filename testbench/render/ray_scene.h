@@ -15,7 +15,7 @@ struct Ray {
     double near = 0;  ///< in lengths of direction
 };
 
-/// The mesh made ready for rays. Single-threaded; an answer depends on the mesh and the batch alone. Embree's
+/// The mesh made ready for rays. Several threads may ask at once; an answer depends on the mesh and the batch alone. Embree's
 /// single precision only picks the triangle: where it is hit is the caller's to compute.
 class RayScene {
   public:

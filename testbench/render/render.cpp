@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
+#include "testbench/common/parallel.h"
 #include "testbench/render/illumination.h"
 #include "testbench/render/legend.h"
 #include "testbench/render/palette.h"
@@ -126,29 +128,57 @@ class Renderer {
     }
 
     std::vector<Picture> run() {
-        for (int y = 0; y < view_.height; y += tile_side)
-            for (int x = 0; x < view_.width; x += tile_side)
-                render_tile(x, y, std::min(x + tile_side, view_.width),
-                            std::min(y + tile_side, view_.height));
+        const int rows = (view_.height + tile_side - 1) / tile_side;
+        std::vector<std::uint8_t> in_sight(static_cast<std::size_t>(rows), 0);
+        for_each_chunk(in_sight.size(), [&] {
+            return [&, tile = Tile()](std::size_t row) mutable {
+                const int y = static_cast<int>(row) * tile_side;
+                for (int x = 0; x < view_.width; x += tile_side)
+                    if (render_tile(tile, x, y, std::min(x + tile_side, view_.width),
+                                    std::min(y + tile_side, view_.height)))
+                        in_sight[row] = 1;
+            };
+        });
+        const bool any = std::find(in_sight.begin(), in_sight.end(), 1) != in_sight.end();
+        for (Picture& picture : pictures_)
+            picture.mesh_in_sight = any;
         return std::move(pictures_);
     }
 
   private:
-    void render_tile(int left, int top, int right, int bottom) {
+    /// What a tile in work needs, kept for its memory: one a thread.
+    struct Tile {
+        std::vector<Ray> rays;
+        std::vector<glm::dvec2> at;
+        std::vector<std::uint32_t> hits;
+        std::vector<ShadingPoint> points;
+        std::vector<Light> lights;
+        std::vector<glm::dvec3> sums;  // linear light, one plane per style
+        Illumination::Scratch scratch;
+        /// Lines of triangles met, each in the place its number gives it: neighbours meet the same ones.
+        struct Lines {
+            std::uint32_t triangle = RayScene::nothing;
+            Wireframe lines;
+        };
+        std::array<Lines, 256> lines;
+    };
+
+    /// False if the mesh is not to be seen in it.
+    bool render_tile(Tile& tile, int left, int top, int right, int bottom) {
         const std::size_t pixels = static_cast<std::size_t>((right - left) * (bottom - top));
-        sums_.assign(pixels * paints_.size(), glm::dvec3(0));
+        tile.sums.assign(pixels * paints_.size(), glm::dvec3(0));
         bool anything = false;
         for (std::size_t sample = 0; sample < samples_per_pixel; ++sample)
-            anything = add_sample(sample, left, top, right, bottom) || anything;
+            anything = add_sample(tile, sample, left, top, right, bottom) || anything;
         if (!anything)
-            return;
+            return false;
         for (std::size_t s = 0; s < paints_.size(); ++s) {
-            pictures_[s].mesh_in_sight = true;
-            const glm::dvec3* sum = &sums_[s * pixels];
+            const glm::dvec3* sum = &tile.sums[s * pixels];
             for (int y = top; y < bottom; ++y)
                 for (int x = left; x < right; ++x)
                     set_pixel(pictures_[s], x, y, *sum++ / static_cast<double>(samples_per_pixel));
         }
+        return true;
     }
 
     static void set_pixel(Picture& picture, int x, int y, const glm::dvec3& light) {
@@ -161,38 +191,45 @@ class Renderer {
     }
 
     /// Adds one sample of every pixel in the tile to the sums; false if none met the mesh.
-    bool add_sample(std::size_t sample, int left, int top, int right, int bottom) {
+    bool add_sample(Tile& tile, std::size_t sample, int left, int top, int right, int bottom) const {
+        auto& [rays, at, hits, points, lights, sums, scratch, lines_met] = tile;
         const glm::dvec2 offset = sample_position(sample);
-        rays_.clear();
-        at_.clear();
+        rays.clear();
+        at.clear();
         for (int y = top; y < bottom; ++y)
             for (int x = left; x < right; ++x) {
-                at_.push_back({x + offset.x, y + offset.y});
-                const glm::dvec3 direction = view_.ray(at_.back().x, at_.back().y);
-                rays_.push_back({view_.eye - mesh_.origin + start_ * direction, direction,
+                at.push_back({x + offset.x, y + offset.y});
+                const glm::dvec3 direction = view_.ray(at.back().x, at.back().y);
+                rays.push_back({view_.eye - mesh_.origin + start_ * direction, direction,
                                  std::max(0.0, view_.near_plane - start_)});
             }
-        scene_.first_hits(rays_, hits_);
-        points_.clear();
-        for (std::size_t i = 0; i < rays_.size(); ++i)
-            if (hits_[i] != RayScene::nothing)
-                points_.push_back(shading_point(rays_[i], hits_[i]));
-        illumination_.light(sample, points_, lights_);
+        scene_.first_hits(rays, hits);
+        points.clear();
+        for (std::size_t i = 0; i < rays.size(); ++i)
+            if (hits[i] != RayScene::nothing)
+                points.push_back(shading_point(rays[i], hits[i]));
+        illumination_.light(sample, points, lights, scratch);
 
         std::size_t point = 0;
-        for (std::size_t i = 0; i < rays_.size(); ++i) {
-            if (hits_[i] == RayScene::nothing) {
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            if (hits[i] == RayScene::nothing) {
                 for (std::size_t s = 0; s < paints_.size(); ++s)
-                    sums_[s * rays_.size() + i] += paints_[s].background();
+                    sums[s * rays.size() + i] += paints_[s].background();
                 continue;
             }
-            const Wireframe lines = line_width_ > 0 ? wireframe_of(hits_[i]) : Wireframe();
+            const Wireframe* lines = nullptr;
+            if (line_width_ > 0) {
+                Tile::Lines& place = lines_met[hits[i] % lines_met.size()];
+                if (place.triangle != hits[i])
+                    place = {hits[i], wireframe_of(hits[i])};
+                lines = &place.lines;
+            }
             for (std::size_t s = 0; s < paints_.size(); ++s)
-                sums_[s * rays_.size() + i] += paints_[s].colour(
-                    points_[point], lights_[point], paints_[s].has_lines() ? &lines : nullptr, at_[i]);
+                sums[s * rays.size() + i] += paints_[s].colour(
+                    points[point], lights[point], paints_[s].has_lines() ? lines : nullptr, at[i]);
             ++point;
         }
-        return !points_.empty();
+        return !points.empty();
     }
 
     ShadingPoint shading_point(const Ray& ray, std::uint32_t index) const {
@@ -258,14 +295,6 @@ class Renderer {
         0;  // of the rays, along the view direction: single precision sees nothing from too far away
     double clearance_ =
         0;  // of the rays to the lights above the surface, against single precision's rounding
-
-    // of the tile in work, kept for their memory
-    std::vector<Ray> rays_;
-    std::vector<glm::dvec2> at_;
-    std::vector<std::uint32_t> hits_;
-    std::vector<ShadingPoint> points_;
-    std::vector<Light> lights_;
-    std::vector<glm::dvec3> sums_;  // linear light, one plane per style
 };
 
 }  // namespace

@@ -100,7 +100,7 @@ TEST_CASE("limits: directions as short as a number can be are directions") {
         const ProgramEnd end = run_with({"camera.up=" + up, "hardware.light=" + light}, here.path());
         INFO(end.text());
         REQUIRE(end.exit_code == 0);
-        return read_all(here.path() / "out/mesh.obj");
+        return read_all(here.path() / "out/mesh.ply");
     };
     CHECK(mesh_of("[0, 0, 5e-324]", "[0, 0, 5e-324]") == mesh_of("[0, 0, 1]", "[0, 0, 1]"));
 }

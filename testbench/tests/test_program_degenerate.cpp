@@ -113,8 +113,7 @@ TEST_CASE("the queue's order and watermark, and the way to memory, change no tri
          {"hardware.queue_order=lifo", "hardware.queue_watermark=1000", "hardware.direct_memory=false"}) {
         INFO(setting);
         const auto other = Attempt({setting}).well().files();
-        for (const char* const file : {"mesh.ply", "mesh.obj"})
-            CHECK((plain.at(file) == other.at(file)));
+        CHECK((plain.at("mesh.ply") == other.at("mesh.ply")));
     }
 }
 

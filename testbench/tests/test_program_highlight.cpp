@@ -26,7 +26,7 @@ std::vector<std::string> run_with(const std::vector<std::string>& settings) {
 
 TEST_CASE("highlight run: consistent, and every file names the test") {
     const TestFolder here;
-    const ProgramEnd end = run_tessera(run_with({"tests.highlight=true"}), here.path());
+    const ProgramEnd end = run_tessera(run_with({"tests.highlight=true", "output.obj=true"}), here.path());
     INFO(end.text());
     REQUIRE(end.exit_code == 0);
     CHECK_THAT(end.out, Contains("highlight alone") && Contains("all checks passed"));
@@ -67,7 +67,7 @@ TEST_CASE("highlight run: functional and timed mode, with a queue that spills, l
     const TestFolder here;
     const auto mesh_of = [&](const std::vector<std::string>& more) {
         std::vector<std::string> settings{"tests.highlight=true", "map.width=64", "map.height=64",
-                                          "output.picture=false"};
+                                          "output.picture=false", "output.obj=true"};
         settings.insert(settings.end(), more.begin(), more.end());
         const ProgramEnd end = run_tessera(run_with(settings), here.path());
         INFO(end.text());

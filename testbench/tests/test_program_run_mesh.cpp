@@ -213,7 +213,7 @@ TEST_CASE("a base mesh that is no finished run's is refused with what it is") {
 
 TEST_CASE("a run takes away neither the mesh file nor the map file that it reads") {
     const TestFolder here;
-    run(here.path(), "first", {"tests.generation_limit=1"});
+    run(here.path(), "first", {"tests.generation_limit=1", "output.obj=true"});
     const std::string mesh = read_all(here.path() / "runs/first/mesh.obj");
     for (const char* const frames : {"frames.count=1", "frames.count=2"}) {
         CHECK_THAT(refused(here.path(), {"mesh.source=file", "mesh.file=runs/first/mesh.obj",

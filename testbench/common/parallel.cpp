@@ -1,0 +1,73 @@
+#include "testbench/common/parallel.h"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+namespace tessera {
+namespace {
+
+std::size_t chosen_threads = 0;  // 0: one a core
+thread_local bool sharing = false;
+
+}  // namespace
+
+std::size_t thread_count() {
+    if (chosen_threads > 0)
+        return chosen_threads;
+    return std::max(1U, std::thread::hardware_concurrency());
+}
+
+OnThreads::OnThreads(std::size_t threads) {
+    chosen_threads = threads;
+}
+
+OnThreads::~OnThreads() {
+    chosen_threads = 0;
+}
+
+void share_chunks(std::size_t chunks, const std::function<void(const NextChunk& next)>& work) {
+    std::atomic<std::size_t> handed_out{0};
+    std::mutex failing;
+    std::exception_ptr failure;
+    std::size_t failed_chunk = chunks;
+    const auto run = [&] {
+        const bool outer = sharing;
+        sharing = true;
+        std::size_t at = 0;
+        try {
+            work([&](std::size_t& chunk) {
+                chunk = at = handed_out++;
+                return chunk < chunks;
+            });
+        } catch (...) {
+            handed_out = chunks;
+            const std::lock_guard<std::mutex> lock(failing);
+            if (!failure || at < failed_chunk) {
+                failure = std::current_exception();
+                failed_chunk = at;
+            }
+        }
+        sharing = outer;
+    };
+    std::vector<std::thread> others;
+    const std::size_t threads = sharing ? 1 : std::min(thread_count(), chunks);
+    others.reserve(threads);
+    try {
+        while (others.size() + 1 < threads)
+            others.emplace_back(run);
+    } catch (const std::system_error&) {
+        // The system gives no more threads: those there are do the work.
+    }
+    run();
+    for (std::thread& other : others)
+        other.join();
+    if (failure)
+        std::rethrow_exception(failure);
+}
+
+}  // namespace tessera
