@@ -6,13 +6,10 @@
 #include "testbench/common/parallel.h"
 
 namespace tessera {
+
 namespace {
 
 constexpr std::size_t most_side_by_side = 2'000'000;  // triangles: beyond, memory for one search at a time
-
-}  // namespace
-
-namespace {
 
 using BaseTriangles = std::vector<std::array<golden::Vertex, 3>>;
 

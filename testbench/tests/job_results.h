@@ -12,8 +12,8 @@ struct JobResult {
     std::uint64_t splits;     ///< edges
     std::uint64_t edges;      ///< tested
     std::uint64_t cycles;     ///< timed mode
-    std::uint64_t
-        mesh;  ///< 64 bit FNV-1a of mesh.ply's lines after "end_header", sorted as the file has them
+    /// 64 bit FNV-1a of mesh.ply's lines after "end_header", sorted as the file has them.
+    std::uint64_t mesh;
 };
 
 inline constexpr std::array<JobResult, 5> job_results{{
