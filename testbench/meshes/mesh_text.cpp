@@ -61,7 +61,7 @@ std::string quoted(std::string_view token) {
 
 std::string_view foreign_mesh_kind(std::string_view content) {
     using namespace std::string_view_literals;
-    constexpr std::array<std::array<std::string_view, 2>, 9> kinds{{
+    constexpr std::array<std::array<std::string_view, 2>, 8> kinds{{
         {"ply\n"sv, "a PLY file"sv},
         {"ply\r"sv, "a PLY file"sv},
         {"glTF"sv, "a GLB file (binary glTF)"sv},
@@ -69,8 +69,7 @@ std::string_view foreign_mesh_kind(std::string_view content) {
         {"BLENDER"sv, "a Blender file"sv},
         {"OFF"sv, "an OFF file"sv},
         {"PK\x03\x04"sv, "a ZIP archive (3MF and USDZ are such)"sv},
-        {"<"sv, "an XML file or a web page (COLLADA and X3D are such)"sv},
-        {"version https://git-lfs"sv, "a Git LFS pointer, not the file itself (git lfs pull fetches it)"sv},
+        {"<?xml"sv, "an XML file (COLLADA and X3D are such)"sv},
     }};
     for (const auto& [start, kind] : kinds) {
         if (content.substr(0, start.size()) == start) {
