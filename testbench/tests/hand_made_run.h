@@ -21,20 +21,20 @@ class HandMadeRun {
     Simulation simulation{setup, 1000};
 
     HandMadeRun() {
-        using namespace datapath;
         sc_core::sc_start(sc_core::SC_ZERO_TIME);
-        const unsigned n = normal_bit, s = summed_height_bit, h = highlight_bit, all = allowing_bits;
+        const unsigned n = datapath::normal_bit, s = datapath::summed_height_bit, h = datapath::highlight_bit;
+        const unsigned view = datapath::view_bit, tex_coord = datapath::tex_coord_bit,
+                       generation = datapath::generation_bit, all = datapath::allowing_bits;
         for (int k = 0; k < 3; ++k)
             decide({n | all, n | all, n | all});
         for (int k = 0; k < 2; ++k)
             decide({s | all, s | all, all});
         decide({n | s | all, all, all});
         decide({h | all, h | all, n | h | all});
-        decide({n | tex_coord_bit | generation_bit, s | tex_coord_bit | generation_bit,
-                n | s | tex_coord_bit | generation_bit});
-        decide({n | view_bit | generation_bit, n | view_bit | generation_bit, n | view_bit});
-        decide({n | view_bit | generation_bit, h | view_bit | generation_bit, 0});
-        decide({s | view_bit | tex_coord_bit, view_bit, 0});
+        decide({n | tex_coord | generation, s | tex_coord | generation, n | s | tex_coord | generation});
+        decide({n | view | generation, n | view | generation, n | view});
+        decide({n | view | generation, h | view | generation, 0});
+        decide({s | view | tex_coord, view, 0});
         for (int k = 0; k < 5; ++k)
             fetch_normals(k < 2);
     }

@@ -81,7 +81,8 @@ TEST_CASE("timing tables: of several who block a unit the one that did so longes
     a.set(0, State::blocked, &m.tests.normal_test);
     a.set(100, State::blocked, &m.tests.view_test);
     a.set(300, State::blocked, &m.tests.normal_test);
-    a.set(390, State::busy);
+    a.set(390, State::blocked, &m.tests.tex_coord_test);
+    a.set(400, State::busy);
     a.finish(cycles);
     CHECK_THAT(line_of(timing_tables(m.pipeline, cycles), "tessellation_tests_0.calculate_new_u"),
                EndsWith("  blocked by tessellation_tests_0.view_test"));
