@@ -50,10 +50,11 @@ std::string checks_rows(const Checks& checks) {
                         std::max(e.hardware_to_golden.rms_model, e.golden_to_hardware.rms_model)));
         const double unseen = std::max(e.hardware_to_golden.unseen, e.golden_to_hardware.unseen);
         if (unseen > 0)
-            text += row("", fmt::format("at {} of {} points; with {} % confidence at most {:.2g} % lie farther apart",
-                                        count(e.hardware_to_golden.measured + e.golden_to_hardware.measured),
-                                        count(e.hardware_to_golden.points + e.golden_to_hardware.points),
-                                        100 * EndToEndResult::confidence, 100 * unseen));
+            text += row(
+                "", fmt::format("at {} of {} points; with {} % confidence at most {:.2g} % lie farther apart",
+                                count(e.hardware_to_golden.measured + e.golden_to_hardware.measured),
+                                count(e.hardware_to_golden.points + e.golden_to_hardware.points),
+                                100 * EndToEndResult::confidence, 100 * unseen));
     }
     if (checks.invariants) {
         const InvariantResult& i = *checks.invariants;

@@ -91,7 +91,8 @@ TEST_CASE("distances through Embree are those of a search through all triangles"
     CHECK(std::isinf(distance_between({random_triangle(random, 1)}, {}).max));
 }
 
-TEST_CASE("distances to long thin triangles, and to such without an area, are those of a search through all") {
+TEST_CASE(
+    "distances to long thin triangles, and to such without an area, are those of a search through all") {
     Random random(22);
     const auto needle = [&](double width) {
         const glm::dvec3 at(real(random, -1, 1), real(random, -1, 1), real(random, -1, 1));
@@ -146,7 +147,8 @@ TEST_CASE("a sample of the points says how many it is, and what that tells of th
     for (const std::size_t threads : {1U, 2U, 3U}) {
         const OnThreads on(threads);
         for (const std::uint64_t most : {most_looks, std::uint64_t{120'000}}) {
-            const SurfaceDistance again = distance_between(from, to, most), first = most == most_looks ? all : some;
+            const SurfaceDistance again = distance_between(from, to, most),
+                                  first = most == most_looks ? all : some;
             CHECK(again.max == first.max);
             CHECK(again.rms == first.rms);
         }

@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
-#include "testbench/common/parallel.h"
 #include "testbench/common/error.h"
+#include "testbench/common/parallel.h"
 #include "testbench/meshes/built_in.h"
 #include "testbench/tests/measure_cases.h"
 
@@ -383,7 +383,8 @@ TEST_CASE("the error is the same on any number of threads, and progress ends at 
         const MeshError other = measure(threads);
         for (const auto error : {&MeshError::interpolated, &MeshError::nearest_texel}) {
             const SurfaceError &a = one.*error, &b = other.*error;
-            for (const auto direction : {&SurfaceError::reference_to_mesh, &SurfaceError::mesh_to_reference}) {
+            for (const auto direction :
+                 {&SurfaceError::reference_to_mesh, &SurfaceError::mesh_to_reference}) {
                 CHECK((a.*direction).max == (b.*direction).max);
                 CHECK((a.*direction).rms == (b.*direction).rms);
                 CHECK((a.*direction).samples == (b.*direction).samples);
