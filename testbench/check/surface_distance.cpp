@@ -78,8 +78,8 @@ std::size_t choice(std::size_t k, std::size_t chosen, std::size_t all) {
     if (chosen == all)
         return k;
     const double place = static_cast<double>(k) + Random(k).real(0, 1);
-    return std::min(all - 1, static_cast<std::size_t>(place / static_cast<double>(chosen) *
-                                                      static_cast<double>(all)));
+    return std::min(all - 1,
+                    static_cast<std::size_t>(place / static_cast<double>(chosen) * static_cast<double>(all)));
 }
 
 /// All points, or a power of two.

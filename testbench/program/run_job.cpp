@@ -70,7 +70,9 @@ class Stopwatch {
 };
 
 void write_run_folder(const std::filesystem::path& folder, const Job& job, const Setup& setup,
-                      const Simulation& simulation, const MeshCounts& counts, const Checks& checks) {
+                      const Simulation& simulation, const MeshCounts& counts, const Checks& checks,
+                      Progress& progress) {
+    progress.show("writing reports", 0.85);
     write_file(folder / "job.toml", dump_job(job, folder));
     const std::vector<Figure> figures = collect_statistics(setup, simulation, counts);
     write_file(folder / "statistics.json", statistics_json(figures));
@@ -84,12 +86,15 @@ void write_run_folder(const std::filesystem::path& folder, const Job& job, const
         write_file(folder / "queue_levels.csv",
                    queue_levels_csv(simulation.pipeline.triangle_queue.history()));
     }
+    progress.show("writing the mesh", 0.87);
     if (job.output.ply)
         write_ply(folder / "mesh.ply", simulation.monitor.mesh, units);
     if (job.output.obj)
         write_obj(folder / "mesh.obj", simulation.monitor.mesh, units);
-    if (job.output.picture)
+    if (job.output.picture) {
+        progress.show("picture", 0.9);
         write_picture(folder / "picture.png", simulation.monitor.mesh, setup, job);
+    }
 }
 
 /// The traces' names and windows, and trace.fst if asked for.
@@ -227,8 +232,8 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
     simulation.pipeline.pass_or_tessellate.decided.bind(borders);
     simulation.monitor.on_progress([&](std::size_t triangles) {
         progress.show(
-            fmt::format("{} triangles", triangles),
-            static_cast<double>(simulation.host.sent()) / static_cast<double>(simulation.host.total()));
+            fmt::format("simulating, {} triangles", triangles),
+            0.6 * static_cast<double>(simulation.host.sent()) / static_cast<double>(simulation.host.total()));
     });
 
     std::optional<OutputFolder> output;
@@ -272,24 +277,23 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
         texel_borders_warning(borders.count(), job, setup.registers.map.width, setup.registers.map.height);
     std::optional<GoldenJob> golden_job;
     if (job.check.golden || job.check.end_to_end) {
-        progress.show("checking the set-up", 0.94);
+        progress.show("checking the set-up", 0.6);
         golden_job.emplace(job, inputs.mesh, inputs.map, setup.model_scale);
         checks.setup = check_setup(setup, *golden_job, simulation);
     }
     if (job.check.invariants) {
-        progress.show("checking the mesh", 0.95);
+        progress.show("checking the mesh", 0.62);
         checks.invariants = check_invariants(mesh, setup.base_triangles, setup.registers);
     }
     if (job.check.end_to_end) {
-        progress.show("running the golden model", 0.97);
+        progress.show("golden model's own run and distances", 0.65);
         checks.end_to_end = compare_end_to_end(setup, *golden_job, checks.setup->base_triangles, mesh,
                                                job.check.allowed_triangles);
     }
-    progress.show("writing", 0.99);
     if (!output)
         output.emplace(folder);
     const MeshCounts counts = count_mesh(mesh);
-    write_run_folder(folder, job, setup, simulation, counts, checks);
+    write_run_folder(folder, job, setup, simulation, counts, checks, progress);
     replace_run(replaced, files);
     output->keep();
     progress.clear();

@@ -64,8 +64,8 @@ Illumination::Illumination(const View& view, const Style& style, const RayScene&
     }
 }
 
-void Illumination::add(const Lamp& lamp, const std::vector<ShadingPoint>& points,
-                       std::vector<Light>& lights, Scratch& scratch) const {
+void Illumination::add(const Lamp& lamp, const std::vector<ShadingPoint>& points, std::vector<Light>& lights,
+                       Scratch& scratch) const {
     auto& [rays, of_ray, occluded] = scratch;
     rays.clear();
     of_ray.clear();

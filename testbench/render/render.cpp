@@ -201,7 +201,7 @@ class Renderer {
                 at.push_back({x + offset.x, y + offset.y});
                 const glm::dvec3 direction = view_.ray(at.back().x, at.back().y);
                 rays.push_back({view_.eye - mesh_.origin + start_ * direction, direction,
-                                 std::max(0.0, view_.near_plane - start_)});
+                                std::max(0.0, view_.near_plane - start_)});
             }
         scene_.first_hits(rays, hits);
         points.clear();

@@ -64,13 +64,15 @@ std::string values_text(const ConformanceResult& result) {
 
 std::string distance_text(const char* name, const EndToEndResult::Distance& d) {
     return fmt::format(
-        "  {:<20} {:>10} points: maximum {:.6g}, RMS {:.6g} model units ({:.2f}, {:.2f} position LSB)\n",
-        name, d.points, d.max_model, d.rms_model, d.max_position_lsb, d.rms_position_lsb) +
-        (d.measured < d.points
-             ? fmt::format("  {:<20} {:>10} of them measured: with {} % confidence at most {:.2g} % of all are "
-                           "farther away than the maximum\n",
-                           "", d.measured, 100 * EndToEndResult::confidence, 100 * d.unseen)
-             : std::string());
+               "  {:<20} {:>10} points: maximum {:.6g}, RMS {:.6g} model units ({:.2f}, {:.2f} position "
+               "LSB)\n",
+               name, d.points, d.max_model, d.rms_model, d.max_position_lsb, d.rms_position_lsb) +
+           (d.measured < d.points
+                ? fmt::format(
+                      "  {:<20} {:>10} of them measured: with {} % confidence at most {:.2g} % of all are "
+                      "farther away than the maximum\n",
+                      "", d.measured, 100 * EndToEndResult::confidence, 100 * d.unseen)
+                : std::string());
 }
 
 std::string end_to_end_text(const EndToEndResult& result) {

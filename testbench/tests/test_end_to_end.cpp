@@ -7,6 +7,7 @@
 
 #include "testbench/check/end_to_end.h"
 #include "testbench/check/surface_distance.h"
+#include "testbench/common/parallel.h"
 #include "testbench/maps/built_in_maps.h"
 #include "testbench/meshes/built_in.h"
 #include "testbench/tests/scoreboard_cases.h"
@@ -88,6 +89,70 @@ TEST_CASE("distances through Embree are those of a search through all triangles"
     }
     CHECK(distance_between({}, {}).points == 0);
     CHECK(std::isinf(distance_between({random_triangle(random, 1)}, {}).max));
+}
+
+TEST_CASE(
+    "distances to long thin triangles, and to such without an area, are those of a search through all") {
+    Random random(22);
+    const auto needle = [&](double width) {
+        const glm::dvec3 at(real(random, -1, 1), real(random, -1, 1), real(random, -1, 1));
+        const glm::dvec3 along = unit_vector(random);
+        return std::array<glm::dvec3, 3>{at, at + along, at + 0.6 * along + width * unit_vector(random)};
+    };
+    for (const double width : {1e-3, 0.0}) {
+        TriangleSoup from, to;
+        for (int k = 0; k < 300; ++k) {
+            from.push_back(random_triangle(random, 0.1));
+            to.push_back(needle(width));
+        }
+        double largest = 0;
+        for (const auto& t : from)
+            for (const glm::dvec3& p : {t[0], t[1], t[2], (t[0] + t[1] + t[2]) / 3.0}) {
+                double nearest = 1e300;
+                for (const auto& other : to)
+                    nearest = std::min(nearest, glm::length(closest_point(other, p) - p));
+                largest = std::max(largest, nearest);
+            }
+        CHECK(distance_between(from, to).max == Approx(largest).epsilon(1e-12));
+        CHECK(distance_between(to, to).max == Approx(0).margin(1e-12));
+        const NearestTriangle search(to);
+        std::vector<NearestTriangle::Found> within;
+        REQUIRE(search.within({0, 0, 0}, 10, 300, within));
+        CHECK(within.size() == 300);  // each once, in however many parts
+        CHECK_FALSE(search.within({0, 0, 0}, 10, 299, within));
+    }
+}
+
+TEST_CASE("a sample of the points says how many it is, and what that tells of the rest") {
+    // Two points missed a part q with the probability (1 - q)^2; that is 1/4 for q = 1/2.
+    CHECK(SurfaceDistance{10, 2, 0, 0}.unseen(0.75) == Approx(0.5));
+    CHECK(SurfaceDistance{10'000'000, 6904, 0, 0}.unseen(0.999) == Approx(0.0010000).epsilon(1e-4));
+    CHECK(SurfaceDistance{10, 10, 0, 0}.unseen(0.999) == 0);
+
+    Random random(23);
+    TriangleSoup from, to;
+    for (int k = 0; k < 3000; ++k) {
+        from.push_back(random_triangle(random, 0.5));
+        to.push_back(random_triangle(random, 0.5));
+    }
+    const SurfaceDistance all = distance_between(from, to);
+    CHECK(all.points == 12000);
+    CHECK(all.measured == 12000);
+    const SurfaceDistance some = distance_between(from, to, 120'000);
+    CHECK(some.points == 12000);
+    CHECK(some.measured == 2048);  // of some 3,000 that 120,000 looks pay for
+    CHECK(some.max <= all.max);
+    CHECK(some.rms == Approx(all.rms).epsilon(0.1));
+    CHECK(some.unseen(0.999) == Approx(0.00337).epsilon(0.01));
+    for (const std::size_t threads : {1U, 2U, 3U}) {
+        const OnThreads on(threads);
+        for (const std::uint64_t most : {most_looks, std::uint64_t{120'000}}) {
+            const SurfaceDistance again = distance_between(from, to, most),
+                                  first = most == most_looks ? all : some;
+            CHECK(again.max == first.max);
+            CHECK(again.rms == first.rms);
+        }
+    }
 }
 
 TEST_CASE("a surface shifted by a known distance is measured as that") {

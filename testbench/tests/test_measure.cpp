@@ -2,6 +2,7 @@
 #include <numeric>
 
 #include "testbench/common/error.h"
+#include "testbench/common/parallel.h"
 #include "testbench/meshes/built_in.h"
 #include "testbench/tests/measure_cases.h"
 
@@ -367,6 +368,42 @@ TEST_CASE("limits lower the density and say so, and refuse what still does not f
     CHECK(error.interpolated.mesh_to_reference.samples <=
           100 + mesh.positions.size() + mesh.triangles.size());
     CHECK(error.interpolated.reference_to_mesh.samples <= 10000);
+}
+
+TEST_CASE("the error is the same on any number of threads, and progress ends at one") {
+    const BaseMesh base = make_cylinder(12, 4, 1, 2);
+    const HeightMap map = make_map(40, 40, [](int x, int y) { return (x * 7 + y * 5) % 11 / 11.0; });
+    const RecordedMesh mesh = emitted(base);
+    const auto measure = [&](std::size_t threads) {
+        const OnThreads on(threads);
+        return measure_error(base, map, heights(0.2), mesh);
+    };
+    const MeshError one = measure(1);
+    for (const std::size_t threads : {2U, 3U}) {
+        const MeshError other = measure(threads);
+        for (const auto error : {&MeshError::interpolated, &MeshError::nearest_texel}) {
+            const SurfaceError &a = one.*error, &b = other.*error;
+            for (const auto direction :
+                 {&SurfaceError::reference_to_mesh, &SurfaceError::mesh_to_reference}) {
+                CHECK((a.*direction).max == (b.*direction).max);
+                CHECK((a.*direction).rms == (b.*direction).rms);
+                CHECK((a.*direction).samples == (b.*direction).samples);
+                CHECK((a.*direction).worst->position == (b.*direction).worst->position);
+                CHECK((a.*direction).worst->triangle == (b.*direction).worst->triangle);
+            }
+            CHECK(a.vertices == b.vertices);
+        }
+    }
+    MeasureLimits limits;
+    double last = 0;
+    limits.progress = [&](double part) {
+        CHECK(part >= last);
+        last = part;
+    };
+    const OnThreads on(1);
+    measure_error(base, map, heights(0.2), mesh, limits);
+    CHECK(last > 0.75);
+    CHECK(last <= 1);
 }
 
 TEST_CASE("a mesh of another base mesh is refused") {

@@ -90,6 +90,23 @@ TEST_CASE("heights over a plane in any position, and over each copy of a map tha
     CHECK(vertical(base, map, heights(0.5, 0, Addressing::repeat), emitted(base)).max == Approx(3));
 }
 
+TEST_CASE("an axis that repeats and one that clamps are told apart") {
+    const HeightMap map = make_map(4, 4, [](int x, int y) { return x + 10 * y; });
+    for (const bool along_u : {true, false}) {
+        // Two copies along one axis: a clamp there would read 3 instead of 0, 1 and 2 beyond the first.
+        BaseMesh base = make_plane(2, 2, 2, 2);
+        for (BaseVertex& v : base.vertices)
+            (along_u ? v.texture.x : v.texture.y) *= 2;
+        DisplacementOf displacement = heights(1);
+        (along_u ? displacement.address_u : displacement.address_v) = Addressing::repeat;
+        const VerticalError error = vertical(base, map, displacement, emitted(base));
+        CHECK(error.grid_points == 32);
+        CHECK(error.max == Approx(33));
+        // the sum of (x + 10 y)^2 for x, y = 0..3
+        CHECK(error.rms == Approx(std::sqrt((4 * 14 + 20 * 36 + 400 * 14) / 16.0)));
+    }
+}
+
 TEST_CASE("what is no height field is told in words") {
     const HeightMap map = make_map(4, 4, [](int, int) { return 0; });
     std::string why;

@@ -162,9 +162,7 @@ TEST_CASE("a run replaces what an earlier one left in its folder") {
     run_well(with({"--set", "output.obj=true"}), here.path());
     CHECK(fs::exists(here.path() / "out/mesh.obj"));
     write_all(here.path() / "out/notes.txt", "mine");
-    run_well(
-        with({"--set", "output.ply=false", "--set", "output.picture=false"}),
-        here.path());
+    run_well(with({"--set", "output.ply=false", "--set", "output.picture=false"}), here.path());
     // A mesh of another job beside this one's statistics would be believed.
     CHECK_FALSE(fs::exists(here.path() / "out/mesh.ply"));
     CHECK_FALSE(fs::exists(here.path() / "out/mesh.obj"));

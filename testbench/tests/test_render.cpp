@@ -7,6 +7,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "testbench/common/parallel.h"
 #include "testbench/render/draw_text.h"
 #include "testbench/render/image.h"
 #include "testbench/render/key_light.h"
@@ -35,6 +36,23 @@ std::vector<std::uint8_t> decode(const std::vector<std::uint8_t>& file, png_imag
 }
 
 }  // namespace
+
+TEST_CASE("A picture is the same on any number of threads") {
+    const RenderMesh mesh = make_sphere({});
+    const View view = look_down(4, 200, 160, 120);
+    Style lines;
+    lines.wireframe = true;
+    const auto pictures = [&](std::size_t threads) {
+        const OnThreads on(threads);
+        return render_styles(mesh, view, {Style{}, lines});
+    };
+    const std::vector<Image> one = pictures(1);
+    for (const std::size_t threads : {2U, 3U}) {
+        const std::vector<Image> other = pictures(threads);
+        for (std::size_t k = 0; k < one.size(); ++k)
+            CHECK((one[k].bytes == other[k].bytes));
+    }
+}
 
 TEST_CASE("A sphere's silhouette is a disc of the right radius and centre") {
     const glm::dvec3 origin(1e5, -3e5, 2e5);  // far from 0: single precision alone would not do

@@ -1,0 +1,53 @@
+#include <catch2/catch.hpp>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "testbench/common/parallel.h"
+
+using namespace tessera;
+
+TEST_CASE("every chunk is handed out once, on any number of threads") {
+    for (const std::size_t threads : {1U, 2U, 3U, 8U}) {
+        const OnThreads on(threads);
+        CHECK(thread_count() == threads);
+        for (const std::size_t chunks : {0U, 1U, 2U, 1000U}) {
+            std::vector<int> calls(chunks, 0);
+            for_each_chunk(chunks, [&] { return [&](std::size_t chunk) { ++calls[chunk]; }; });
+            CHECK(calls == std::vector<int>(chunks, 1));
+        }
+    }
+    CHECK(thread_count() >= 1);
+}
+
+TEST_CASE("work within work stays on its thread") {
+    const OnThreads on(2);
+    std::vector<int> elsewhere(4, 0);
+    for_each_chunk(elsewhere.size(), [&] {
+        return [&](std::size_t outer) {
+            const std::thread::id here = std::this_thread::get_id();
+            for_each_chunk(100, [&] {
+                return [&](std::size_t) { elsewhere[outer] += std::this_thread::get_id() == here ? 0 : 1; };
+            });
+        };
+    });
+    CHECK(std::accumulate(elsewhere.begin(), elsewhere.end(), 0) == 0);
+}
+
+TEST_CASE("an exception on any thread reaches the caller, the lowest chunk's first") {
+    for (const std::size_t threads : {1U, 3U}) {
+        const OnThreads on(threads);
+        const auto fail = [](std::size_t from) {
+            for_each_chunk(50, [&] {
+                return [&](std::size_t chunk) {
+                    if (chunk >= from)
+                        throw std::runtime_error("chunk " + std::to_string(chunk));
+                };
+            });
+        };
+        CHECK_THROWS_WITH(fail(49), "chunk 49");
+        CHECK_THROWS_AS(fail(0), std::runtime_error);
+    }
+}
