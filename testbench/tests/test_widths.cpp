@@ -217,7 +217,7 @@ TEST_CASE("widths: refused widths keep their place and say why") {
                                            Contains("16 integer bits") && Contains("screen_range"));
     const WidthTable range = table_of(job, "screen_range", {9, 8});
     CHECK_THAT(range.rows[1].refused, Contains("`formats.screen_fraction` = 8 must be less than"));
-    const std::string csv = widths_csv({0, {normals, screen}});
+    const std::string csv = widths_csv({0, {normals, screen}, {}});
     CHECK(std::count(csv.begin(), csv.end(), '\n') == 8);
     CHECK_THAT(csv, Contains("out of range"));
 }
@@ -242,9 +242,9 @@ TEST_CASE("widths: the knee is the narrowest width that keeps, with all wider on
     const WidthTable relative = knee({}, {});
     CHECK(relative.knee.most_flips == anything.rows[0].run.split_flips_percent() + 0.5);
     WidthRequest request{job, swept, 1, {}, {}};
-    const WidthSweep none{0, {knee(100.0, 0.0)}};
+    const WidthSweep none{0, {knee(100.0, 0.0)}, {}};
     CHECK_THAT(widths_text(request, none), Contains("knee: none; not even the widest"));
-    CHECK_THAT(widths_text(request, {0, {at_third}}), Contains("knee: 12 bits, 10 of them fraction"));
+    CHECK_THAT(widths_text(request, {0, {at_third}, {}}), Contains("knee: 12 bits, 10 of them fraction"));
 }
 
 TEST_CASE("widths: the same bytes with any number of threads") {
