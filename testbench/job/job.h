@@ -158,7 +158,7 @@ struct Job {
         bool end_to_end = true;  // golden run of the whole mesh
         bool invariants = true;
         double allowed_flips = 0.5;    // percent of edges; more fails the run
-        double allowed_triangles = 2;  // percent more or fewer in golden's own run; more fails the run
+        double allowed_triangles = 1;  // percent more or fewer in golden's own run; more fails the run
         bool work = true;              // no triangle is lost, doubled or altered on its way
         bool reads = false;            // every table read against what the memory holds
     } check;
