@@ -31,6 +31,7 @@ Job sphere_job() {
     job.mesh.rows = 6;
     job.map.address_u = Addressing::repeat;
     job.displacement.scale = 0.1;
+    job.tests.summed_height_threshold = 2;  // a step of its register at 2 bits of displacement is 1 / 12
     return job;
 }
 
