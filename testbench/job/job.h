@@ -178,7 +178,7 @@ struct Job {
     struct Output {
         std::string folder = "runs/half_donut";
         bool ply = true;
-        bool obj = true;
+        bool obj = false;
         bool picture = true;
         bool vcd = false;               // timed mode: waveforms
         bool timeline = false;          // timed mode: activity per unit in the Chrome trace format
