@@ -131,8 +131,8 @@ class Measurement {
                         squares += sample.weight * sample.squared;
                         weights += sample.weight;
                         float& of_triangle = largest[sample.triangle];
-                        of_triangle = std::max(
-                            of_triangle, static_cast<float>(std::sqrt(sample.squared) / frame_.scale));
+                        of_triangle = std::max(of_triangle,
+                                               static_cast<float>(std::sqrt(sample.squared) / frame_.scale));
                         part.worst.take(sample.squared, sample.position, sample.texture, sample.triangle);
                     });
                     part.squares.push_back(squares);
@@ -170,7 +170,8 @@ class Measurement {
         DirectedError& result = error.mesh_to_reference;
         error.vertices.assign(mesh_.positions.size(), 0);
         constexpr std::size_t nobody = SIZE_MAX;
-        std::vector<std::size_t> first_user(mesh_.positions.size(), nobody);  // which triangle measures a vertex
+        std::vector<std::size_t> first_user(mesh_.positions.size(),
+                                            nobody);  // which triangle measures a vertex
         for (std::size_t k = soup_.size(); k-- > 0;)
             for (const std::uint32_t vertex : mesh_.triangles[k].vertices)
                 first_user[vertex] = k;
@@ -204,8 +205,9 @@ class Measurement {
     }
 
     /// The vertices it uses first, its centroid and its parts.
-    void measure_triangle(std::size_t k, ReferenceNearest& nearest, const std::vector<std::size_t>& first_user,
-                          MeshPart& part, SurfaceError& error) const {
+    void measure_triangle(std::size_t k, ReferenceNearest& nearest,
+                          const std::vector<std::size_t>& first_user, MeshPart& part,
+                          SurfaceError& error) const {
         const RecordedMesh::Triangle& t = mesh_.triangles[k];
         const auto& corners = soup_[k];
         const auto measure = [&](const glm::dvec3& local, const glm::dvec2& texture) {
@@ -246,7 +248,7 @@ class Measurement {
     /// Tells how far it is: four walks in all. From the first thread only.
     void advance(std::size_t chunk, std::size_t chunks) const {
         if (limits_.progress && std::this_thread::get_id() == thread_)
-            limits_.progress((walks_ + static_cast<double>(chunk) / static_cast<double>(chunks)) / 4);
+            limits_.progress((walks_ + static_cast<double>(chunk + 1) / static_cast<double>(chunks)) / 4);
     }
 
     const RecordedMesh& mesh_;
