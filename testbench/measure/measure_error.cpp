@@ -248,7 +248,7 @@ class Measurement {
     /// Tells how far it is: four walks in all. From the first thread only.
     void advance(std::size_t chunk, std::size_t chunks) const {
         if (limits_.progress && std::this_thread::get_id() == thread_)
-            limits_.progress((walks_ + static_cast<double>(chunk) / static_cast<double>(chunks)) / 4);
+            limits_.progress((walks_ + static_cast<double>(chunk + 1) / static_cast<double>(chunks)) / 4);
     }
 
     const RecordedMesh& mesh_;
