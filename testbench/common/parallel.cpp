@@ -4,7 +4,6 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
-#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -60,8 +59,8 @@ void share_chunks(std::size_t chunks, const std::function<void(const NextChunk& 
     try {
         while (others.size() + 1 < threads)
             others.emplace_back(run);
-    } catch (const std::system_error&) {
-        // The system gives no more threads: those there are do the work.
+    } catch (const std::exception&) {
+        // No more threads, or no memory for them: those there are do the work.
     }
     run();
     for (std::thread& other : others)

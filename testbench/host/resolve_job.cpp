@@ -192,7 +192,7 @@ class Resolver {
         const glm::dvec3 view = vector(camera.eye) - target;
         // Seen from straight above, the front is below.
         if (no_up && glm::length(glm::cross(view, up)) <= 1e-6 * glm::length(view))
-            up = -front_of(up);
+            up = glm::dvec3(0) - front_of(up);  // without -0
         if (no_up)
             camera.up = array(up);
         if (no_eye)

@@ -50,14 +50,17 @@ Job read_run_job(const fs::path& folder) {
             folder.string()));
     Job job = read_job(job_file);
     validate(job);
-    if (const std::string key = automatic_key(job); !key.empty())
-        throw InputError(
-            fmt::format("{}: {} = \"auto\", which no run writes into its folder: run the job again",
-                        job_file.string(), key));
     if (job.frames.count > 1)
         throw InputError(fmt::format("{}: holds {} frames, each a run's folder; name one of them, from {} on",
                                      folder.string(), job.frames.count, (folder / "frame_000").string()));
     return job;
+}
+
+void require_numbers(const fs::path& folder, const Job& job) {
+    if (const std::string key = automatic_key(job); !key.empty())
+        throw InputError(
+            fmt::format("{}: {} = \"auto\", which no run writes into its folder: run the job again",
+                        (folder / "job.toml").string(), key));
 }
 
 RecordedMesh read_mesh(const fs::path& folder, const Job& job) {
@@ -84,6 +87,7 @@ RecordedRun read_run(const fs::path& folder) {
     run.folder = folder;
     run.job = read_run_job(folder);
     run.mesh = read_mesh(folder, run.job);
+    require_numbers(folder, run.job);
     return run;
 }
 
@@ -96,6 +100,7 @@ RecordedRun read_run(const fs::path& folder, const fs::path& data_folder) {
     if (!run.job.map.file.empty())
         find_input("map.file", run.job.map.file, run.job, data_folder);
     run.mesh = read_mesh(folder, run.job);
+    require_numbers(folder, run.job);
     return run;
 }
 

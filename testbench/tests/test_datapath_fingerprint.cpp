@@ -107,5 +107,5 @@ TEST_CASE("fingerprint: a hundred thousand random triangles give the recorded bi
          {s.displaced_position, s.normal, s.screen_position, s.screen_normal, s.degenerate_normal})
         hash.add(static_cast<std::int64_t>(count));
     // A change here is a change of the machine's results: let it be one that was meant.
-    CHECK(hash.value() == 0x584ea914a127c11cU);
+    CHECK(hash.value() == 0x0dabae49d3460c44U);
 }

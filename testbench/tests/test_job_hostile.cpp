@@ -247,6 +247,8 @@ TEST_CASE("a random setting sets its key or is an InputError") {
             RC_ASSERT(same_settings(job, Job{}));
         }
         key.set(job, default_of(key));
+        job.mesh.source = key.name == "mesh.file" ? Job{}.mesh.source : job.mesh.source;  // a file chooses it
+        job.map.source = key.name == "map.file" ? Job{}.map.source : job.map.source;
         RC_ASSERT(same_settings(job, Job{}));
     });
 }

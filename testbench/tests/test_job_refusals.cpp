@@ -202,7 +202,7 @@ TEST_CASE("keys that contradict each other") {
                Contains("a cylinder closes around itself"));
     CHECK_THAT(error_with({"mesh.source=sphere", "mesh.rows=1"}), Contains("a sphere has 2 or more"));
     CHECK_THAT(error_with({"map.source=text", "map.text="}), Contains("`map.text` is empty"));
-    CHECK_THAT(error_with({"formats.texture_integer=8"}), Equals(""));
+    CHECK_THAT(error_with({"formats.texture_integer=8", "map.width=256", "map.height=256"}), Equals(""));
     CHECK_THAT(error_with({"formats.texture_integer=7"}),
                Contains("`formats.texture_integer` = 7 addresses at most 128"));
     CHECK_THAT(error_with({"camera.eye=[0, 0, 0]", "camera.target=[0, 0, 0]"}),

@@ -198,6 +198,7 @@ TEST_CASE("formats: any that a job may have, on any small job: within the bounds
         job.camera.viewport_height = random.integer(1, 1024);
         job.displacement.scale = std::ldexp(1.0, static_cast<int>(random.integer(-8, 1)));
         job.tests.generation_limit = 4;
+        job.tests.summed_height_threshold = 2;  // a step of the coarsest displacement and more
         job.tests.highlight = random.coin();
         INFO("case " << k);
         try {

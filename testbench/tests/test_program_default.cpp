@@ -109,7 +109,8 @@ TEST_CASE("two runs leave identical bytes, and so do the jobs they write down") 
 
     const std::string dump = run_well({"run", "--dump-config"}, here.path()).out;
     write_all(here.path() / "dump.toml", dump);
-    CHECK(first.at("job.toml") == dump);
+    CHECK_THAT(dump, Contains("eye = \"auto\"") && Contains("scale = \"auto\""));
+    CHECK_THAT(first.at("job.toml"), !Contains("= \"auto\""));
     require_same_files(first, run_in("dumped", {(here.path() / "dump.toml").string()}));
     require_same_files(first, run_in("own", {(here.path() / "first/runs/half_donut/job.toml").string()}));
     // This one states some defaults in other words.

@@ -26,11 +26,20 @@ void require_fine(const ProgramEnd& end) {
     CHECK(end.err.empty());
 }
 
-const std::vector<std::string> small{"map.width=64", "map.height=64", "tests.view_threshold=12"};
+/// One camera for all frames and the plain runs beside them.
+const std::vector<std::string> small{"map.width=64",
+                                     "map.height=64",
+                                     "tests.view_threshold=12",
+                                     "tests.summed_height_threshold=2",
+                                     "camera.eye=[1.05, -2.9, 2.45]",
+                                     "camera.target=[0, 0, 0.05]",
+                                     "camera.up=[0, 0, 1]",
+                                     "camera.near_plane=0.01"};
 
 std::vector<std::string> frames(int count, std::vector<std::string> more = {}) {
     std::vector<std::string> settings = small;
-    settings.insert(settings.end(), {"frames.count=" + std::to_string(count), "output.folder=out"});
+    settings.insert(settings.end(), {"frames.count=" + std::to_string(count), "output.folder=out",
+                                     "displacement.scale=0.25"});
     settings.insert(settings.end(), more.begin(), more.end());
     return settings;
 }

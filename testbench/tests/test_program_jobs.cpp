@@ -38,7 +38,9 @@ void run_job_well(const std::string& name) {
     INFO(end.text());
     REQUIRE(end.exit_code == 0);
     CHECK(end.err.empty());
-    CHECK_THAT(end.out, Contains("all checks passed") && !Contains("texel's border"));
+    CHECK_THAT(end.out, Contains("all checks passed"));
+    // The paper's 30 quads do not divide the scan's 512 texels.
+    CHECK((end.out.find("texel's border") != std::string::npos) == (name == "head"));
 
     const RunFolder run(here.path() / "runs" / name);
     require_consistent(run);

@@ -143,7 +143,7 @@ TEST_CASE("limits: maps, texts and frames beyond any measure are refused") {
     refused({"map.source=text", "map.text=" + std::string(5000, 'a')}, ExitCode::bad_input,
             {"`map.text`", "5000 bytes", "4096"});
     refused({"map.source=text", "map.width=4096", "map.text=" + std::string(4000, 'a')}, ExitCode::bad_input,
-            {"map.text", "4096 x 256", "Shorten the text"});
+            {"map.text", "4096 x 264", "Shorten the text"});
 }
 
 TEST_CASE("limits: memory that runs out, wherever it does, is told as that") {

@@ -233,7 +233,10 @@ TEST_CASE("Legend and text stay inside the image") {
 
 TEST_CASE("The run's camera sees what the hardware's Transform projects") {
     Job::Camera camera;
+    camera.eye = {1.05, -2.9, 2.45};
     camera.target = {0.2, 0.1, 0.3};
+    camera.up = {0, 0, 1};
+    camera.near_plane = 0.01;
     const View view = make_view(camera);
     CHECK(view.width == 1024);
     const glm::dvec3 p = view.project({0.2, 0.1, 0.3});

@@ -295,13 +295,14 @@ TEST_CASE(
     CHECK(saturation_warnings(figures).empty());
     CHECK(saturation_notes(figures).empty());
     REQUIRE(setup.remarks.size() == 1);
-    CHECK_THAT(setup.remarks[0], Catch::Contains("set to the border") && Catch::Contains("map.address_u"));
+    CHECK_THAT(setup.remarks[0], Catch::Contains("set to the map's border") && Catch::Contains("map.address_u"));
 }
 
 TEST_CASE("saturations: what the host rounds is counted too") {
     // S is twice the range of a map of one bit: 2^(bits - 1), one LSB more than its register holds
     Job job = small_job();
     job.formats.displacement_bits = 1;
+    job.tests.summed_height_threshold = 2;
     job.displacement.scale = 1;
     job.displacement.bias = -0.5;
     job.mesh.width = job.mesh.depth = 0.5;
