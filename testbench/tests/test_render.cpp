@@ -234,6 +234,7 @@ TEST_CASE("Legend and text stay inside the image") {
 TEST_CASE("The run's camera sees what the hardware's Transform projects") {
     Job::Camera camera;
     camera.eye = {2, -2.5, 1.5};
+    camera.up = {0, 0, 1};
     camera.near_plane = 0.1;
     camera.target = {0.2, 0.1, 0.3};
     const View view = make_view(camera);
