@@ -157,8 +157,10 @@ TEST_CASE(
         CHECK(distance_between(from, to).max == Approx(largest).epsilon(1e-12));
         const NearestTriangle search(to);
         std::vector<NearestTriangle::Found> within;
-        REQUIRE(search.within({0, 0, 0}, 10, 300, within));
-        CHECK(within.size() == 300);  // each once, in however many parts
+        for (const std::size_t most : {300, 100'000}) {
+            REQUIRE(search.within({0, 0, 0}, 10, most, within));
+            CHECK(within.size() == 300);  // each once, in however many parts
+        }
         CHECK_FALSE(search.within({0, 0, 0}, 10, 299, within));
     }
 }
