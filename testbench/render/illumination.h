@@ -27,23 +27,27 @@ class Illumination {
     /// What light() uses, kept for its memory: one a thread.
     struct Scratch {
         std::vector<Ray> rays;
-        std::vector<std::size_t> of_ray;
-        std::vector<std::uint8_t> occluded;
+        std::vector<std::size_t> facing;  // points on the lamp's side
+        std::vector<std::uint8_t> traced, occluded;
     };
 
-    /// The light at points that share a sub-pixel position; quick if they are neighbours.
-    void light(std::size_t sample, const std::vector<ShadingPoint>& points, std::vector<Light>& lights,
-               Scratch& scratch) const;
+    /// The light at points that share a sub-pixel position; quick if they are neighbours. Where the first `probes` of them
+    /// all see a direction, or none does, so it is for the others.
+    void light(std::size_t sample, const std::vector<ShadingPoint>& points, std::size_t probes,
+               std::vector<Light>& lights, Scratch& scratch) const;
 
   private:
     struct Lamp {
         glm::dvec3 direction;   ///< towards it
         glm::dvec3 diffuse{0};  ///< times the cosine
         double highlight = 0;
+        glm::dvec3 half{0};  ///< between it and the viewer
     };
 
-    void add(const Lamp& lamp, const std::vector<ShadingPoint>& points, std::vector<Light>& lights,
-             Scratch& scratch) const;
+    void trace(const Lamp& lamp, const std::vector<ShadingPoint>& points, std::size_t first, std::size_t end,
+               Scratch& scratch) const;
+    void add(const Lamp& lamp, const std::vector<ShadingPoint>& points, std::size_t probes,
+             std::vector<Light>& lights, Scratch& scratch) const;
 
     const RayScene& scene_;
     glm::dvec3 eye_;  ///< direction towards the viewer, good enough for highlights

@@ -17,6 +17,7 @@ namespace tessera {
 namespace {
 
 constexpr int tile_side = 8;
+constexpr double least_flat = 0.9;   // cosine between normals in a tile
 constexpr double line_shade = 0.16;  // of the surface's colour
 constexpr double far_in_sizes = 50;  // an eye further from the mesh than that many of its sizes is far away
 
@@ -27,6 +28,15 @@ glm::dvec2 sample_position(std::size_t sample) {
     const auto column = static_cast<double>(place);
     const auto row = static_cast<double>(line);
     return {(column + (row + 0.5) / 4) / 4, (row + (column + 0.5) / 4) / 4};
+}
+
+/// Calls at(x, y): for the first pixel of each square of 2 x 2, then for the second ones, and so on.
+template <class At>
+void for_each_pixel(int left, int top, int right, int bottom, const At& at) {
+    for (int k = 0; k < 4; ++k)
+        for (int y = top + k / 2; y < bottom; y += 2)
+            for (int x = left + k % 2; x < right; x += 2)
+                at(x, y);
 }
 
 /// A style with its colours in linear light.
@@ -174,9 +184,9 @@ class Renderer {
             return false;
         for (std::size_t s = 0; s < paints_.size(); ++s) {
             const glm::dvec3* sum = &tile.sums[s * pixels];
-            for (int y = top; y < bottom; ++y)
-                for (int x = left; x < right; ++x)
-                    set_pixel(pictures_[s], x, y, *sum++ / static_cast<double>(samples_per_pixel));
+            for_each_pixel(left, top, right, bottom, [&](int x, int y) {
+                set_pixel(pictures_[s], x, y, *sum++ / static_cast<double>(samples_per_pixel));
+            });
         }
         return true;
     }
@@ -196,19 +206,18 @@ class Renderer {
         const glm::dvec2 offset = sample_position(sample);
         rays.clear();
         at.clear();
-        for (int y = top; y < bottom; ++y)
-            for (int x = left; x < right; ++x) {
-                at.push_back({x + offset.x, y + offset.y});
-                const glm::dvec3 direction = view_.ray(at.back().x, at.back().y);
-                rays.push_back({view_.eye - mesh_.origin + start_ * direction, direction,
-                                std::max(0.0, view_.near_plane - start_)});
-            }
+        for_each_pixel(left, top, right, bottom, [&](int x, int y) {
+            at.push_back({x + offset.x, y + offset.y});
+            const glm::dvec3 direction = view_.ray(at.back().x, at.back().y);
+            rays.push_back({view_.eye - mesh_.origin + start_ * direction, direction,
+                            std::max(0.0, view_.near_plane - start_)});
+        });
         scene_.first_hits(rays, hits);
         points.clear();
         for (std::size_t i = 0; i < rays.size(); ++i)
             if (hits[i] != RayScene::nothing)
                 points.push_back(shading_point(rays[i], hits[i]));
-        illumination_.light(sample, points, lights, scratch);
+        illumination_.light(sample, points, probes(points, rays.size()), lights, scratch);
 
         std::size_t point = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -230,6 +239,17 @@ class Renderer {
             ++point;
         }
         return !points.empty();
+    }
+
+    /// How many points tell for all which directions they see: the first quarter, a pixel of each square of 2 x 2, where
+    /// the mesh covers the tile and is nearly flat in it.
+    static std::size_t probes(const std::vector<ShadingPoint>& points, std::size_t rays) {
+        if (points.size() < rays)
+            return points.size();
+        for (const ShadingPoint& point : points)
+            if (glm::dot(point.normal, points.front().normal) < least_flat)
+                return points.size();
+        return (points.size() + 3) / 4;
     }
 
     ShadingPoint shading_point(const Ray& ray, std::uint32_t index) const {

@@ -55,6 +55,47 @@ TEST_CASE("the closest point of a triangle, by region") {
     CHECK(same(closest_point({b, b, b}, {5, 5, 5}), b));
 }
 
+TEST_CASE("the closest point of a needle is that of a search along it") {
+    Random random(23);
+    // The distance to the line across at t is convex in t: thirds close in on the least.
+    const auto search = [](const std::array<glm::dvec3, 3>& t, const glm::dvec3& p) {
+        const auto distance = [&](double at) {
+            const glm::dvec3 from = glm::mix(t[0], t[1], at), side = glm::mix(t[0], t[2], at) - from;
+            const double squared = glm::dot(side, side);
+            const double part = squared > 0 ? std::clamp(glm::dot(p - from, side) / squared, 0.0, 1.0) : 0.0;
+            return glm::length(from + part * side - p);
+        };
+        double low = 0, high = 1;
+        for (int k = 0; k < 150; ++k) {
+            const double third = (high - low) / 3;
+            if (distance(low + third) < distance(high - third))
+                high -= third;
+            else
+                low += third;
+        }
+        return distance((low + high) / 2);
+    };
+    for (int exponent = 0; exponent <= 14; ++exponent) {
+        double worst = 0;
+        for (int k = 0; k < 2000; ++k) {
+            const glm::dvec3 at(real(random, -1, 1), real(random, -1, 1), real(random, -1, 1));
+            const glm::dvec3 along = unit_vector(random);
+            const glm::dvec3 across = unit_vector(random);
+            const double width = std::pow(10.0, -exponent);
+            std::array<glm::dvec3, 3> t = {at, at + along,
+                                           at + real(random, -0.1, 1.1) * along + width * across};
+            const glm::dvec3 p = at + real(random, -0.5, 1.5) * along +
+                                 real(random, -1, 1) * (k % 2 == 0 ? width : 1.0) * across +
+                                 std::pow(10.0, -real(random, 0, 12)) * unit_vector(random);
+            const double searched = search(t, p);
+            std::rotate(t.begin(), t.begin() + k % 3, t.end());
+            worst = std::max(worst, std::abs(glm::length(closest_point(t, p) - p) - searched));
+        }
+        CAPTURE(exponent, worst);
+        CHECK(worst < 2e-8);
+    }
+}
+
 TEST_CASE("distances through Embree are those of a search through all triangles") {
     Random random(21);
     // A large offset leaves single precision little; the distances must not notice.
@@ -116,8 +157,10 @@ TEST_CASE(
         CHECK(distance_between(from, to).max == Approx(largest).epsilon(1e-12));
         const NearestTriangle search(to);
         std::vector<NearestTriangle::Found> within;
-        REQUIRE(search.within({0, 0, 0}, 10, 300, within));
-        CHECK(within.size() == 300);  // each once, in however many parts
+        for (const std::size_t most : {300, 100'000}) {
+            REQUIRE(search.within({0, 0, 0}, 10, most, within));
+            CHECK(within.size() == 300);  // each once, in however many parts
+        }
         CHECK_FALSE(search.within({0, 0, 0}, 10, 299, within));
     }
 }
