@@ -13,6 +13,7 @@ namespace tessera::testing {
 ///   passes 11, of three edges: 33 tested; by edges split 1 x 1, 2 x 2, 4 x 3: 17 split
 ///   split by: normal alone 3 * 3 + 1, summed height alone 2 * 2, both 1, highlight alone 2; in the highlight 3
 ///   stopped by: view 3, tex coord 3 + 2, generation 1 + 1; edges that nobody wanted to split are not stopped
+///   one test alone: view 3, tex coord 4, generation 1; several 1
 ///   finished: 4 passes without a split, 5 that went round for normals: 9, of which 2 are culled
 ///   vertices made 33, thrown away 33 - 17; normals 3 * 5; children 2 + 2 * 3 + 4 * 4 = 24, all waiting
 class HandMadeRun {

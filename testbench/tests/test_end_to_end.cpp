@@ -263,3 +263,30 @@ TEST_CASE("a golden run that grows far beyond the hardware's is given up") {
     CHECK(result.bound_hit);
     CHECK(result.hardware_to_golden.points == 0);
 }
+
+TEST_CASE("golden's own run passes within what is allowed, either way") {
+    EndToEndResult result;
+    result.hardware_triangles = 1000;
+    result.golden_triangles = 1000;
+    result.allowed = {1, 0.5};
+    CHECK(result.passed());
+    for (const std::uint64_t golden : {990U, 1010U}) {
+        result.golden_triangles = golden;
+        CHECK(std::abs(result.more_triangles()) == Approx(1));
+        result.allowed.triangles = 1.001;
+        CHECK(result.passed());
+        result.allowed.triangles = 0.999;
+        CHECK_FALSE(result.passed());
+    }
+    result.golden_triangles = 1000;
+    for (EndToEndResult::Distance EndToEndResult::*const way :
+         {&EndToEndResult::hardware_to_golden, &EndToEndResult::golden_to_hardware}) {
+        (result.*way).rms_model = 0.5;
+        CHECK(result.passed());
+        (result.*way).rms_model = 0.51;
+        CHECK_FALSE(result.passed());
+        (result.*way).rms_model = 0;
+    }
+    result.bound_hit = true;
+    CHECK_FALSE(result.passed());
+}

@@ -223,6 +223,16 @@ std::vector<Mistake> vertex_mistakes() {
         "handedness", [](auto& v) -> auto& { return v.handedness; });
     add(
         "generation", [](auto& v) -> auto& { return v.generation; });
+    for (const std::size_t k : {std::size_t{0}, std::size_t{1}, std::size_t{2}}) {
+        const std::string vertex = "triangle 7, vertex " + std::to_string(k) + ", ";
+        list.push_back({vertex + "displaced_known",
+                        [k](Setup& s) { s.base_triangles[7].vertices[k].displaced_known = true; }});
+        list.push_back({vertex + "screen_normal_known",
+                        [k](Setup& s) { s.base_triangles[7].vertices[k].screen_normal_known = true; }});
+    }
+    list.push_back({"triangle 7, split_by", [](Setup& s) { ++s.base_triangles[7].split_by; }});
+    list.push_back({"triangle 7, stopped_by", [](Setup& s) { ++s.base_triangles[7].stopped_by; }});
+    list.push_back({"triangle 7, finished", [](Setup& s) { s.base_triangles[7].finished = true; }});
     list.push_back({"triangle 7, base", [](Setup& s) { ++s.base_triangles[7].base; }});
     list.push_back({"triangle 17 of the mesh is missing", [](Setup& s) { s.base_triangles.pop_back(); }});
     list.push_back(
@@ -369,6 +379,8 @@ TEST_CASE("a model scale that is no power of two, or too large, is not sound") {
 TEST_CASE("golden's own run is judged: by its triangles, by the surfaces' distance, by its bound") {
     Job job;
     job.tests.generation_limit = 4;
+    job.displacement.scale = 0.5;
+    job.displacement.bias = -0.2;
     CheckedRun run{job};
     const SetupResult checked = run.check();
     const auto compare = [&](const EmittedMesh& mesh, double allowed) {
@@ -378,6 +390,14 @@ TEST_CASE("golden's own run is judged: by its triangles, by the surfaces' distan
     const EndToEndResult right = compare(mesh, 1);
     CHECK(right.passed());
     CHECK(right.rms_model() < 1e-3);
+    // Heights are -0.2 to 0.3, four generations: (4 / 2 + 2) LSB of the position, 2 (4 + 1) of the normal times 0.3, and a
+    // hundredth of the surface may lie 0.5 off.
+    REQUIRE(right.golden_largest_generation == 4);
+    CHECK(right.allowed.triangles == 1);
+    CHECK(right.allowed.rms_model ==
+          Approx(std::sqrt(3.0) * (4 * std::ldexp(1.0, -16) / run.setup.model_scale.scale +
+                                   10 * std::ldexp(1.0, -14) * 0.3) +
+                 0.1 * 0.5));
 
     Checks checks;
     const auto failed = [&](const EndToEndResult& result) {

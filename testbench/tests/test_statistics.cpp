@@ -169,6 +169,10 @@ TEST_CASE("statistics: each counter of the machine in its own figure") {
                                      {"stopped_by_view", 3},
                                      {"stopped_by_tex_coord", 5},
                                      {"stopped_by_generation", 2},
+                                     {"stopped_by_view_alone", 3},
+                                     {"stopped_by_tex_coord_alone", 4},
+                                     {"stopped_by_generation_alone", 1},
+                                     {"stopped_by_several", 1},
                                      {"culled", 2}});
     f.require_all("tessellation",
                   {{"made_into_2", 1}, {"made_into_3", 2}, {"made_into_4", 4}, {"passed_unchanged", 0}});

@@ -1,8 +1,11 @@
 #include "testbench/program/summary.h"
 
 #include <catch2/catch.hpp>
+#include <functional>
 #include <string>
+#include <vector>
 
+#include "testbench/report/conformance_report.h"
 #include "testbench/tests/hand_made_run.h"
 
 // What a run prints: each figure in its place, on a machine whose counts are all different, and a run of one triangle.
@@ -50,7 +53,7 @@ TEST_CASE("summary: counts of the machine, each in its place") {
     run.setup.base_triangles.resize(1);  // whose vertices would be three of those made
     const std::string other = summary(run.setup, run.simulation, {}, {}, 0.5);
     CHECK(value_of(other, "triangles") == "1 base -> 9 finished, 2 culled");
-    CHECK(value_of(other, "  split by") == "normal 10, summed height 4, both 1");
+    CHECK(value_of(other, "  split by") == "normal alone 10, summed height alone 4, both 1");
     CHECK(value_of(other, "distinct edges") == "0, each tested 0.0 times");
     CHECK(value_of(other, "distinct vertices") ==
           "0; 33 were made and 13 of them thrown away, 15 normals transformed");
@@ -115,6 +118,47 @@ TEST_CASE("summary: what was checked") {
           "2,000 edges compared, 3 mismatches, 5 allowed flips (0.250 %), more than the 0.2 % that "
           "check.allowed_flips allows");
     CHECK_THAT(value_of(other, "texture seams"), Catch::StartsWith("9 edges open: "));
+}
+
+TEST_CASE("the run's verdict: one part that fails fails it") {
+    const auto wrong = [](auto& part, auto figure) {
+        part.emplace();
+        (*part).*figure = 1;
+    };
+    const std::vector<std::function<void(Checks&)>> failures = {
+        [](Checks& c) { c.fault.emplace(); },
+        [](Checks& c) {
+            c.setup.emplace();
+            c.setup->parts.push_back({"registers", "", 1, 1});
+        },
+        [&](Checks& c) { wrong(c.conformance, &ConformanceResult::mismatches); },
+        [](Checks& c) {  // 0.6 % of the edges; 0.5 % are allowed
+            c.conformance.emplace();
+            c.conformance->edges = 1000;
+            c.conformance->flipped_edges = 6;
+        },
+        [&](Checks& c) { wrong(c.end_to_end, &EndToEndResult::bound_hit); },
+        [&](Checks& c) { wrong(c.invariants, &InvariantResult::cracks); },
+        [&](Checks& c) { wrong(c.work, &WorkResult::violations); },
+        [&](Checks& c) { wrong(c.reads, &ReadResult::wrong); }};
+    Checks right;
+    CHECK(right.passed());
+    right.setup.emplace();
+    right.conformance.emplace();
+    right.end_to_end.emplace();
+    right.invariants.emplace();
+    right.work.emplace();
+    right.reads.emplace();
+    CHECK(right.passed());
+    for (std::size_t k = 0; k < failures.size(); ++k) {
+        INFO("failure " << k);
+        for (Checks checks : {Checks{}, right}) {
+            failures[k](checks);
+            CHECK_FALSE(checks.passed());
+            CHECK_THAT(conformance_text(checks), Catch::StartsWith("Conformance report: FAILED\n"));
+            CHECK_THAT(conformance_json(checks), Catch::StartsWith("{\n  \"passed\": false,"));
+        }
+    }
 }
 
 // 86 cycles (test_timed_pipeline.cpp), of 5 ns; one pass of three edges.

@@ -419,6 +419,13 @@ TEST_CASE("a triangle can be followed through the timeline") {
     const Timeline timeline(here.path() / "out/timeline.json");
     const nlohmann::json statistics = statistics_of(here);
 
+    // Counted: of so many slices and steps, an assertion each takes minutes.
+    std::map<std::string, std::size_t> broken;
+    const auto require_each = [&](bool holds, const char* rule) {
+        if (!holds)
+            ++broken[rule];
+    };
+
     // Each slice names a triangle of one base, and the units that take parts name each part once.
     std::map<std::uint64_t, std::uint64_t> base_of;
     std::map<std::string, std::set<std::pair<std::uint64_t, std::string>>> items;
@@ -427,10 +434,10 @@ TEST_CASE("a triangle can be followed through the timeline") {
             continue;
         // These two hold a triangle as long as they are not starved.
         if (slice.track == "get_triangle" || slice.track == "tessellation")
-            CHECK(slice.state != "starved");
+            require_each(slice.state != "starved", "holds a triangle and is not starved");
         const std::uint64_t triangle = slice.arguments.at("triangle");
         const std::uint64_t base = slice.arguments.at("base");
-        CHECK(base_of.emplace(triangle, base).first->second == base);
+        require_each(base_of.emplace(triangle, base).first->second == base, "a triangle has one base");
         items[slice.track].emplace(triangle, slice.arguments.value("part", ""));
     }
     CHECK(std::max_element(base_of.begin(), base_of.end(), [](const auto& a, const auto& b) {
@@ -446,26 +453,26 @@ TEST_CASE("a triangle can be followed through the timeline") {
         if (whole && last != "collect_tests" && without.count(unit) == 0)  // it may let several by in a cycle
             CHECK(items[unit].size() == count(statistics, "timing." + unit, "items"));
         for (const auto& [triangle, part] : items[unit])
-            CHECK(part.empty() == (take_all.count(unit) == 1));
+            require_each(part.empty() == (take_all.count(unit) == 1),
+                         "a part is named where parts are taken");
     }
 
     // Each step stands in a slice of its triangle. A flow begins once, in Get Triangle; ends once, where no unit follows.
     std::map<std::string, std::uint64_t> ends;
     std::size_t unfinished = 0;
     for (const auto& [triangle, steps] : timeline.flows) {
-        INFO("triangle " << triangle);
         std::set<std::string> units;
         for (std::size_t k = 0; k < steps.size(); ++k) {
             const Timeline::Step& step = steps[k];
-            CHECK(units.insert(step.track).second);
+            require_each(units.insert(step.track).second, "a flow is in a unit once");
             const Timeline::Slice* const slice = timeline.slice_at(step.track, step.time);
-            REQUIRE(slice != nullptr);
-            CHECK(slice->arguments.value("triangle", UINT64_MAX) == triangle);
-            CHECK((step.phase == "s") == (k == 0));
-            CHECK((step.phase == "s") == (step.track == "get_triangle"));
-            CHECK((step.phase != "f" || k + 1 == steps.size()));
-            if (k > 0)
-                CHECK(steps[k - 1].time <= step.time);
+            require_each(slice != nullptr && slice->arguments.value("triangle", UINT64_MAX) == triangle,
+                         "a step stands in a slice of its triangle");
+            require_each((step.phase == "s") == (k == 0), "a flow begins once");
+            require_each((step.phase == "s") == (step.track == "get_triangle"),
+                         "a flow begins in Get Triangle");
+            require_each(step.phase != "f" || k + 1 == steps.size(), "a flow ends once");
+            require_each(k == 0 || steps[k - 1].time <= step.time, "a flow goes forward");
         }
         if (steps.back().phase != "f") {
             ++unfinished;
@@ -474,8 +481,9 @@ TEST_CASE("a triangle can be followed through the timeline") {
         ++ends[steps.back().track];
         for (const char* const unit :
              {"calculate_new_p", "displace_vertex", "transform", "pass_or_tessellate"})
-            CHECK(units.count(unit) == 1);
+            require_each(units.count(unit) == 1, "a flow that ends has been everywhere before");
     }
+    CHECK(broken == std::map<std::string, std::size_t>{});
     CHECK((unfinished == 0) == whole);
     if (!whole)
         return;
