@@ -113,8 +113,11 @@ struct Traces::Files {
             vcd.emplace(*vcd_file, period, window_of(job));
         }
         if (job.output.timeline) {
+            // A cycle is a microsecond there, the format's unit: viewers add times in floating point, and whole numbers
+            // alone stay exact. Otherwise intervals overlap by a rounding error, which they show as nested or not at all.
+            constexpr std::uint64_t shown_cycle = 1'000'000;
             timeline_file.emplace(folder / "timeline.json");
-            timeline.emplace(*timeline_file, period, window_of(job));
+            timeline.emplace(*timeline_file, shown_cycle, window_of(job));
         }
         recorder.emplace(simulation.pipeline, vcd ? &*vcd : nullptr, timeline ? &*timeline : nullptr,
                          window_of(job), units);
