@@ -45,7 +45,9 @@ void try_file(const fs::path& file, const std::string& table, const std::vector<
         const auto remarks = RunFolder(here.path() / "out").conformance["remarks"];
         for (const auto& remark : remarks)
             CHECK_THAT(end.out, Contains("note: " + remark.get<std::string>() + "\n"));
-        const bool borderline = name.rfind("ok_", 0) != 0 && name.rfind("ambig_", 0) != 0;
+        // Nothing is wrong with this one; it lies 17,000 units from the origin.
+        const bool sound = name.rfind("ok_", 0) == 0 || name == "tinyobj_issue-295-trianguation-failure.obj";
+        const bool borderline = !sound && name.rfind("ambig_", 0) != 0;
         if (borderline && file.parent_path().parent_path().filename() == "hostile")
             CHECK_FALSE(remarks.empty());
     } else {
