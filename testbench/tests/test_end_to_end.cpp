@@ -157,7 +157,7 @@ TEST_CASE(
         CHECK(distance_between(from, to).max == Approx(largest).epsilon(1e-12));
         const NearestTriangle search(to);
         std::vector<NearestTriangle::Found> within;
-        for (const std::size_t most : {300, 100'000}) {
+        for (const std::size_t most : {300U, 100'000U}) {
             REQUIRE(search.within({0, 0, 0}, 10, most, within));
             CHECK(within.size() == 300);  // each once, in however many parts
         }

@@ -1,5 +1,6 @@
 #include <png.h>
 
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -104,6 +105,18 @@ TEST_CASE("A ball over a sheet throws a shadow") {
     const int shadow = 80 + static_cast<int>(0.4 * 60);
     CHECK(brightness(image, shadow, 80) + 100 < brightness(image, shadow, 130));
     CHECK(std::abs(brightness(image, 35, 80) - brightness(image, 35, 130)) < 30);
+
+    // Tiles elsewhere on the mesh: the shadow's edge does not show where they begin.
+    View moved = look_down(4, 160, 160, 240);
+    moved.centre += glm::dvec2(4, 4);
+    const Image other = render(mesh, moved, style);
+    int largest = 0;
+    for (int y = 0; y + 4 < image.height; ++y)
+        for (int x = 0; x + 4 < image.width; ++x)
+            if (std::hypot(x - 80, y - 80) > 16)  // not the ball itself
+                largest =
+                    std::max(largest, std::abs(brightness(image, x, y) - brightness(other, x + 4, y + 4)));
+    CHECK(largest < 60);  // of 765: about what the light changes from pixel to pixel
 }
 
 TEST_CASE("The wireframe darkens the pixels along edges and no others") {
