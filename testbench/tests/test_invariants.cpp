@@ -313,6 +313,21 @@ TEST_CASE("normals and generations must agree too") {
         plane.inner_triangle().corners[0].generation ^= 1;
         require_only(plane.check(), {{"inconsistent_vertices", 1}});
     }
+    SECTION("between base triangles, alike in one of them") {
+        const auto at = [&](unsigned base, unsigned u, unsigned v, auto change) {
+            Plane other = plane;
+            for (auto& t : other.mesh.triangles)
+                for (auto& c : t.corners)
+                    if (t.base == base && c.texture == TexCoord{u << 12, v << 12})
+                        change(c);
+            require_only(other.check(), {{"inconsistent_vertices", 1}});
+        };
+        for (const unsigned side : {48U, 64U}) {  // on the second quad's diagonal; a base vertex
+            const unsigned base = side == 48 ? 2 : 7, v = side == 48 ? 16 : 64;
+            at(base, side, v, [](auto& c) { c.displaced_normal.x += 1; });
+            at(base, side, v, [](auto& c) { c.generation ^= 1; });
+        }
+    }
     SECTION("generation beyond the limit") {
         plane.registers.tests.generation_limit = 4;
         const InvariantResult result = plane.check();
@@ -349,6 +364,8 @@ TEST_CASE("folds in texture space alone excuse nothing") {
         other.mesh.triangles[i].corners[2].displaced.x += 1;
         const InvariantResult result = other.check();
         CHECK(result.cracks <= 2);
+        CHECK(result.coincident_vertices == 0);
+        CHECK(result.coincident_edges == 0);
         moved += result.inconsistent_vertices == 1;
 
         other = plane;
