@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "testbench/check/conservation.h"
@@ -37,14 +38,14 @@ void require_work_conserved(const Job& job) {
 
 /// One base triangle, decided and not split, finished and lit. It faces the viewer; N' are zero, and so are N's, so that
 /// only ambient light is left.
-struct TrianglesWay {
+struct OneTriangle {
     datapath::Registers registers;
     datapath::Triangle base;
     datapath::TrianglePass pass;
     datapath::Triangle finished;
     LitTriangle lit;
 
-    TrianglesWay() {
+    OneTriangle() {
         registers.light.ambient = 50;
         registers.back_face_culling = true;
         base.base = 0;
@@ -69,7 +70,7 @@ struct TrianglesWay {
 }  // namespace
 
 TEST_CASE("work check: whatever changes on a triangle's way is noticed where it changes") {
-    const WorkResult right = TrianglesWay{}.result();
+    const WorkResult right = OneTriangle{}.result();
     INFO(right.first_violation);
     REQUIRE(right.passed());
     CHECK(right.triangles == 1);
@@ -108,50 +109,50 @@ TEST_CASE("work check: whatever changes on a triangle's way is noticed where it 
     for (const Field& field : fields)
         for (std::size_t k = 0; k < 3; ++k) {
             INFO(field.name << " of vertex " << k);
-            TrianglesWay work;
+            OneTriangle work;
             field.change(work.finished.vertices[k]);
             CHECK(work.result().first_violation ==
                   "base triangle 0: as many triangles were finished" + other);
-            work = TrianglesWay{};
+            work = OneTriangle{};
             field.change(work.base.vertices[k]);
             CHECK(work.result().passed() != field.of_base);
         }
 
-    const auto found = [](const std::function<void(TrianglesWay&)>& change) {
-        TrianglesWay work;
+    const auto found = [](const std::function<void(OneTriangle&)>& change) {
+        OneTriangle work;
         change(work);
         return work.result().first_violation;
     };
-    CHECK(found([](TrianglesWay& w) { ++w.finished.split_by; }) ==
+    CHECK(found([](OneTriangle& w) { ++w.finished.split_by; }) ==
           "base triangle 0: as many triangles were finished" + other);
-    CHECK(found([](TrianglesWay& w) { ++w.finished.stopped_by; }) ==
+    CHECK(found([](OneTriangle& w) { ++w.finished.stopped_by; }) ==
           "base triangle 0: as many triangles were finished" + other);
-    CHECK(found([](TrianglesWay& w) { ++w.base.split_by; }) ==
+    CHECK(found([](OneTriangle& w) { ++w.base.split_by; }) ==
           "base triangle 0: as many triangles were decided" + other);
     for (std::size_t k = 0; k < 3; ++k) {
-        CHECK(found([k](TrianglesWay& w) { ++w.finished.vertices[k].screen_normal.y; }) ==
+        CHECK(found([k](OneTriangle& w) { ++w.finished.vertices[k].screen_normal.y; }) ==
               "base triangle 0: a finished triangle's vertex " + std::to_string(k) +
                   " has N's (0, 1, 0); its N' transforms to (0, 0, 0)");
         for (const auto& change : std::vector<std::function<void(LitTriangle::Corner&)>>{
                  [](auto& c) { ++c.intensity; }, [](auto& c) { ++c.texture.u; },
                  [](auto& c) { ++c.texture.v; }, [](auto& c) { ++c.screen.x; }, [](auto& c) { ++c.screen.y; },
                  [](auto& c) { ++c.screen.w; }, [](auto& c) { c.screen.in_front = false; }})
-            CHECK(found([&](TrianglesWay& w) { change(w.lit.corners[k]); }) ==
+            CHECK(found([&](OneTriangle& w) { change(w.lit.corners[k]); }) ==
                   "all base triangles: as many triangles were lit" + other);
     }
-    CHECK(found([](TrianglesWay& w) { w.pass.triangle.base = w.finished.base = 1; }) ==
+    CHECK(found([](OneTriangle& w) { w.pass.triangle.base = w.finished.base = 1; }) ==
           "base triangle 0: 1 triangles that were to be decided never were");
     // One from nowhere, one that is lost, and one that faces away and is lit all the same.
-    TrianglesWay stray;
+    OneTriangle stray;
     WorkCheck check(stray.registers, {});
     check.write(stray.pass);
     CHECK(check.result().first_violation ==
           "no base triangle: 1 triangles more were decided than were to be");
     check.write(stray.finished);
     CHECK(check.result().violations == 2);  // decided, and not yet lit
-    CHECK(found([](TrianglesWay& w) { w.pass.split = 7; }) ==
+    CHECK(found([](OneTriangle& w) { w.pass.split = 7; }) ==
           "base triangle 0: 4 triangles that were to be decided never were");
-    CHECK(found([](TrianglesWay& w) {
+    CHECK(found([](OneTriangle& w) {
               for (const auto turn : {&w.pass.triangle, &w.finished})
                   std::swap(turn->vertices[1].screen, turn->vertices[2].screen);
               std::swap(w.lit.corners[1].screen, w.lit.corners[2].screen);
