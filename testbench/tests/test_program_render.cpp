@@ -146,8 +146,8 @@ TEST_CASE("render: camera, zoom, lines, caption and error scale change the pictu
     }
     CHECK(picture({"--view", "error"}) != picture({"--view", "error", "--error-scale", "0.5"}));
     // The run's own camera, said aloud.
-    CHECK(picture({"--view", "wireframe", "--eye", "1.06953", "-2.9385", "2.56815", "--target", "0", "0", "0.125",
-                   "--up", "0", "0", "1", "--field-of-view", "36"}) == usual);
+    CHECK(picture({"--view", "wireframe", "--eye", "1.06953", "-2.9385", "2.56815", "--target", "0", "0",
+                   "0.125", "--up", "0", "0", "1", "--field-of-view", "36"}) == usual);
 }
 
 TEST_CASE("render: EXR files by name or by wish") {

@@ -73,7 +73,8 @@ TEST_CASE("a setting that is unknown, out of range or no setting is refused") {
     refused({"run", "--set", "map.width=4097"}, here.path(), {"map.width", "4097", "4096"});
     refused({"run", "--set", "output.folder="}, here.path(), {"output.folder"});
     refused({"run", "--set", "map.source=file"}, here.path(), {"map.file"});
-    refused({"run", "--set", "camera.eye=[0, 0, 0]", "--set", "camera.target=[0, 0, 0]"}, here.path(), {"camera.eye", "camera.target"});
+    refused({"run", "--set", "camera.eye=[0, 0, 0]", "--set", "camera.target=[0, 0, 0]"}, here.path(),
+            {"camera.eye", "camera.target"});
 }
 
 TEST_CASE("a job, mesh or map file that is absent, a folder or a device is refused") {

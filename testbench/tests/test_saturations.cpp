@@ -295,7 +295,8 @@ TEST_CASE(
     CHECK(saturation_warnings(figures).empty());
     CHECK(saturation_notes(figures).empty());
     REQUIRE(setup.remarks.size() == 1);
-    CHECK_THAT(setup.remarks[0], Catch::Contains("set to the map's border") && Catch::Contains("map.address_u"));
+    CHECK_THAT(setup.remarks[0],
+               Catch::Contains("set to the map's border") && Catch::Contains("map.address_u"));
 }
 
 TEST_CASE("saturations: what the host rounds is counted too") {
