@@ -72,6 +72,4 @@ EndToEndResult compare_end_to_end(const Setup& setup, const GoldenJob& golden,
 EndToEndResult compare_end_to_end(const Setup& setup, const GoldenInputs& inputs,
                                   const EmittedMesh& hardware);
 
-// Both: deterministic, single-threaded. Memory: about 300 bytes per triangle of both meshes together.
-
 }  // namespace tessera

@@ -592,18 +592,4 @@ TEST_CASE("base edges of more than two triangles") {
     CHECK(plane.check().cracks > 3);
 }
 
-TEST_CASE("the figures are named and complete") {
-    const auto figures = invariant_figures(InvariantResult{});
-    for (const auto& figure : figures)
-        CHECK(std::count_if(figures.begin(), figures.end(),
-                            [&](const auto& other) { return std::string(other.name) == figure.name; }) == 1);
-    Plane plane;
-    plane.mesh.triangles.resize(20);
-    const InvariantResult result = plane.check();
-    std::uint64_t violations = 0;
-    for (const auto& figure : invariant_figures(result))
-        violations += figure.kind == InvariantFigure::Kind::violation ? figure.value : 0;
-    CHECK(violations == result.violations());
-}
-
 }  // namespace tessera

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
+#include <string>
 
 #include "testbench/check/invariants.h"
 
@@ -25,4 +27,22 @@ TEST_CASE("each violation counts, what is explained or the input's does not") {
     result.collapsed_explained = 3;
     result.turned_over_explained = 3;
     CHECK(result.violations() == 3);
+}
+
+TEST_CASE("the figures are named and complete") {
+    InvariantResult result;
+    result.t_vertices = 1;
+    result.cracks = 2;
+    result.foreign_triangles = 4;
+    result.collapsed = 11;
+    result.collapsed_explained = 3;
+    const auto figures = invariant_figures(result);
+    std::uint64_t violations = 0;
+    for (const auto& figure : figures) {
+        CHECK(std::count_if(figures.begin(), figures.end(),
+                            [&](const auto& other) { return std::string(other.name) == figure.name; }) == 1);
+        violations += figure.kind == InvariantFigure::Kind::violation ? figure.value : 0;
+    }
+    CHECK(violations == 1 + 2 + 4 + 8);
+    CHECK(violations == result.violations());
 }
