@@ -55,7 +55,7 @@ struct EndToEndResult {
 };
 
 /// Golden from the job itself (GoldenJob), judged. Camera, heights, normal map and thresholds are golden's own, positions
-/// and normals are not rounded. Texture coordinates are, as in the hardware (the base's to nearest, midpoints down):
+/// and normals are not rounded. Map values (to codes) and texture coordinates are, as in the hardware (the base's to nearest, midpoints down):
 /// reading a texel is discontinuous, so that without it an LSB would decide on a whole texel.
 /// `base_triangles`: which of the mesh's triangles the machine was given (SetupResult).
 /// `allowed_triangles`: in percent. The distance's bound follows from it:

@@ -193,7 +193,7 @@ class RegisterCheck {
             judge_.judge([&] { return fmt::format("{}.columns", name); }, table.columns, columns, exact);
             judge_.judge([&] { return fmt::format("{}.rows", name); }, table.rows, rows, exact);
             judge_.judge([&] { return fmt::format("{}.entry_bytes", name); }, table.entry_bytes,
-                         (bits + 7) / 8, exact);
+                         number((bits + 7) / 8), exact);
         };
         layout("displacement_map", registers_.displacement_map, map.width(), map.height(),
                formats_.displacement.bits);

@@ -51,7 +51,7 @@ struct SetupResult {
 /// The host's own choice, of which only soundness is judged: the model's scale (a power of two with which the displaced
 /// mesh fits the position's format), the transform's exponent (entries reach 1/2 and not beyond 1), the view distance's
 /// fraction bits (the most with which the farthest position fits), the Summed Height Table's width (holds the largest
-/// rectangle's sum; `auto`: the narrowest of 32, 40, 48 that does), where the tables lie (apart), whole periods added to
+/// rectangle's sum; 0: the narrowest of 32, 40, 48 that does), where the tables lie (apart), whole periods added to
 /// a texture coordinate on an axis that repeats (the same on all three corners of a triangle).
 ///
 /// Reads the memories by debug transport, row by row. 4096 x 4096 texels take about 2 seconds.

@@ -63,9 +63,10 @@ class TableCheck {
         TableReader table(socket, layout);
         for (std::uint32_t y = 0; y < layout.rows; ++y) {
             const bool there = table.read_row(y);
-            judge.require(there, [&] { return fmt::format("row {} is not in the memory", y); });
-            if (!there)
+            if (!there) {
+                judge.require(false, [&] { return fmt::format("row {} is not in the memory", y); });
                 return;
+            }
             for (std::uint32_t x = 0; x < layout.columns; ++x)
                 check(x, y, table.entry(x));
         }

@@ -191,18 +191,21 @@ class Resolver {
         camera.target = array(target);
         const glm::dvec3 view = vector(camera.eye) - target;
         // Seen from straight above, the front is below.
-        if (no_up && glm::length(glm::cross(view, up)) <= 1e-6 * glm::length(view))
+        const bool along_up = no_up && glm::length(glm::cross(view, up)) <= 1e-6 * glm::length(view);
+        if (along_up)
             up = glm::dvec3(0) - front_of(up);  // without -0
         if (no_up)
             camera.up = array(up);
         if (no_eye)
-            found("camera.eye", "the displaced model fills nine tenths of the picture");
+            found("camera.eye",
+                  "the displaced model's bounding box fits into 90 % of the picture's width and height");
         if (no_target)
-            found("camera.target", "the centre of its bounding box");
+            found("camera.target", "the centre of the displaced model's bounding box");
         if (no_up)
-            found("camera.up", job.mesh.source != MeshSource::file ? "as in all built-in meshes"
-                               : flat_ < 0                         ? "as in most OBJ files"
-                                                                   : "the axis in which the mesh is flat");
+            found("camera.up", along_up ? "seen along the up axis: the front is at the bottom"
+                               : job.mesh.source != MeshSource::file ? "z, as for all meshes but OBJ files"
+                               : flat_ < 0                           ? "y, as in most OBJ files"
+                                                                     : "the axis the mesh is flat in");
         if (is_automatic(camera.near_plane)) {
             const double distance = glm::length(view) * near_part;
             camera.near_plane = rounded(distance, distance);

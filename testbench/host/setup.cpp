@@ -133,7 +133,8 @@ std::uint32_t to_texture(double coordinate, std::uint32_t size, datapath::Addres
         throw InputError(fmt::format(
             "texture coordinate {} is {} texels of a map of {}, beyond the 0..{} that the texture "
             "coordinate's "
-            "format holds: use fewer repetitions, a smaller map, or a larger formats.texture_integer",
+            "format holds: let each triangle repeat the map less often, or use a smaller map or a larger "
+            "formats.texture_integer",
             coordinate, texels, size, 1 << (format.bits - 1 - format.fraction)));
     return static_cast<std::uint32_t>(fixed);
 }

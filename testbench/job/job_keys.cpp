@@ -330,13 +330,13 @@ std::vector<KeyTable> declare_keys() {
         key.add("value", &Map::value, "full scale", between(0, 1), "Value of the constant map");
         key.add("seed", &Map::seed, "-", between(0, 4294967295.0), "Seed of the noise map");
         key.add("text", &Map::text, KeyKind::text, "What the text map says");
-        key.add("range", &Map::range, "the map's own units", coordinate_range, "Which map values displacement.scale spans: full, what the source can hold (0 to the maximum value of a PGM, to 255 or 65535 of a PNG; 0 to 1 of an EXR and of built-in maps); data, the lowest to the highest that occurs; or [low, high]. Values beyond it go on in proportion");
+        key.add("range", &Map::range, "the map's own units", coordinate_range, "Which map values displacement.scale spans: full, what the source can hold (0 to the maximum value of a PGM, to 255 or 65535 of a PNG; 0 to 1 of an EXR and of built-in maps); data, the lowest to the highest that occurs; or [low, high]. Values outside it extrapolate linearly. With data or [low, high] the displacement codes span the values that occur, and so does the full scale of tests.summed_height_threshold");
         key.add("address_u", &Map::address_u, "Beyond the map's left and right border; repeat closes a cylinder's seam");
         key.add("address_v", &Map::address_v, "Beyond the map's lower and upper border");
     });
     list.table("displacement", &Job::displacement, "From map value to height along the normal: bias + scale * (value - low) / (high - low), with low and high of map.range.", [](const auto& key) {
         using Displacement = Job::Displacement;
-        key.add("scale", &Displacement::scale, "model units", auto_or(coordinate_range), "Height from the low to the high end of map.range; auto: an eighth of the base mesh's largest extent if it is flat (its smallest extent under a tenth of the next), else a fortieth; less where values go beyond map.range, so that they reach no higher");
+        key.add("scale", &Displacement::scale, "model units", auto_or(coordinate_range), "Height from the low to the high end of map.range; auto: an eighth of the base mesh's largest extent if it is flat (its smallest extent under a tenth of the next), else a fortieth; reduced where values lie outside map.range, so that the highest displacement stays the same");
         key.add("bias", &Displacement::bias, "model units", coordinate_range, "Height at the low end of map.range");
     });
     list.table("frames", &Job::frames, "Several frames that differ in the displacement's scale, each a run folder of its own: frame_000, ... in output.folder.", [](const auto& key) {
@@ -348,7 +348,7 @@ std::vector<KeyTable> declare_keys() {
         using Camera = Job::Camera;
         key.add("eye", &Camera::eye, "model units", auto_or(coordinate_range), "Where the camera stands; auto: 20 degrees to the right of the front and 38 degrees above it, as near as the displaced model's bounding box fits into 90 % of the picture's width and height. Front is -y, or z where up is y");
         key.add("target", &Camera::target, "model units", auto_or(coordinate_range), "What it looks at; auto: the centre of the displaced model's bounding box");
-        key.add("up", &Camera::up, "-", auto_or(coordinate_range), "Direction that is up in the picture, of any length; auto: z, but y for an OBJ file that is not flat, and for one that is flat the axis it is flat in, on the side of its normals");
+        key.add("up", &Camera::up, "-", auto_or(coordinate_range), "Direction that is up in the picture, of any length; auto: y for an OBJ file that is not flat, the axis it is flat in (on the side of its normals) for one that is, z for every other source; if the camera looks along that axis, away from the model's front");
         key.add("field_of_view", &Camera::field_of_view, "degrees", between(0.1, 179), "Vertical opening angle");
         key.add("near_plane", &Camera::near_plane, "model units", auto_or(distance_range), "Distance of the near plane; vertices on or behind it have no screen position; auto: a thousandth of the distance from eye to target");
         key.add("viewport_width", &Camera::viewport_width, "pixels", between(1, 16384), "Width of the picture");
@@ -403,10 +403,10 @@ std::vector<KeyTable> declare_keys() {
     list.table("check", &Job::check, "Conformance to the golden model.", [](const auto& key) {
         using Check = Job::Check;
         key.add("golden", &Check::golden, "Every edge's decision against the golden model (scoreboard), and every register and table entry against what golden derives from the job by itself");
-        key.add("end_to_end", &Check::end_to_end, "Golden run of the whole mesh, compared with the hardware's");
+        key.add("end_to_end", &Check::end_to_end, "Golden run of the whole mesh, compared with the hardware's; also every register and table entry, as with check.golden");
         key.add("invariants", &Check::invariants, "The emitted mesh is closed, without T-vertices, and covers the texture");
         key.add("allowed_flips", &Check::allowed_flips, "percent of edges", between(0, 100), "Decisions that differ within the formats' error bound; more fail the run");
-        key.add("allowed_triangles", &Check::allowed_triangles, "percent of triangles", between(0, 1000), "Triangles that the golden run of the whole mesh may have more or fewer than the hardware; beyond it the run fails, and so it does where the surfaces lie further apart than follows from it. Saturated values and thresholds finer than the formats need more");
+        key.add("allowed_triangles", &Check::allowed_triangles, "percent of triangles", between(0, 1000), "Largest difference in the number of triangles between golden's own run and the hardware; beyond it the run fails. The allowed distance between the surfaces follows from it. Raise it for runs that saturate, or whose thresholds are finer than the formats");
         key.add("work", &Check::work, "No triangle is lost, doubled or altered on its way through the machine, and what goes into a unit comes out of another");
         key.add("reads", &Check::reads, "Every table read against what the memory holds; in functional mode reads then go by transaction, which is slow");
     });

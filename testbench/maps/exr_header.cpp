@@ -449,7 +449,8 @@ std::uint64_t decoded_bytes(std::string_view compression, const std::string& pay
     if (compression == "RLE") {
         std::uint64_t decoded = 0;
         for (std::size_t at = 0; at < payload.size();) {
-            const int count = static_cast<signed char>(payload[at]);
+            const int byte = static_cast<unsigned char>(payload[at]);
+            const int count = byte < 128 ? byte : byte - 256;
             decoded += static_cast<std::uint64_t>(count < 0 ? -count : count + 1);
             at += count < 0 ? static_cast<std::size_t>(1 - count) : 2;
         }

@@ -26,9 +26,9 @@ double percent(std::uint64_t part, std::uint64_t whole) {
 std::string checks_rows(const Checks& checks) {
     std::string text;
     if (checks.setup)
-        text += row("set-up",
-                    fmt::format("{} registers, base vertices' fields and table entries compared, {} wrong",
-                                count(checks.setup->compared()), count(checks.setup->wrong())));
+        text +=
+            row("set-up", fmt::format("{} values of registers, base vertices and tables compared, {} wrong",
+                                      count(checks.setup->compared()), count(checks.setup->wrong())));
     if (checks.conformance) {
         const ConformanceResult& c = *checks.conformance;
         std::string verdict;
@@ -71,9 +71,10 @@ std::string checks_rows(const Checks& checks) {
                             count(i.open_texture_seam_edges)));
     }
     if (checks.work)
-        text += row("work conservation", fmt::format("{} of {} triangles' and units' counts do not add up",
-                                                     count(checks.work->violations),
-                                                     count(checks.work->triangles + checks.work->equations)));
+        text += row("work conservation",
+                    fmt::format("{} triangles and {} balances of units checked, {} violations",
+                                count(checks.work->triangles), count(checks.work->equations),
+                                count(checks.work->violations)));
     if (checks.reads)
         text += row("reads", fmt::format("{} entries compared, {} wrong", count(checks.reads->entries),
                                          count(checks.reads->wrong)));
@@ -87,9 +88,9 @@ std::string work_rows(const Simulation& simulation, const MeshCounts& mesh) {
                                                   : static_cast<double>(p.edges_tested()) /
                                                         static_cast<double>(mesh.tested_edges());
     return row("distinct edges",
-               fmt::format("{}, each tested {:.1f} times", count(mesh.tested_edges()), tests)) +
+               fmt::format("{}, each tested {:.1f} times on average", count(mesh.tested_edges()), tests)) +
            row("distinct vertices",
-               fmt::format("{}; {} were made and {} of them thrown away, {} normals transformed",
+               fmt::format("{}; {} computed, {} of them discarded, and {} normals transformed",
                            count(mesh.vertices), count(p.transform.positions()),
                            count(thrown_away_vertices(p, simulation.setup.base_triangles.size())),
                            count(p.transform.normals())));
@@ -166,9 +167,10 @@ std::string summary(const Setup& setup, const Simulation& simulation, const Mesh
     const bool timed = setup.design.transport == Transport::non_blocking;
     if (timed)
         text += timing_rows(simulation);
-    text += row(timed ? "timed mode" : "functional mode",
-                fmt::format("{:.2f} s, {:.2f} million edges a second, checking included", seconds,
-                            static_cast<double>(edges) / seconds / 1e6));
+    text +=
+        row(timed ? "timed mode" : "functional mode",
+            fmt::format("simulated in {:.2f} s, {:.2f} million edges a second, with the checks of each edge",
+                        seconds, static_cast<double>(edges) / seconds / 1e6));
     for (const std::string& warning : saturation_warnings(saturations))
         text += fmt::format("  warning: {}\n", warning);
     if (!checks.texel_borders.empty())

@@ -79,8 +79,8 @@ std::string end_to_end_text(const EndToEndResult& result) {
     std::string text = fmt::format(
         "End to end: {}. The golden model run by itself from the job: its own camera, heights, normal map "
         "and "
-        "thresholds,\nnothing rounded but texture coordinates. Allowed: {} % more or fewer triangles, an RMS "
-        "distance of {:.6g} model units.\n\n"
+        "thresholds.\nOnly map values (to displacement codes) and texture coordinates are rounded, as in the "
+        "hardware. Allowed: {} % more or\nfewer triangles, an RMS distance of {:.6g} model units.\n\n"
         "  triangles: hardware {}, golden {}\n",
         verdict(result.passed()), result.allowed.triangles, result.allowed.rms_model,
         result.hardware_triangles,

@@ -120,16 +120,15 @@ std::string binding_text(const Pipeline& pipeline, std::uint64_t cycles, const B
     const bool several = found.first.units.size() > 1;
     std::string text = found.first.names();
     if (several)
-        text += fmt::format(", which tie: no room for more work in {:.1f} % of all cycles",
-                            100 * found.first.utilisation);
+        text +=
+            fmt::format(", which tie: {:.1f} % of their throughput is used", 100 * found.first.utilisation);
     else
         text += fmt::format(
-            ": {} in {:.1f} % of all cycles",
-            is_memory(*found.first.units[0]) ? "its ports are taken" : "it has no room for more work",
-            100 * found.first.utilisation);
+            ": {:.1f} % of {}", 100 * found.first.utilisation,
+            is_memory(*found.first.units[0]) ? "its port slots are taken" : "its throughput is used");
     const auto [waiting, most] = longest_wait(pipeline, found.first.units[0]);
     if (waiting != nullptr)
-        text += fmt::format("; {} waits for {} {:.1f} %", unit_name(*waiting),
+        text += fmt::format("; {} is held up by {} in {:.1f} % of all cycles", unit_name(*waiting),
                             several ? unit_name(*found.first.units[0]) : "it", 100 * ratio(most, cycles));
     if (found.bound() > 0)
         text +=
@@ -168,7 +167,8 @@ std::string latency_text(const Pipeline& pipeline, std::uint64_t cycles, const B
             : fmt::format("get_triangle is blocked {:.1f} %: larger buffers, timing.*_buffer", blocked);
     const Unit& longest = longest_stay(pipeline);
     return fmt::format(
-        "none: bound by latency; the most taken ({}) is so in {:.1f} % of all cycles; at most {:.1f} times "
+        "none: bound by latency; of the busiest ({}) {:.1f} % of the throughput is used; at most {:.1f} "
+        "times "
         "faster "
         "with more triangles in flight ({}) or shorter latencies (an item stays {:.1f} cycles in {})",
         found.first.names(), 100 * found.first.utilisation, found.bound(), held_up, mean_stay(longest),
@@ -208,9 +208,9 @@ std::string bottleneck_text(const Pipeline& pipeline, std::uint64_t cycles) {
 }
 
 std::string timing_tables(const Pipeline& pipeline, std::uint64_t cycles) {
-    std::string text = fmt::format("{:<40}{:>10}{:>9}{:>8}{:>9}{:>9}{:>13}{:>12}{:>9}{:>6}  {}\n", "unit",
-                                   "items", "working", "memory", "blocked", "starved", "utilisation",
-                                   "items/kcyc", "occup.", "most", "by whom");
+    std::string text =
+        fmt::format("{:<40}{:>10}{:>9}{:>8}{:>9}{:>9}{:>13}{:>12}{:>9}{:>6}  {}\n", "unit", "items", "busy",
+                    "memory", "blocked", "starved", "utilisation", "items/kcyc", "occup.", "most", "by whom");
     std::string queues = fmt::format("{:<40}{:>10}{:>12}{:>12}{:>10}\n", "queue or wire", "items",
                                      "items/kcyc", "mean level", "most");
     for (const Unit* unit : pipeline.units()) {
@@ -227,13 +227,17 @@ std::string timing_text(const Pipeline& pipeline, std::uint64_t cycles) {
                "{} cycles. In each a unit is in one state, the first of these that applies, in per cent of "
                "all cycles:\n"
                "  blocked  a finished item is not taken\n"
-               "  working  an item is worked on that has all it needs; in a memory: a request is being "
+               "  busy     an item is worked on that has all it needs; in a memory: a request is being "
                "answered\n"
                "  memory   table entries have been asked for and have not come\n"
-               "  starved  nothing to work on, or its other half is lacking\n"
-               "utilisation: cycles in which no more work could have been taken, in per cent. occup.: items "
-               "in the unit, on\naverage; most: at a time. Queues and wires do no work: they have a rate and "
-               "a level.\n\n",
+               "  starved  nothing to work on, or the other branch's results are still to come\n"
+               "utilisation: items times initiation interval (in a memory: port slots taken), in per cent of "
+               "all "
+               "cycles; 100 is\nthe most the unit can do. items: taken; in a memory, requests. items/kcyc: "
+               "in "
+               "1000 cycles. occup.: items in the\nunit, on average; most: at a time. by whom: who held it "
+               "up "
+               "longest in each state. Queues and wires do no work:\nthey have a rate and a level.\n\n",
                cycles) +
            timing_tables(pipeline, cycles) + "\nbottleneck: " + bottleneck_text(pipeline, cycles) + "\n";
 }

@@ -7,8 +7,8 @@
 
 namespace tessera {
 
-/// Share of the run's cycles in which a unit or memory could not have taken more work: items times initiation interval,
-/// or port slots taken over port slots there were. 0 to 1, 0 for a run without cycles.
+/// Share of the most that a unit or memory could have done in the run: items times initiation interval over cycles, or
+/// port slots taken over port slots there were. 0 to 1, 0 for a run without cycles.
 double utilisation(const Unit& unit, std::uint64_t cycles);
 
 /// "summed_height_table" of "tessera.summed_height_table": a unit's name within the machine.

@@ -66,12 +66,12 @@ void run_figures(const Simulation& simulation, std::vector<Figure>& figures) {
 void unit_figures(const Unit& unit, std::uint64_t cycles, std::vector<Figure>& figures) {
     const Activity& activity = unit.activity();
     Group group(figures, "timing." + unit_name(unit));
-    group.count("items", activity.items_in(), "item", "started, or asked for");
+    group.count("items", activity.items_in(), "item", "taken; in a memory, requests");
     group.count("items_out", activity.items_out(), "item",
                 "finished and handed on, or dropped as not needed");
     group.count("busy", activity.cycles_in(State::busy), "cycle", "working on an item that has all it needs");
     group.count("starved", activity.cycles_in(State::starved), "cycle",
-                "nothing to work on, or its other half lacks");
+                "nothing to work on, or the other branch's results are still to come");
     group.count("waiting_for_memory", activity.cycles_in(State::waiting_for_memory), "cycle",
                 "no item has all it needs; table entries have been asked for and have not come");
     group.count("blocked", activity.cycles_in(State::blocked), "cycle", "a finished item is not taken");
@@ -83,8 +83,8 @@ void unit_figures(const Unit& unit, std::uint64_t cycles, std::vector<Figure>& f
                                                                             : "starved_of_";
         group.count(what + unit_name(*share.by), share.cycles, "cycle", "of these");
     }
-    group.real("utilisation", utilisation(unit, cycles), "",
-               "share of the cycles in which no more work could have been taken");
+    group.real("utilisation", utilisation(unit, cycles), "1",
+               "throughput used, of the most possible: items times initiation interval, or port slots taken");
     group.real("throughput", ratio(activity.items_out(), cycles), "item/cycle", "items out per cycle");
     group.real("occupancy", ratio(activity.item_cycles(), cycles), "item", "items in the unit, on average");
     group.real("latency", ratio(activity.item_cycles(), activity.items_out()), "cycle",

@@ -38,13 +38,14 @@ TEST_CASE("summary: counts of the machine, each in its place") {
           "normal alone 10, summed height alone 4, both 1, highlight alone 2");
     CHECK(value_of(text, "  wanted, but stopped by") ==
           "view alone 3, tex coord alone 4, generation alone 1, several 1");
-    CHECK(value_of(text, "distinct edges") == "11, each tested 3.0 times");
+    CHECK(value_of(text, "distinct edges") == "11, each tested 3.0 times on average");
     CHECK(value_of(text, "distinct vertices") ==
-          "6; 33 were made and 16 of them thrown away, 15 normals transformed");
+          "6; 33 computed, 16 of them discarded, and 15 normals transformed");
     // the default design's entry, and a bit for the Highlight Test
     CHECK(value_of(text, "triangle queue") == "at most 24 triangles waiting, 1573 bits each");
     CHECK_THAT(value_of(text, "summed height table"), Contains("0 reads, 0.0 an edge"));
-    CHECK(value_of(text, "functional mode") == "0.50 s, 0.00 million edges a second, checking included");
+    CHECK(value_of(text, "functional mode") ==
+          "simulated in 0.50 s, 0.00 million edges a second, with the checks of each edge");
     CHECK_THAT(text, Contains("  note: a remark\n"));
     CHECK(value_of(text, "cycles") == "no such row");
     CHECK(value_of(text, "golden model") == "no such row");
@@ -54,15 +55,16 @@ TEST_CASE("summary: counts of the machine, each in its place") {
     const std::string other = summary(run.setup, run.simulation, {}, {}, 0.5);
     CHECK(value_of(other, "triangles") == "1 base -> 9 finished, 2 culled");
     CHECK(value_of(other, "  split by") == "normal alone 10, summed height alone 4, both 1");
-    CHECK(value_of(other, "distinct edges") == "0, each tested 0.0 times");
+    CHECK(value_of(other, "distinct edges") == "0, each tested 0.0 times on average");
     CHECK(value_of(other, "distinct vertices") ==
-          "0; 33 were made and 13 of them thrown away, 15 normals transformed");
+          "0; 33 computed, 13 of them discarded, and 15 normals transformed");
 }
 
 TEST_CASE("summary: seconds and edges a second") {
     HandMadeRun run;
     const std::string text = summary(run.setup, run.simulation, {}, {}, 0.000'015);
-    CHECK(value_of(text, "functional mode") == "0.00 s, 2.20 million edges a second, checking included");
+    CHECK(value_of(text, "functional mode") ==
+          "simulated in 0.00 s, 2.20 million edges a second, with the checks of each edge");
 }
 
 TEST_CASE("summary: what was checked") {
@@ -108,7 +110,8 @@ TEST_CASE("summary: what was checked") {
     CHECK(value_of(text, "invariants") ==
           "1 cracks, 2 T-vertices; in texture space 3 collapsed, 4 turned over");
     CHECK(value_of(text, "texture seams") == "no such row");
-    CHECK(value_of(text, "work conservation") == "7 of 42 triangles' and units' counts do not add up");
+    CHECK(value_of(text, "work conservation") ==
+          "40 triangles and 2 balances of units checked, 7 violations");
     CHECK(value_of(text, "reads") == "60 entries compared, 8 wrong");
 
     checks.allowed_flips = 0.2;
@@ -174,15 +177,16 @@ TEST_CASE("summary: a timed run of one triangle") {
     INFO(text);
     CHECK(value_of(text, "triangles") == "1 base -> 1 finished");
     CHECK(value_of(text, "edges") == "3 tested, 0 split (0.0 %)");
-    CHECK(value_of(text, "distinct edges") == "3, each tested 1.0 times");
+    CHECK(value_of(text, "distinct edges") == "3, each tested 1.0 times on average");
     CHECK(value_of(text, "distinct vertices") ==
-          "3; 6 were made and 3 of them thrown away, 3 normals transformed");
+          "3; 6 computed, 3 of them discarded, and 3 normals transformed");
     CHECK_THAT(value_of(text, "triangle queue"), Catch::StartsWith("at most 1 triangles waiting, "));
     CHECK_THAT(value_of(text, "summed height table"), Contains("; 36 reads, 12.0 an edge"));
     CHECK(value_of(text, "cycles") ==
           "86: 86.0 a finished triangle, 86.0 a pass, 28.7 an edge; 0.00043 ms at 200 MHz");
     CHECK_THAT(value_of(text, "bottleneck"), Catch::StartsWith("none: bound by latency; "));
-    CHECK(value_of(text, "timed mode") == "1.00 s, 0.00 million edges a second, checking included");
+    CHECK(value_of(text, "timed mode") ==
+          "simulated in 1.00 s, 0.00 million edges a second, with the checks of each edge");
     CHECK(value_of(text, "spilled") == "no such row");
 }
 

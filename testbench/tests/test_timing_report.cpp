@@ -61,7 +61,7 @@ TEST_CASE("timing tables: each column of a unit") {
     a.finish(cycles);
     const std::string text = timing_tables(m.pipeline, cycles);
     CHECK_THAT(text,
-               StartsWith("unit                                         items  working  memory  blocked  "
+               StartsWith("unit                                         items     busy  memory  blocked  "
                           "starved  utilisation  items/kcyc   occup.  most  by whom\n"));
     // (2 * 10 + 3 * 100) / 1000 items in it on average
     CHECK(line_of(text, "tessellation_tests_0.normal_test") ==
@@ -140,7 +140,7 @@ TEST_CASE("bottleneck: the next limit names all within a per cent of it, in the 
     CHECK(found.next.utilisation == 0.4);
     CHECK(found.bound() == Approx(2.5));
     CHECK(bottleneck_text(m.pipeline, cycles) ==
-          "transform: it has no room for more work in 100.0 % of all cycles; without it at most 2.5 times "
+          "transform: 100.0 % of its throughput is used; without it at most 2.5 times "
           "faster, bounded by calculate_new_p, tessellation_tests_0.normal_test and "
           "tessellation_tests_0.view_test, which tie at 40.0 %");
 }
@@ -159,8 +159,8 @@ TEST_CASE("bottleneck: the bound is what remains to be done, and who waits longe
     less.set(0, State::blocked, &m.pipeline.lighting);
     less.finish(299);
     CHECK(bottleneck_text(m.pipeline, cycles) ==
-          "lighting: it has no room for more work in 90.0 % of all cycles; pass_or_tessellate waits for it "
-          "30.0 %; without it at most 2.0 times faster, bounded by calculate_new_p, at 50.0 %");
+          "lighting: 90.0 % of its throughput is used; pass_or_tessellate is held up by it in "
+          "30.0 % of all cycles; without it at most 2.0 times faster, bounded by calculate_new_p, at 50.0 %");
 }
 
 TEST_CASE("bottleneck: units that tie bind together") {
@@ -172,8 +172,9 @@ TEST_CASE("bottleneck: units that tie bind together") {
     get.set(0, State::blocked, &m.pipeline.calculate_new_p);
     get.finish(700);
     CHECK(bottleneck_text(m.pipeline, cycles) ==
-          "calculate_new_p and transform, which tie: no room for more work in 100.0 % of all cycles; "
-          "get_triangle waits for calculate_new_p 70.0 %; without them at most 10.0 times faster, bounded by "
+          "calculate_new_p and transform, which tie: 100.0 % of their throughput is used; "
+          "get_triangle is held up by calculate_new_p in 70.0 % of all cycles; without them at most 10.0 "
+          "times faster, bounded by "
           "lighting, at 10.0 %");
 }
 
@@ -181,8 +182,7 @@ TEST_CASE("bottleneck: the only unit that worked has no next limit") {
     Machine m;
     work_on(m.pipeline.lighting, 1000);
     CHECK(find_bottleneck(m.pipeline, cycles).bound() == 0);
-    CHECK(bottleneck_text(m.pipeline, cycles) ==
-          "lighting: it has no room for more work in 100.0 % of all cycles");
+    CHECK(bottleneck_text(m.pipeline, cycles) == "lighting: 100.0 % of its throughput is used");
 }
 
 TEST_CASE("bottleneck: below 85 % latency binds, and what would help is said") {
@@ -202,8 +202,9 @@ TEST_CASE("bottleneck: below 85 % latency binds, and what would help is said") {
         get.set(200, State::starved);
         get.finish(cycles);
         CHECK(bottleneck_text(m.pipeline, cycles) ==
-              "none: bound by latency; the most taken (calculate_new_p and lighting) is so in 84.9 % of all "
-              "cycles; at most 1.2 times faster with more triangles in flight "
+              "none: bound by latency; of the busiest (calculate_new_p and lighting) 84.9 % of the "
+              "throughput is "
+              "used; at most 1.2 times faster with more triangles in flight "
               "(get_triangle is starved 80.0 %: more base triangles, a higher hardware.queue_watermark) or "
               "shorter latencies (an item stays 27.5 cycles in transform)");
     }
@@ -238,9 +239,10 @@ TEST_CASE("timing.txt of one triangle: latency binds") {
     const std::string text = timing_text(simulation.pipeline, simulation.cycles());
     CHECK_THAT(text, StartsWith("86 cycles. "));
     CHECK_THAT(text, Contains(timing_tables(simulation.pipeline, 86)));
-    CHECK_THAT(text,
-               Contains("\nbottleneck: none: bound by latency; the most taken (summed_height_table) is so in "
-                        "41.9 % of all cycles; at most 2.4 times faster "));
+    CHECK_THAT(
+        text,
+        Contains("\nbottleneck: none: bound by latency; of the busiest (summed_height_table) 41.9 % of the "
+                 "throughput is used; at most 2.4 times faster "));
     CHECK_THAT(text, EndsWith("(an item stays 20.0 cycles in transform)\n"));
 }
 

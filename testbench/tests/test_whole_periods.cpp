@@ -150,6 +150,6 @@ TEST_CASE("one triangle of more periods than the format holds is refused") {
         make_setup(tiling_job(), base, noise_map(64, 64, 1));
         FAIL("not refused");
     } catch (const InputError& error) {
-        CHECK_THAT(error.what(), Contains("beyond the 0..4096") && Contains("use fewer repetitions"));
+        CHECK_THAT(error.what(), Contains("beyond the 0..4096") && Contains("repeat the map less often"));
     }
 }
