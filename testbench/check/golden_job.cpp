@@ -1,5 +1,6 @@
 #include "testbench/check/golden_job.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -14,10 +15,20 @@ glm::dvec3 vector(const std::array<double, 3>& a) {
     return {a[0], a[1], a[2]};
 }
 
+/// The map values that displacement.scale spans, by map.range.
+std::array<double, 2> span_of(const Job& job, const HeightMap& map) {
+    if (job.map.range.kind == MapRange::Kind::full)
+        return {0, 1};
+    if (job.map.range.kind == MapRange::Kind::given)
+        return {job.map.range.low / map.source_units, job.map.range.high / map.source_units};
+    const auto [low, high] = std::minmax_element(map.values.begin(), map.values.end());
+    return {*low, *high};
+}
+
 /// The displacement in model units that a map value means.
 double displacement_of(double value, const Job& job, const HeightMap& map) {
-    const double span = map.span_high - map.span_low;
-    const double part = span > 0 ? (value - map.span_low) / span : 0;
+    const auto [low, high] = span_of(job, map);
+    const double part = high > low ? (value - low) / (high - low) : 0;
     return job.displacement.bias + job.displacement.scale * part;
 }
 

@@ -175,6 +175,13 @@ class RegisterCheck {
             return fmt::format("the displaced mesh reaches {:.6g} world units, a position {:.6g}",
                                (reach + height) * scale, limit);
         });
+        // The largest that leaves half of the range free: S's register holds twice the range of heights at most.
+        judge_.require(
+            reach + 2 * height == 0 || (reach + 2 * height) * scale > limit / 4 * (1 - 0x1p-20), [&] {
+                return fmt::format(
+                    "the displaced mesh reaches only {:.6g} world units of {:.6g}: its scale is too small",
+                    (reach + height) * scale, limit);
+            });
     }
 
     void check_map() {

@@ -43,8 +43,12 @@ class Steps {
 
     /// `from` becomes `to`, of which a copy is kept if there is one.
     void replace(const fs::path& from, const fs::path& to) {
-        const fs::path copy = other_name(to);
-        const bool copied = ::link(to.c_str(), copy.c_str()) == 0;
+        fs::path copy = other_name(to);
+        bool copied = ::link(to.c_str(), copy.c_str()) == 0;
+        while (!copied && errno == EEXIST) {  // an earlier process of this number left it
+            copy = other_name(to);
+            copied = ::link(to.c_str(), copy.c_str()) == 0;
+        }
         if (copied)
             kept_.push_back(copy);
         else if (errno != ENOENT && errno != EPERM && errno != EOPNOTSUPP)  // nothing there; no links here

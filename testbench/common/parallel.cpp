@@ -1,5 +1,7 @@
 #include "testbench/common/parallel.h"
 
+#include <sched.h>
+
 #include <algorithm>
 #include <atomic>
 #include <exception>
@@ -18,6 +20,9 @@ thread_local bool sharing = false;
 std::size_t thread_count() {
     if (chosen_threads > 0)
         return chosen_threads;
+    cpu_set_t cores;
+    if (::sched_getaffinity(0, sizeof cores, &cores) == 0)
+        return static_cast<std::size_t>(CPU_COUNT(&cores));
     return std::max(1U, std::thread::hardware_concurrency());
 }
 

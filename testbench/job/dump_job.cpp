@@ -45,7 +45,7 @@ std::string dump_job(const Job& job) {
 }
 
 std::string dump_job(const Job& job, const std::filesystem::path& run_folder) {
-    return dump_job(moved_to(run_folder, job));
+    return dump_job(moved_to(run_folder, job)).replace(0, dumped_job_heading.size(), run_job_heading);
 }
 
 std::string dump_short_job(const Job& job, const std::filesystem::path& folder, const std::string& heading) {

@@ -7,8 +7,9 @@
 
 namespace tessera {
 
-/// The first line of what dump_job() gives.
+/// The first line of what dump_job() gives; of a run's own job, by which its folder is told from others.
 inline constexpr std::string_view dumped_job_heading = "# A tessera job: every key with its value.";
+inline constexpr std::string_view run_job_heading = "# The job of a tessera run: every key with its value.";
 
 /// Every key of the job as TOML, with description, unit, range and default as comments. Reads back to the
 /// same settings, and dumping those gives the same bytes. Paths stay relative to Job::folder.

@@ -59,6 +59,12 @@ void Progress::begin_to_say() {
     ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
+/// A log that cannot be written ends no run; fmt::print would throw, in the speaker's thread and in the destructor.
+void Progress::write(const std::string& text) {
+    std::fwrite(text.data(), 1, text.size(), display_.file);
+    std::fflush(display_.file);
+}
+
 void Progress::say_until_stopped() {
     std::unique_lock lock(mutex_);
     while (!stop_.wait_until(lock, display_.begin + (said_ + 1) * between_lines, [&] { return stopped_; }))
@@ -79,8 +85,7 @@ void Progress::say_if_due_locked() {
         return;
     const auto elapsed =
         std::chrono::duration_cast<std::chrono::seconds>(display_.now() - display_.begin).count();
-    fmt::print(display_.file, "tessera: after {} s {}\n", elapsed, text());
-    std::fflush(display_.file);
+    write(fmt::format("tessera: after {} s {}\n", elapsed, text()));
 }
 
 void Progress::show(const std::string& what, double part) {
@@ -101,9 +106,8 @@ void Progress::show_on_terminal(const std::string& what, double part) {
     next_ = now + std::chrono::milliseconds(100);
     constexpr int width = 30;
     const int full = static_cast<int>(std::clamp(part, 0.0, 1.0) * width);
-    fmt::print(display_.file, "\r\x1b[K[{:=<{}}{: <{}}] {:3.0f} %  {}{}", "", full, "", width - full,
-               100 * part, before_, what);
-    std::fflush(display_.file);
+    write(fmt::format("\r\x1b[K[{:=<{}}{: <{}}] {:3.0f} %  {}{}", "", full, "", width - full, 100 * part,
+                      before_, what));
     shown_ = true;
 }
 
@@ -113,8 +117,7 @@ void Progress::clear() {
     text_size_ = 0;
     if (!shown_)
         return;
-    fmt::print(display_.file, "\r\x1b[K");
-    std::fflush(display_.file);
+    write("\r\x1b[K");
     shown_ = false;
 }
 

@@ -48,6 +48,7 @@ class Progress {
     void say_if_due_locked();
     void show_on_terminal(const std::string& what, double part);
     void begin_to_say();
+    void write(const std::string& text);
     void say_until_stopped();
 
     std::string before_;

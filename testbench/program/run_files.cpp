@@ -47,7 +47,7 @@ void take_away_plain(const fs::path& file, AtomicSet& files) {
 bool is_run_folder(const fs::path& folder) {
     std::ifstream job(folder / "job.toml");
     std::string first;
-    return std::getline(job, first) && first == dumped_job_heading;
+    return std::getline(job, first) && first == run_job_heading;
 }
 
 /// The names of a run's files that are taken in a folder, by whatever it is.

@@ -16,7 +16,7 @@ std::filesystem::path place_of_name(const std::filesystem::path& path);
 
 /// What `files` holds appears in the place of all that a run before it, of one frame or of several, left in `folder`: a job
 /// beside the mesh or the picture of another would be believed. What others left there stays: all files of a folder that
-/// no run left (its job.toml does not begin with dumped_job_heading), what has no name of a run's file, what is no plain
+/// no run left (its job.toml does not begin with run_job_heading), what has no name of a run's file, what is no plain
 /// file; and a frame's folder that holds more.
 void replace_run(const std::filesystem::path& folder, AtomicSet& files);
 

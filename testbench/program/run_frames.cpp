@@ -50,12 +50,12 @@ Setup set_up(const Frame& frame, const BaseMesh& mesh, const HeightMap& map) {
 }
 
 /// All frames, refused together if one cannot be, with what the host sends for each.
-std::vector<Frame> plan_frames(const Job& asked, const fs::path& data_folder, std::string& found) {
+std::vector<Frame> plan_frames(const Job& asked, const fs::path& data_folder, ResolvedJob& resolved_job) {
     Progress progress;
     progress.show("reading mesh and map", 0);
     const auto [mesh, map, resolved] = load_inputs(asked, data_folder);
-    const Job& job = resolved.job;
-    found = found_text(resolved.found);
+    resolved_job = resolved;
+    const Job& job = resolved_job.job;
     std::vector<Frame> frames;
     std::optional<Setup> before;
     for (std::int64_t k = 0; k < job.frames.count; ++k) {
@@ -132,12 +132,13 @@ void print_failure(const Frame& frame, const std::string& why) {
 
 }  // namespace
 
-ExitCode run_frames(const Job& job, const fs::path& data_folder, const RunFrame& run) {
-    std::string found;
-    std::vector<Frame> frames = plan_frames(job, data_folder, found);
+ExitCode run_frames(const Job& asked, const fs::path& data_folder, const RunFrame& run) {
+    ResolvedJob resolved;
+    std::vector<Frame> frames = plan_frames(asked, data_folder, resolved);
+    const Job& job = resolved.job;
     const fs::path folder = job.output.folder;
     std::string text = frames_heading();
-    fmt::print("{}{}", found, text);
+    fmt::print("{}{}", found_text(resolved.found), text);
     ExitCode worst = ExitCode::fine;
     std::vector<FrameRow> rows;
     for (Frame& frame : frames) {

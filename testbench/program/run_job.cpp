@@ -114,8 +114,9 @@ std::string finish_traces(Traces& traces, const Command& command, const std::fil
 const char* verdict(const Checks& checks) {
     if (!checks.passed())
         return "CHECKS FAILED, see conformance.txt";
-    return checks.conformance || checks.invariants || checks.work || checks.reads ? "all checks passed"
-                                                                                  : "nothing was checked";
+    const bool any = checks.setup || checks.conformance || checks.end_to_end || checks.invariants ||
+                     checks.work || checks.reads;
+    return any ? "all checks passed" : "nothing was checked";
 }
 
 /// What a run came to, and what it has to say of it.

@@ -207,10 +207,10 @@ class Renderer {
         rays.clear();
         at.clear();
         for_each_pixel(left, top, right, bottom, [&](int x, int y) {
-            at.push_back({x + offset.x, y + offset.y});
-            const glm::dvec3 direction = view_.ray(at.back().x, at.back().y);
-            rays.push_back({view_.eye - mesh_.origin + start_ * direction, direction,
-                            std::max(0.0, view_.near_plane - start_)});
+            tile.at.push_back({x + offset.x, y + offset.y});
+            const glm::dvec3 direction = view_.ray(tile.at.back().x, tile.at.back().y);
+            tile.rays.push_back({view_.eye - mesh_.origin + start_ * direction, direction,
+                                 std::max(0.0, view_.near_plane - start_)});
         });
         scene_.first_hits(rays, hits);
         points.clear();

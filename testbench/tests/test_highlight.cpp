@@ -99,6 +99,7 @@ TEST_CASE("Highlight Test: half donut, functional, conforms") {
 TEST_CASE("Highlight Test: noisy sphere, narrow normals, functional, conforms") {
     Job job = noisy_sphere_job();
     job.tests.summed_height_threshold = 2;  // leaves edges to the Highlight Test
+    job.tests.view_threshold = 2;
     expect_conforming_mesh(with_highlight(job));
 }
 TEST_CASE("Highlight Test: half donut, timed, conforms") {
