@@ -58,7 +58,8 @@ struct EndToEndResult {
 /// and normals are not rounded. Map values (to codes) and texture coordinates are, as in the hardware (the base's to nearest, midpoints down):
 /// reading a texel is discontinuous, so that without it an LSB would decide on a whole texel.
 /// `base_triangles`: which of the mesh's triangles the machine was given (SetupResult).
-/// `allowed_triangles`: in percent. The distance's bound follows from it:
+/// `allowed_triangles`: in percent; infinite where the machine's values saturated, which golden's do not. The distance's
+/// bound follows from it:
 ///     RMS <= r + sqrt(f) h
 /// r: what rounding moves a vertex by, at most (G / 2 + 2) LSB of the position and, by the normal, 2 (G + 1) LSB of it times
 /// the largest displacement, after G generations, per axis. f: the share of the surface that may be triangulated

@@ -176,12 +176,15 @@ class RegisterCheck {
                                (reach + height) * scale, limit);
         });
         // The largest that leaves half of the range free: S's register holds twice the range of heights at most.
-        judge_.require(
-            reach + 2 * height == 0 || (reach + 2 * height) * scale > limit / 4 * (1 - 0x1p-20), [&] {
-                return fmt::format(
-                    "the displaced mesh reaches only {:.6g} world units of {:.6g}: its scale is too small",
-                    (reach + height) * scale, limit);
-            });
+        const Job::Formats& asked = job_.formats;
+        const double quarter =
+            std::ldexp(1.0, static_cast<int>(asked.position_bits - asked.position_fraction) - 3);
+        const double used = (reach + 2 * height) * scale;
+        judge_.require(used == 0 || used > quarter * (1 - 0x1p-20), [&] {
+            return fmt::format(
+                "the displaced mesh reaches only {:.6g} world units of {:.6g}: its scale is too small",
+                (reach + height) * scale, limit);
+        });
     }
 
     void check_map() {

@@ -119,7 +119,7 @@ void replace_run(const fs::path& folder, AtomicSet& files) {
     Interruption::note("when the results were complete");
 }
 
-void require_run_folder(const Job& job, const std::string& job_file) {
+void require_run_folder(const Job& job) {
     const auto refuse = [&](const std::string& why) {
         throw InputError(fmt::format("output.folder = \"{}\": {}", job.output.folder, why));
     };
@@ -138,9 +138,6 @@ void require_run_folder(const Job& job, const std::string& job_file) {
                 "or choose another output.folder",
                 (folder / taken.front()).string()));
     }
-    if (!job_file.empty() && place_of_name(job_file) == output / "job.toml" &&
-        names_taken(output).size() == 1)
-        refuse(fmt::format("the run would replace its own job, {}; choose another output.folder", job_file));
 }
 
 void require_inputs_stay(const Job& job, const fs::path& data_folder) {

@@ -22,7 +22,7 @@ void replace_run(const std::filesystem::path& folder, AtomicSet& files);
 
 /// Throws InputError if job.output.folder is not one for a run: the root, a folder above the working folder, one in which
 /// a file has the name of a run's file and no run left it (frames' folders likewise), or that of the job file itself.
-void require_run_folder(const Job& job, const std::string& job_file);
+void require_run_folder(const Job& job);
 
 /// Throws InputError if this run would take away what it reads: the run of mesh.source = "run" lies in output.folder or
 /// is a frame in it, or a mesh or map file there has the name of one that a run leaves.

@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
+
 #include "modules/datapath/widths.h"
 #include "testbench/common/grouped_digits.h"
 #include "testbench/report/saturation_figures.h"
@@ -42,14 +44,16 @@ std::string checks_rows(const Checks& checks) {
     }
     if (checks.end_to_end) {
         const EndToEndResult& e = *checks.end_to_end;
-        text += row(
-            "golden mesh",
-            e.bound_hit
-                ? fmt::format("more than {} triangles, where its run was stopped", count(e.bound))
-                : fmt::format("{} triangles ({:+.2f} %, allowed {} %); surfaces at most {:.3g} model units "
-                              "apart, RMS {:.3g} (allowed {:.3g})",
-                              count(e.golden_triangles), e.more_triangles(), e.allowed.triangles,
-                              e.max_model(), e.rms_model(), e.allowed.rms_model));
+        text +=
+            row("golden mesh",
+                e.bound_hit
+                    ? fmt::format("more than {} triangles, where its run was stopped", count(e.bound))
+                    : fmt::format("{} triangles ({:+.2f} %, allowed {}); surfaces at most {:.3g} model units "
+                                  "apart, RMS {:.3g} (allowed {:.3g})",
+                                  count(e.golden_triangles), e.more_triangles(),
+                                  std::isinf(e.allowed.triangles) ? std::string("any, since values saturated")
+                                                                  : fmt::format("{} %", e.allowed.triangles),
+                                  e.max_model(), e.rms_model(), e.allowed.rms_model));
         const double unseen = std::max(e.hardware_to_golden.unseen, e.golden_to_hardware.unseen);
         if (unseen > 0)
             text += row(

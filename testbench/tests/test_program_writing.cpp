@@ -182,8 +182,13 @@ TEST_CASE("a folder that is not for a run is refused") {
     // The default job, every key with its value: what --dump-config gave is no run's.
     const ProgramEnd dumped = run_tessera({"run", "--dump-config"}, here.path());
     write_all(here.path() / "work/deep/mine/job.toml", dumped.out);
-    CHECK_THAT(refused("mine", {"mine/job.toml"}), Contains("its own job, mine/job.toml"));
+    CHECK_THAT(refused("mine", {"mine/job.toml"}), Contains("mine/job.toml"));
     CHECK(read_all(here.path() / "work/deep/mine/job.toml") == dumped.out);
+    write_all(here.path() / "work/deep/mine/picture.png", "mine");
+    for (const std::vector<std::string>& job : {std::vector<std::string>{}, {"mine/job.toml"}})
+        CHECK_THAT(refused("mine", job), Contains("mine/job.toml"));
+    CHECK(read_all(here.path() / "work/deep/mine/job.toml") == dumped.out);
+    CHECK(read_all(here.path() / "work/deep/mine/picture.png") == "mine");
 }
 
 TEST_CASE("an output that is a link is replaced, and what it leads to stays") {

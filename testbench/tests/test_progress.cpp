@@ -125,6 +125,20 @@ TEST_CASE("progress on a terminal: a bar that is overwritten, ten times a second
     CHECK(log.text() == all + "\r\x1b[K");
 }
 
+TEST_CASE("progress that cannot be written ends nothing") {
+    std::FILE* const full = std::fopen("/dev/full", "w");
+    REQUIRE(full != nullptr);
+    the_time = Clock::time_point{} + std::chrono::hours(1);
+    for (const bool terminal : {false, true}) {
+        Progress progress("", {full, terminal, the_time, &now});
+        the_time += std::chrono::seconds(25);
+        CHECK_NOTHROW(progress.show("running", 0.5));
+        CHECK_NOTHROW(progress.say_if_due());
+        CHECK_NOTHROW(progress.clear());
+    }
+    std::fclose(full);
+}
+
 TEST_CASE("lines of progress are what the runner of programs leaves out") {
     const TestFolder here;
     const ProgramEnd end = run_program({"sh", "-c",
