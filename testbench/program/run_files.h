@@ -21,7 +21,7 @@ std::filesystem::path place_of_name(const std::filesystem::path& path);
 void replace_run(const std::filesystem::path& folder, AtomicSet& files);
 
 /// Throws InputError if job.output.folder is not one for a run: the root, a folder above the working folder, one in which
-/// a file has the name of a run's file and no run left it (frames' folders likewise), or that of the job file itself.
+/// a file has the name of a run's file and no run left it (frames' folders likewise).
 void require_run_folder(const Job& job);
 
 /// Throws InputError if this run would take away what it reads: the run of mesh.source = "run" lies in output.folder or
