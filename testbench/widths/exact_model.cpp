@@ -37,7 +37,7 @@ golden::Map exact_map(const Job& job, const HeightMap& map) {
         const double part = range > 0 ? (static_cast<double>(value) - map.range_low) / range : 0;
         codes.push_back(std::nearbyint(std::clamp(part, 0.0, 1.0) * highest_code(map)));
     }
-    return {map.width, map.height, mode_of(job.map.address_u), mode_of(job.map.address_v), std::move(codes)};
+    return {map.width, map.height, mode_of(job.map.address_u), mode_of(job.map.address_v), codes};
 }
 
 /// The widest normals: the half vector's register is rounded to them.
