@@ -24,14 +24,17 @@ struct EndToEndResult {
         std::uint64_t measured = 0;
         /// With the confidence below, at most this part of the points is farther away than the maximum.
         double unseen = 0;
+        double farther = 0;  ///< percent of those measured, farther away than Allowed::rounding
         double max_world = 0, rms_world = 0;                ///< the machine's world units
         double max_position_lsb = 0, rms_position_lsb = 0;  ///< LSB of the position's format
         double max_model = 0, rms_model = 0;                ///< the model's units
     };
-    /// What the result is judged by.
+    /// What the result is judged by: rounding moves a point of the surface a little, and a part of the surface may be
+    /// triangulated otherwise, since decisions flip near their thresholds. Model units.
     struct Allowed {
-        double triangles = 100;       ///< percent more or fewer than golden's
-        double rms_model = INFINITY;  ///< model units, either way
+        double triangles = 100;      ///< percent: more or fewer, and of the points farther than `rounding`
+        double rounding = INFINITY;  ///< the farthest that rounding moves a vertex
+        double displacement = 0;     ///< between two displacements of one point of the base surface
     };
 
     static constexpr double confidence = 0.999;
@@ -51,6 +54,11 @@ struct EndToEndResult {
     double more_triangles() const;
     double rms_model() const { return std::max(hardware_to_golden.rms_model, golden_to_hardware.rms_model); }
     double max_model() const { return std::max(hardware_to_golden.max_model, golden_to_hardware.max_model); }
+    double farther() const { return std::max(hardware_to_golden.farther, golden_to_hardware.farther); }
+    /// The points within `rounding` and those farther away, which are within `displacement`.
+    double allowed_rms_model() const {
+        return allowed.rounding + std::sqrt(farther() / 100) * allowed.displacement;
+    }
     bool passed() const;
 };
 
@@ -58,12 +66,13 @@ struct EndToEndResult {
 /// and normals are not rounded. Map values (to codes) and texture coordinates are, as in the hardware (the base's to nearest, midpoints down):
 /// reading a texel is discontinuous, so that without it an LSB would decide on a whole texel.
 /// `base_triangles`: which of the mesh's triangles the machine was given (SetupResult).
-/// `allowed_triangles`: in percent; infinite where the machine's values saturated, which golden's do not. The distance's
-/// bound follows from it:
-///     RMS <= r + sqrt(f) h
-/// r: what rounding moves a vertex by, at most (G / 2 + 2) LSB of the position and, by the normal, 2 (G + 1) LSB of it times
-/// the largest displacement, after G generations, per axis. f: the share of the surface that may be triangulated
-/// otherwise, `allowed_triangles`. h: there, both surfaces lie between the lowest and the highest displacement.
+/// `allowed_triangles`: in percent; infinite where the machine's values saturated, which golden's do not. Where both cut the
+/// same triangles, a point of one surface lies within r of the other; the rest is at most this share f of the points, and
+/// lies within h. So
+///     points farther than r <= f      RMS <= r + sqrt(points farther than r) h
+/// r: per axis (G / 2 + 2) LSB of the position after G generations and, by the normal, 2 (G + 1) LSB of it times the largest
+/// displacement; nothing by the normals of a plane across an axis, which are exact. h: over one point of the base surface,
+/// |a n - b m| <= |a - b| + |b| |n - m| for displacements a, b along normals n, m of one base triangle.
 EndToEndResult compare_end_to_end(const Setup& setup, const GoldenJob& golden,
                                   const std::vector<std::uint32_t>& base_triangles,
                                   const EmittedMesh& hardware, double allowed_triangles);

@@ -107,7 +107,8 @@ double SurfaceDistance::unseen(double confidence) const {
     return -std::expm1(std::log1p(-confidence) / static_cast<double>(measured));
 }
 
-SurfaceDistance distance_between(const TriangleSoup& from, const TriangleSoup& to, std::uint64_t most) {
+SurfaceDistance distance_between(const TriangleSoup& from, const TriangleSoup& to, std::uint64_t most,
+                                 double near) {
     SurfaceDistance result;
     if (from.empty())
         return result;
@@ -121,6 +122,7 @@ SurfaceDistance distance_between(const TriangleSoup& from, const TriangleSoup& t
     result.measured = affordable(points, nearest, most);
     struct Part {
         double largest = 0, squares = 0;
+        std::uint64_t farther = 0;
     };
     std::vector<Part> parts((result.measured + chunk_points - 1) / chunk_points);
     for_each_chunk(parts.size(), [&] {
@@ -132,6 +134,7 @@ SurfaceDistance distance_between(const TriangleSoup& from, const TriangleSoup& t
                     nearest.nearest(points[choice(k, result.measured, points.size())], guess).squared;
                 parts[chunk].largest = std::max(parts[chunk].largest, squared);
                 parts[chunk].squares += squared;
+                parts[chunk].farther += squared > near * near ? 1U : 0U;
             }
         };
     });
@@ -139,6 +142,7 @@ SurfaceDistance distance_between(const TriangleSoup& from, const TriangleSoup& t
     for (const Part& part : parts) {
         result.max = std::max(result.max, std::sqrt(part.largest));
         squares += part.squares;
+        result.farther += part.farther;
     }
     result.rms = std::sqrt(squares / static_cast<double>(result.measured));
     return result;

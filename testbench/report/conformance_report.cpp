@@ -64,9 +64,9 @@ std::string values_text(const ConformanceResult& result) {
 
 std::string distance_text(const char* name, const EndToEndResult::Distance& d) {
     return fmt::format(
-               "  {:<20} {:>10} points: maximum {:.6g}, RMS {:.6g} model units ({:.2f}, {:.2f} position "
-               "LSB)\n",
-               name, d.points, d.max_model, d.rms_model, d.max_position_lsb, d.rms_position_lsb) +
+               "  {:<20} {:>10} points: {:.4f} % farther than that; maximum {:.6g}, RMS {:.6g} model units "
+               "({:.2f}, {:.2f} position LSB)\n",
+               name, d.points, d.farther, d.max_model, d.rms_model, d.max_position_lsb, d.rms_position_lsb) +
            (d.measured < d.points
                 ? fmt::format(
                       "  {:<20} {:>10} of them measured: with {} % confidence at most {:.2g} % of all are "
@@ -80,10 +80,12 @@ std::string end_to_end_text(const EndToEndResult& result) {
         "End to end: {}. The golden model run by itself from the job: its own camera, heights, normal map "
         "and "
         "thresholds.\nOnly map values (to displacement codes) and texture coordinates are rounded, as in the "
-        "hardware. Allowed: {} % more or\nfewer triangles, an RMS distance of {:.6g} model units.\n\n"
+        "hardware. Allowed: {} % more or\nfewer triangles; as many of the points farther from the other "
+        "surface "
+        "than rounding moves them, {:.3g} model units;\nan RMS distance of {:.6g} model units.\n\n"
         "  triangles: hardware {}, golden {}\n",
-        verdict(result.passed()), result.allowed.triangles, result.allowed.rms_model,
-        result.hardware_triangles,
+        verdict(result.passed()), result.allowed.triangles, result.allowed.rounding,
+        result.allowed_rms_model(), result.hardware_triangles,
         result.bound_hit ? fmt::format("more than {}, where its run was stopped", result.bound)
                          : fmt::format("{} ({:+.4f} %)", result.golden_triangles, result.more_triangles()));
     if (!result.bound_hit)
@@ -145,6 +147,7 @@ Json distance_json(const EndToEndResult::Distance& d) {
             {"measured", d.measured},
             {"unseen_percent", 100 * d.unseen},
             {"confidence_percent", 100 * EndToEndResult::confidence},
+            {"farther_percent", d.farther},
             {"max_model", d.max_model},
             {"rms_model", d.rms_model},
             {"max_position_lsb", d.max_position_lsb},
@@ -234,7 +237,8 @@ std::string conformance_json(const Checks& checks) {
                               {"golden_triangles", e.golden_triangles},
                               {"more_triangles_percent", e.more_triangles()},
                               {"allowed_triangles_percent", e.allowed.triangles},
-                              {"allowed_rms_model", e.allowed.rms_model},
+                              {"rounding_model", e.allowed.rounding},
+                              {"allowed_rms_model", e.allowed_rms_model()},
                               {"golden_bound_hit", e.bound_hit},
                               {"hardware_to_golden", distance_json(e.hardware_to_golden)},
                               {"golden_to_hardware", distance_json(e.golden_to_hardware)}};

@@ -215,6 +215,12 @@ TEST_CASE("a surface shifted by a known distance is measured as that") {
     const SurfaceDistance d = distance_between(one, other);
     CHECK(std::ldexp(d.max, 16) == Approx(5));
     CHECK(std::ldexp(d.rms, 16) == Approx(5));
+    CHECK(d.farther == d.points);
+    CHECK(distance_between(one, other, most_looks, std::ldexp(5.01, -16)).farther == 0);
+    other.resize(other.size() / 2);
+    const SurfaceDistance half = distance_between(one, other, most_looks, std::ldexp(5.01, -16));
+    CHECK(half.farther_percent() > 40);
+    CHECK(half.farther_percent() < 50);  // the vertices along the border are near
 }
 
 TEST_CASE("hardware and golden run to nearly the same surface") {
@@ -268,7 +274,7 @@ TEST_CASE("golden's own run passes within what is allowed, either way") {
     EndToEndResult result;
     result.hardware_triangles = 1000;
     result.golden_triangles = 1000;
-    result.allowed = {1, 0.5};
+    result.allowed = {1, 0.5, 0};
     CHECK(result.passed());
     for (const std::uint64_t golden : {990U, 1010U}) {
         result.golden_triangles = golden;
@@ -279,13 +285,26 @@ TEST_CASE("golden's own run passes within what is allowed, either way") {
         CHECK_FALSE(result.passed());
     }
     result.golden_triangles = 1000;
+    result.allowed.triangles = 1;
     for (EndToEndResult::Distance EndToEndResult::*const way :
          {&EndToEndResult::hardware_to_golden, &EndToEndResult::golden_to_hardware}) {
         (result.*way).rms_model = 0.5;
         CHECK(result.passed());
         (result.*way).rms_model = 0.51;
         CHECK_FALSE(result.passed());
+        // A hundredth of the points may lie 3 off; then 0.3 of the RMS is theirs.
+        result.allowed.triangles = 1;
+        result.allowed.displacement = 3;
+        (result.*way).farther = 1;
+        (result.*way).rms_model = 0.79;
+        CHECK(result.allowed_rms_model() == Approx(0.8));
+        CHECK(result.passed());
+        (result.*way).rms_model = 0.81;
+        CHECK_FALSE(result.passed());
         (result.*way).rms_model = 0;
+        (result.*way).farther = 1.01;
+        CHECK_FALSE(result.passed());
+        (result.*way).farther = 0;
     }
     result.bound_hit = true;
     CHECK_FALSE(result.passed());

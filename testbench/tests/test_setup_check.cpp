@@ -390,14 +390,14 @@ TEST_CASE("golden's own run is judged: by its triangles, by the surfaces' distan
     const EndToEndResult right = compare(mesh, 1);
     CHECK(right.passed());
     CHECK(right.rms_model() < 1e-3);
-    // Heights are -0.2 to 0.3, four generations: (4 / 2 + 2) LSB of the position, 2 (4 + 1) of the normal times 0.3, and a
-    // hundredth of the surface may lie 0.5 off.
+    // Heights are -0.2 to 0.3, normals exact, four generations: (4 / 2 + 2) LSB of the position.
     REQUIRE(right.golden_largest_generation == 4);
+    const double rounding = std::sqrt(3.0) * 4 * std::ldexp(1.0, -16) / run.setup.model_scale.scale;
     CHECK(right.allowed.triangles == 1);
-    CHECK(right.allowed.rms_model ==
-          Approx(std::sqrt(3.0) * (4 * std::ldexp(1.0, -16) / run.setup.model_scale.scale +
-                                   10 * std::ldexp(1.0, -14) * 0.3) +
-                 0.1 * 0.5));
+    CHECK(right.allowed.rounding == Approx(rounding));
+    CHECK(right.allowed.displacement == Approx(0.5));
+    CHECK(right.farther() < 0.1);
+    CHECK(right.allowed_rms_model() == Approx(rounding + std::sqrt(right.farther() / 100) * 0.5));
 
     Checks checks;
     const auto failed = [&](const EndToEndResult& result) {
@@ -410,16 +410,48 @@ TEST_CASE("golden's own run is judged: by its triangles, by the surfaces' distan
     fewer.triangles.resize(fewer.triangles.size() * 97 / 100);
     CHECK(failed(compare(fewer, 1)));
 
+    // By 10 LSB, of which rounding explains 6.9; less across the slopes.
     EmittedMesh lifted = mesh;
     for (EmittedTriangle& triangle : lifted.triangles)
         for (auto& corner : triangle.corners)
-            corner.displaced.z += run.setup.registers.displacement.scale / 4;
-    CHECK(compare(lifted, 1).more_triangles() == right.more_triangles());
-    CHECK(failed(compare(lifted, 1)));
+            corner.displaced.z += 10;
+    const EndToEndResult off = compare(lifted, 1);
+    CHECK(off.more_triangles() == right.more_triangles());
+    CHECK(off.farther() > 50);
+    CHECK(off.rms_model() < 1e-3);
+    CHECK(failed(off));
+
+    // A few triangles, farther out than any displacement puts them.
+    EmittedMesh thrown = mesh;
+    for (std::size_t k = 0; k < thrown.triangles.size(); k += 400)
+        thrown.triangles[k].corners[0].displaced.z += 8 * run.setup.registers.displacement.scale;
+    const EndToEndResult spikes = compare(thrown, 1);
+    CHECK(spikes.farther() < 1);
+    CHECK(failed(spikes));
 
     mesh.triangles.resize(10);
     const EndToEndResult stopped = compare(mesh, 1000);
     CHECK(stopped.bound_hit);
     CHECK(failed(stopped));
     CHECK_THAT(conformance_text(checks), Contains("more than 1040, where its run was stopped"));
+}
+
+TEST_CASE("on a cylinder rounding moves normals, too, and they turn") {
+    Job job;
+    job.mesh.source = MeshSource::cylinder;
+    job.mesh.columns = 8;
+    job.tests.generation_limit = 4;
+    job.displacement.scale = 0.5;
+    job.displacement.bias = -0.2;
+    CheckedRun run{job};
+    const SetupResult checked = run.check();
+    const EndToEndResult result =
+        compare_end_to_end(run.setup, run.golden, checked.base_triangles, run.simulation.monitor.mesh, 1);
+    CHECK(result.passed());
+    REQUIRE(result.golden_largest_generation == 4);
+    CHECK(result.allowed.rounding ==
+          Approx(std::sqrt(3.0) *
+                 (4 * std::ldexp(1.0, -16) / run.setup.model_scale.scale + 10 * std::ldexp(1.0, -14) * 0.3)));
+    // Normals of neighbours are 45 degrees apart: 2 sin 22.5.
+    CHECK(result.allowed.displacement == Approx(0.5 + 0.3 * 0.765366865));
 }

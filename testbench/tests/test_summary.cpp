@@ -83,7 +83,9 @@ TEST_CASE("summary: what was checked") {
     end.golden_to_hardware.max_model = 0.25;
     end.hardware_to_golden.rms_model = 0.0625;
     end.golden_to_hardware.rms_model = 0.125;
-    end.allowed = {2, 0.25};
+    end.hardware_to_golden.farther = 1;
+    end.golden_to_hardware.farther = 0.5;
+    end.allowed = {2, 0.25, 2};
     checks.end_to_end = end;
     InvariantResult invariants;
     invariants.cracks = 1;
@@ -105,8 +107,8 @@ TEST_CASE("summary: what was checked") {
     CHECK(value_of(text, "golden model") == "2,000 edges compared, 3 mismatches, 5 allowed flips (0.250 %)");
     CHECK(
         value_of(text, "golden mesh") ==
-        "1,015 triangles (+1.50 %, allowed 2 %); surfaces at most 0.5 model units apart, RMS 0.125 (allowed "
-        "0.25)");
+        "1,015 triangles (+1.50 %, allowed 2 %); 1.00 % of the points farther apart than rounding explains, "
+        "at most 0.5 model units, RMS 0.125 (allowed 0.45)");
     CHECK(value_of(text, "invariants") ==
           "1 cracks, 2 T-vertices; in texture space 3 collapsed, 4 turned over");
     CHECK(value_of(text, "texture seams") == "no such row");
