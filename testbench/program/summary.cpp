@@ -25,11 +25,16 @@ double percent(std::uint64_t part, std::uint64_t whole) {
     return whole == 0 ? 0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
 }
 
+/// A check's row; one that fails says so.
+std::string check_row(const char* name, bool passed, const std::string& value) {
+    return row(name, (passed ? "" : "FAILED: ") + value);
+}
+
 std::string checks_rows(const Checks& checks) {
     std::string text;
     if (checks.setup)
-        text +=
-            row("set-up", fmt::format("{} values of registers, base vertices and tables compared, {} wrong",
+        text += check_row("set-up", checks.setup->passed(),
+                          fmt::format("{} values of registers, base vertices and tables compared, {} wrong",
                                       count(checks.setup->compared()), count(checks.setup->wrong())));
     if (checks.conformance) {
         const ConformanceResult& c = *checks.conformance;
@@ -37,24 +42,24 @@ std::string checks_rows(const Checks& checks) {
         if (c.flips_percent() > checks.allowed_flips)
             verdict =
                 fmt::format(", more than the {} % that check.allowed_flips allows", checks.allowed_flips);
-        text +=
-            row("golden model",
-                fmt::format("{} edges compared, {} mismatches, {} allowed flips ({:.3f} %){}", count(c.edges),
-                            count(c.mismatches), count(c.flipped_edges), c.flips_percent(), verdict));
+        text += check_row(
+            "golden model", c.passed(checks.allowed_flips),
+            fmt::format("{} edges compared, {} mismatches, {} allowed flips ({:.3f} %){}", count(c.edges),
+                        count(c.mismatches), count(c.flipped_edges), c.flips_percent(), verdict));
     }
     if (checks.end_to_end) {
         const EndToEndResult& e = *checks.end_to_end;
-        text +=
-            row("golden mesh",
-                e.bound_hit
-                    ? fmt::format("more than {} triangles, where its run was stopped", count(e.bound))
-                    : fmt::format(
-                          "{} triangles ({:+.2f} %, allowed {}); {:.2f} % of the points farther apart than "
-                          "rounding explains, at most {:.3g} model units, RMS {:.3g} (allowed {:.3g})",
-                          count(e.golden_triangles), e.more_triangles(),
-                          std::isinf(e.allowed.triangles) ? std::string("any, since values saturated")
-                                                          : fmt::format("{} %", e.allowed.triangles),
-                          e.farther(), e.max_model(), e.rms_model(), e.allowed_rms_model()));
+        text += check_row(
+            "golden mesh", e.passed(),
+            e.bound_hit
+                ? fmt::format("more than {} triangles, where its run was stopped", count(e.bound))
+                : fmt::format(
+                      "{} triangles ({:+.2f} %, allowed {}); {:.2f} % of the points farther apart than "
+                      "rounding explains, at most {:.3g} model units, RMS {:.3g} (allowed {:.3g})",
+                      count(e.golden_triangles), e.more_triangles(),
+                      std::isinf(e.allowed.triangles) ? std::string("any, since values saturated")
+                                                      : fmt::format("{} %", e.allowed.triangles),
+                      e.farther(), e.max_model(), e.rms_model(), e.allowed_rms_model()));
         const double unseen = std::max(e.hardware_to_golden.unseen, e.golden_to_hardware.unseen);
         if (unseen > 0)
             text += row(
@@ -65,9 +70,10 @@ std::string checks_rows(const Checks& checks) {
     }
     if (checks.invariants) {
         const InvariantResult& i = *checks.invariants;
-        text += row("invariants",
-                    fmt::format("{} cracks, {} T-vertices; in texture space {} collapsed, {} turned over",
-                                i.cracks, i.t_vertices, i.collapsed, i.turned_over));
+        text +=
+            check_row("invariants", i.passed(),
+                      fmt::format("{} cracks, {} T-vertices; in texture space {} collapsed, {} turned over",
+                                  i.cracks, i.t_vertices, i.collapsed, i.turned_over));
         if (i.open_texture_seam_edges > 0)
             text += row(
                 "texture seams",
@@ -76,13 +82,14 @@ std::string checks_rows(const Checks& checks) {
                             count(i.open_texture_seam_edges)));
     }
     if (checks.work)
-        text += row("work conservation",
-                    fmt::format("{} triangles and {} balances of units checked, {} violations",
-                                count(checks.work->triangles), count(checks.work->equations),
-                                count(checks.work->violations)));
+        text += check_row("work conservation", checks.work->passed(),
+                          fmt::format("{} triangles and {} balances of units checked, {} violations",
+                                      count(checks.work->triangles), count(checks.work->equations),
+                                      count(checks.work->violations)));
     if (checks.reads)
-        text += row("reads", fmt::format("{} entries compared, {} wrong", count(checks.reads->entries),
-                                         count(checks.reads->wrong)));
+        text += check_row("reads", checks.reads->passed(),
+                          fmt::format("{} entries compared, {} wrong", count(checks.reads->entries),
+                                      count(checks.reads->wrong)));
     return text;
 }
 

@@ -104,23 +104,40 @@ TEST_CASE("summary: what was checked") {
     checks.reads = reads;
     const std::string text = summary(run.setup, run.simulation, {}, checks, 1);
     INFO(text);
-    CHECK(value_of(text, "golden model") == "2,000 edges compared, 3 mismatches, 5 allowed flips (0.250 %)");
+    CHECK(value_of(text, "golden model") ==
+          "FAILED: 2,000 edges compared, 3 mismatches, 5 allowed flips (0.250 %)");
     CHECK(
         value_of(text, "golden mesh") ==
         "1,015 triangles (+1.50 %, allowed 2 %); 1.00 % of the points farther apart than rounding explains, "
         "at most 0.5 model units, RMS 0.125 (allowed 0.45)");
     CHECK(value_of(text, "invariants") ==
-          "1 cracks, 2 T-vertices; in texture space 3 collapsed, 4 turned over");
+          "FAILED: 1 cracks, 2 T-vertices; in texture space 3 collapsed, 4 turned over");
     CHECK(value_of(text, "texture seams") == "no such row");
     CHECK(value_of(text, "work conservation") ==
-          "40 triangles and 2 balances of units checked, 7 violations");
-    CHECK(value_of(text, "reads") == "60 entries compared, 8 wrong");
+          "FAILED: 40 triangles and 2 balances of units checked, 7 violations");
+    CHECK(value_of(text, "reads") == "FAILED: 60 entries compared, 8 wrong");
 
+    // What passes says nothing of it; a row fails for each of its reasons.
+    checks.conformance->mismatches = 0;
+    checks.work->violations = 0;
+    checks.reads->wrong = 0;
+    checks.invariants = InvariantResult{};
+    checks.end_to_end->golden_triangles = 1021;
+    checks.setup.emplace();
+    const std::string right = summary(run.setup, run.simulation, {}, checks, 1);
+    INFO(right);
+    for (const char* const name : {"set-up", "golden model", "invariants", "work conservation", "reads"})
+        CHECK_THAT(value_of(right, name), !Contains("FAILED"));
+    CHECK_THAT(value_of(right, "golden mesh"), Catch::StartsWith("FAILED: 1,021 triangles (+2.10 %"));
+
+    checks.setup->parts.push_back({"registers", "", 5, 1});
     checks.allowed_flips = 0.2;
     checks.invariants->open_texture_seam_edges = 9;
     const std::string other = summary(run.setup, run.simulation, {}, checks, 1);
+    CHECK(value_of(other, "set-up") ==
+          "FAILED: 5 values of registers, base vertices and tables compared, 1 wrong");
     CHECK(value_of(other, "golden model") ==
-          "2,000 edges compared, 3 mismatches, 5 allowed flips (0.250 %), more than the 0.2 % that "
+          "FAILED: 2,000 edges compared, 0 mismatches, 5 allowed flips (0.250 %), more than the 0.2 % that "
           "check.allowed_flips allows");
     CHECK_THAT(value_of(other, "texture seams"), Catch::StartsWith("9 edges open: "));
 }
