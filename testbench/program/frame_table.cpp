@@ -56,12 +56,12 @@ std::string frames_csv(const std::vector<FrameRow>& rows) {
 }
 
 std::string frames_heading() {
-    return fmt::format("  {:<10} {:>12} {:>12} {:>12} {:>14} {:>14} {:>16}\n", "frame", "scale", "triangles",
-                       "edges", "cycles", "bytes sent", "tessellated mesh");
+    return fmt::format("  {:<10} {:>18} {:>12} {:>14} {:>14} {:>14} {:>23}\n", "frame", "scale, model units",
+                       "triangles", "edges tested", "cycles", "sent, bytes", "tessellated mesh, bytes");
 }
 
 std::string frames_line(const FrameRow& row) {
-    return fmt::format("  {:<10} {:>12.6g} {:>12} {:>12} {:>14} {:>14} {:>16}\n", row.name, row.scale,
+    return fmt::format("  {:<10} {:>18.6g} {:>12} {:>14} {:>14} {:>14} {:>23}\n", row.name, row.scale,
                        grouped_digits(row.triangles), grouped_digits(row.edges_tested),
                        row.cycles ? grouped_digits(*row.cycles) : "-", grouped_digits(row.sent.total()),
                        grouped_digits(row.tessellated_bytes));

@@ -129,11 +129,21 @@ std::string number(double value) {
     return std::isfinite(value) ? fmt::format("{:.4g}", value) : "no mesh";
 }
 
-/// Maximum and RMS in one unit and in another.
+std::string figures_heading(const char* other_unit) {
+    return row("", fmt::format("{:>17}{:>17}{:>16}{:>16}", "max, model units", "RMS, model units",
+                               fmt::format("max, {}", other_unit), fmt::format("RMS, {}", other_unit)));
+}
+
+/// Maximum and RMS in model units and in another.
 std::string figures_row(const char* name, double max, double rms, double unit) {
     const auto other = [&](double value) { return unit > 0 ? number(value / unit) : std::string("-"); };
     return row(name,
-               fmt::format("{:>12}{:>12}{:>14}{:>12}", number(max), number(rms), other(max), other(rms)));
+               fmt::format("{:>17}{:>17}{:>16}{:>16}", number(max), number(rms), other(max), other(rms)));
+}
+
+std::string density_text(double density, const char* per) {
+    return fmt::format("{:.3g} per {}{}", density, per,
+                       density < 1 ? " (fewer than one: what lies between is not measured)" : "");
 }
 
 std::string triangle_text(std::uint64_t number, const RecordedMesh::Triangle& triangle) {
@@ -188,11 +198,12 @@ std::string error_text(const Job& job, const RecordedMesh& mesh, const MeshError
     std::string text = fmt::format("Error of the emitted mesh, {} triangles, against the displaced surface\n",
                                    mesh.triangles.size());
     text += row("texel", fmt::format("{:.6g} model units", error.texel));
-    text += row("samples", fmt::format("reference {}, {:.3g} per texel and axis; mesh {}, {:.3g} per texel",
-                                       error.interpolated.reference_to_mesh.samples, error.reference_density,
-                                       error.interpolated.mesh_to_reference.samples, error.mesh_density));
-    text +=
-        "\n" + row("", fmt::format("{:>12}{:>12}{:>14}{:>12}", "max", "RMS", "max, texels", "RMS, texels"));
+    text += row(
+        "samples",
+        fmt::format("reference {}, {}; mesh {}, {}", error.interpolated.reference_to_mesh.samples,
+                    density_text(error.reference_density, "texel and axis"),
+                    error.interpolated.mesh_to_reference.samples, density_text(error.mesh_density, "texel")));
+    text += "\n" + figures_heading("texels");
     text += surface_rows("map interpolated (the headline)", error.interpolated, error.texel);
     text += surface_rows("map as the hardware reads it", error.nearest_texel, error.texel);
     text += "\n";
@@ -201,7 +212,7 @@ std::string error_text(const Job& job, const RecordedMesh& mesh, const MeshError
     text += "\n";
     if (error.vertical) {
         const VerticalError& vertical = *error.vertical;
-        text += row("", fmt::format("{:>12}{:>12}{:>14}{:>12}", "max", "RMS", "max, map", "RMS, map"));
+        text += figures_heading("map units");
         text += figures_row("vertical, at grid points", vertical.max, vertical.rms, vertical.map_unit);
         text += row("", fmt::format("{} grid points, {} covered by the mesh", vertical.grid_points,
                                     vertical.covered));

@@ -41,12 +41,13 @@ TEST_CASE("frames.csv: each figure in its column") {
 }
 
 TEST_CASE("frames.txt: each figure below its heading") {
-    CHECK(
-        frames_heading() + frames_line(two_rows()[0]) + frames_line(two_rows()[1]) ==
-        "  frame             scale    triangles        edges         cycles     bytes sent tessellated mesh\n"
-        "  frame_000         0.125           61           72              -         54,321          100,000\n"
-        "  frame_001          0.25        1,234           72         56,789            309            "
-        "8,630\n");
+    CHECK(frames_heading() + frames_line(two_rows()[0]) + frames_line(two_rows()[1]) ==
+          "  frame      scale, model units    triangles   edges tested         cycles    sent, bytes "
+          "tessellated mesh, bytes\n"
+          "  frame_000               0.125           61             72              -         54,321 "
+          "                100,000\n"
+          "  frame_001                0.25        1,234             72         56,789            309 "
+          "                  8,630\n");
 }
 
 // 54321 + 309 + 308 bytes sent, 100000 + 8630 of tessellated meshes.
