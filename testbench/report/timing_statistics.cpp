@@ -63,12 +63,9 @@ void run_figures(const Simulation& simulation, std::vector<Figure>& figures) {
     run.text("bottleneck_in_words", bottleneck_text(p, cycles), "why");
 }
 
-void unit_figures(const Unit& unit, std::uint64_t cycles, std::vector<Figure>& figures) {
+/// What a queue or a wire, which does no work, does not have.
+void state_figures(const Unit& unit, std::uint64_t cycles, Group& group) {
     const Activity& activity = unit.activity();
-    Group group(figures, "timing." + unit_name(unit));
-    group.count("items", activity.items_in(), "item", "taken; in a memory, requests");
-    group.count("items_out", activity.items_out(), "item",
-                "finished and handed on, or dropped as not needed");
     group.count("busy", activity.cycles_in(State::busy), "cycle", "working on an item that has all it needs");
     group.count("starved", activity.cycles_in(State::starved), "cycle",
                 "nothing to work on, or the other branch's results are still to come");
@@ -85,6 +82,16 @@ void unit_figures(const Unit& unit, std::uint64_t cycles, std::vector<Figure>& f
     }
     group.real("utilisation", utilisation(unit, cycles), "1",
                "throughput used, of the most possible: items times initiation interval, or port slots taken");
+}
+
+void unit_figures(const Unit& unit, std::uint64_t cycles, std::vector<Figure>& figures) {
+    const Activity& activity = unit.activity();
+    Group group(figures, "timing." + unit_name(unit));
+    group.count("items", activity.items_in(), "item", "taken; in a memory, requests");
+    group.count("items_out", activity.items_out(), "item",
+                "finished and handed on, or dropped as not needed");
+    if (!is_queue_or_wire(unit))
+        state_figures(unit, cycles, group);
     group.real("throughput", ratio(activity.items_out(), cycles), "item/cycle", "items out per cycle");
     group.real("occupancy", ratio(activity.item_cycles(), cycles), "item", "items in the unit, on average");
     group.real("latency", ratio(activity.item_cycles(), activity.items_out()), "cycle",

@@ -233,7 +233,6 @@ TEST_CASE("statistics: one triangle's cycles, unit by unit, by hand") {
              Books{"tessellation_tests_0.view_test", 3, 3, 0, 0, 3, 3, 1},
              Books{"pass_or_tessellate", 2, 1 + 1, 0, 0, 2, 47 - 29 + 1 + 80 - 78 + 1, 1},
              Books{"tessellation", 1, 1, 0, 0, 1, 1, 1},
-             Books{"triangle_queue", 1, 1, 0, 0, 1, 1, 1},
              Books{"lighting", 1, 4, 0, 0, 1, 4, 1},
              Books{"displacement_map", 6, 6, 0, 0, 6, 6, 1},
              // 24 cycles for edges 0 and 1 from 5 on, 12 for edge 2 from 32 on
@@ -257,8 +256,20 @@ TEST_CASE("statistics: one triangle's cycles, unit by unit, by hand") {
     f.require("timing.tessellation_tests_0.calculate_new_u",
               {{"blocked", 31 - 6}, {"blocked_by_tessellation_tests_0.view_test", 31 - 6}});
     f.require("timing.displace_vertex", {{"waiting_for_displacement_map", 1}});
+    // queues and wires have a rate and a level: one triangle for a cycle, and three edges of which two wait for the third
+    f.require("timing.tessellation_tests_0.collect_tests",
+              {{"items", 3}, {"items_out", 3}, {"throughput", 3.0 / 86}});
+    for (const char* const name : {"triangle_queue", "tessellation_tests_0.collect_tests"})
+        for (const char* const figure : {"busy", "starved", "waiting_for_memory", "blocked", "utilisation"})
+            CHECK(f.numbers.count(std::string("timing.") + name + "." + figure) == 0);
     // it is on its way out in the cycle in which it comes
-    f.require("timing.triangle_queue", {{"capacity", 0},
+    f.require("timing.triangle_queue", {{"items", 1},
+                                        {"items_out", 1},
+                                        {"throughput", 1.0 / 86},
+                                        {"occupancy", 1.0 / 86},
+                                        {"latency", 1},
+                                        {"high_water_mark", 1},
+                                        {"capacity", 0},
                                         {"on_chip_high_water_mark", 0},
                                         {"spilled", 0},
                                         {"refilled", 0},
