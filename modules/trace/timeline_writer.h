@@ -10,15 +10,15 @@
 
 namespace tessera {
 
-/// Writes what each unit did and when in the Chrome trace event format (JSON), for Perfetto and chrome://tracing.
+/// Writes what each unit did and when in the Chrome trace event format (JSON).
 ///
 /// Use: add_track(), interval() and counter() in any order, each counter's cycles never decreasing; finish().
 /// Window: intervals are cut to it, flow steps outside it left out; a counter has at its beginning the value it came in
 /// with.
-/// Time: microseconds, exact to the picosecond. Perfetto rounds to nanoseconds; with a period that is not a whole
-/// number of them it may drop an interval that then overlaps its neighbour.
-/// Colours: chrome://tracing takes ours; Perfetto ignores them and colours by name. So a state, always in the same
-/// words, is the name, and the detail an argument. The file holds nothing that differs between equal runs.
+/// Time: microseconds, the format's unit, exact to the picosecond. Viewers add them in floating point: unless a cycle is a
+/// whole number of microseconds, neighbours overlap by a rounding error, and are shown as nested or not at all.
+/// Colours: hints; some viewers colour by name instead. So a state, always in the same words, is the name, and the detail
+/// an argument. The file holds nothing that differs between equal runs.
 /// Whether the stream took the bytes is the caller's to check. Misuse is a std::logic_error.
 class TimelineWriter {
   public:
