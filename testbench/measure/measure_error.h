@@ -31,8 +31,8 @@ namespace tessera {
 ///
 /// All sums run in a fixed order in double precision: the same run gives the same bytes, on any number of threads.
 struct MeasureLimits {
-    std::uint64_t reference_samples = std::uint64_t{1}
-                                      << 23;              ///< 8.4 million: 724 x 724 texels at full density
+    /// 8.4 million: 724 x 724 texels at full density. More only where that is fewer than three a base triangle.
+    std::uint64_t reference_samples = std::uint64_t{1} << 23;
     std::uint64_t mesh_samples = std::uint64_t{1} << 21;  ///< beyond, parts are larger than a texel
     std::function<void(double)> progress;                 ///< told the part done, 0..1, now and then
 };
@@ -81,7 +81,7 @@ struct MeshError {
 
 /// Takes some seconds a walk on two cores, whatever the map and mesh: their samples are limited. Memory: about 250 bytes a
 /// triangle and 60 MB a core. Errors: InputError if the mesh names base
-/// triangles the base mesh lacks; ResourceError beyond reference_lattice.h's and height_field.h's limits and when
+/// triangles the base mesh lacks; ResourceError beyond height_field.h's limits and when
 /// Embree's memory runs out.
 MeshError measure_error(const BaseMesh& base, const HeightMap& map, const DisplacementOf& displacement,
                         const RecordedMesh& mesh, const MeasureLimits& limits = {});

@@ -1,11 +1,7 @@
 #include "testbench/measure/reference_lattice.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-
-#include "testbench/common/error.h"
 
 namespace tessera {
 namespace {
@@ -42,25 +38,22 @@ ReferenceLattice::ReferenceLattice(const DisplacedSurface& surface, std::uint64_
             sum += lattice_points(subdivision_for(samples_per_texel * factor * static_cast<double>(size)));
         return sum;
     };
-    if (count(0) > most_samples)
-        throw ResourceError(
-            fmt::format("the base mesh has {} triangles; the reference surface holds at most {} samples, "
-                        "three a triangle: "
-                        "compare a run of a smaller base mesh",
-                        extents.size(), most_samples));
+    double factor = 1;
     if (count(1) > most_samples) {
         double fits = 0, too_many = 1;
         for (int step = 0; step < 30; ++step) {
             const double middle = (fits + too_many) / 2;
             (count(middle) > most_samples ? too_many : fits) = middle;
         }
-        factor_ = fits;
+        factor = fits;
+        // No coarser than a facet a base triangle, whose longest edge is the longest here.
+        density_ = std::max(samples_per_texel * factor,
+                            1.0 / static_cast<double>(*std::max_element(extents.begin(), extents.end())));
     }
-    samples_ = count(factor_);
+    samples_ = count(factor);
     subdivisions_.reserve(extents.size());
     for (std::size_t k = 0; k < extents.size(); ++k) {
-        const std::uint32_t n =
-            subdivision_for(samples_per_texel * factor_ * static_cast<double>(extents[k]));
+        const std::uint32_t n = subdivision_for(samples_per_texel * factor * static_cast<double>(extents[k]));
         subdivisions_.push_back(n);
         for (std::uint32_t row = 0; row * tile_cells < n; ++row)
             for (std::uint32_t column = 0; (column + row) * tile_cells < n; ++column)

@@ -13,7 +13,8 @@ namespace tessera {
 /// that leaves no edge of a facet longer than a quarter of a texel along u or along v, and at least 4: a base surface
 /// with few texels is curved too.
 ///
-/// Beyond `most_samples` the density is lowered, for all base triangles by one factor, and density() says to what.
+/// Beyond `most_samples` the density is lowered, for all base triangles by one factor, and density() says to what; to one
+/// facet a base triangle at the least, however many there are.
 /// Between the samples the reference is flat; bilinear interpolation is not quite: where its slope along an axis changes
 /// at a texel centre, by a height of s a texel, a facet's edge cuts off a corner of at most s / 16.
 ///
@@ -23,15 +24,12 @@ class ReferenceLattice {
     static constexpr double samples_per_texel = 4;
     static constexpr std::size_t tile_cells = 16;
 
-    /// Throws ResourceError if even one facet a base triangle is more than `most_samples`.
     ReferenceLattice(const DisplacedSurface& surface, std::uint64_t most_samples);
 
     std::uint64_t samples() const {
         return samples_;
-    }  ///< points, those of shared edges once per base triangle
-    double density() const {
-        return samples_per_texel * factor_;
-    }  ///< samples per texel along an axis, at least
+    }                                            ///< points, those of shared edges once per base triangle
+    double density() const { return density_; }  ///< samples per texel along an axis, at least
 
     struct Tile {
         std::uint32_t triangle;
@@ -68,7 +66,7 @@ class ReferenceLattice {
   private:
     const DisplacedSurface& surface_;
     std::uint64_t samples_ = 0;
-    double factor_ = 1;
+    double density_ = samples_per_texel;
     std::vector<std::uint32_t> subdivisions_;
     std::vector<Tile> tiles_;
 };
