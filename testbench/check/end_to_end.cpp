@@ -9,17 +9,24 @@ namespace tessera {
 
 namespace {
 
+constexpr std::size_t triangles_between_progress = 256;
+
 using BaseTriangles = std::vector<std::array<golden::Vertex, 3>>;
 
-/// `allowed` of the largest generation.
+/// `allowed` of the largest generation. Half of the progress is golden's run, which is taken to have as many triangles.
 template <typename AllowedAt>
 EndToEndResult compare(const Setup& setup, const BaseTriangles& base, const golden::Map& map,
-                       golden::Parameters parameters, const EmittedMesh& hardware, AllowedAt allowed) {
+                       golden::Parameters parameters, const EmittedMesh& hardware, AllowedAt allowed,
+                       const std::function<void(double)>& progress) {
     parameters.texture_step = std::ldexp(1.0, -setup.registers.formats.texture.fraction);
     EndToEndResult result;
     result.hardware_triangles = hardware.triangles.size();
     result.bound = 4 * result.hardware_triangles + 1000;
 
+    const auto tell = [&](double part) {
+        if (progress)
+            progress(part);
+    };
     TriangleSoup golden_soup;
     golden_soup.reserve(hardware.triangles.size() + hardware.triangles.size() / 8);
     const golden::Tessellation run =
@@ -27,6 +34,9 @@ EndToEndResult compare(const Setup& setup, const BaseTriangles& base, const gold
             const auto& v = t.vertices;
             golden_soup.push_back(
                 {v[0].displaced_position, v[1].displaced_position, v[2].displaced_position});
+            if (golden_soup.size() % triangles_between_progress == 0)
+                tell(0.5 * std::min(1.0, static_cast<double>(golden_soup.size()) /
+                                             static_cast<double>(result.hardware_triangles)));
         });
     result.golden_triangles = run.triangles_emitted;
     result.golden_edges = run.edges_evaluated;
@@ -60,8 +70,11 @@ EndToEndResult compare(const Setup& setup, const BaseTriangles& base, const gold
                                         d.rms * model};
     };
     // One after the other, each on both cores: of two Embree devices at a time, releasing one may abort without memory.
+    tell(0.5);
     result.hardware_to_golden = measure(hardware_soup, golden_soup);
+    tell(0.75);
     result.golden_to_hardware = measure(golden_soup, hardware_soup);
+    tell(1);
     return result;
 }
 
@@ -110,7 +123,8 @@ bool EndToEndResult::passed() const {
 
 EndToEndResult compare_end_to_end(const Setup& setup, const GoldenJob& golden,
                                   const std::vector<std::uint32_t>& base_triangles,
-                                  const EmittedMesh& hardware, double allowed_triangles) {
+                                  const EmittedMesh& hardware, double allowed_triangles,
+                                  const std::function<void(double)>& progress) {
     const double step = std::ldexp(1.0, -setup.registers.formats.texture.fraction);
     BaseTriangles base;
     base.reserve(base_triangles.size());
@@ -121,15 +135,19 @@ EndToEndResult compare_end_to_end(const Setup& setup, const GoldenJob& golden,
             corners[k].texture = golden::on_grid(corners[k].texture, step);
         }
     }
-    return compare(setup, base, golden.map(), golden.parameters(), hardware, [&](int generations) {
-        return allowed_after(generations, setup, golden.scene(), base, allowed_triangles);
-    });
+    return compare(
+        setup, base, golden.map(), golden.parameters(), hardware,
+        [&](int generations) {
+            return allowed_after(generations, setup, golden.scene(), base, allowed_triangles);
+        },
+        progress);
 }
 
 EndToEndResult compare_end_to_end(const Setup& setup, const GoldenInputs& inputs,
                                   const EmittedMesh& hardware) {
-    return compare(setup, golden_base_triangles(setup), inputs.map, inputs.parameters, hardware,
-                   [](int) { return EndToEndResult::Allowed{}; });
+    return compare(
+        setup, golden_base_triangles(setup), inputs.map, inputs.parameters, hardware,
+        [](int) { return EndToEndResult::Allowed{}; }, nullptr);
 }
 
 }  // namespace tessera

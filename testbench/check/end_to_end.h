@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "testbench/check/golden_inputs.h"
@@ -65,6 +66,7 @@ struct EndToEndResult {
 /// Golden from the job itself (GoldenJob), judged. Camera, heights, normal map and thresholds are golden's own, positions
 /// and normals are not rounded. Map values (to codes) and texture coordinates are, as in the hardware (the base's to nearest, midpoints down):
 /// reading a texel is discontinuous, so that without it an LSB would decide on a whole texel.
+/// `progress`: told the part done, 0..1, now and then; null: nobody.
 /// `base_triangles`: which of the mesh's triangles the machine was given (SetupResult).
 /// `allowed_triangles`: in percent; infinite where the machine's values saturated, which golden's do not. Where both cut the
 /// same triangles, a point of one surface lies within r of the other; the rest is at most this share f of the points, and
@@ -75,7 +77,8 @@ struct EndToEndResult {
 /// |a n - b m| <= |a - b| + |b| |n - m| for displacements a, b along normals n, m of one base triangle.
 EndToEndResult compare_end_to_end(const Setup& setup, const GoldenJob& golden,
                                   const std::vector<std::uint32_t>& base_triangles,
-                                  const EmittedMesh& hardware, double allowed_triangles);
+                                  const EmittedMesh& hardware, double allowed_triangles,
+                                  const std::function<void(double)>& progress = nullptr);
 
 /// Golden from the machine's own registers, tables and base triangles, dequantised. Not judged. Both are deterministic, on
 /// both cores, and take about 300 bytes per triangle of both meshes together.

@@ -288,14 +288,14 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
         checks.invariants = check_invariants(mesh, setup.base_triangles, setup.registers);
     }
     if (job.check.end_to_end) {
-        progress.show("golden model's own run and distances", 0.65);
         // Golden's own run saturates nothing: with values that did there is nothing to judge it by.
         const datapath::Saturations saturated = simulation.pipeline.saturations();
         const bool judged =
             saturated.displaced_position + saturated.screen_position + saturated.view_distance == 0;
         checks.end_to_end = compare_end_to_end(
             setup, *golden_job, checks.setup->base_triangles, mesh,
-            judged ? job.check.allowed_triangles : std::numeric_limits<double>::infinity());
+            judged ? job.check.allowed_triangles : std::numeric_limits<double>::infinity(),
+            [&](double part) { progress.show("golden model's own run and distances", 0.65 + 0.2 * part); });
     }
     if (!output)
         output.emplace(folder);

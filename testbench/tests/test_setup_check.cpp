@@ -1,4 +1,5 @@
 // What the host set, judged: nothing is wrong with the default job, and one wrong entry anywhere is noticed.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
@@ -397,6 +398,17 @@ TEST_CASE("golden's own run is judged: by its triangles, by the surfaces' distan
     CHECK(right.allowed.rounding == Approx(rounding));
     CHECK(right.allowed.displacement == Approx(0.5));
     CHECK(right.farther() < 0.1);
+
+    // Progress moves while golden runs: every 256 triangles; then a step for each direction.
+    std::vector<double> told;
+    compare_end_to_end(run.setup, run.golden, checked.base_triangles, mesh, 1,
+                       [&](double part) { told.push_back(part); });
+    REQUIRE(right.golden_triangles > 512);
+    REQUIRE(told.size() == right.golden_triangles / 256 + 3);
+    CHECK(told[1] == Approx(0.5 * 512 / static_cast<double>(mesh.triangles.size())));
+    CHECK(std::is_sorted(told.begin(), told.end()));
+    CHECK(told[told.size() - 2] == 0.75);
+    CHECK(told.back() == 1);
     CHECK(right.allowed_rms_model() == Approx(rounding + std::sqrt(right.farther() / 100) * 0.5));
 
     Checks checks;
