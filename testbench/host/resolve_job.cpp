@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <glm/glm.hpp>
+#include <stdexcept>
 
 #include "testbench/common/error.h"
 #include "testbench/host/unit_vector.h"
@@ -217,10 +218,18 @@ class Resolver {
         for (const FoundValue& value : result_.found) {
             const Key& key = *find_key(value.key);
             if (const std::string fault = complaint(key, key.get(result_.job)); !fault.empty())
-                throw InputError(
-                    fmt::format("{}: it follows from a base mesh of {:.6g} model units; scale the mesh",
-                                fault, base_.largest()));
+                throw InputError(fmt::format("{}: it follows from a base mesh of {:.6g} model units{}", fault,
+                                             base_.largest(), place_and_remedy()));
         }
+    }
+
+    /// Far from the origin, it is the place that takes a value out of its range, not the size.
+    std::string place_and_remedy() const {
+        const glm::dvec3 centre = base_.centre(), away = glm::abs(centre);
+        if (std::max({away.x, away.y, away.z}) <= base_.largest())
+            return "; scale the mesh";
+        return fmt::format(" around ({:.6g}, {:.6g}, {:.6g}); move the mesh to the origin", centre.x,
+                           centre.y, centre.z);
     }
 
     const BaseMesh& mesh_;
@@ -234,6 +243,12 @@ class Resolver {
 
 ResolvedJob resolve_job(const Job& job, const BaseMesh& mesh, const HeightMap& map) {
     return Resolver(job, mesh, map).result();
+}
+
+void require_resolved(const Job& job, const char* user) {
+    if (const std::string key = automatic_key(job); !key.empty())
+        throw std::logic_error(
+            fmt::format("{}: {} is automatic; the job must have gone through resolve_job()", user, key));
 }
 
 }  // namespace tessera

@@ -3,8 +3,10 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
+#include "testbench/check/golden_job.h"
 #include "testbench/common/error.h"
 #include "testbench/host/resolve_job.h"
+#include "testbench/host/setup.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/maps/built_in_maps.h"
 #include "testbench/meshes/built_in.h"
@@ -185,12 +187,32 @@ TEST_CASE("what is set of a camera stays, and the rest follows from it") {
 }
 
 TEST_CASE("a model beyond what a camera can be set to is refused with what to do") {
-    try {
-        resolve_job(Job{}, make_sphere(8, 4, 1e20), map_of(0, 1));
-        FAIL("not refused");
-    } catch (const InputError& error) {
-        CHECK_THAT(error.what(),
-                   Contains("out of range") &&
-                       Contains("it follows from a base mesh of 2e+20 model units; scale the mesh"));
-    }
+    const auto refusal = [](const BaseMesh& mesh) {
+        try {
+            resolve_job(Job{}, mesh, map_of(0, 1));
+            return std::string("not refused");
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+    };
+    CHECK_THAT(refusal(make_sphere(8, 4, 1e20)),
+               Contains("out of range") &&
+                   Contains("it follows from a base mesh of 2e+20 model units; scale the mesh"));
+    CHECK_THAT(refusal(box(2, 2, 2, {0, -3e13, 5})),
+               Contains("out of range") && Contains("it follows from a base mesh of 2 model units around (1, "
+                                                    "-3e+13, 6); move the mesh to the origin"));
+}
+
+TEST_CASE("set-up and golden model refuse a job that is not resolved: a mistake of the program") {
+    const BaseMesh plane = make_plane(3, 3, 2, 2);
+    const HeightMap map = half_donut_map(8, 8);
+    Job job = resolve_job({}, plane, map).job;
+    const Setup setup = make_setup(job, plane, map);
+    CHECK_NOTHROW(GoldenJob(job, plane, map, setup.model_scale));
+    job.camera.up = automatic_vector;
+    CHECK_THROWS_WITH(make_setup(job, plane, map),
+                      "make_setup: camera.up is automatic; the job must have gone "
+                      "through resolve_job()");
+    CHECK_THROWS_WITH(GoldenJob(job, plane, map, setup.model_scale),
+                      "GoldenJob: camera.up is automatic; the job must have gone through resolve_job()");
 }

@@ -23,8 +23,9 @@ struct CheckedRun {
     CheckedRun(const Job& job, const BaseMesh& its_mesh, const HeightMap& its_map)
         : mesh(its_mesh),
           map(its_map),
-          setup(make_setup(functional(job), mesh, map)),
-          golden(job, mesh, map, setup.model_scale),
+          resolved(resolve_job(functional(job), mesh, map).job),
+          setup(make_setup(resolved, mesh, map)),
+          golden(resolved, mesh, map, setup.model_scale),
           simulation(setup, 1000000) {
         REQUIRE(simulation.run().empty());
     }
@@ -49,6 +50,7 @@ struct CheckedRun {
 
     BaseMesh mesh;
     HeightMap map;
+    Job resolved;
     Setup setup;
     GoldenJob golden;
     Simulation simulation;
@@ -367,12 +369,13 @@ TEST_CASE("a model scale that is no power of two, or too large, is not sound") {
     CheckedRun run{Job{}};
     ModelScale three = run.setup.model_scale;
     three.scale *= 3;
-    CHECK_THAT(check_setup(run.setup, GoldenJob(Job{}, run.mesh, run.map, three), run.simulation).first_wrong,
-               Contains("not a power of two"));
+    CHECK_THAT(
+        check_setup(run.setup, GoldenJob(run.resolved, run.mesh, run.map, three), run.simulation).first_wrong,
+        Contains("not a power of two"));
     ModelScale large = run.setup.model_scale;
     large.scale *= 16;
     const SetupResult result =
-        check_setup(run.setup, GoldenJob(Job{}, run.mesh, run.map, large), run.simulation);
+        check_setup(run.setup, GoldenJob(run.resolved, run.mesh, run.map, large), run.simulation);
     CHECK_THAT(result.first_wrong, Contains("a position"));
 }
 
