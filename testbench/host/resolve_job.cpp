@@ -56,7 +56,7 @@ struct Box {
 };
 
 /// Of P + h N over the base vertices, for every h given.
-Box bounding_box(const BaseMesh& mesh, const std::array<double, 2>& heights) {
+Box bounding_box(const BaseMesh& mesh, const std::vector<double>& heights) {
     Box box;
     box.low = box.high = mesh.vertices.front().position + heights[0] * mesh.vertices.front().normal;
     for (const BaseVertex& vertex : mesh.vertices)
@@ -90,6 +90,8 @@ glm::dvec3 unit_axis(int axis, double sign) {
 
 glm::dvec3 find_up(MeshSource source, const BaseMesh& mesh, int flat) {
     const bool file = source == MeshSource::file;
+    if (mesh.up && *mesh.up != glm::dvec3(0))
+        return unit_vector(*mesh.up);
     if (!file || flat < 0)
         return unit_axis(file ? 1 : 2, 1);
     double side = 0;
@@ -135,7 +137,7 @@ double framing_distance(const Box& box, const glm::dvec3& target, const glm::dve
 class Resolver {
   public:
     Resolver(const Job& job, const BaseMesh& mesh, const HeightMap& map)
-        : mesh_(mesh), map_(map), base_(bounding_box(mesh, {0, 0})), flat_(flat_axis(base_)) {
+        : mesh_(mesh), map_(map), base_(bounding_box(mesh, {0})), flat_(flat_axis(base_)) {
         result_.job = job;
     }
 
@@ -168,12 +170,23 @@ class Resolver {
                           reach > span ? ", less because values go beyond map.range" : ""));
     }
 
+    /// Lowest and highest displacement of the first and of the last frame: those between displace by no more.
+    std::vector<double> heights_of_all_frames() const {
+        const Job& job = result_.job;
+        Job::Displacement first = job.displacement;
+        if (job.frames.count > 1)
+            first.scale = job.frames.first_scale;
+        std::vector<double> heights;
+        for (const double value : values_of(map_))
+            for (const Job::Displacement& frame : {first, job.displacement})
+                heights.push_back(MapDisplacement::from(frame, map_).of(value));
+        return heights;
+    }
+
     void find_camera() {
         Job& job = result_.job;
         Job::Camera& camera = job.camera;
-        const MapDisplacement displacement = MapDisplacement::from(job.displacement, map_);
-        const auto [low, high] = values_of(map_);
-        const Box box = bounding_box(mesh_, {displacement.of(low), displacement.of(high)});
+        const Box box = bounding_box(mesh_, heights_of_all_frames());
         const bool no_eye = is_automatic(camera.eye), no_target = is_automatic(camera.target),
                    no_up = is_automatic(camera.up);
         glm::dvec3 up = no_up ? find_up(job.mesh.source, mesh_, flat_) : glm::dvec3(0);
@@ -203,7 +216,8 @@ class Resolver {
         if (no_target)
             found("camera.target", "the centre of the displaced model's bounding box");
         if (no_up)
-            found("camera.up", along_up ? "seen along the up axis: the front is at the bottom"
+            found("camera.up", along_up   ? "seen along the up axis: the front is at the bottom"
+                               : mesh_.up ? "as in the run that mesh.file names"
                                : job.mesh.source != MeshSource::file ? "z, as for all meshes but OBJ files"
                                : flat_ < 0                           ? "y, as in most OBJ files"
                                                                      : "the axis the mesh is flat in");

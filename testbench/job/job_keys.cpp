@@ -346,9 +346,9 @@ std::vector<KeyTable> declare_keys() {
     });
     list.table("camera", &Job::camera, "The view, on which the View Test depends.", [](const auto& key) {
         using Camera = Job::Camera;
-        key.add("eye", &Camera::eye, "model units", auto_or(coordinate_range), "Where the camera stands; auto: 20 degrees to the right of the front and 38 degrees above it, as near as the displaced model's bounding box fits into 90 % of the picture's width and height. Front is -y, or z where up is y");
-        key.add("target", &Camera::target, "model units", auto_or(coordinate_range), "What it looks at; auto: the centre of the displaced model's bounding box");
-        key.add("up", &Camera::up, "-", auto_or(coordinate_range), "Direction that is up in the picture, of any length; auto: y for an OBJ file that is not flat, the axis it is flat in (on the side of its normals) for one that is, z for every other source; if the camera looks along that axis, away from the model's front");
+        key.add("eye", &Camera::eye, "model units", auto_or(coordinate_range), "Where the camera stands; auto: 20 degrees to the right of the front and 38 degrees above it, as near as the displaced model's bounding box, of all frames together, fits into 90 % of the picture's width and height. Front is -y, or z where up is y");
+        key.add("target", &Camera::target, "model units", auto_or(coordinate_range), "What it looks at; auto: the centre of that bounding box");
+        key.add("up", &Camera::up, "-", auto_or(coordinate_range), "Direction that is up in the picture, of any length; auto: y for an OBJ file that is not flat, the axis it is flat in (on the side of its normals) for one that is, the earlier run's camera.up for a run on an OBJ file (or on a run), z for every other source; if the camera looks along that axis, away from the model's front");
         key.add("field_of_view", &Camera::field_of_view, "degrees", between(0.1, 179), "Vertical opening angle");
         key.add("near_plane", &Camera::near_plane, "model units", auto_or(distance_range), "Distance of the near plane; vertices on or behind it have no screen position; auto: a thousandth of the distance from eye to target");
         key.add("viewport_width", &Camera::viewport_width, "pixels", between(1, 16384), "Width of the picture");

@@ -113,6 +113,10 @@ TEST_CASE("up is z, but y for an OBJ file, and a flat one's axis on the side of 
     CHECK(up_of(parse_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 3 2\n", "a"), MeshSource::file) == Up{0, 0, -1});
     CHECK(up_of(parse_obj("v 0 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n", "a"), MeshSource::file) == Up{1, 0, 0});
     CHECK(up_of(parse_obj("v 0 0 0\nv 0 0 1\nv 1 0 0\nf 1 2 3\n", "a"), MeshSource::file) == Up{0, 1, 0});
+    BaseMesh of_a_run = make_plane(3, 3, 2, 2);
+    CHECK(up_of(of_a_run, MeshSource::run) == Up{0, 0, 1});
+    of_a_run.up = glm::dvec3(0, -4, 0);
+    CHECK(up_of(of_a_run, MeshSource::run) == Up{0, -1, 0});
 }
 
 TEST_CASE(
@@ -147,6 +151,16 @@ TEST_CASE(
         const glm::dvec3 direction = glm::normalize(vector(camera.eye) - vector(camera.target));
         CHECK(glm::length(direction - glm::dvec3(right, above, front)) < 1e-5);
         CHECK(filled_part(camera, corners({100, 200, 300}, {102, 204, 306})) == Approx(0.9).epsilon(2e-5));
+    }
+    SECTION("with room for every frame") {
+        Job job;
+        job.displacement.scale = 1;
+        job.frames = {5, -3};
+        const Job::Camera camera = resolve_job(job, make_plane(3, 3, 2, 2), map_of(0, 1)).job.camera;
+        CHECK(camera.target == std::array<double, 3>{0, 0, -1});
+        CHECK(filled_part(camera, corners({-1, -1, -3}, {1, 1, 1})) == Approx(0.9).epsilon(2e-5));
+        job.frames.count = 1;  // first_scale is not used
+        CHECK(resolve_job(job, make_plane(3, 3, 2, 2), map_of(0, 1)).job.camera.target[2] == 0.5);
     }
     SECTION("whatever the model's size") {
         for (const double size : {1e-5, 1e-3, 1.0, 1e5, 1e9}) {
