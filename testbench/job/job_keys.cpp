@@ -312,8 +312,8 @@ std::vector<KeyTable> declare_keys() {
         key.add("source", &Mesh::source, "Built-in shape, file for the mesh in mesh.file (what it is if mesh.file alone is given), patches for the Bezier patches in it, or run for the mesh that an earlier run left");
         key.add("file", &Mesh::file, KeyKind::file, "OBJ file, with mesh.source = \"file\"; with \"patches\" one of bicubic Bezier patches as Newell's teapot has it; with \"run\" the folder of an earlier run");
         key.add("fingerprint", &Mesh::fingerprint, KeyKind::text, "64-bit FNV-1a hash of the file (of a run's mesh.ply), 16 hexadecimal digits; another file is refused. A run writes it into its job.toml; empty: any file");
-        key.add("columns", &Mesh::columns, "quads", between(0, 2048), "Quads along u; 0: 3 for the plane, 4 for each patch, 30 for cylinder and sphere, which need 3 or more");
-        key.add("rows", &Mesh::rows, "quads", between(0, 2048), "Quads along v; 0: 3 for the plane, 4 for each patch, 30 for cylinder and sphere; a sphere needs 2 or more");
+        key.add("columns", &Mesh::columns, "quads", between(0, 2048), "Quads along u; 0: 3 for the plane, 4 for each patch, 32 for cylinder and sphere, which need 3 or more");
+        key.add("rows", &Mesh::rows, "quads", between(0, 2048), "Quads along v; 0: 3 for the plane, 4 for each patch, 32 for cylinder and sphere; a sphere needs 2 or more");
         key.add("width", &Mesh::width, "model units", length_range, "Size of the plane along x");
         key.add("depth", &Mesh::depth, "model units", length_range, "Size of the plane along y");
         key.add("radius", &Mesh::radius, "model units", length_range, "Radius of the cylinder or sphere");

@@ -56,6 +56,7 @@ Job with_highlight(Job job) {
 Job head() {
     Job job;
     job.mesh.source = MeshSource::cylinder;
+    job.mesh.columns = job.mesh.rows = 30;
     job.mesh.radius = 0.582837;
     job.mesh.height = 5.32;
     job.map.address_u = Addressing::repeat;
