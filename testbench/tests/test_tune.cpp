@@ -27,7 +27,7 @@ Job small_job() {
     job.map.height = 40;
     job.displacement.scale = 0.25;
     job.tests.view = false;
-    return job;
+    return load_inputs(job, {}).resolved.job;
 }
 
 TuneRequest request_for(const Job& job) {
