@@ -7,9 +7,8 @@
 #include "golden/golden_model.h"
 #include "testbench/benchmark/bare_recursion.h"
 #include "testbench/check/golden_inputs.h"
+#include "testbench/host/inputs.h"
 #include "testbench/host/simulation.h"
-#include "testbench/maps/built_in_maps.h"
-#include "testbench/meshes/make_base_mesh.h"
 
 // One process, one job: half donut 1024 x 1024 on the plane of 18 triangles, about 0.2 million triangles out. Times the
 // golden model, the bare datapath, functional mode and timed mode side by side, in edges evaluated per second.
@@ -28,8 +27,8 @@ Job benchmark_job() {
 }
 
 Setup benchmark_setup() {
-    const Job job = benchmark_job();
-    return make_setup(job, make_base_mesh(job.mesh, {}), half_donut_map(job.map.width, job.map.height));
+    const Inputs inputs = load_inputs(benchmark_job(), {});
+    return make_setup(inputs.resolved.job, inputs.mesh, inputs.map);
 }
 
 void report(benchmark::State& state, std::uint64_t edges, std::size_t triangles) {

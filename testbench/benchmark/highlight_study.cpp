@@ -28,7 +28,7 @@ struct Row {
 class Study {
   public:
     Study(const Job& job, const std::filesystem::path& data)
-        : job_(job), mesh_(load_mesh(job, data)), map_(load_map(job, data)) {
+        : mesh_(load_mesh(job, data)), map_(load_map(job, data)), job_(resolve_job(job, mesh_, map_).job) {
         const Setup setup = setup_of(true, job_.tests.normal_threshold);
         const auto& half = setup.registers.tests.half_vector;
         highlight_.half_vector =
@@ -66,9 +66,9 @@ class Study {
         return make_setup(job, mesh_, map_);
     }
 
-    Job job_;
     BaseMesh mesh_;
     HeightMap map_;
+    Job job_;
     Highlight highlight_;
 };
 

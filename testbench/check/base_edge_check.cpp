@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "testbench/check/corner_table.h"
+
 namespace tessera {
 namespace {
 

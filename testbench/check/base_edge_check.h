@@ -2,7 +2,6 @@
 #include <vector>
 
 #include "testbench/check/base_edge_chains.h"
-#include "testbench/check/corner_table.h"
 #include "testbench/check/invariants.h"
 #include "testbench/check/violation_text.h"
 

@@ -1,6 +1,5 @@
 #include "testbench/check/golden_inputs.h"
 
-#include <cstddef>
 #include <cstdint>
 #include <utility>
 

@@ -82,11 +82,16 @@ golden::Map make_map(const Job& job, const HeightMap& height_map, const BaseMesh
     return map;
 }
 
+const Job& resolved(const Job& job) {
+    require_resolved(job, "GoldenJob");
+    return job;
+}
+
 }  // namespace
 
 GoldenJob::GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& height_map,
                      const ModelScale& model_scale)
-    : job_(resolve_job(job, mesh, height_map).job),
+    : job_(resolved(job)),
       mesh_(mesh),
       height_map_(height_map),
       scene_(make_scene(job_, height_map, model_scale)),

@@ -11,15 +11,14 @@
 namespace tessera {
 
 /// A job, its mesh and its map as the golden model is told of them: field by field, nothing of the host's but where it
-/// puts the model in the world (ModelScale), which is its own to choose, and the camera and scale that a job leaves to the
-/// program (resolve_job.h). What the host made of the same job is judged
+/// puts the model in the world (ModelScale), which is its own to choose. What the host made of the same job is judged
 /// against this (setup_check.h), and golden's own run starts here (end_to_end.h).
 ///
 /// The map's codes are golden's own, of the width that the job asks for: what that width costs is for `tessera widths` to
 /// say. Memory: 12 bytes per texel.
 class GoldenJob {
   public:
-    /// `mesh` and `height_map` must outlive it.
+    /// `job` must be resolved (resolve_job.h), `mesh` and `height_map` must outlive this.
     GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& height_map,
               const ModelScale& model_scale);
 

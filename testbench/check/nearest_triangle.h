@@ -52,8 +52,8 @@ class NearestTriangle {
     /// How many boxes p lies in: what nearest(p) looks at, at least.
     std::size_t boxes_around(const glm::dvec3& p) const;
 
-    /// Every triangle within `radius` of p, each once, by its place in the soup; false, and not all of them, if there are more than
-    /// `most`.
+    /// Every triangle within `radius` of p, each once, by its place in the soup; false, and not all of them, if there are
+    /// more than `most`.
     bool within(const glm::dvec3& p, double radius, std::size_t most, std::vector<Found>& found) const;
 
   private:

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 
+#include "testbench/common/distinct_table.h"
 #include "testbench/common/parallel.h"
 #include "testbench/common/random.h"
 
@@ -19,25 +20,14 @@ constexpr std::size_t pilot_points = 256;
 class Points {
   public:
     explicit Points(const TriangleSoup& soup) : soup_(soup) {
-        // Open addressing: four bytes a slot, where sorting took 24 bytes a corner.
-        std::vector<std::uint32_t> table(std::size_t{1} << 10, empty);
-        const auto slot_of = [&](const glm::dvec3& p) -> std::uint32_t& {
-            std::size_t slot = static_cast<std::size_t>(hash(p)) & (table.size() - 1);
-            while (table[slot] != empty && vertex(table[slot]) != p)
-                slot = (slot + 1) & (table.size() - 1);
-            return table[slot];
-        };
+        DistinctTable table;
         for (std::size_t corner = 0; corner < 3 * soup.size(); ++corner) {
-            std::uint32_t& slot = slot_of(position(corner));
-            if (slot != empty)
-                continue;
-            slot = static_cast<std::uint32_t>(vertices_.size());
-            vertices_.push_back(static_cast<std::uint32_t>(corner));
-            if (2 * vertices_.size() <= table.size())
-                continue;
-            table.assign(2 * table.size(), empty);
-            for (std::uint32_t v = 0; v < vertices_.size(); ++v)
-                slot_of(vertex(v)) = v;
+            const glm::dvec3& p = position(corner);
+            const std::uint32_t number = table.number_of(
+                hash(p), [&](std::uint32_t v) { return vertex(v) == p; },
+                [&](std::uint32_t v) { return hash(vertex(v)); });
+            if (number == vertices_.size())
+                vertices_.push_back(static_cast<std::uint32_t>(corner));
         }
     }
 
@@ -51,8 +41,6 @@ class Points {
     }
 
   private:
-    static constexpr std::uint32_t empty = UINT32_MAX;
-
     /// Of the bits; -0 and 0 are equal and have the same.
     static std::uint64_t hash(const glm::dvec3& p) {
         std::uint64_t result = 0;
@@ -60,10 +48,9 @@ class Points {
             const double number = p[k] + 0.0;
             std::uint64_t bits;
             std::memcpy(&bits, &number, sizeof bits);
-            result = (result ^ bits) * 0x9e3779b97f4a7c15U;
-            result ^= result >> 29;
+            result = mix_hash(result, bits);
         }
-        return result * 0xbf58476d1ce4e5b9U >> 8;
+        return result;
     }
 
     const glm::dvec3& position(std::size_t corner) const { return soup_[corner / 3][corner % 3]; }

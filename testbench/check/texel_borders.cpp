@@ -2,9 +2,11 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "testbench/job/job_keys.h"
 #include "testbench/meshes/make_base_mesh.h"
 
 namespace tessera {
@@ -20,22 +22,29 @@ bool held(std::int64_t texels, std::int64_t quads, std::int64_t fraction) {
     return (texels << fraction) % quads == 0;
 }
 
+std::int64_t highest(const char* key) {
+    return static_cast<std::int64_t>(find_key(key)->range.high);
+}
+
 std::string axis_remedy(const Job& job, const char* map_key, const char* quads_key, std::int64_t texels,
                         std::int64_t quads) {
     const std::int64_t fraction = job.formats.texture_fraction;
     if (held(texels, quads, fraction))
         return {};
     std::string text;
-    if (job.map.source != MapSource::file) {
-        // Eight texels a quad: the first three halvings fall on borders, none beside one.
-        const std::int64_t multiple = 8 * quads;
+    // Eight texels a quad: the first three halvings fall on borders, none beside one.
+    const std::int64_t multiple = 8 * quads;
+    const std::int64_t largest = highest(map_key) / multiple * multiple;
+    if (job.map.source != MapSource::file && largest > 0)
         text = fmt::format("{} = {} (a multiple of {} quads), or ", map_key,
-                           (texels + multiple - 1) / multiple * multiple, quads);
-    }
-    std::int64_t next = quads + 1;
-    while (!held(texels, next, fraction))
-        ++next;
-    return text + fmt::format("{} = {} for a map of {} texels", quads_key, next, texels);
+                           std::min((texels + multiple - 1) / multiple * multiple, largest), quads);
+    std::int64_t other = quads + 1;
+    while (other <= highest(quads_key) && !held(texels, other, fraction))
+        ++other;
+    if (other > highest(quads_key))
+        for (other = quads - 1; !held(texels, other, fraction);)
+            --other;
+    return text + fmt::format("{} = {} for a map of {} texels", quads_key, other, texels);
 }
 
 }  // namespace

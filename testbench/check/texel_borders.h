@@ -40,8 +40,8 @@ class TexelBorders : public tlm::tlm_analysis_if<datapath::TrianglePass> {
     std::uint32_t fraction_;  // the fraction's bits: all set one LSB below a border
 };
 
-/// What to tell the user where there are many: how many, and a map size or a number of quads that has none. Else empty.
-/// `width`, `height`: the map's.
+/// What to tell the user where there are many: how many, and a map size or a number of quads, as the keys allow, that
+/// has none. Else empty. `width`, `height`: the map's.
 std::string texel_borders_warning(const TexelBorderCount& count, const Job& job, std::int64_t width,
                                   std::int64_t height);
 

@@ -1,9 +1,8 @@
 #pragma once
 #include <cstdint>
 #include <string>
-#include <utility>
 
-#include "modules/datapath/parameters.h"
+#include "modules/datapath/format.h"
 #include "testbench/check/corner_table.h"
 
 namespace tessera {

@@ -1,6 +1,5 @@
 #include "testbench/host/inputs.h"
 
-#include "testbench/common/error.h"
 #include "testbench/host/fingerprint.h"
 #include "testbench/job/job_paths.h"
 #include "testbench/job/validate_job.h"

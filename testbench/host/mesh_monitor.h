@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "modules/datapath/cull.h"
-#include "modules/pipeline.h"
 #include "testbench/host/emitted_mesh.h"
 
 namespace tessera {

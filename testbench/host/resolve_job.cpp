@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <glm/glm.hpp>
+#include <stdexcept>
 
 #include "testbench/common/error.h"
 #include "testbench/host/unit_vector.h"
@@ -55,7 +56,7 @@ struct Box {
 };
 
 /// Of P + h N over the base vertices, for every h given.
-Box bounding_box(const BaseMesh& mesh, const std::array<double, 2>& heights) {
+Box bounding_box(const BaseMesh& mesh, const std::vector<double>& heights) {
     Box box;
     box.low = box.high = mesh.vertices.front().position + heights[0] * mesh.vertices.front().normal;
     for (const BaseVertex& vertex : mesh.vertices)
@@ -89,6 +90,8 @@ glm::dvec3 unit_axis(int axis, double sign) {
 
 glm::dvec3 find_up(MeshSource source, const BaseMesh& mesh, int flat) {
     const bool file = source == MeshSource::file;
+    if (mesh.up && *mesh.up != glm::dvec3(0))
+        return unit_vector(*mesh.up);
     if (!file || flat < 0)
         return unit_axis(file ? 1 : 2, 1);
     double side = 0;
@@ -134,7 +137,7 @@ double framing_distance(const Box& box, const glm::dvec3& target, const glm::dve
 class Resolver {
   public:
     Resolver(const Job& job, const BaseMesh& mesh, const HeightMap& map)
-        : mesh_(mesh), map_(map), base_(bounding_box(mesh, {0, 0})), flat_(flat_axis(base_)) {
+        : mesh_(mesh), map_(map), base_(bounding_box(mesh, {0})), flat_(flat_axis(base_)) {
         result_.job = job;
     }
 
@@ -167,12 +170,23 @@ class Resolver {
                           reach > span ? ", less because values go beyond map.range" : ""));
     }
 
+    /// Lowest and highest displacement of the first and of the last frame: those between displace by no more.
+    std::vector<double> heights_of_all_frames() const {
+        const Job& job = result_.job;
+        Job::Displacement first = job.displacement;
+        if (job.frames.count > 1)
+            first.scale = job.frames.first_scale;
+        std::vector<double> heights;
+        for (const double value : values_of(map_))
+            for (const Job::Displacement& frame : {first, job.displacement})
+                heights.push_back(MapDisplacement::from(frame, map_).of(value));
+        return heights;
+    }
+
     void find_camera() {
         Job& job = result_.job;
         Job::Camera& camera = job.camera;
-        const MapDisplacement displacement = MapDisplacement::from(job.displacement, map_);
-        const auto [low, high] = values_of(map_);
-        const Box box = bounding_box(mesh_, {displacement.of(low), displacement.of(high)});
+        const Box box = bounding_box(mesh_, heights_of_all_frames());
         const bool no_eye = is_automatic(camera.eye), no_target = is_automatic(camera.target),
                    no_up = is_automatic(camera.up);
         glm::dvec3 up = no_up ? find_up(job.mesh.source, mesh_, flat_) : glm::dvec3(0);
@@ -202,7 +216,8 @@ class Resolver {
         if (no_target)
             found("camera.target", "the centre of the displaced model's bounding box");
         if (no_up)
-            found("camera.up", along_up ? "seen along the up axis: the front is at the bottom"
+            found("camera.up", along_up   ? "seen along the up axis: the front is at the bottom"
+                               : mesh_.up ? "as in the run that mesh.file names"
                                : job.mesh.source != MeshSource::file ? "z, as for all meshes but OBJ files"
                                : flat_ < 0                           ? "y, as in most OBJ files"
                                                                      : "the axis the mesh is flat in");
@@ -217,10 +232,18 @@ class Resolver {
         for (const FoundValue& value : result_.found) {
             const Key& key = *find_key(value.key);
             if (const std::string fault = complaint(key, key.get(result_.job)); !fault.empty())
-                throw InputError(
-                    fmt::format("{}: it follows from a base mesh of {:.6g} model units; scale the mesh",
-                                fault, base_.largest()));
+                throw InputError(fmt::format("{}: it follows from a base mesh of {:.6g} model units{}", fault,
+                                             base_.largest(), place_and_remedy()));
         }
+    }
+
+    /// Far from the origin, it is the place that takes a value out of its range, not the size.
+    std::string place_and_remedy() const {
+        const glm::dvec3 centre = base_.centre(), away = glm::abs(centre);
+        if (std::max({away.x, away.y, away.z}) <= base_.largest())
+            return "; scale the mesh";
+        return fmt::format(" around ({:.6g}, {:.6g}, {:.6g}); move the mesh to the origin", centre.x,
+                           centre.y, centre.z);
     }
 
     const BaseMesh& mesh_;
@@ -234,6 +257,12 @@ class Resolver {
 
 ResolvedJob resolve_job(const Job& job, const BaseMesh& mesh, const HeightMap& map) {
     return Resolver(job, mesh, map).result();
+}
+
+void require_resolved(const Job& job, const char* user) {
+    if (const std::string key = automatic_key(job); !key.empty())
+        throw std::logic_error(
+            fmt::format("{}: {} is automatic; the job must have gone through resolve_job()", user, key));
 }
 
 }  // namespace tessera

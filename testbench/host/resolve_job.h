@@ -26,4 +26,7 @@ struct ResolvedJob {
 /// camera can be, if some of it was set, validate() says.
 ResolvedJob resolve_job(const Job& job, const BaseMesh& mesh, const HeightMap& map);
 
+/// Throws std::logic_error that names `user` if the job has an `automatic` value left.
+void require_resolved(const Job& job, const char* user);
+
 }  // namespace tessera

@@ -469,8 +469,8 @@ datapath::TestParameters make_tests(const Job& job, const datapath::Formats& for
     return result;
 }
 
-Setup make_setup(const Job& asked, const BaseMesh& mesh, const HeightMap& map) {
-    const Job job = resolve_job(asked, mesh, map).job;
+Setup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& map) {
+    require_resolved(job, "make_setup");
     Setup setup;
     datapath::Registers& registers = setup.registers;
     registers.formats = make_formats(job.formats);

@@ -51,10 +51,10 @@ struct Setup {
     std::vector<std::string> remarks;  ///< one sentence each, for the report
 };
 
-/// Rounds mesh, map, camera, thresholds to the formats; what the job leaves to the program is found first
-/// (resolve_job()). Errors: InputError where something cannot fit and no repair
-/// keeps the meaning (a table entry too narrow for the largest rectangle, an eye too far away, a texture coordinate
-/// beyond the format, a threshold beyond its register or below its step), with value, limit and what to do.
+/// Rounds mesh, map, camera, thresholds to the formats. The job must be resolved (resolve_job.h). Errors: InputError
+/// where something cannot fit and no repair keeps the meaning (a table entry too narrow for the largest rectangle, an eye
+/// too far away, a texture coordinate beyond the format, a threshold beyond its register or below its step), with value,
+/// limit and what to do.
 Setup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& map);
 
 /// The tests' part of it alone: the registers a job's [tests] are rounded to. InputError as above.

@@ -312,8 +312,8 @@ std::vector<KeyTable> declare_keys() {
         key.add("source", &Mesh::source, "Built-in shape, file for the mesh in mesh.file (what it is if mesh.file alone is given), patches for the Bezier patches in it, or run for the mesh that an earlier run left");
         key.add("file", &Mesh::file, KeyKind::file, "OBJ file, with mesh.source = \"file\"; with \"patches\" one of bicubic Bezier patches as Newell's teapot has it; with \"run\" the folder of an earlier run");
         key.add("fingerprint", &Mesh::fingerprint, KeyKind::text, "64-bit FNV-1a hash of the file (of a run's mesh.ply), 16 hexadecimal digits; another file is refused. A run writes it into its job.toml; empty: any file");
-        key.add("columns", &Mesh::columns, "quads", between(0, 2048), "Quads along u; 0: 3 for the plane, 4 for each patch, 30 for cylinder and sphere, which need 3 or more");
-        key.add("rows", &Mesh::rows, "quads", between(0, 2048), "Quads along v; 0: 3 for the plane, 4 for each patch, 30 for cylinder and sphere; a sphere needs 2 or more");
+        key.add("columns", &Mesh::columns, "quads", between(0, 2048), "Quads along u; 0: 3 for the plane, 4 for each patch, 32 for cylinder and sphere, which need 3 or more");
+        key.add("rows", &Mesh::rows, "quads", between(0, 2048), "Quads along v; 0: 3 for the plane, 4 for each patch, 32 for cylinder and sphere; a sphere needs 2 or more");
         key.add("width", &Mesh::width, "model units", length_range, "Size of the plane along x");
         key.add("depth", &Mesh::depth, "model units", length_range, "Size of the plane along y");
         key.add("radius", &Mesh::radius, "model units", length_range, "Radius of the cylinder or sphere");
@@ -346,9 +346,9 @@ std::vector<KeyTable> declare_keys() {
     });
     list.table("camera", &Job::camera, "The view, on which the View Test depends.", [](const auto& key) {
         using Camera = Job::Camera;
-        key.add("eye", &Camera::eye, "model units", auto_or(coordinate_range), "Where the camera stands; auto: 20 degrees to the right of the front and 38 degrees above it, as near as the displaced model's bounding box fits into 90 % of the picture's width and height. Front is -y, or z where up is y");
-        key.add("target", &Camera::target, "model units", auto_or(coordinate_range), "What it looks at; auto: the centre of the displaced model's bounding box");
-        key.add("up", &Camera::up, "-", auto_or(coordinate_range), "Direction that is up in the picture, of any length; auto: y for an OBJ file that is not flat, the axis it is flat in (on the side of its normals) for one that is, z for every other source; if the camera looks along that axis, away from the model's front");
+        key.add("eye", &Camera::eye, "model units", auto_or(coordinate_range), "Where the camera stands; auto: 20 degrees to the right of the front and 38 degrees above it, as near as the displaced model's bounding box, of all frames together, fits into 90 % of the picture's width and height. Front is -y, or z where up is y");
+        key.add("target", &Camera::target, "model units", auto_or(coordinate_range), "What it looks at; auto: the centre of that bounding box");
+        key.add("up", &Camera::up, "-", auto_or(coordinate_range), "Direction that is up in the picture, of any length; auto: y for an OBJ file that is not flat, the axis it is flat in (on the side of its normals) for one that is, the earlier run's camera.up for a run on an OBJ file (or on a run), z for every other source; if the camera looks along that axis, away from the model's front");
         key.add("field_of_view", &Camera::field_of_view, "degrees", between(0.1, 179), "Vertical opening angle");
         key.add("near_plane", &Camera::near_plane, "model units", auto_or(distance_range), "Distance of the near plane; vertices on or behind it have no screen position; auto: a thousandth of the distance from eye to target");
         key.add("viewport_width", &Camera::viewport_width, "pixels", between(1, 16384), "Width of the picture");

@@ -481,6 +481,7 @@ void HeaderReader::check_chunks() {
     const Compression& compression = compressions[header_.compression];
     const bool sizes_matter = compression.name == "none" || compression.name == "RLE" ||
                               compression.name == "ZIPS" || compression.name == "ZIP";
+    std::uint64_t together = 0;  // of files with overlapping chunks many times the file, all of it to be read
     for (std::size_t i = 0; i < chunks; ++i) {
         const std::int64_t line = header_.top + static_cast<std::int64_t>(i) * compression.lines;
         const std::string what =
@@ -502,8 +503,18 @@ void HeaderReader::check_chunks() {
                             what, offsets[i]));
         }
         const std::uint64_t size = little_endian_32(found, head - 4), expected = chunk_bytes(i);
-        if (!sizes_matter || size > file_size_ - offsets[i] - head) {
+        if (size > file_size_ - offsets[i] - head) {
             continue;  // the library finds it cut off
+        }
+        together += head + size;
+        if (together > file_size_) {
+            refuse(fmt::format(
+                "the EXR file's chunks up to {} have {} bytes together, but the file has {}: they "
+                "overlap. It is damaged: save or download it anew.",
+                what, together, file_size_));
+        }
+        if (!sizes_matter) {
+            continue;
         }
         std::string payload(size, '\0');
         file_.read(payload.data(), static_cast<std::streamsize>(size));

@@ -40,8 +40,8 @@ inline constexpr std::uint64_t largest_exr_image = 1ULL << 30;
 ///
 /// Checked: version; structure and sizes of the attributes; data window against largest_map_side; block size
 /// against largest_exr_block, all channels together against largest_exr_image; offset table and best possible
-/// compression against the file's size; scan lines' offsets; that no chunk holds less than its pixels. Refused with a sentence: deep data, several
-/// parts. Throws InputError.
+/// compression against the file's size; scan lines' offsets; that chunks do not overlap, and that none holds less than
+/// its pixels. Refused with a sentence: deep data, several parts. Throws InputError.
 ExrHeader read_exr_header(const std::filesystem::path& path);
 
 }  // namespace tessera

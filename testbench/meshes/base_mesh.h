@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct BaseMesh {
         double mean_u = 1, mean_v = 1;
         double smallest_u = 1, largest_u = 1, smallest_v = 1, largest_v = 1;
     } texture_scale;
+
+    std::optional<glm::dvec3> up;  ///< of the model, of any length, if the source knows it
 
     std::size_t dropped_degenerate =
         0;  ///< triangles of zero area or that name one vertex twice, dropped at loading

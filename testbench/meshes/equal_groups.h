@@ -6,6 +6,8 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "testbench/common/distinct_table.h"
+
 namespace tessera {
 
 /// The bits of x, with -0 taken as +0: two values are alike when their bits are.
@@ -35,8 +37,7 @@ std::vector<std::uint32_t> first_equal(std::vector<std::array<std::uint64_t, N>>
     for (std::size_t i = 0; i < keys.size(); ++i) {
         std::uint64_t hash = 0;
         for (std::uint64_t word : keys[i]) {
-            hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
-            hash ^= hash >> 29;
+            hash = mix_hash(hash, word);
         }
         std::size_t slot = (hash * 0xbf58476d1ce4e5b9u >> 20) & (slots - 1);
         while (table[slot] != empty && keys[table[slot]] != keys[i]) {

@@ -12,12 +12,12 @@ namespace tessera {
 
 namespace {
 
-/// 0 in a job: the paper's plane of 18 triangles; round surfaces of the 1800 triangles of its cylinder; patches of 32
-/// triangles, which make its teapot.
+/// 0 in a job: the paper's plane of 18 triangles; round surfaces of 32 quads a side, a power of two so that the format
+/// holds their texture coordinates on any map; patches of 32 triangles, which make its teapot.
 std::int64_t quads(std::int64_t wanted, MeshSource source) {
     if (wanted != 0)
         return wanted;
-    return source == MeshSource::plane ? 3 : source == MeshSource::patches ? 4 : 30;
+    return source == MeshSource::plane ? 3 : source == MeshSource::patches ? 4 : 32;
 }
 
 }  // namespace

@@ -6,7 +6,8 @@
 
 namespace tessera {
 
-/// What becomes of face corners without texture coordinates, or of a mesh none of whose triangles has an area in them, which a displacement map needs.
+/// What becomes of face corners without texture coordinates, or of a mesh none of whose triangles has an area in them,
+/// which a displacement map needs.
 enum class MissingTexture {
     project,  ///< the mesh's bounding box, seen along its thinnest axis, is the map; a repair says so
     refuse,   ///< InputError

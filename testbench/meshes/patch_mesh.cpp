@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "testbench/common/error.h"
 #include "testbench/meshes/bezier_patches.h"

@@ -85,6 +85,13 @@ void require_size(const BaseMesh& mesh, const std::string& name) {
                                      smallest_size));
 }
 
+/// Built-in meshes and patches stand on z, whatever the run's camera; of a file, or a run before, its camera tells.
+glm::dvec3 up_of(const Job& job) {
+    if (job.mesh.source != MeshSource::file && job.mesh.source != MeshSource::run)
+        return {0, 0, 1};
+    return {job.camera.up[0], job.camera.up[1], job.camera.up[2]};
+}
+
 RecordedRun read(const std::filesystem::path& folder) {
     try {
         return read_run(folder);
@@ -106,6 +113,7 @@ BaseMesh read_run_mesh(const std::filesystem::path& folder) {
                             "thresholds under [tests]",
                             name, run.mesh.triangles.size(), largest_base_triangles));
         take_triangles(run.mesh, mesh);
+        mesh.up = up_of(run.job);
         if (run.job.hardware.culling == Culling::back)
             mesh.repairs.emplace_back(
                 "The run culled triangles that faced away (hardware.culling = \"back\"): they are missing "

@@ -15,6 +15,7 @@ namespace tessera {
 /// - A triangle that names one vertex twice then is dropped and counted. One without area, but of three vertices, stays:
 ///   a neighbour may have an edge that is its other two together, and dropping it would leave a T-vertex there.
 /// - A normal that the hardware had not (zero) is the smooth one of smooth_normals.h, counted in a repair.
+/// - The model's up is the run's camera.up where that run's mesh was a file or a run, else z.
 /// - Triangles that the run culled are not in its mesh: the holes are a repair.
 ///
 /// Errors: InputError as in read_run.h, for a mesh without a triangle left, and for one smaller than smallest_size;

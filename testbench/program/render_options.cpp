@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 
 #include "testbench/maps/stroke_font.h"
 #include "testbench/program/side_text.h"

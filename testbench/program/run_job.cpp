@@ -24,7 +24,6 @@
 #include "testbench/program/load_job.h"
 #include "testbench/program/output_folder.h"
 #include "testbench/program/progress.h"
-#include "testbench/program/render_command.h"
 #include "testbench/program/run_files.h"
 #include "testbench/program/run_frames.h"
 #include "testbench/program/summary.h"

@@ -15,8 +15,8 @@ struct Ray {
     double near = 0;  ///< in lengths of direction
 };
 
-/// The mesh made ready for rays. Several threads may ask at once; an answer depends on the mesh and the batch alone. Embree's
-/// single precision only picks the triangle: where it is hit is the caller's to compute.
+/// The mesh made ready for rays. Several threads may ask at once; an answer depends on the mesh and the batch alone.
+/// Embree's single precision only picks the triangle: where it is hit is the caller's to compute.
 class RayScene {
   public:
     static constexpr std::uint32_t nothing = UINT32_MAX;

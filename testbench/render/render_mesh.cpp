@@ -6,31 +6,30 @@
 #include <cstring>
 #include <utility>
 
+#include "testbench/common/distinct_table.h"
 #include "testbench/report/mesh_units.h"
 
 namespace tessera {
 namespace {
 
-/// Finds a vertex among those met before: open addressing, so that a million triangles take a few megabytes.
+/// Finds a vertex among those met before.
 class VertexIndex {
   public:
-    explicit VertexIndex(RenderMesh& mesh) : mesh_(mesh), slots_(1024, empty) {}
+    explicit VertexIndex(RenderMesh& mesh) : mesh_(mesh) {}
 
     std::uint32_t index_of(const glm::vec3& position, const glm::vec3& normal) {
-        if (2 * mesh_.positions.size() >= slots_.size())
-            grow();
-        std::uint32_t& slot = find(position, normal);
-        if (slot == empty) {
-            slot = static_cast<std::uint32_t>(mesh_.positions.size());
+        const std::uint32_t index = table_.number_of(
+            hash(position),
+            [&](std::uint32_t v) { return mesh_.positions[v] == position && mesh_.normals[v] == normal; },
+            [&](std::uint32_t v) { return hash(mesh_.positions[v]); });
+        if (index == mesh_.positions.size()) {
             mesh_.positions.push_back(position);
             mesh_.normals.push_back(normal);
         }
-        return slot;
+        return index;
     }
 
   private:
-    static constexpr std::uint32_t empty = UINT32_MAX;
-
     /// Of the bits: any number will do. -0 and 0 are equal, so they must be equal here.
     static std::uint64_t hash(const glm::vec3& p) {
         std::uint64_t result = 0;
@@ -38,29 +37,13 @@ class VertexIndex {
             const float number = p[k] + 0.0f;
             std::uint32_t bits;
             std::memcpy(&bits, &number, sizeof bits);
-            result = (result ^ bits) * 0x9E3779B97F4A7C15u;
-            result ^= result >> 32;
+            result = mix_hash(result, bits);
         }
         return result;
     }
 
-    std::uint32_t& find(const glm::vec3& position, const glm::vec3& normal) {
-        const std::size_t mask = slots_.size() - 1;
-        std::size_t i = static_cast<std::size_t>(hash(position)) & mask;
-        while (slots_[i] != empty &&
-               !(mesh_.positions[slots_[i]] == position && mesh_.normals[slots_[i]] == normal))
-            i = (i + 1) & mask;
-        return slots_[i];
-    }
-
-    void grow() {
-        slots_.assign(2 * slots_.size(), empty);
-        for (std::uint32_t i = 0; i < mesh_.positions.size(); ++i)
-            find(mesh_.positions[i], mesh_.normals[i]) = i;
-    }
-
     RenderMesh& mesh_;
-    std::vector<std::uint32_t> slots_;
+    DistinctTable table_;
 };
 
 /// Takes triangles with corners of their own. Whoever gives the same numbers in the same order gets the same mesh.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "testbench/common/distinct_table.h"
 #include "testbench/common/error.h"
 
 namespace tessera {
@@ -16,11 +17,9 @@ std::uint64_t hash(const Corner& c) {
     for (const std::int32_t word :
          {c.position.x, c.position.y, c.position.z, c.displaced.x, c.displaced.y, c.displaced.z,
           c.displaced_normal.x, c.displaced_normal.y, c.displaced_normal.z,
-          static_cast<std::int32_t>(c.texture.u), static_cast<std::int32_t>(c.texture.v)}) {
-        result = (result ^ static_cast<std::uint32_t>(word)) * 0x9e3779b97f4a7c15u;
-        result ^= result >> 29;
-    }
-    return result * 0xbf58476d1ce4e5b9u >> 8;
+          static_cast<std::int32_t>(c.texture.u), static_cast<std::int32_t>(c.texture.v)})
+        result = mix_hash(result, static_cast<std::uint32_t>(word));
+    return result;
 }
 
 bool same(const Corner& a, const Corner& b) {
@@ -41,35 +40,22 @@ IndexedMesh IndexedMesh::from(const EmittedMesh& mesh) {
         count += triangle.culled ? 0 : 1;
     result.triangles.reserve(count);
 
-    constexpr std::uint32_t empty = UINT32_MAX;
-    std::vector<std::uint32_t> table(std::size_t{1} << 10, empty);
-    const auto corner = [&](const Vertex& v) -> const Corner& {
+    DistinctTable table;
+    const auto corner = [&](std::uint32_t vertex) -> const Corner& {
+        const Vertex& v = result.vertices[vertex];
         return mesh.triangles[v.triangle].corners[v.corner];
-    };
-    const auto slot_of = [&](const Corner& c) -> std::uint32_t& {
-        std::size_t slot = static_cast<std::size_t>(hash(c)) & (table.size() - 1);
-        while (table[slot] != empty && !same(corner(result.vertices[table[slot]]), c))
-            slot = (slot + 1) & (table.size() - 1);
-        return table[slot];
-    };
-    const auto grow = [&] {
-        table.assign(2 * table.size(), empty);
-        for (std::uint32_t v = 0; v < result.vertices.size(); ++v)
-            slot_of(corner(result.vertices[v])) = v;
     };
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
         if (mesh.triangles[i].culled)
             continue;
         Triangle triangle{i, {}};
         for (std::uint32_t k = 0; k < 3; ++k) {
-            std::uint32_t& slot = slot_of(mesh.triangles[i].corners[k]);
-            if (slot == empty) {
-                slot = static_cast<std::uint32_t>(result.vertices.size());
+            const Corner& c = mesh.triangles[i].corners[k];
+            triangle.vertices[k] = table.number_of(
+                hash(c), [&](std::uint32_t v) { return same(corner(v), c); },
+                [&](std::uint32_t v) { return hash(corner(v)); });
+            if (triangle.vertices[k] == result.vertices.size())
                 result.vertices.push_back({i, k});
-            }
-            triangle.vertices[k] = slot;
-            if (3 * result.vertices.size() > 2 * table.size())
-                grow();
         }
         result.triangles.push_back(triangle);
     }

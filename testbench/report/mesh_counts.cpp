@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <vector>
 
+#include "testbench/common/distinct_table.h"
+
 namespace tessera {
 
 namespace {
-
-constexpr std::uint64_t mix(std::uint64_t hash, std::uint64_t word) {
-    hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
-    return hash ^ (hash >> 29);
-}
 
 /// Its lowest bit: the vertex was inserted.
 std::uint64_t vertex_hash(const EmittedTriangle::Corner& c) {
@@ -18,7 +15,7 @@ std::uint64_t vertex_hash(const EmittedTriangle::Corner& c) {
     for (const std::int32_t word :
          {static_cast<std::int32_t>(c.texture.u), static_cast<std::int32_t>(c.texture.v), c.displaced.x,
           c.displaced.y, c.displaced.z, c.displaced_normal.x, c.displaced_normal.y, c.displaced_normal.z})
-        hash = mix(hash, static_cast<std::uint32_t>(word));
+        hash = mix_hash(hash, static_cast<std::uint32_t>(word));
     return (hash & ~std::uint64_t{1}) | (c.generation > 0 ? 1 : 0);
 }
 
@@ -47,7 +44,7 @@ MeshCounts count_mesh(const EmittedMesh& mesh) {
                                          vertex_hash(triangle.corners[2])};
         for (std::size_t k = 0; k < 3; ++k) {
             const auto [low, high] = std::minmax(corners[k], corners[(k + 1) % 3]);
-            hashes.push_back(mix(mix(0, low), high));
+            hashes.push_back(mix_hash(mix_hash(0, low), high));
         }
     }
     keep_distinct(hashes);

@@ -1,13 +1,14 @@
 #include <catch2/catch.hpp>
 
 #include "testbench/check/scoreboard.h"
-#include "testbench/host/inputs.h"
 #include "testbench/host/simulation.h"
 #include "testbench/tests/count_allocations.h"
+#include "testbench/tests/timed_checks.h"
 
 // No allocation per edge once running: a second frame of the same job finds every buffer as large as it needs.
 
 using namespace tessera;
+using tessera::testing::setup_of;
 
 namespace {
 
@@ -27,7 +28,7 @@ void expect_no_allocation(const Setup& setup, Simulation& simulation) {
 }
 
 void expect_no_allocation_checked(const Job& job) {
-    const Setup setup = make_setup(job, load_mesh(job, {}), load_map(job, {}));
+    const Setup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);
     const GoldenInputs golden(setup);
     Scoreboard scoreboard(setup.registers, golden);
@@ -39,7 +40,7 @@ void expect_no_allocation_checked(const Job& job) {
 
 TEST_CASE("functional mode allocates nothing per edge") {
     const Job job;
-    const Setup setup = make_setup(job, load_mesh(job, {}), load_map(job, {}));
+    const Setup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);
     expect_no_allocation(setup, simulation);
 }
@@ -57,7 +58,7 @@ TEST_CASE("functional mode with a Highlight Test and the scoreboard allocates no
 TEST_CASE("timed mode allocates nothing per edge") {
     Job job;
     job.mode = Mode::timed;
-    const Setup setup = make_setup(job, load_mesh(job, {}), load_map(job, {}));
+    const Setup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);
     expect_no_allocation(setup, simulation);
 }
@@ -68,7 +69,7 @@ TEST_CASE("timed mode with three tests units, stalls and a queue that spills all
     job.hardware.tests_units = 3;
     job.hardware.queue_capacity = 100;
     job.timing.stalls = {1, 100, 16};
-    const Setup setup = make_setup(job, load_mesh(job, {}), load_map(job, {}));
+    const Setup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);
     expect_no_allocation(setup, simulation);
     CHECK(simulation.pipeline.triangle_queue.spilled() > 1000);

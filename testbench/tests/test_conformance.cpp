@@ -6,6 +6,7 @@
 #include "testbench/check/end_to_end.h"
 #include "testbench/check/scoreboard.h"
 #include "testbench/check/setup_check.h"
+#include "testbench/host/resolve_job.h"
 #include "testbench/host/simulation.h"
 #include "testbench/maps/built_in_maps.h"
 #include "testbench/maps/read_height_map.h"
@@ -19,8 +20,9 @@ namespace {
 
 const std::filesystem::path jobs = TESSERA_SOURCE_DIR "/testbench/jobs";
 
-void expect_conformance(const Job& job, const HeightMap& map) {
-    const BaseMesh mesh = make_base_mesh(job.mesh, (jobs / job.mesh.file).string());
+void expect_conformance(const Job& asked, const HeightMap& map) {
+    const BaseMesh mesh = make_base_mesh(asked.mesh, (jobs / asked.mesh.file).string());
+    const Job job = resolve_job(asked, mesh, map).job;
     const Setup setup = make_setup(job, mesh, map);
     const GoldenInputs inputs(setup);
     Scoreboard scoreboard(setup.registers, inputs);
@@ -54,6 +56,7 @@ Job with_highlight(Job job) {
 Job head() {
     Job job;
     job.mesh.source = MeshSource::cylinder;
+    job.mesh.columns = job.mesh.rows = 30;
     job.mesh.radius = 0.582837;
     job.mesh.height = 5.32;
     job.map.address_u = Addressing::repeat;

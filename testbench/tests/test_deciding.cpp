@@ -222,6 +222,22 @@ TEST_CASE("texel borders: the warning names the next map size and number of quad
     const std::string one_axis = texel_borders_warning(many, job, 100, 100);
     CHECK_THAT(one_axis,
                Contains("map.width = 112 (a multiple of 7 quads), or mesh.columns = 8") && !Contains("rows"));
+    job.mesh = {};
+    for (const MeshSource source : {MeshSource::cylinder, MeshSource::sphere}) {
+        job.mesh.source = source;  // 32 quads a side, whatever the map
+        CHECK(texel_borders_warning(many, job, 264, 100).empty());
+    }
+    job.mesh.columns = 30;  // the next multiple of 240, 4320, is more than a map has
+    CHECK_THAT(texel_borders_warning(many, job, 4096, 100),
+               Contains("map.width = 4080 (a multiple of 30 quads)"));
+    job.mesh.columns = 600;  // as is 4800; no more quads than 2048 either, and 512 divide the map
+    job.formats.texture_fraction = 0;
+    job.mesh.rows = 1;
+    CHECK_THAT(texel_borders_warning(many, job, 512, 100),
+               Contains("Use mesh.columns = 512 for a map of 512 texels") && !Contains("map.width"));
+    job.formats.texture_fraction = 12;
+    job.mesh.columns = 7;
+    job.mesh.rows = 8;
     job.map.source = MapSource::file;  // has its size
     CHECK_THAT(texel_borders_warning(many, job, 100, 100),
                Contains("Use mesh.columns = 8 for a map of 100 texels") && !Contains("map.width"));

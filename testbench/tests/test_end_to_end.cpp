@@ -8,6 +8,7 @@
 #include "testbench/check/end_to_end.h"
 #include "testbench/check/surface_distance.h"
 #include "testbench/common/parallel.h"
+#include "testbench/host/resolve_job.h"
 #include "testbench/maps/built_in_maps.h"
 #include "testbench/meshes/built_in.h"
 #include "testbench/tests/scoreboard_cases.h"
@@ -31,8 +32,9 @@ EmittedMesh hardware_mesh(Case& c) {
 }
 
 Case donut(const Job& job, int texels) {
-    const Setup setup = make_setup(job, make_plane(3, 3, 2, 2), half_donut_map(texels, texels));
-    return Case(setup, Manner::tame);
+    const BaseMesh mesh = make_plane(3, 3, 2, 2);
+    const HeightMap map = half_donut_map(texels, texels);
+    return Case(make_setup(resolve_job(job, mesh, map).job, mesh, map), Manner::tame);
 }
 
 }  // namespace

@@ -119,12 +119,11 @@ void check(const WidthRun& run) {
 /// Both ways of the machine, and the datapath alone.
 void expect_one_mesh(const Job& job) {
     validate(job);
-    const BaseMesh mesh = load_mesh(job, {});
-    const HeightMap map = load_map(job, {});
-    const Setup setup = make_setup(job, mesh, map);
+    const auto [mesh, map, resolved] = load_inputs(job, {});
+    const Setup setup = make_setup(resolved.job, mesh, map);
     CHECK(setup.input_saturations.position == 0);
     CHECK(setup.input_saturations.normal == 0);
-    check(run_widths(setup, ExactModel(job, mesh, map), 1'000'000));
+    check(run_widths(setup, ExactModel(resolved.job, mesh, map), 1'000'000));
 
     Simulation simulation(setup, 1'000'000, 100'000);
     if (job.mode == Mode::timed)
@@ -203,10 +202,9 @@ TEST_CASE("formats: any that a job may have, on any small job: within the bounds
         INFO("case " << k);
         try {
             validate(job);
-            const BaseMesh mesh = load_mesh(job, {});
-            const HeightMap map = load_map(job, {});
-            const Setup setup = make_setup(job, mesh, map);
-            check(run_widths(setup, ExactModel(job, mesh, map), 1'000'000));
+            const auto [mesh, map, resolved] = load_inputs(job, {});
+            const Setup setup = make_setup(resolved.job, mesh, map);
+            check(run_widths(setup, ExactModel(resolved.job, mesh, map), 1'000'000));
             ++ran;
         } catch (const InputError& error) {
             ++refused;

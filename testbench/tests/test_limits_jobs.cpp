@@ -69,10 +69,9 @@ std::vector<Extreme> extremes_of(const Key& key) {
 std::string outcome_of(const Job& job) {
     try {
         validate(job);
-        const BaseMesh mesh = load_mesh(job, {});
-        const HeightMap map = load_map(job, {});
-        const Setup setup = make_setup(job, mesh, map);
-        const WidthRun run = run_widths(setup, ExactModel(job, mesh, map), 300'000);
+        const auto [mesh, map, resolved] = load_inputs(job, {});
+        const Setup setup = make_setup(resolved.job, mesh, map);
+        const WidthRun run = run_widths(setup, ExactModel(resolved.job, mesh, map), 300'000);
         INFO(run.conformance.first_mismatch);
         INFO(run.invariants.first_violation);
         CHECK(run.conformance.mismatches == 0);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "testbench/host/resolve_job.h"
 #include "testbench/host/setup.h"
 #include "testbench/maps/built_in_maps.h"
 #include "testbench/maps/map_displacement.h"
@@ -37,7 +38,8 @@ std::vector<double> machine_displacements(HeightMap map, const MapRange& range, 
     job.displacement = {3, 10};
     job.map.range = range;
     span_values(map, range);
-    const Setup setup = make_setup(job, make_plane(1, 1, 20, 20), map);
+    const BaseMesh mesh = make_plane(1, 1, 20, 20);
+    const Setup setup = make_setup(resolve_job(job, mesh, map).job, mesh, map);
     const double position =
         std::ldexp(1.0, -setup.registers.formats.position.fraction) / setup.model_scale.scale;
     std::vector<double> result;
@@ -108,7 +110,8 @@ TEST_CASE("a map is noted as using little of its range below an eighth") {
         map.width = 2;
         map.height = 1;
         map.values = {0, high};
-        return make_setup(Job{}, make_plane(1, 1, 2, 2), map).remarks.size();
+        const BaseMesh mesh = make_plane(1, 1, 2, 2);
+        return make_setup(resolve_job({}, mesh, map).job, mesh, map).remarks.size();
     };
     CHECK(remarks(0.125F) == 0);
     CHECK(remarks(0.124F) == 1);

@@ -38,6 +38,19 @@ std::string deflated(std::size_t count) {
     return result;
 }
 
+/// Where the first chunk of an EXR file begins: the offset table ends where its own first entry points.
+std::size_t first_chunk(const std::string& file, std::size_t chunks) {
+    for (std::size_t at = 8; at + 8 <= file.size(); ++at) {
+        std::uint64_t offset = 0;
+        for (std::size_t k = 0; k < 8; ++k)
+            offset |= std::uint64_t{static_cast<unsigned char>(file[at + k])} << (8 * k);
+        if (offset == at + 8 * chunks)
+            return offset;
+    }
+    FAIL("no offset table");
+    return 0;
+}
+
 }  // namespace
 
 TEST_CASE("an EXR map keeps its values, whatever its pixel type, compression, tiling and origin") {
@@ -200,19 +213,9 @@ TEST_CASE("an EXR chunk that holds less than its pixels is refused, whatever its
     write_exr(folder / "good.exr", image);
     CHECK(read_height_map(folder / "good.exr").at(15, 15) == 7);
 
-    // The offset table ends where its own first entry points.
     const std::string good = read_bytes(folder / "good.exr");
     const std::size_t head = tiled ? 20 : 8;
-    std::size_t chunk = 0;
-    for (std::size_t at = 8; at + 8 <= good.size() && chunk == 0; ++at) {
-        std::uint64_t offset = 0;
-        for (std::size_t k = 0; k < 8; ++k)
-            offset |= std::uint64_t{static_cast<unsigned char>(good[at + k])} << (8 * k);
-        const std::size_t chunks = tiled ? 4 : compression == 3 ? 1 : 16;
-        if (offset == at + 8 * chunks)
-            chunk = offset;
-    }
-    REQUIRE(chunk > 0);
+    const std::size_t chunk = first_chunk(good, tiled ? 4 : compression == 3 ? 1 : 16);
     std::string bad = good;
     if (compression == 0) {
         bad[chunk + head - 4] = static_cast<char>(tiled ? 252 : 60);  // a pixel less
@@ -228,4 +231,36 @@ TEST_CASE("an EXR chunk that holds less than its pixels is refused, whatever its
     write_bytes(folder / "bad.exr", bad);
     CHECK_THROWS_WITH(read_height_map(folder / "bad.exr"),
                       Contains("bytes of pixels of ") && Contains("It is damaged"));
+}
+
+TEST_CASE("EXR chunks that overlap are refused before they are read over and over") {
+    const TemporaryFolder folder;
+    ExrImage image{64, 64, std::vector<float>(4096, 0.5F)};
+    image.compression = 0;
+    // A chunk as long as the rest of the file.
+    const auto stretch = [](std::string& file, std::size_t chunk, std::size_t head) {
+        const std::size_t rest = file.size() - chunk - head;
+        file[chunk + head - 4] = static_cast<char>(rest & 0xff);
+        file[chunk + head - 3] = static_cast<char>(rest >> 8);
+    };
+    SECTION("scan lines") {
+        write_exr(folder / "good.exr", image);
+        std::string bad = read_bytes(folder / "good.exr");
+        for (std::size_t chunk = first_chunk(bad, 64); chunk < bad.size(); chunk += 8 + 64 * 4)
+            stretch(bad, chunk, 8);
+        write_bytes(folder / "bad.exr", bad);
+    }
+    SECTION("tiles that are all the same, whatever the compression") {
+        image.compression = GENERATE(0, 4);
+        image.tiled = true;
+        write_exr(folder / "good.exr", image);
+        std::string bad = read_bytes(folder / "good.exr");
+        const std::size_t first = first_chunk(bad, 64), table = first - 8 * 64;
+        stretch(bad, first, 20);
+        for (std::size_t k = 1; k < 64; ++k)
+            bad.replace(table + 8 * k, 8, bad, table, 8);
+        write_bytes(folder / "bad.exr", bad);
+    }
+    CHECK(read_height_map(folder / "good.exr").at(63, 63) == 0.5F);
+    CHECK_THROWS_WITH(read_height_map(folder / "bad.exr"), Contains("they overlap. It is damaged"));
 }

@@ -138,9 +138,9 @@ TEST_CASE("the dispatcher makes what the job says") {
     Job::Mesh job;
     CHECK(make_base_mesh(job, "").triangles.size() == 18);
     job.source = MeshSource::cylinder;
-    CHECK(make_base_mesh(job, "").triangles.size() == 1800);
+    CHECK(make_base_mesh(job, "").triangles.size() == 2048);
     job.source = MeshSource::sphere;
-    CHECK(make_base_mesh(job, "").triangles.size() == 1740);
+    CHECK(make_base_mesh(job, "").triangles.size() == 1984);
     job.columns = 3;
     job.rows = 2;
     CHECK(make_base_mesh(job, "").triangles.size() == 6);

@@ -20,7 +20,8 @@ namespace {
 /// In functional mode; test_timed_*.cpp have the other.
 Setup setup_of(Job job) {
     job.mode = Mode::functional;
-    return make_setup(job, load_mesh(job, {}), load_map(job, {}));
+    const Inputs inputs = load_inputs(job, {});
+    return make_setup(inputs.resolved.job, inputs.mesh, inputs.map);
 }
 
 void check_run(const Setup& setup, Simulation& simulation) {

@@ -160,6 +160,20 @@ TEST_CASE("a run on a run is the same twice, and from its own folder") {
     require_same_files(once, RunFolder(here.path() / "runs/second").files());
 }
 
+TEST_CASE("a run on a run of an OBJ file stands as that did") {
+    const TestFolder here;
+    write_all(here.path() / "upright.obj",
+              "v -1 0 -1\nv 1 0 -1\nv 0 0 1\nv 0 4 0\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 3 4 1\n");
+    run(here.path(), "first", {"mesh.source=file", "mesh.file=upright.obj", "tests.generation_limit=2"});
+    const std::vector<std::string> coarse{"tests.generation_limit=1"};
+    run(here.path(), "second", on("first", coarse));
+    const RunFolder third = run(here.path(), "third", on("second", coarse));
+    CHECK_THAT(third.files().at("job.toml"), Contains("up = [0.0, 1.0, 0.0]"));
+    const RunFolder set =
+        run(here.path(), "set", on("second", {"tests.generation_limit=1", "camera.up=[0, 0, 1]"}));
+    CHECK_THAT(set.files().at("job.toml"), Contains("up = [0.0, 0.0, 1.0]"));
+}
+
 TEST_CASE("compare and render read a run on a run, and the first run's own inputs are not needed") {
     const TestFolder here;
     std::string map = "P5 32 32 255\n";

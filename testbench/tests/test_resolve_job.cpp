@@ -3,8 +3,10 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
+#include "testbench/check/golden_job.h"
 #include "testbench/common/error.h"
 #include "testbench/host/resolve_job.h"
+#include "testbench/host/setup.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/maps/built_in_maps.h"
 #include "testbench/meshes/built_in.h"
@@ -111,6 +113,10 @@ TEST_CASE("up is z, but y for an OBJ file, and a flat one's axis on the side of 
     CHECK(up_of(parse_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 3 2\n", "a"), MeshSource::file) == Up{0, 0, -1});
     CHECK(up_of(parse_obj("v 0 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n", "a"), MeshSource::file) == Up{1, 0, 0});
     CHECK(up_of(parse_obj("v 0 0 0\nv 0 0 1\nv 1 0 0\nf 1 2 3\n", "a"), MeshSource::file) == Up{0, 1, 0});
+    BaseMesh of_a_run = make_plane(3, 3, 2, 2);
+    CHECK(up_of(of_a_run, MeshSource::run) == Up{0, 0, 1});
+    of_a_run.up = glm::dvec3(0, -4, 0);
+    CHECK(up_of(of_a_run, MeshSource::run) == Up{0, -1, 0});
 }
 
 TEST_CASE(
@@ -145,6 +151,16 @@ TEST_CASE(
         const glm::dvec3 direction = glm::normalize(vector(camera.eye) - vector(camera.target));
         CHECK(glm::length(direction - glm::dvec3(right, above, front)) < 1e-5);
         CHECK(filled_part(camera, corners({100, 200, 300}, {102, 204, 306})) == Approx(0.9).epsilon(2e-5));
+    }
+    SECTION("with room for every frame") {
+        Job job;
+        job.displacement.scale = 1;
+        job.frames = {5, -3};
+        const Job::Camera camera = resolve_job(job, make_plane(3, 3, 2, 2), map_of(0, 1)).job.camera;
+        CHECK(camera.target == std::array<double, 3>{0, 0, -1});
+        CHECK(filled_part(camera, corners({-1, -1, -3}, {1, 1, 1})) == Approx(0.9).epsilon(2e-5));
+        job.frames.count = 1;  // first_scale is not used
+        CHECK(resolve_job(job, make_plane(3, 3, 2, 2), map_of(0, 1)).job.camera.target[2] == 0.5);
     }
     SECTION("whatever the model's size") {
         for (const double size : {1e-5, 1e-3, 1.0, 1e5, 1e9}) {
@@ -185,12 +201,32 @@ TEST_CASE("what is set of a camera stays, and the rest follows from it") {
 }
 
 TEST_CASE("a model beyond what a camera can be set to is refused with what to do") {
-    try {
-        resolve_job(Job{}, make_sphere(8, 4, 1e20), map_of(0, 1));
-        FAIL("not refused");
-    } catch (const InputError& error) {
-        CHECK_THAT(error.what(),
-                   Contains("out of range") &&
-                       Contains("it follows from a base mesh of 2e+20 model units; scale the mesh"));
-    }
+    const auto refusal = [](const BaseMesh& mesh) {
+        try {
+            resolve_job(Job{}, mesh, map_of(0, 1));
+            return std::string("not refused");
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+    };
+    CHECK_THAT(refusal(make_sphere(8, 4, 1e20)),
+               Contains("out of range") &&
+                   Contains("it follows from a base mesh of 2e+20 model units; scale the mesh"));
+    CHECK_THAT(refusal(box(2, 2, 2, {0, -3e13, 5})),
+               Contains("out of range") && Contains("it follows from a base mesh of 2 model units around (1, "
+                                                    "-3e+13, 6); move the mesh to the origin"));
+}
+
+TEST_CASE("set-up and golden model refuse a job that is not resolved: a mistake of the program") {
+    const BaseMesh plane = make_plane(3, 3, 2, 2);
+    const HeightMap map = half_donut_map(8, 8);
+    Job job = resolve_job({}, plane, map).job;
+    const Setup setup = make_setup(job, plane, map);
+    CHECK_NOTHROW(GoldenJob(job, plane, map, setup.model_scale));
+    job.camera.up = automatic_vector;
+    CHECK_THROWS_WITH(make_setup(job, plane, map),
+                      "make_setup: camera.up is automatic; the job must have gone "
+                      "through resolve_job()");
+    CHECK_THROWS_WITH(GoldenJob(job, plane, map, setup.model_scale),
+                      "GoldenJob: camera.up is automatic; the job must have gone through resolve_job()");
 }

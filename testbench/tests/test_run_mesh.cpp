@@ -42,7 +42,8 @@ Job without_automatic(Job job) {
     job.displacement.scale = 0.25;
     job.camera.eye = {1.05, -2.9, 2.45};
     job.camera.target = {0, 0, 0.05};
-    job.camera.up = {0, 0, 1};
+    if (is_automatic(job.camera.up))
+        job.camera.up = {0, 0, 1};
     job.camera.near_plane = 0.01;
     return job;
 }
@@ -140,6 +141,20 @@ TEST_CASE("normals that the run had not, and triangles it culled, are said") {
     CHECK_THROWS_WITH(read_back({culled}, job), Contains("no triangle is left"));
     CHECK_THROWS_WITH(read_back({triangle(corner(0, 0), corner(0, 0), corner(0, 0))}),
                       Contains("no triangle is left"));
+}
+
+TEST_CASE("up is the run's camera.up if its mesh was a file or a run, else z") {
+    const auto up_of = [](MeshSource source) {
+        Job job;
+        job.mesh.source = source;
+        job.mesh.file = reads_file(source) ? "not looked at" : "";
+        job.camera.up = {0, 2, 1};
+        return read_back({triangle(corner(0, 0), corner(4, 0), corner(4, 4))}, job).up;
+    };
+    CHECK(up_of(MeshSource::file) == glm::dvec3(0, 2, 1));
+    CHECK(up_of(MeshSource::run) == glm::dvec3(0, 2, 1));
+    CHECK(up_of(MeshSource::cylinder) == glm::dvec3(0, 0, 1));
+    CHECK(up_of(MeshSource::patches) == glm::dvec3(0, 0, 1));
 }
 
 TEST_CASE("frame k of n: its scale, its folder, and nothing else") {

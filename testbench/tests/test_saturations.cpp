@@ -289,7 +289,8 @@ TEST_CASE(
     const Job job = small_job();
     BaseMesh mesh = load_mesh(job, {});
     mesh.vertices.front().texture.x = -0.25;
-    const Setup setup = make_setup(job, mesh, load_map(job, {}));
+    const HeightMap map = load_map(job, {});
+    const Setup setup = make_setup(resolve_job(job, mesh, map).job, mesh, map);
     const auto figures = saturation_figures(setup, {});
     CHECK(saturations_text(figures) == "input texture 1");
     CHECK(saturation_warnings(figures).empty());

@@ -1,4 +1,6 @@
 // What the host set, judged: nothing is wrong with the default job, and one wrong entry anywhere is noticed.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -24,8 +26,9 @@ struct CheckedRun {
     CheckedRun(const Job& job, const BaseMesh& its_mesh, const HeightMap& its_map)
         : mesh(its_mesh),
           map(its_map),
-          setup(make_setup(functional(job), mesh, map)),
-          golden(job, mesh, map, setup.model_scale),
+          resolved(resolve_job(functional(job), mesh, map).job),
+          setup(make_setup(resolved, mesh, map)),
+          golden(resolved, mesh, map, setup.model_scale),
           simulation(setup, 1000000) {
         REQUIRE(simulation.run().empty());
     }
@@ -50,6 +53,7 @@ struct CheckedRun {
 
     BaseMesh mesh;
     HeightMap map;
+    Job resolved;
     Setup setup;
     GoldenJob golden;
     Simulation simulation;
@@ -245,10 +249,10 @@ using Socket = tlm_utils::simple_initiator_socket<Host>;
 
 /// Adds to a byte of an entry by debug transport, as the host writes.
 void add_to_entry(Socket& socket, const datapath::TableLayout& layout, std::uint32_t x, std::uint32_t y,
-                  int add) {
+                  unsigned which, int add) {
     unsigned char byte = 0;
     tlm::tlm_generic_payload payload;
-    payload.set_address(layout.address(x, y));
+    payload.set_address(layout.address(x, y) + which);
     payload.set_data_ptr(&byte);
     payload.set_data_length(1);
     payload.set_streaming_width(1);
@@ -277,20 +281,24 @@ TEST_CASE("one wrong register, base vertex or table entry fails the default job"
         }
 
     const datapath::Registers& registers = run.setup.registers;
-    const auto every = [&](const char* name, Socket& socket, const datapath::TableLayout& layout) {
+    const auto every = [&](const std::string& name, Socket& socket, const datapath::TableLayout& layout,
+                           const std::string& component = {}, unsigned which = 0) {
         for (const std::uint32_t x : {0U, layout.columns / 2, layout.columns - 1})
             for (const std::uint32_t y : {0U, layout.rows / 3, layout.rows - 1}) {
-                add_to_entry(socket, layout, x, y, 1);
+                add_to_entry(socket, layout, x, y, which, 1);
                 const SetupResult result = run.check();
                 CHECK(result.wrong() == 1);
-                CHECK_THAT(result.first_wrong, Contains(name) && Contains("(" + std::to_string(x) + ", " +
-                                                                          std::to_string(y) + ")"));
-                add_to_entry(socket, layout, x, y, -1);
+                CHECK_THAT(result.first_wrong,
+                           Contains(fmt::format("{}: ({}, {}){}", name, x, y, component)));
+                add_to_entry(socket, layout, x, y, which, -1);
             }
     };
-    every("displacement map: ", run.simulation.host.displacement_map, registers.displacement_map);
-    every("normal map: ", run.simulation.host.normal_map, registers.normal_map);
-    every("summed height table: ", run.simulation.host.summed_height_table, registers.summed_height_table);
+    Host& host = run.simulation.host;
+    every("displacement map", host.displacement_map, registers.displacement_map);
+    every("normal map", host.normal_map, registers.normal_map, ".x", 0);  // 16 bits each
+    every("normal map", host.normal_map, registers.normal_map, ".y", 2);
+    every("normal map", host.normal_map, registers.normal_map, ".z", 4);
+    every("summed height table", host.summed_height_table, registers.summed_height_table);
     CHECK(run.check().passed());
 }
 
@@ -313,6 +321,7 @@ TEST_CASE("the set-up of a job of other formats, with bias, highlight and a map 
     job.formats.normal_bits = 12;
     job.formats.normal_fraction = 10;
     job.formats.displacement_bits = 9;
+    job.formats.summed_height_bits = 16;  // sums of the whole map wrap
     job.formats.texture_fraction = 5;
     job.hardware.culling = Culling::back;
     job.hardware.triangulation = Triangulation::second;
@@ -368,12 +377,13 @@ TEST_CASE("a model scale that is no power of two, or too large, is not sound") {
     CheckedRun run{Job{}};
     ModelScale three = run.setup.model_scale;
     three.scale *= 3;
-    CHECK_THAT(check_setup(run.setup, GoldenJob(Job{}, run.mesh, run.map, three), run.simulation).first_wrong,
-               Contains("not a power of two"));
+    CHECK_THAT(
+        check_setup(run.setup, GoldenJob(run.resolved, run.mesh, run.map, three), run.simulation).first_wrong,
+        Contains("not a power of two"));
     ModelScale large = run.setup.model_scale;
     large.scale *= 16;
     const SetupResult result =
-        check_setup(run.setup, GoldenJob(Job{}, run.mesh, run.map, large), run.simulation);
+        check_setup(run.setup, GoldenJob(run.resolved, run.mesh, run.map, large), run.simulation);
     CHECK_THAT(result.first_wrong, Contains("a position"));
 }
 

@@ -27,7 +27,7 @@ Job small_job() {
     job.map.height = 40;
     job.displacement.scale = 0.25;
     job.tests.view = false;
-    return job;
+    return load_inputs(job, {}).resolved.job;
 }
 
 TuneRequest request_for(const Job& job) {
@@ -44,17 +44,17 @@ TuneResult tuned(const TuneRequest& request) {
 
 /// A job's tests and what measures them.
 struct Ground {
-    Job job;
     HeightMap map;
     BaseMesh base;
+    Job job;
     Setup setup;
     TexelError errors;
     RefinementForest forest;
 
     explicit Ground(const Job& the_job)
-        : job(the_job),
-          map(load_map(job, {})),
-          base(load_mesh(job, {})),
+        : map(load_map(the_job, {})),
+          base(load_mesh(the_job, {})),
+          job(resolve_job(the_job, base, map).job),
           setup(make_setup(job, base, map)),
           errors(setup, map, DisplacementOf::from(job, map)),
           forest(setup, &errors) {}

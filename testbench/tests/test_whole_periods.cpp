@@ -6,6 +6,7 @@
 #include "testbench/benchmark/bare_recursion.h"
 #include "testbench/check/invariants.h"
 #include "testbench/common/error.h"
+#include "testbench/host/resolve_job.h"
 #include "testbench/maps/built_in_maps.h"
 #include "testbench/meshes/built_in.h"
 #include "testbench/meshes/whole_periods.h"
@@ -29,7 +30,8 @@ struct Run {
     Setup setup;
     EmittedMesh mesh;
 
-    Run(const Job& job, const BaseMesh& base, const HeightMap& map) : setup(make_setup(job, base, map)) {
+    Run(const Job& job, const BaseMesh& base, const HeightMap& map)
+        : setup(make_setup(resolve_job(job, base, map).job, base, map)) {
         BareRecursion(setup).run(mesh);
         mesh.sort();
     }
@@ -146,8 +148,9 @@ TEST_CASE("triangles shifted by themselves decide as those of one chart, and no 
 
 TEST_CASE("one triangle of more periods than the format holds is refused") {
     const BaseMesh base = stretched(make_plane(1, 1, 2, 2), {100, 1});
+    const HeightMap map = noise_map(64, 64, 1);
     try {
-        make_setup(tiling_job(), base, noise_map(64, 64, 1));
+        make_setup(resolve_job(tiling_job(), base, map).job, base, map);
         FAIL("not refused");
     } catch (const InputError& error) {
         CHECK_THAT(error.what(), Contains("beyond the 0..4096") && Contains("repeat the map less often"));

@@ -37,8 +37,9 @@ Job sphere_job() {
 
 WidthSweep sweep(const Job& job, const std::vector<SweptQuantity>& swept, unsigned threads = 1,
                  std::optional<double> flips = {}, std::optional<double> error = {}) {
-    WidthRequest request{job, swept, threads, flips, error};
-    return sweep_widths(request, load_mesh(job, {}), load_map(job, {}), [](const std::string&, double) {});
+    const auto [mesh, map, resolved] = load_inputs(job, {});
+    const WidthRequest request{resolved.job, swept, threads, flips, error};
+    return sweep_widths(request, mesh, map, [](const std::string&, double) {});
 }
 
 WidthTable table_of(const Job& job, const char* quantity, std::vector<std::int64_t> widths) {
@@ -46,9 +47,8 @@ WidthTable table_of(const Job& job, const char* quantity, std::vector<std::int64
 }
 
 WidthRun run_of(const Job& job) {
-    const BaseMesh mesh = load_mesh(job, {});
-    const HeightMap map = load_map(job, {});
-    return run_widths(make_setup(job, mesh, map), ExactModel(job, mesh, map), 1'000'000);
+    const auto [mesh, map, resolved] = load_inputs(job, {});
+    return run_widths(make_setup(resolved.job, mesh, map), ExactModel(resolved.job, mesh, map), 1'000'000);
 }
 
 /// Every figure that `tessera run` has, too.
@@ -292,9 +292,8 @@ TEST_CASE("widths: base triangles that collapse in a narrow format are left out 
     job.formats.texture_fraction = 0;
     const Setup setup = setup_of(job);
     REQUIRE(setup.base_dropped > 0);
-    const BaseMesh mesh = load_mesh(job, {});
-    const HeightMap map = load_map(job, {});
-    const ExactModel exact(job, mesh, map);
+    const auto [mesh, map, resolved] = load_inputs(job, {});
+    const ExactModel exact(resolved.job, mesh, map);
     const auto corners = exact.corners_of(setup);
     REQUIRE(corners.size() == setup.base_triangles.size());
     const WidthRun run = run_widths(setup, exact, 1'000'000);

@@ -12,7 +12,8 @@
 namespace tessera::testing {
 
 inline Setup setup_of(const Job& job) {
-    return make_setup(job, load_mesh(job, {}), load_map(job, {}));
+    const Inputs inputs = load_inputs(job, {});
+    return make_setup(inputs.resolved.job, inputs.mesh, inputs.map);
 }
 
 inline Job timed_job() {

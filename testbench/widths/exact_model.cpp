@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "testbench/check/golden_inputs.h"
-#include "testbench/host/resolve_job.h"
 #include "testbench/maps/map_displacement.h"
 #include "testbench/meshes/whole_periods.h"
 
@@ -68,9 +67,8 @@ bool within_half_lsb(const golden::Vertex& exact, const datapath::Vertex& rounde
 
 }  // namespace
 
-ExactModel::ExactModel(const Job& asked, const BaseMesh& original, const HeightMap& map)
-    : map_(exact_map(asked, map)) {
-    const Job job = resolve_job(asked, original, map).job;
+ExactModel::ExactModel(const Job& job, const BaseMesh& original, const HeightMap& map)
+    : map_(exact_map(job, map)) {
     const Setup setup = make_setup(with_widest_normals(job), original, map);
     model_scale_ = setup.model_scale;
     parameters_ = golden_parameters(setup.registers);  // transform, tests that are on, diagonal

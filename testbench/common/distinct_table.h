@@ -1,0 +1,55 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace tessera {
+
+/// The hash of a sequence of words, word by word from 0.
+constexpr std::uint64_t mix_hash(std::uint64_t hash, std::uint64_t word) {
+    hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
+    return hash ^ (hash >> 29);
+}
+
+/// Numbers distinct items from 0 in the order they come. The caller keeps the items. Open addressing, four bytes a slot,
+/// at most half of them taken. Fewer than 2^32 - 1 items.
+class DistinctTable {
+  public:
+    /// The number of an item of this hash: of the known one for which same(number) holds, else the next, size() before.
+    /// hash_of(number): the hash of a known item.
+    template <class Same, class HashOf>
+    std::uint32_t number_of(std::uint64_t hash, const Same& same, const HashOf& hash_of) {
+        if (2 * (size_ + 1) > slots_.size())
+            grow(hash_of);
+        std::uint32_t& slot = find(hash, same);
+        if (slot == empty)
+            slot = static_cast<std::uint32_t>(size_++);
+        return slot;
+    }
+
+    std::size_t size() const { return size_; }
+
+  private:
+    static constexpr std::uint32_t empty = UINT32_MAX;
+
+    template <class Same>
+    std::uint32_t& find(std::uint64_t hash, const Same& same) {
+        const std::size_t mask = slots_.size() - 1;
+        std::size_t place = static_cast<std::size_t>(hash * 0xbf58476d1ce4e5b9u >> 8) & mask;
+        while (slots_[place] != empty && !same(slots_[place]))
+            place = (place + 1) & mask;
+        return slots_[place];
+    }
+
+    template <class HashOf>
+    void grow(const HashOf& hash_of) {
+        slots_.assign(2 * slots_.size(), empty);
+        for (std::uint32_t number = 0; number < size_; ++number)
+            find(hash_of(number), [](std::uint32_t) { return false; }) = number;
+    }
+
+    std::vector<std::uint32_t> slots_ = std::vector<std::uint32_t>(1024, empty);
+    std::size_t size_ = 0;
+};
+
+}  // namespace tessera
