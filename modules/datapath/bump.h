@@ -14,7 +14,7 @@ constexpr std::int8_t inserted_handedness(const Vertex& i, const Vertex& j) {
 }
 
 /// N' = bump(N, N_d): the base surface's normal perturbed by the displacement map's normal, which is given in the
-/// tangent frame (T, B, N), B = handedness * (N x T)  (algorithm section 2; the paper's existing bump unit).
+/// tangent frame (T, B, N), B = handedness * (N x T)  (golden/ALGORITHM.md 3; the paper's existing bump unit).
 /// Rounding: B to nearest in the normal's format; the sum of the three products to nearest with two more fraction
 /// bits; then normalise.
 constexpr Direction bump(const Direction& n, const Direction& t, int handedness, const Direction& map_normal,

@@ -46,7 +46,7 @@ constexpr bool in_highlight(const Direction& n, const TestParameters& parameters
     return cosine > parameters.highlight_cosine;
 }
 
-/// HT (paper 5.1, algorithm section 7): one of the edge's three displaced normals lies in the highlight, and they
+/// HT (paper 5.1, golden/ALGORITHM.md 4.6): one of the edge's three displaced normals lies in the highlight, and they
 /// differ by more than a finer threshold. NT's six differences serve both; six more compares, three dot products.
 /// N' of a vertex being the same from every edge that has it, so is its place in or out of the highlight.
 constexpr bool highlight_test(const Direction& i, const Direction& j, const Direction& ij,
@@ -82,7 +82,7 @@ constexpr std::uint64_t screen_length(const ScreenPosition& i, const ScreenPosit
 }
 
 /// VT (paper 2.4): Manhattan length in pixels. A vertex on or behind the near plane has no screen position: an edge
-/// with one such end counts as long, with two as invisible (algorithm 3.3 D).
+/// with one such end counts as long, with two as invisible (golden/ALGORITHM.md 4.3).
 constexpr bool view_test(const ScreenPosition& i, const ScreenPosition& j, const TestParameters& parameters) {
     if (i.in_front && j.in_front)
         return screen_length(i, j) > parameters.view_threshold;
@@ -106,7 +106,7 @@ constexpr std::uint8_t inserted_generation(const Vertex& i, const Vertex& j) {
     return oldest == 255 ? oldest : static_cast<std::uint8_t>(oldest + 1);
 }
 
-/// GT (algorithm section 4): the inserted vertex would not exceed the generation limit. Ends the recursion, and
+/// GT (golden/ALGORITHM.md 4.5): the inserted vertex would not exceed the generation limit. Ends the recursion, and
 /// depends on the edge alone.
 constexpr bool generation_test(const Vertex& i, const Vertex& j, const TestParameters& parameters) {
     return inserted_generation(i, j) <= parameters.generation_limit;

@@ -6,7 +6,7 @@ namespace tessera::datapath {
 /// A fixed-point format: `bits` wide, the lowest `fraction` of them behind the binary point.
 ///
 /// Values travel in wider machine integers; `lowest` and `highest` are what the wires can hold. Widths are
-/// run-time configuration (architecture section 2: "how many bits do I need" is the first question asked).
+/// run-time configuration: how many bits a quantity needs is an architect's first question.
 struct Format {
     int bits = 0;
     int fraction = 0;
@@ -21,7 +21,7 @@ struct Format {
     }
 };
 
-/// The formats of one design. Defaults: architecture section 2.
+/// The formats of one design.
 struct Formats {
     Format position = Format::make_signed(32, 16);  ///< P, P', scale, bias
     /// w, the distance from the eye: as wide as a position, its point placed by the host so that the farthest vertex

@@ -12,7 +12,7 @@ struct RectangleSize {
     std::uint32_t height = 1;
 };
 
-/// |du| / 2 wide and |dv| / 4 high, whole texels, at least 1 and at most the map (algorithm 3.2 D a).
+/// |du| / 2 wide and |dv| / 4 high, whole texels, at least 1 and at most the map (golden/ALGORITHM.md 4.2).
 /// Commutative: absolute differences.
 constexpr RectangleSize rectangle_size(const TexCoord& a, const TexCoord& b, const MapGeometry& map,
                                        const Formats& formats) {

@@ -38,7 +38,7 @@ struct ScreenPosition {
     }
 };
 
-/// All a vertex carries through the machine (paper 3.1.5, algorithm section 1).
+/// All a vertex carries through the machine (paper 3.1.5, golden/ALGORITHM.md 1).
 struct Vertex {
     Position position;           ///< P, on the base surface
     Direction normal;            ///< N, of the base surface
