@@ -1,13 +1,35 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cstdint>
 
+#include "modules/datapath/intermediate.h"
 #include "modules/datapath/map_address.h"
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/rectangle.h"
 #include "modules/datapath/vertex.h"
 
 namespace tessera::datapath {
+
+/// The Summed Height Test's threshold: at most 2^50, with `area` 2^18.
+inline constexpr int summed_height_threshold_bits = 51;
+
+struct EdgeTestWidths : Intermediates {
+    using Intermediates::Intermediates;
+    Width normal{"NT, HT: a difference of components", f.normal.bits};
+    Width sums{"SHT: S_i + S_j, 2 S_ij and their difference", f.summed_height.bits + 1};
+    Width area{"SHT: width * height", RectangleWidths{f}.width.bits + RectangleWidths{f}.height.bits};
+    Width limit{"SHT: threshold, times the area", wider(summed_height_threshold_bits, area.bits + 17)};
+    Width screen{"VT: abs(dx), abs(dy)", f.screen.bits};
+    Width length{"VT: their sum", screen.bits + 1};
+    Width index{"TCT: integer parts", f.texture.bits - f.texture.fraction};
+    Width product{"HT: N'.x * H.x", 2 * f.normal.bits};
+    Width cosine{"HT: N' . H", product.bits + 1};
+    constexpr auto all() const {
+        return std::array{normal, sums, area, limit, screen, length, index, product, cosine};
+    }
+};
+static_assert(fits_every_format<EdgeTestWidths>());
 
 /// Absolute difference of two integers of up to 62 bits.
 constexpr std::uint64_t absolute_difference(std::int64_t a, std::int64_t b) {
@@ -37,8 +59,7 @@ constexpr bool normal_test(const Direction& i, const Direction& j, const Directi
 }
 
 /// Whether a displaced normal lies in the Phong highlight: N' . H above the cosine. Three products, two sums, one
-/// compare, exact: sum and register have twice the normal's fraction bits and, for normals of any length that the
-/// format holds, two bits more than twice its width.
+/// compare, exact: sum and register have twice the normal's fraction bits.
 constexpr bool in_highlight(const Direction& n, const TestParameters& parameters) {
     const auto& h = parameters.half_vector;
     const std::int64_t cosine =

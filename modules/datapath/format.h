@@ -38,6 +38,23 @@ struct Formats {
     bool highlight_tag = false;  ///< with a Highlight Test: the queue entry's split_by has a bit for it
 };
 
+/// Bits that a job may give each quantity: what the functions here are asserted to hold, and the ranges of the job's keys.
+/// A fraction has fewer bits than its format, a normal's at least 2 fewer.
+struct FormatLimits {
+    struct Range {
+        int least, most;
+    };
+    static constexpr Range position_bits{8, 32}, position_fraction{0, 31};
+    static constexpr Range normal_bits{6, 18}, normal_fraction{0, 16};
+    static constexpr Range texture_integer{1, 12}, texture_fraction{0, 12};
+    static constexpr Range displacement_bits{1, 16};
+    static constexpr Range summed_height_bits{8, 48};
+    static constexpr Range screen_bits{8, 31}, screen_fraction{0, 30};
+    static constexpr Range generation_bits{1, 4};
+    /// By how much coarser w is than the position: 31 bring 2^37 LSB of it, the farthest eye, into 8 bits.
+    static constexpr Range view_distance_shift{0, 31};
+};
+
 /// How often a result did not fit its format and was set to the nearest value that does, per quantity.
 struct Saturations {
     std::uint64_t displaced_position = 0;

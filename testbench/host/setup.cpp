@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "modules/datapath/all_intermediates.h"
 #include "modules/datapath/map_entry.h"
-#include "modules/datapath/rectangle.h"
 #include "testbench/common/error.h"
 #include "testbench/host/resolve_job.h"
 #include "testbench/host/unit_vector.h"
@@ -53,6 +53,17 @@ datapath::Formats make_formats(const Job::Formats& job) {
     formats.screen = Format::make_signed(bits(job.screen_bits), bits(job.screen_fraction));
     formats.generation_bits = bits(job.generation_bits);
     return formats;
+}
+
+/// That the model's integers hold every intermediate: so in all formats within the ranges of their keys.
+void check_intermediates(const datapath::Formats& formats) {
+    datapath::visit_intermediates(formats, [](const char* function, const auto& widths) {
+        if (const char* const name = datapath::first_too_wide(widths))
+            throw InputError(
+                fmt::format("[formats]: {} in {} (modules/datapath) is wider than the model's integers: "
+                            "narrow the formats to the ranges of their keys",
+                            name, function));
+    });
 }
 
 datapath::AddressMode address_mode(Addressing mode) {
@@ -474,6 +485,7 @@ Setup make_setup(const Job& asked, const BaseMesh& mesh, const HeightMap& map) {
     Setup setup;
     datapath::Registers& registers = setup.registers;
     registers.formats = make_formats(job.formats);
+    check_intermediates(registers.formats);
     setup.map = quantise_map(map, registers.formats.displacement.bits, address_mode(job.map.address_u),
                              address_mode(job.map.address_v));
     registers.map = setup.map.geometry;

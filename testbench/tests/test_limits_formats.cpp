@@ -177,6 +177,16 @@ TEST_CASE("formats: fractions only, a plane, timed") {
     expect_one_mesh(plane_job(fractions(), Mode::timed));
 }
 
+TEST_CASE("formats: what an intermediate of the datapath cannot hold is refused with its name") {
+    Job job;
+    job.formats.normal_bits = 40;  // beyond the key's range, which validate() would refuse
+    job.formats.normal_fraction = 26;
+    const BaseMesh mesh = load_mesh(job, {});
+    const HeightMap map = load_map(job, {});
+    CHECK_THROWS_WITH(make_setup(job, mesh, map),
+                      Catch::Contains("(S * d + bias) * N in displace") && Catch::Contains("formats"));
+}
+
 TEST_CASE("formats: any that a job may have, on any small job: within the bounds, and closed") {
     Random random(20);
     int ran = 0, refused = 0;
