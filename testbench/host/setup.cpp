@@ -8,6 +8,7 @@
 
 #include "modules/datapath/all_intermediates.h"
 #include "modules/datapath/map_entry.h"
+#include "modules/datapath/registers.h"
 #include "testbench/common/error.h"
 #include "testbench/host/resolve_job.h"
 #include "testbench/host/unit_vector.h"
@@ -63,6 +64,19 @@ void check_intermediates(const datapath::Formats& formats) {
                 fmt::format("[formats]: {} in {} (modules/datapath) is wider than the model's integers: "
                             "narrow the formats to the ranges of their keys",
                             name, function));
+    });
+}
+
+/// That every value fits its register.
+void check_registers(const datapath::Registers& registers) {
+    datapath::visit_registers(registers, [](const datapath::Register& field, const auto& values) {
+        for (const std::int64_t value : values) {
+            if (!datapath::holds(field, value))
+                throw InputError(
+                    fmt::format("the register {} has {} bits and cannot hold {}: change the job's "
+                                "value or formats that it is made of",
+                                field.name, field.bits, value));
+        }
     });
 }
 
@@ -513,6 +527,8 @@ Setup make_setup(const Job& asked, const BaseMesh& mesh, const HeightMap& map) {
         : job.hardware.triangulation == Triangulation::second ? datapath::Triangulation::second
                                                               : datapath::Triangulation::shorter;
     registers.back_face_culling = job.hardware.culling == Culling::back;
+
+    check_registers(registers);
 
     setup.design = make_design(job);
     return setup;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "modules/datapath/all_intermediates.h"
+#include "modules/datapath/registers.h"
 
 using namespace tessera::datapath;
 
@@ -107,4 +108,47 @@ TEST_CASE("the README's intermediates are those of the code, with their widths i
     REQUIRE(rows.size() == expected.size());
     for (std::size_t k = 0; k < rows.size(); ++k)
         CHECK(std::vector<std::string>{rows[k].at(0), rows[k].at(1), rows[k].at(3)} == expected[k]);
+}
+
+TEST_CASE("the README's registers are those of the code, with their widths in the default formats") {
+    Registers registers;
+    registers.formats.highlight_tag = true;
+    std::vector<std::vector<std::string>> expected;
+    visit_registers(registers, [&](const Register& field, const auto& values) {
+        expected.push_back({in_code(field.name),
+                            (values.size() > 1 ? std::to_string(values.size()) + " x " : "") +
+                                (field.kind == RegisterKind::signed_number ? "signed " : "") +
+                                std::to_string(field.bits),
+                            field.meaning});
+    });
+    const auto rows = rows_below("Registers");
+    REQUIRE(rows.size() == expected.size());
+    for (std::size_t k = 0; k < rows.size(); ++k)
+        CHECK(std::vector<std::string>{rows[k].at(0), rows[k].at(2), rows[k].at(3)} == expected[k]);
+}
+
+TEST_CASE("registers: only a design with a Highlight Test has those of the test") {
+    const auto names = [](bool highlight) {
+        Registers registers;
+        registers.formats.highlight_tag = highlight;
+        std::set<std::string> found;
+        visit_registers(registers, [&](const Register& field, const auto&) { found.insert(field.name); });
+        return found;
+    };
+    CHECK(names(false).count("tests.highlight_cosine") == 0);
+    CHECK(names(true).size() == names(false).size() + 4);
+}
+
+TEST_CASE("registers: a register holds what its bits hold") {
+    const Register number{"", RegisterKind::unsigned_number, 9, ""};
+    CHECK(holds(number, 0));
+    CHECK(holds(number, 511));
+    CHECK_FALSE(holds(number, 512));
+    CHECK_FALSE(holds(number, -1));
+    const Register with_sign{"", RegisterKind::signed_number, 26, ""};
+    CHECK(holds(with_sign, 1 << 24));
+    CHECK(holds(with_sign, -(1 << 25)));
+    CHECK_FALSE(holds(with_sign, 1 << 25));
+    CHECK_FALSE(holds(with_sign, -(1 << 25) - 1));
+    CHECK(holds({"", RegisterKind::unsigned_number, 63, ""}, std::numeric_limits<std::int64_t>::max()));
 }

@@ -185,6 +185,10 @@ TEST_CASE("formats: what an intermediate of the datapath cannot hold is refused 
     const HeightMap map = load_map(job, {});
     CHECK_THROWS_WITH(make_setup(job, mesh, map),
                       Catch::Contains("(S * d + bias) * N in displace") && Catch::Contains("formats"));
+    job.formats = {};
+    job.tests.generation_limit = 16;  // likewise
+    CHECK_THROWS_WITH(make_setup(job, mesh, map), Catch::Contains("tests.generation_limit has 4 bits") &&
+                                                      Catch::Contains("cannot hold 16"));
 }
 
 TEST_CASE("formats: any that a job may have, on any small job: within the bounds, and closed") {
