@@ -135,7 +135,7 @@ constexpr bool generation_test(const Vertex& i, const Vertex& j, const TestParam
 
 /// split(i, j) = (NT or SHT or HT) and VT and TCT and GT (paper 2.6, plus HT and GT), on TestBits.
 constexpr bool split_decision(std::uint8_t tests) {
-    return (tests & asking_bits) != 0 && (tests & allowing_bits) == allowing_bits;
+    return (tests & requesting_tests) != 0 && (tests & gating_tests) == gating_tests;
 }
 
 }  // namespace tessera::datapath
