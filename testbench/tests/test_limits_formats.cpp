@@ -2,6 +2,7 @@
 
 #include "testbench/benchmark/bare_recursion.h"
 #include "testbench/common/error.h"
+#include "testbench/host/resolve_job.h"
 #include "testbench/job/validate_job.h"
 #include "testbench/tests/datapath_random.h"
 #include "testbench/tests/timed_checks.h"
@@ -179,10 +180,11 @@ TEST_CASE("formats: fractions only, a plane, timed") {
 
 TEST_CASE("formats: what an intermediate of the datapath cannot hold is refused with its name") {
     Job job;
-    job.formats.normal_bits = 40;  // beyond the key's range, which validate() would refuse
-    job.formats.normal_fraction = 26;
     const BaseMesh mesh = load_mesh(job, {});
     const HeightMap map = load_map(job, {});
+    job = resolve_job(job, mesh, map).job;
+    job.formats.normal_bits = 40;  // beyond the key's range, which validate() would refuse
+    job.formats.normal_fraction = 26;
     CHECK_THROWS_WITH(make_setup(job, mesh, map),
                       Catch::Contains("(S * d + bias) * N in displace") && Catch::Contains("formats"));
     job.formats = {};
