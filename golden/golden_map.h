@@ -11,7 +11,7 @@ namespace tessera::golden {
 /// How one axis is read outside the map: `clamp` holds the border texel, `repeat` is periodic.
 enum class AddressMode { clamp, repeat };
 
-/// A displacement map with what belongs to it: summed-area table and normal map (algorithm.md 2, 3.2).
+/// A displacement map with what belongs to it: summed-area table and normal map (ALGORITHM.md section 2).
 /// Row 0 is v = 0, the bottom. Texture coordinates are in texels: texel x covers [x, x + 1).
 class Map {
   public:
@@ -44,8 +44,7 @@ class Map {
     /// A normal map from elsewhere, e.g. the hardware's, dequantised.
     void set_normals(std::vector<glm::dvec3> normals);
 
-    /// Size in texels, width and height, of the three rectangles of the Summed Height Test on an edge (3.2
-    /// D):
+    /// Size in texels, width and height, of the three rectangles of the Summed Height Test on an edge (4.2):
     ///     n_w = min(width,  max(1, int(|du| / 2)))     n_h = min(height, max(1, int(|dv| / 4)))
     Rectangle rectangle_size(const glm::dvec2& t_i, const glm::dvec2& t_j) const;
     /// That rectangle about t: first column int(u) - (n_w >> 1), first row int(v) - (n_h >> 1). Never cut:

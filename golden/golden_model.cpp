@@ -27,7 +27,7 @@ double displace_and_transform(Vertex& v, const Map& map, const Parameters& param
     return bumped.length;
 }
 
-// Section 3.3 with its near-plane rule, both folded into one number to compare.
+// Section 4.3 with its near-plane rule, both folded into one number to compare.
 double view_length(const Vertex& i, const Vertex& j) {
     if (i.in_front && j.in_front) {
         return std::abs(i.screen.x - j.screen.x) + std::abs(i.screen.y - j.screen.y);
@@ -98,7 +98,7 @@ EdgeEvaluation evaluate_edge(const Vertex& i, const Vertex& j, const Map& map, c
     e.rectangle_width = size.width;
     e.rectangle_height = size.height;
     e.summed_height = static_cast<double>(std::abs(2 * sum_about(m) - (sum_about(i) + sum_about(j))));
-    // Section 3.2 multiplied by four: exact, as everything on its left side is.
+    // Section 4.2 multiplied by four: exact, as everything on its left side is.
     e.summed_height_limit = parameters.summed_height_threshold *
                             (parameters.area ? static_cast<double>(size.width * size.height) : 4.0);
     e.summed_height_test = enabled.summed_height && e.summed_height > e.summed_height_limit;

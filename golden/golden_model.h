@@ -8,8 +8,8 @@
 
 #include "golden/golden_map.h"
 
-/// The algorithm of algorithm.md in double precision: what the hardware is measured against. Written from
-/// that page alone; it shares no line with the hardware model.
+/// ALGORITHM.md, sections 1 to 5, in double precision: what the hardware is measured against. Written from that page
+/// alone; it shares no line with the hardware model. Sections named below are its.
 namespace tessera::golden {
 
 /// Section 5: which diagonal cuts the quadrilateral that is left when two edges split.
@@ -27,11 +27,11 @@ struct Parameters {
 
     double normal_threshold = 0;         ///< difference of one component of two unit normals
     double summed_height_threshold = 0;  ///< sum of codes; with the area option: one code
-    bool area = false;                   ///< the area option of section 3.2
+    bool area = false;                   ///< the area option of section 4.2
     double view_threshold = 0;           ///< pixels
     int generation_limit = 12;           ///< largest generation that is still inserted
 
-    /// Section 7, the highlight test: halfway between the directions to the light and to the viewer, both
+    /// Section 4.6, the highlight test: halfway between the directions to the light and to the viewer, both
     /// infinitely far; the cosine of the highlight's angle about it; the difference of one component of two normals.
     glm::dvec3 half_vector{0};
     double highlight_cosine = 1;
@@ -79,14 +79,14 @@ struct Normalised {
 };
 Normalised normalise(const glm::dvec3& v);
 
-/// Section 2: N' = normalise(N_d.x * T + N_d.y * handedness * cross(N, T) + N_d.z * N).
+/// Section 3: N' = normalise(N_d.x * T + N_d.y * handedness * cross(N, T) + N_d.z * N).
 Normalised bump(const glm::dvec3& normal, const glm::dvec3& tangent, double handedness,
                 const glm::dvec3& map_normal);
 
 /// A base vertex after Displace and Transform: P', N', screen position; generation 0.
 Vertex complete_base_vertex(const Vertex& base, const Map& map, const Parameters& parameters);
 
-/// Section 2: the vertex inserted on the edge (i,j), the same bits for (j,i).
+/// Section 3: the vertex inserted on the edge (i,j), the same bits for (j,i).
 struct Insertion {
     Vertex vertex;
     double mean_normal_length = 0;   ///< |(N_i + N_j) / 2|
@@ -95,7 +95,7 @@ struct Insertion {
 };
 Insertion insert_vertex(const Vertex& i, const Vertex& j, const Map& map, const Parameters& parameters);
 
-/// Sections 3, 4 and 7: what the tests saw on an edge and what they said (`enabled` applied).
+/// Section 4: what the tests saw on an edge and what they said (`enabled` applied).
 struct EdgeEvaluation {
     Insertion inserted;
 

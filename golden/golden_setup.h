@@ -4,8 +4,8 @@
 #include "golden/golden_map.h"
 #include "golden/golden_model.h"
 
-/// From a job, in the model's own units, to what the golden model runs on. In double precision; written from
-/// the paper, modules/DECISIONS.md and what the job's keys are said to mean, so that it shares no line with the host.
+/// From a job, in the model's own units, to what the golden model runs on (ALGORITHM.md section 6), in double precision.
+/// Written from that page, so that it shares no line with the host.
 namespace tessera::golden {
 
 /// From the model to the world: world = scale * (model - centre). The host chooses it so that the world fits the

@@ -10,11 +10,11 @@ struct Rectangle {
     std::int64_t x = 0, y = 0, width = 1, height = 1;
 };
 
-/// Summed-area table (Crow 1984; algorithm.md 3.2) of a map of integer codes.
+/// Summed-area table (Crow 1984; ALGORITHM.md section 2) of a map of integer codes.
 ///
 ///     SAT(x, y)  = sum of all codes in columns < x and rows < y
 ///     S(r)       = SAT(tr) - SAT(tl) - SAT(br) + SAT(bl)                      (paper, equation 2)
-///     periodic:    SAT(x + W, y) = SAT(x, y) + SAT(W, y), likewise in y       (algorithm.md 9)
+///     periodic:    SAT(x + W, y) = SAT(x, y) + SAT(W, y), likewise in y
 ///
 /// Exact: unsigned 64 bit arithmetic wraps, so differences are right wherever S(r) itself fits.
 class SummedAreaTable {

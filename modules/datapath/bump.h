@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 
 #include "modules/datapath/normalise.h"
@@ -8,13 +9,31 @@ namespace tessera::datapath {
 /// Fraction bits kept beyond the normal's between the three products' sum and normalising.
 inline constexpr int bump_guard_bits = 2;
 
+/// Bits by which that sum is shifted right. Formats with fewer fraction bits keep all.
+constexpr int bump_shift(const Formats& f) {
+    return f.normal.fraction > bump_guard_bits ? f.normal.fraction - bump_guard_bits : 0;
+}
+
 /// Handedness of a vertex inserted on (i, j): that of both, else -1. Commutative.
 constexpr std::int8_t inserted_handedness(const Vertex& i, const Vertex& j) {
     return i.handedness < j.handedness ? i.handedness : j.handedness;
 }
 
+/// Of unit vectors, as the host and normalise() make them: no component beyond 1.0.
+struct BumpWidths : Intermediates {
+    using Intermediates::Intermediates;
+    int one = f.normal.fraction;  // 1.0 is 2^one
+    Width cross{"N x T", signed_bits(2 * one + 1)};
+    Width bitangent{"B", signed_bits(one + 1)};
+    Width product{"N_d.y * B", signed_bits(2 * one + 1)};
+    Width sum{"N_d.x * T + N_d.y * B + N_d.z * N", signed_bits(2 * one + 2)};
+    Width combined{"the same, rounded", signed_bits(2 * one + 2 - bump_shift(f)), largest_component_bits};
+    constexpr auto all() const { return std::array{cross, bitangent, product, sum, combined}; }
+};
+static_assert(fits_every_format<BumpWidths>());
+
 /// N' = bump(N, N_d): the base surface's normal perturbed by the displacement map's normal, which is given in the
-/// tangent frame (T, B, N), B = handedness * (N x T)  (algorithm section 2; the paper's existing bump unit).
+/// tangent frame (T, B, N), B = handedness * (N x T)  (golden/ALGORITHM.md 3; the paper's existing bump unit).
 /// Rounding: B to nearest in the normal's format; the sum of the three products to nearest with two more fraction
 /// bits; then normalise.
 constexpr Direction bump(const Direction& n, const Direction& t, int handedness, const Direction& map_normal,
@@ -26,7 +45,7 @@ constexpr Direction bump(const Direction& n, const Direction& t, int handedness,
     const std::int64_t bx = cross(n.y, t.z, n.z, t.y);
     const std::int64_t by = cross(n.z, t.x, n.x, t.z);
     const std::int64_t bz = cross(n.x, t.y, n.y, t.x);
-    const int down = fraction > bump_guard_bits ? fraction - bump_guard_bits : 0;  // fewer bits: all are kept
+    const int down = bump_shift(formats);
     const auto combine = [&](std::int64_t tangent, std::int64_t bitangent, std::int64_t normal) {
         return round_shift(map_normal.x * tangent + map_normal.y * bitangent + map_normal.z * normal, down);
     };

@@ -1,11 +1,24 @@
 #pragma once
+#include <array>
 #include <cstdint>
 
 #include "modules/datapath/format.h"
+#include "modules/datapath/intermediate.h"
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/vertex.h"
 
 namespace tessera::datapath {
+
+struct DisplaceWidths : Intermediates {
+    using Intermediates::Intermediates;
+    Width product{"S * code", f.position.bits + f.displacement.bits};
+    Width height{"S * d + bias", f.position.bits + 1};
+    Width along{"(S * d + bias) * N", height.bits + f.normal.bits};
+    Width step{"the same, rounded", along.bits - f.normal.fraction};
+    Width sum{"P + that, before it saturates", wider(step.bits, f.position.bits) + 1};
+    constexpr auto all() const { return std::array{product, height, along, step, sum}; }
+};
+static_assert(fits_every_format<DisplaceWidths>());
 
 /// P' = P + (S * d + bias) * N (paper equation 1 with the scale of 5.1), d = code / 2^bits.
 /// Rounding: S * d to nearest in the position's format, the product with N to nearest; so within

@@ -1,13 +1,35 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cstdint>
 
+#include "modules/datapath/intermediate.h"
 #include "modules/datapath/map_address.h"
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/rectangle.h"
 #include "modules/datapath/vertex.h"
 
 namespace tessera::datapath {
+
+/// The Summed Height Test's threshold: at most 2^50, with `area` 2^18.
+inline constexpr int summed_height_threshold_bits = 51;
+
+struct EdgeTestWidths : Intermediates {
+    using Intermediates::Intermediates;
+    Width normal{"NT, HT: a difference of components", f.normal.bits};
+    Width sums{"SHT: S_i + S_j, 2 S_ij and their difference", f.summed_height.bits + 1};
+    Width area{"SHT: width * height", RectangleWidths{f}.width.bits + RectangleWidths{f}.height.bits};
+    Width limit{"SHT: threshold, times the area", wider(summed_height_threshold_bits, area.bits + 17)};
+    Width screen{"VT: abs(dx), abs(dy)", f.screen.bits};
+    Width length{"VT: their sum", screen.bits + 1};
+    Width index{"TCT: integer parts", f.texture.bits - f.texture.fraction};
+    Width product{"HT: N'.x * H.x", 2 * f.normal.bits};
+    Width cosine{"HT: N' . H", product.bits + 1};
+    constexpr auto all() const {
+        return std::array{normal, sums, area, limit, screen, length, index, product, cosine};
+    }
+};
+static_assert(fits_every_format<EdgeTestWidths>());
 
 /// Absolute difference of two integers of up to 62 bits.
 constexpr std::uint64_t absolute_difference(std::int64_t a, std::int64_t b) {
@@ -37,8 +59,7 @@ constexpr bool normal_test(const Direction& i, const Direction& j, const Directi
 }
 
 /// Whether a displaced normal lies in the Phong highlight: N' . H above the cosine. Three products, two sums, one
-/// compare, exact: sum and register have twice the normal's fraction bits and, for normals of any length that the
-/// format holds, two bits more than twice its width.
+/// compare, exact: sum and register have twice the normal's fraction bits.
 constexpr bool in_highlight(const Direction& n, const TestParameters& parameters) {
     const auto& h = parameters.half_vector;
     const std::int64_t cosine =
@@ -46,7 +67,7 @@ constexpr bool in_highlight(const Direction& n, const TestParameters& parameters
     return cosine > parameters.highlight_cosine;
 }
 
-/// HT (paper 5.1, algorithm section 7): one of the edge's three displaced normals lies in the highlight, and they
+/// HT (paper 5.1, golden/ALGORITHM.md 4.6): one of the edge's three displaced normals lies in the highlight, and they
 /// differ by more than a finer threshold. NT's six differences serve both; six more compares, three dot products.
 /// N' of a vertex being the same from every edge that has it, so is its place in or out of the highlight.
 constexpr bool highlight_test(const Direction& i, const Direction& j, const Direction& ij,
@@ -82,7 +103,7 @@ constexpr std::uint64_t screen_length(const ScreenPosition& i, const ScreenPosit
 }
 
 /// VT (paper 2.4): Manhattan length in pixels. A vertex on or behind the near plane has no screen position: an edge
-/// with one such end counts as long, with two as invisible (algorithm 3.3 D).
+/// with one such end counts as long, with two as invisible (golden/ALGORITHM.md 4.3).
 constexpr bool view_test(const ScreenPosition& i, const ScreenPosition& j, const TestParameters& parameters) {
     if (i.in_front && j.in_front)
         return screen_length(i, j) > parameters.view_threshold;
@@ -106,7 +127,7 @@ constexpr std::uint8_t inserted_generation(const Vertex& i, const Vertex& j) {
     return oldest == 255 ? oldest : static_cast<std::uint8_t>(oldest + 1);
 }
 
-/// GT (algorithm section 4): the inserted vertex would not exceed the generation limit. Ends the recursion, and
+/// GT (golden/ALGORITHM.md 4.5): the inserted vertex would not exceed the generation limit. Ends the recursion, and
 /// depends on the edge alone.
 constexpr bool generation_test(const Vertex& i, const Vertex& j, const TestParameters& parameters) {
     return inserted_generation(i, j) <= parameters.generation_limit;
@@ -114,7 +135,7 @@ constexpr bool generation_test(const Vertex& i, const Vertex& j, const TestParam
 
 /// split(i, j) = (NT or SHT or HT) and VT and TCT and GT (paper 2.6, plus HT and GT), on TestBits.
 constexpr bool split_decision(std::uint8_t tests) {
-    return (tests & asking_bits) != 0 && (tests & allowing_bits) == allowing_bits;
+    return (tests & requesting_tests) != 0 && (tests & gating_tests) == gating_tests;
 }
 
 }  // namespace tessera::datapath

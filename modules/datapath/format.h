@@ -6,7 +6,7 @@ namespace tessera::datapath {
 /// A fixed-point format: `bits` wide, the lowest `fraction` of them behind the binary point.
 ///
 /// Values travel in wider machine integers; `lowest` and `highest` are what the wires can hold. Widths are
-/// run-time configuration (architecture section 2: "how many bits do I need" is the first question asked).
+/// run-time configuration: how many bits a quantity needs is an architect's first question.
 struct Format {
     int bits = 0;
     int fraction = 0;
@@ -21,7 +21,7 @@ struct Format {
     }
 };
 
-/// The formats of one design. Defaults: architecture section 2.
+/// The formats of one design.
 struct Formats {
     Format position = Format::make_signed(32, 16);  ///< P, P', scale, bias
     /// w, the distance from the eye: as wide as a position, its point placed by the host so that the farthest vertex
@@ -36,6 +36,23 @@ struct Formats {
     Format screen = Format::make_signed(24, 8);           ///< P's in pixels
     int generation_bits = 4;
     bool highlight_tag = false;  ///< with a Highlight Test: the queue entry's split_by has a bit for it
+};
+
+/// Bits that a job may give each quantity: what the functions here are asserted to hold, and the ranges of the job's keys.
+/// A fraction has fewer bits than its format, a normal's at least 2 fewer.
+struct FormatLimits {
+    struct Range {
+        int least, most;
+    };
+    static constexpr Range position_bits{8, 32}, position_fraction{0, 31};
+    static constexpr Range normal_bits{6, 18}, normal_fraction{0, 16};
+    static constexpr Range texture_integer{1, 12}, texture_fraction{0, 12};
+    static constexpr Range displacement_bits{1, 16};
+    static constexpr Range summed_height_bits{8, 48};
+    static constexpr Range screen_bits{8, 31}, screen_fraction{0, 30};
+    static constexpr Range generation_bits{1, 4};
+    /// By how much coarser w is than the position: 31 bring 2^37 LSB of it, the farthest eye, into 8 bits.
+    static constexpr Range view_distance_shift{0, 31};
 };
 
 /// How often a result did not fit its format and was set to the nearest value that does, per quantity.

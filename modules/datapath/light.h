@@ -1,11 +1,24 @@
 #pragma once
+#include <array>
 #include <cstdint>
 
 #include "modules/datapath/format.h"
+#include "modules/datapath/intermediate.h"
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/vertex.h"
 
 namespace tessera::datapath {
+
+struct LightWidths : Intermediates {
+    using Intermediates::Intermediates;
+    Width product{"N's.x * L.x", 2 * f.normal.bits};
+    Width dot{"N's . L", product.bits + 1};
+    Width cosine{"N's . L, at least 0, truncated", dot.bits - f.normal.fraction - 1, 63};
+    Width scaled{"(256 - ambient) * that", cosine.bits + 8, 63};
+    Width intensity{"ambient + that, before it saturates", wider(scaled.bits - f.normal.fraction, 9) + 1, 63};
+    constexpr auto all() const { return std::array{product, dot, cosine, scaled, intensity}; }
+};
+static_assert(fits_every_format<LightWidths>());
 
 /// Diffuse per-vertex lighting in screen space: ambient + (256 - ambient) * max(0, N's . L), 0..255, truncated; 256,
 /// full light, saturates, counted.

@@ -12,7 +12,7 @@ constexpr std::uint32_t integer_part(std::uint32_t coordinate, const Formats& fo
 }
 
 /// A texel index brought into the map: clamp reads the border texel beyond the border, repeat reads periodically.
-/// A vertex exactly on the last border (u = width) so reads the last texel or the first (algorithm section 9).
+/// A vertex exactly on the last border (u = width) so reads the last texel or the first (golden/ALGORITHM.md 2).
 constexpr std::uint32_t texel_index(std::uint32_t index, std::uint32_t size, AddressMode mode) {
     if (index < size)
         return index;

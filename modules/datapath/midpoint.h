@@ -1,9 +1,20 @@
 #pragma once
+#include <array>
 #include <cstdint>
 
+#include "modules/datapath/intermediate.h"
 #include "modules/datapath/vertex.h"
 
 namespace tessera::datapath {
+
+struct MidpointWidths : Intermediates {
+    using Intermediates::Intermediates;
+    Width position{"P_i + P_j", f.position.bits + 1};
+    Width direction{"N_i + N_j", f.normal.bits + 1};
+    Width texture{"t_i + t_j", f.texture.bits + 1};
+    constexpr auto all() const { return std::array{position, direction, texture}; }
+};
+static_assert(fits_every_format<MidpointWidths>());
 
 /// Add, shift by 1 (paper 3): arithmetic shift right, so rounded towards minus infinity, error -1/2..0 LSB.
 /// Commutative; lies between its operands, so it cannot overflow their format.

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "modules/datapath/format.h"
+#include "modules/datapath/intermediate.h"
 #include "modules/datapath/reciprocal.h"
 #include "modules/datapath/vertex.h"
 
@@ -37,6 +38,18 @@ constexpr std::array<std::uint32_t, 256> make_reciprocal_root_seeds() {
 }
 inline constexpr auto reciprocal_root_seeds = make_reciprocal_root_seeds();
 
+/// Of one Newton step; the same in all formats.
+struct ReciprocalRootWidths : Intermediates {
+    using Intermediates::Intermediates;
+    Width mantissa{"m", 32};
+    Width root{"y", 32};
+    Width square{"y * y", 63};
+    Width product{"m * y^2", 61};
+    Width step{"y * (3 - m * y^2)", 63};
+    constexpr auto all() const { return std::array{mantissa, root, square, product, step}; }
+};
+static_assert(fits_every_format<ReciprocalRootWidths>());
+
 /// 1/sqrt(m / 2^30) with 31 fraction bits, for m in [2^30, 2^32).
 /// Table look-up (relative error under 2^-7.7), then two Newton steps y = y (3 - m y^2) / 2.
 /// Relative error under 2^-28.6 either way (exhaustive over m once; the tests sample densely).
@@ -49,6 +62,20 @@ constexpr std::uint64_t reciprocal_root(std::uint32_t m) {
     }
     return y;
 }
+
+/// Components that normalise() holds.
+inline constexpr int largest_component_bits = 31;
+
+struct NormaliseWidths : Intermediates {
+    int component;
+    constexpr explicit NormaliseWidths(const Formats& formats, int component_bits = largest_component_bits)
+        : Intermediates(formats), component(component_bits) {}
+    Width square{"x^2 + y^2 + z^2", 2 * component};
+    Width root{"1 / length", ReciprocalRootWidths{f}.root.bits};
+    Width product{"x / length, before it is rounded", component + root.bits};
+    constexpr auto all() const { return std::array{square, root, product}; }
+};
+static_assert(fits_every_format<NormaliseWidths>());
 
 /// A vector with components of up to 31 bits and any scale, brought to unit length in the normal's format.
 /// Rounded to nearest; error per component at most 1/2 + 2^(fraction - 28) LSB. A zero vector stays zero

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "modules/datapath/intermediate.h"
+
 namespace tessera::datapath {
 
 /// Seeds for 1/m, m in [1, 2): entry k is 1/m at the middle of the k-th of 128 intervals, 16 fraction bits.
@@ -13,6 +15,18 @@ constexpr std::array<std::uint32_t, 128> make_reciprocal_seeds() {
     return seeds;
 }
 inline constexpr auto reciprocal_seeds = make_reciprocal_seeds();
+
+/// Of one Newton step; the same in all formats.
+struct ReciprocalWidths : Intermediates {
+    using Intermediates::Intermediates;
+    Width mantissa{"m", 32};
+    Width reciprocal{"r", 33};
+    Width product{"m * r", 64};
+    Width correction{"2 - m * r", 32};
+    Width step{"r * (2 - m * r)", 64};
+    constexpr auto all() const { return std::array{mantissa, reciprocal, product, correction, step}; }
+};
+static_assert(fits_every_format<ReciprocalWidths>());
 
 /// 2^63 / m for m in [2^31, 2^32): a value in [2^31, 2^32].
 /// Table look-up (relative error under 2^-8), then two Newton steps r = r (2 - m r).

@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 
+#include "modules/datapath/intermediate.h"
 #include "modules/datapath/map_address.h"
 
 namespace tessera::datapath {
@@ -12,7 +13,21 @@ struct RectangleSize {
     std::uint32_t height = 1;
 };
 
-/// |du| / 2 wide and |dv| / 4 high, whole texels, at least 1 and at most the map (algorithm 3.2 D a).
+/// t reaches from 0 to 2^integer texels, so |du| does too, and a rectangle is at most half of that wide.
+struct RectangleWidths : Intermediates {
+    using Intermediates::Intermediates;
+    int integer = f.texture.bits - 1 - f.texture.fraction;
+    Width difference{"abs(du), abs(dv)", f.texture.bits};
+    Width width{"width", wider(integer, 1)};
+    Width height{"height", wider(integer - 1, 1)};
+    Width first{"first column, before it is brought inside", integer + 2};
+    Width last{"last column", integer + 1};
+    Width sum{"S(r), modulo", f.summed_height.bits};
+    constexpr auto all() const { return std::array{difference, width, height, first, last, sum}; }
+};
+static_assert(fits_every_format<RectangleWidths>());
+
+/// |du| / 2 wide and |dv| / 4 high, whole texels, at least 1 and at most the map (golden/ALGORITHM.md 4.2).
 /// Commutative: absolute differences.
 constexpr RectangleSize rectangle_size(const TexCoord& a, const TexCoord& b, const MapGeometry& map,
                                        const Formats& formats) {

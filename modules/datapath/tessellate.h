@@ -31,8 +31,8 @@ int tessellate(const TrianglePass& pass, Triangulation choice, const Formats& fo
         Vertex& vertex = inserted[static_cast<std::size_t>(k)];
         vertex = inserted_vertex(pass, k);
         vertex.generation = kept_generation(vertex.generation, formats, saturations);
-        split_by = static_cast<std::uint8_t>(split_by |
-                                             (pass.edges[static_cast<std::size_t>(k)].tests & asking_bits));
+        split_by = static_cast<std::uint8_t>(
+            split_by | (pass.edges[static_cast<std::size_t>(k)].tests & requesting_tests));
     }
     const bool second = choose_second_diagonal(
         pass.split, choice,

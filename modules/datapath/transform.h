@@ -1,14 +1,49 @@
 #pragma once
+#include <array>
 #include <cstdint>
 
 #include "modules/datapath/format.h"
+#include "modules/datapath/intermediate.h"
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/reciprocal.h"
 #include "modules/datapath/vertex.h"
 
 namespace tessera::datapath {
 
-/// row . (P', 1), exact: 32 x 26 bit products, 64 bit sum.
+/// By how much row_w . (P', 1) is shifted right to w's format.
+constexpr int view_distance_down(const Formats& f) {
+    return TransformParameters::matrix_fraction + f.position.fraction - f.view_distance.fraction;
+}
+
+/// Bits of a matrix entry from -1.0 to 1.0, and of a row's fourth, at most 2^61.
+inline constexpr int matrix_entry_bits = signed_bits(TransformParameters::matrix_fraction);
+inline constexpr int matrix_offset_bits = signed_bits(61);
+/// Bits of a numerator that the division keeps.
+inline constexpr int numerator_bits = 30;
+
+struct TransformWidths : Intermediates {
+    using Intermediates::Intermediates;
+    int coordinate = f.position.bits - 1;  // |P'.x| is at most 2^coordinate
+    Width product{"row.x * P'.x", signed_bits(TransformParameters::matrix_fraction + coordinate)};
+    Width sum{"row . (P', 1)", wider(product.bits + 2, matrix_offset_bits) + 1};
+    Width w{"w, rounded, before it saturates", sum.bits - view_distance_down(f)};
+    Width mantissa{"mantissa of w", ReciprocalWidths{f}.mantissa.bits};
+    Width inverse{"its reciprocal", ReciprocalWidths{f}.reciprocal.bits};
+    Width numerator{"numerator, its upper bits", numerator_bits + 1};
+    Width quotient{"numerator * reciprocal", numerator.bits + inverse.bits};
+    constexpr auto all() const { return std::array{product, sum, w, mantissa, inverse, numerator, quotient}; }
+};
+static_assert(fits_every_format<TransformWidths>());
+
+struct TransformNormalWidths : Intermediates {
+    using Intermediates::Intermediates;
+    Width product{"row.x * N'.x", 2 * f.normal.bits};
+    Width sum{"row . N'", product.bits + 1};
+    constexpr auto all() const { return std::array{product, sum}; }
+};
+static_assert(fits_every_format<TransformNormalWidths>());
+
+/// row . (P', 1), exact.
 constexpr std::int64_t transform_row(const std::array<std::int64_t, 4>& row, const Position& p) {
     return row[0] * p.x + row[1] * p.y + row[2] * p.z + row[3];
 }
@@ -20,7 +55,7 @@ constexpr std::int32_t perspective_divide(std::int64_t numerator, std::uint64_t 
     if (numerator == 0)
         return 0;
     const std::uint64_t magnitude = static_cast<std::uint64_t>(numerator < 0 ? -numerator : numerator);
-    const int narrow = 34 - leading_zeros(magnitude) > 0 ? 34 - leading_zeros(magnitude) : 0;
+    const int beyond = 64 - leading_zeros(magnitude) - numerator_bits, narrow = beyond > 0 ? beyond : 0;
     const std::int64_t quotient = (numerator >> narrow) * static_cast<std::int64_t>(inverse);
     const int down = 63 + scale - narrow - exponent - screen.fraction;
     if (down > 62)
@@ -41,10 +76,8 @@ constexpr ScreenPosition transform(const Position& p, const TransformParameters&
                                    const Formats& formats, Saturations& saturations) {
     const std::int64_t w = transform_row(parameters.row_w, p);
     ScreenPosition result;
-    const int w_shift =
-        TransformParameters::matrix_fraction + formats.position.fraction - formats.view_distance.fraction;
-    result.w = static_cast<std::int32_t>(
-        saturate(round_shift(w, w_shift), formats.view_distance, saturations.view_distance));
+    result.w = static_cast<std::int32_t>(saturate(round_shift(w, view_distance_down(formats)),
+                                                  formats.view_distance, saturations.view_distance));
     if (w <= parameters.near_plane)
         return result;
     result.in_front = true;

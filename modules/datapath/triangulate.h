@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "modules/datapath/edge_tests.h"
+#include "modules/datapath/intermediate.h"
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/vertex.h"
 
@@ -14,7 +15,22 @@ struct ChildIndices {
     int count = 0;
 };
 
-/// Manhattan length between two displaced positions; 34 bits.
+/// The second diagonal must be shorter than the first by more than 2^-6 of it. Many diagonals are equally long in exact
+/// arithmetic (a square's, wherever the map is level), and rounding, which moves each of a length's six coordinates by up
+/// to (generation + 1) / 2 LSB of the position and the height times 3/4 LSB of the normal, must not choose between them.
+/// In the default job that is less than 2^-6 of a texel's side even at full height on a curved surface.
+inline constexpr int diagonal_margin_shift = 6;
+
+struct DiagonalWidths : Intermediates {
+    using Intermediates::Intermediates;
+    Width difference{"abs(dx), abs(dy), abs(dz)", f.position.bits};
+    Width length{"their sum", difference.bits + 2};
+    Width compared{"the sum * 64", length.bits + diagonal_margin_shift};
+    constexpr auto all() const { return std::array{difference, length, compared}; }
+};
+static_assert(fits_every_format<DiagonalWidths>());
+
+/// Manhattan length between two displaced positions.
 constexpr std::uint64_t manhattan_length(const Position& a, const Position& b) {
     return absolute_difference(a.x, b.x) + absolute_difference(a.y, b.y) + absolute_difference(a.z, b.z);
 }
@@ -61,14 +77,8 @@ constexpr ChildIndices triangulate(unsigned split, bool second_diagonal) {
     return result;
 }
 
-/// The second diagonal must be shorter than the first by more than 2^-6 of it. Many diagonals are equally long in exact
-/// arithmetic (a square's, wherever the map is level), and rounding, which moves each of a length's six coordinates by up
-/// to (generation + 1) / 2 LSB of the position and the height times 3/4 LSB of the normal, must not choose between them.
-/// In the default job that is less than 2^-6 of a texel's side even at full height on a curved surface.
-inline constexpr int diagonal_margin_shift = 6;
-
 /// With `shorter`, the second if it is shorter by more than the margin, by Manhattan length of displaced positions, else
-/// the first: an add and a compare of 40 bits, which round nothing. corner(k) gives the displaced position of index k as
+/// the first: a subtraction and a compare, which round nothing. corner(k) gives the displaced position of index k as
 /// above.
 template <class DisplacedPosition>
 constexpr bool choose_second_diagonal(unsigned split, Triangulation choice, DisplacedPosition&& corner) {

@@ -38,7 +38,7 @@ struct ScreenPosition {
     }
 };
 
-/// All a vertex carries through the machine (paper 3.1.5, algorithm section 1).
+/// All a vertex carries through the machine (paper 3.1.5, golden/ALGORITHM.md 1).
 struct Vertex {
     Position position;           ///< P, on the base surface
     Direction normal;            ///< N, of the base surface
@@ -64,9 +64,9 @@ enum TestBits : std::uint8_t {
     highlight_bit = 32,
 };
 
-/// The tests that ask for a split; the others allow it.
-constexpr std::uint8_t asking_bits = normal_bit | summed_height_bit | highlight_bit;
-constexpr std::uint8_t allowing_bits = view_bit | tex_coord_bit | generation_bit;
+/// The tests that request a split; the others gate it.
+constexpr std::uint8_t requesting_tests = normal_bit | summed_height_bit | highlight_bit;
+constexpr std::uint8_t gating_tests = view_bit | tex_coord_bit | generation_bit;
 
 /// A triangle as it waits in the Triangle Queue. Edge k runs from vertex k to vertex (k + 1) mod 3.
 struct Triangle {

@@ -219,7 +219,7 @@ void PassOrTessellate::decide_edges(datapath::TrianglePass& pass) {
         if (!(edge.texture == pass.new_vertex[k].texture))
             SC_REPORT_ERROR("tessera/pass_or_tessellate",
                             "the two branches disagree on the midpoint of an edge");
-        const unsigned wanted = edge.tests & datapath::asking_bits;
+        const unsigned wanted = edge.tests & datapath::requesting_tests;
         if (datapath::split_decision(edge.tests)) {
             split |= 1u << k;
             ++counts_.edges_split;
@@ -230,7 +230,7 @@ void PassOrTessellate::decide_edges(datapath::TrianglePass& pass) {
             counts_.split_by_highlight += by == 0;
             counts_.split_in_highlight += (wanted & datapath::highlight_bit) != 0;
         } else if (wanted != 0) {
-            const unsigned missing = ~edge.tests & datapath::allowing_bits;
+            const unsigned missing = ~edge.tests & datapath::gating_tests;
             stopped_by |= missing;
             counts_.stopped_by_view += (missing & datapath::view_bit) != 0;
             counts_.stopped_by_tex_coord += (missing & datapath::tex_coord_bit) != 0;

@@ -136,8 +136,8 @@ std::uint8_t BareRecursion::evaluate(TrianglePass& pass) {
         const std::uint8_t tests = pass.edges[static_cast<std::size_t>(k)].tests;
         if (split_decision(tests))
             split |= 1u << k;
-        else if ((tests & asking_bits) != 0)
-            stopped_by |= ~tests & allowing_bits;
+        else if ((tests & requesting_tests) != 0)
+            stopped_by |= ~tests & gating_tests;
     }
     pass.split = static_cast<std::uint8_t>(split);
     return static_cast<std::uint8_t>(stopped_by);

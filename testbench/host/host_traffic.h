@@ -23,8 +23,8 @@ struct HostTraffic {
 /// A run's base mesh as it goes to Get Triangle: three vertices of P, N, T, handedness, t a triangle, as wires.
 std::uint64_t base_mesh_bytes(const Setup& setup);
 
-/// The registers as the host writes them, 32 bit words: a register of at most 32 bits is one word, a longer one two;
-/// switches and choices share one. The formats are the machine's build, not registers. Always as many words.
+/// The registers (modules/datapath/registers.h) as the host writes them, 32 bit words: a register of at most 32 bits is
+/// one word, a longer one two; switches and choices share the first. As many words for every job of one design.
 std::vector<std::uint32_t> register_words(const datapath::Registers& registers);
 
 /// What a machine needs that knows nothing yet.

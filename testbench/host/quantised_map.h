@@ -27,7 +27,7 @@ struct QuantisedMap {
 QuantisedMap quantise_map(const HeightMap& map, int bits, datapath::AddressMode address_u,
                           datapath::AddressMode address_v);
 
-/// N_d at a texel (algorithm section 2): normalise(-dh/du, -dh/dv, 1) by central differences of the heights,
+/// N_d at a texel (golden/ALGORITHM.md 2): normalise(-dh/du, -dh/dv, 1) by central differences of the heights,
 /// one-sided at a clamped border, periodic where the map repeats; rounded to the normal's format.
 /// height_per_code and texel_size are in the same world unit.
 datapath::Direction map_normal(const QuantisedMap& map, std::uint32_t x, std::uint32_t y,

@@ -6,8 +6,9 @@
 #include <array>
 #include <cmath>
 
+#include "modules/datapath/all_intermediates.h"
 #include "modules/datapath/map_entry.h"
-#include "modules/datapath/rectangle.h"
+#include "modules/datapath/registers.h"
 #include "testbench/common/error.h"
 #include "testbench/host/resolve_job.h"
 #include "testbench/host/unit_vector.h"
@@ -53,6 +54,30 @@ datapath::Formats make_formats(const Job::Formats& job) {
     formats.screen = Format::make_signed(bits(job.screen_bits), bits(job.screen_fraction));
     formats.generation_bits = bits(job.generation_bits);
     return formats;
+}
+
+/// That the model's integers hold every intermediate: so in all formats within the ranges of their keys.
+void check_intermediates(const datapath::Formats& formats) {
+    datapath::visit_intermediates(formats, [](const char* function, const auto& widths) {
+        if (const char* const name = datapath::first_too_wide(widths))
+            throw InputError(
+                fmt::format("[formats]: {} in {} (modules/datapath) is wider than the model's integers: "
+                            "narrow the formats to the ranges of their keys",
+                            name, function));
+    });
+}
+
+/// That every value fits its register.
+void check_registers(const datapath::Registers& registers) {
+    datapath::visit_registers(registers, [](const datapath::Register& field, const auto& values) {
+        for (const std::int64_t value : values) {
+            if (!datapath::holds(field, value))
+                throw InputError(
+                    fmt::format("the register {} has {} bits and cannot hold {}: change the job's "
+                                "value or formats that it is made of",
+                                field.name, field.bits, value));
+        }
+    });
 }
 
 datapath::AddressMode address_mode(Addressing mode) {
@@ -474,6 +499,7 @@ Setup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& map) {
     Setup setup;
     datapath::Registers& registers = setup.registers;
     registers.formats = make_formats(job.formats);
+    check_intermediates(registers.formats);
     setup.map = quantise_map(map, registers.formats.displacement.bits, address_mode(job.map.address_u),
                              address_mode(job.map.address_v));
     registers.map = setup.map.geometry;
@@ -501,6 +527,8 @@ Setup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& map) {
         : job.hardware.triangulation == Triangulation::second ? datapath::Triangulation::second
                                                               : datapath::Triangulation::shorter;
     registers.back_face_culling = job.hardware.culling == Culling::back;
+
+    check_registers(registers);
 
     setup.design = make_design(job);
     return setup;

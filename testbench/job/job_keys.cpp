@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "modules/datapath/format.h"
 #include "testbench/job/job_choices.h"
 #include "testbench/job/toml_text.h"
 
@@ -372,17 +373,19 @@ std::vector<KeyTable> declare_keys() {
     });
     list.table("formats", &Job::formats, "Fixed-point formats of the hardware; bits count the sign where there is one.", [](const auto& key) {
         using Formats = Job::Formats;
-        key.add("position_bits", &Formats::position_bits, "bits", between(8, 32), "Positions, signed");
-        key.add("position_fraction", &Formats::position_fraction, "bits", between(0, 31), "Positions: fraction bits, fewer than position_bits");
-        key.add("normal_bits", &Formats::normal_bits, "bits", between(6, 18), "Components of normals and tangents, signed");
-        key.add("normal_fraction", &Formats::normal_fraction, "bits", between(0, 16), "Normals: fraction bits, at least 2 fewer than normal_bits");
-        key.add("texture_integer", &Formats::texture_integer, "bits", between(1, 12), "Texture coordinates, unsigned, in texels: integer bits");
-        key.add("texture_fraction", &Formats::texture_fraction, "bits", between(0, 12), "Texture coordinates: fraction bits");
-        key.add("displacement_bits", &Formats::displacement_bits, "bits", between(1, 16), "Displacement map, unsigned");
-        key.add("summed_height_bits", &Formats::summed_height_bits, "bits", zero_or_between(8, 48), "Summed Height Table, unsigned; 0: the narrowest of 32, 40, 48 the mesh needs");
-        key.add("screen_bits", &Formats::screen_bits, "bits", between(8, 31), "Screen positions, signed, in pixels");
-        key.add("screen_fraction", &Formats::screen_fraction, "bits", between(0, 30), "Screen positions: fraction bits, fewer than screen_bits");
-        key.add("generation_bits", &Formats::generation_bits, "bits", between(1, 4), "Generation of a vertex, unsigned");
+        using Limits = datapath::FormatLimits;
+        const auto within = [](const Limits::Range& range) { return between(range.least, range.most); };
+        key.add("position_bits", &Formats::position_bits, "bits", within(Limits::position_bits), "Positions, signed");
+        key.add("position_fraction", &Formats::position_fraction, "bits", within(Limits::position_fraction), "Positions: fraction bits, fewer than position_bits");
+        key.add("normal_bits", &Formats::normal_bits, "bits", within(Limits::normal_bits), "Components of normals and tangents, signed");
+        key.add("normal_fraction", &Formats::normal_fraction, "bits", within(Limits::normal_fraction), "Normals: fraction bits, at least 2 fewer than normal_bits");
+        key.add("texture_integer", &Formats::texture_integer, "bits", within(Limits::texture_integer), "Texture coordinates, unsigned, in texels: integer bits");
+        key.add("texture_fraction", &Formats::texture_fraction, "bits", within(Limits::texture_fraction), "Texture coordinates: fraction bits");
+        key.add("displacement_bits", &Formats::displacement_bits, "bits", within(Limits::displacement_bits), "Displacement map, unsigned");
+        key.add("summed_height_bits", &Formats::summed_height_bits, "bits", zero_or_between(Limits::summed_height_bits.least, Limits::summed_height_bits.most), "Summed Height Table, unsigned; 0: the narrowest of 32, 40, 48 the mesh needs");
+        key.add("screen_bits", &Formats::screen_bits, "bits", within(Limits::screen_bits), "Screen positions, signed, in pixels");
+        key.add("screen_fraction", &Formats::screen_fraction, "bits", within(Limits::screen_fraction), "Screen positions: fraction bits, fewer than screen_bits");
+        key.add("generation_bits", &Formats::generation_bits, "bits", within(Limits::generation_bits), "Generation of a vertex, unsigned");
     });
     list.table("hardware", &Job::hardware, "The units' options.", [](const auto& key) {
         using Hardware = Job::Hardware;

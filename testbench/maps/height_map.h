@@ -8,7 +8,7 @@ namespace tessera {
 /// A displacement map as its source holds it, before quantising.
 ///
 /// Texel (x, y) is values[y * width + x]; y = 0 is the BOTTOM row (v = 0): readers turn the image
-/// (algorithm.md section 2: texture origin is bottom left, the host turns the image, the hardware never
+/// (golden/ALGORITHM.md section 1: texture origin is bottom left, the host turns the image, the hardware never
 /// does).
 struct HeightMap {
     int width = 0;

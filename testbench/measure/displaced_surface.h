@@ -16,7 +16,7 @@ namespace tessera {
 /// surface through them that is continuous: a mesh of enough triangles can come as near to it as it likes, so an error
 /// against it measures the tessellation. It includes what the hardware's own reading costs: up to half a texel sideways.
 ///
-/// `nearest_texel`: as the hardware reads it, the texel that holds t (algorithm.md 9: the last border reads the last
+/// `nearest_texel`: as the hardware reads it, the texel that holds t (golden/ALGORITHM.md 2: the last border reads the last
 /// texel, or the first where the map repeats). That surface is a staircase with a step at every texel's edge: no mesh
 /// without cracks follows it, and an error against it does not fall below half of the map's steps. Reported beside the
 /// headline because it tells the two causes apart: small against this and large against the other is addressing.
@@ -44,7 +44,7 @@ struct LocalFrame {
     glm::dvec3 to_model(const glm::dvec3& local) const { return local / scale + centre; }
 };
 
-/// The surface the hardware approximates (algorithm.md section 1), in double precision and from the map's own values,
+/// The surface the hardware approximates (golden/ALGORITHM.md 1), in double precision and from the map's own values,
 /// not their codes: what rounding to the hardware's formats costs is part of the error. At barycentric coordinates b of
 /// a base triangle
 ///

@@ -3,7 +3,7 @@
 
 namespace tessera {
 
-/// Gives every vertex its tangent and handedness (algorithm.md section 2, decision "tangent frame").
+/// Gives every vertex its tangent and handedness (golden/ALGORITHM.md section 6).
 ///
 /// Each triangle adds its direction of dp/du, weighted by its area, to its vertices; the sum is made
 /// orthogonal to the normal and unit length. Vertices alike in position and normal (bit for bit, -0 = +0)

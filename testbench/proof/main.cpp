@@ -11,7 +11,7 @@
 #include "testbench/common/grouped_digits.h"
 #include "testbench/proof/edge_trial.h"
 
-// Random edges through the datapath, from either side, against the definitions: modules/datapath/NO_CRACKS.md. Exit
+// Random edges through the datapath, from either side, against the definitions: modules/datapath/CRACK_FREEDOM.md. Exit
 // codes as tessera's: 0 all alike, 1 some not, 2 usage.
 
 namespace {

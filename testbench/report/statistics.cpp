@@ -98,6 +98,8 @@ Collector host_figures(const Setup& setup, std::uint64_t finished, std::uint64_t
     c.add("table_bytes", tables, "byte",
           "displacement map, normal map, Summed Height Table; once, the normal map again when the scale "
           "changes");
+    c.add("register_bytes", register_words(setup.registers).size() * sizeof(std::uint32_t), "byte",
+          "registers, as 32 bit words; once, later those that change");
     c.add("tessellated_vertices", vertices, "vertex",
           "distinct vertices of the finished mesh, by t, P' and N'");
     c.add("tessellated_mesh_bytes", indexed, "byte",

@@ -25,7 +25,7 @@ class HandMadeRun {
         sc_core::sc_start(sc_core::SC_ZERO_TIME);
         const unsigned n = datapath::normal_bit, s = datapath::summed_height_bit, h = datapath::highlight_bit;
         const unsigned view = datapath::view_bit, tex_coord = datapath::tex_coord_bit,
-                       generation = datapath::generation_bit, all = datapath::allowing_bits;
+                       generation = datapath::generation_bit, all = datapath::gating_tests;
         for (int k = 0; k < 3; ++k)
             decide({n | all, n | all, n | all});
         for (int k = 0; k < 2; ++k)

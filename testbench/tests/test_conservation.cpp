@@ -308,7 +308,7 @@ TEST_CASE("conservation: a vertex transformed, and triangles decided, too many")
                   [&] { give(p.displace_vertex.to_transform, vertex_and_normal); },
                   {{"positions of transform = vertices and edges", {1, 0}},
                    {"positions and normals of transform = parts", {2, 0}}});
-    pass.edges[0].tests = datapath::normal_bit | datapath::allowing_bits;
+    pass.edges[0].tests = datapath::normal_bit | datapath::gating_tests;
     expect_change(
         "its other branch: one edge splits", simulation,
         [&] { give(p.tessellation_tests[0].collect_tests.to_pass_or_tessellate, vertex_and_normal); },

@@ -8,7 +8,7 @@
 #include "testbench/tests/datapath_donut.h"
 #include "testbench/tests/datapath_edge.h"
 
-/// Algorithm section 4: as printed, without the generation test, the recursion does not always end.
+/// golden/ALGORITHM.md 4.5: as printed, without the generation test, the recursion does not always end.
 using namespace tessera::datapath;
 using namespace tessera::testing;
 

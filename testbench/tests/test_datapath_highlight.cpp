@@ -171,7 +171,7 @@ TEST_CASE("symmetry: with a Highlight Test, decision and inserted vertex are the
         machine.evaluate_edge(pass, 0);
         machine.evaluate_edge(pass, 1);
         ++edges;
-        alone += (pass.edges[0].tests & asking_bits) == highlight_bit;
+        alone += (pass.edges[0].tests & requesting_tests) == highlight_bit;
         if (pass.edges[0].tests != pass.edges[1].tests ||
             !same_bits(inserted_vertex(pass, 0), inserted_vertex(pass, 1)))
             FAIL("edge " << k);
@@ -212,7 +212,7 @@ TEST_CASE("queue entry: one bit more with a Highlight Test, none without") {
 TEST_CASE("children say that the Highlight Test split their parent") {
     TrianglePass pass;
     pass.split = 1;
-    pass.edges[0].tests = highlight_bit | allowing_bits;
+    pass.edges[0].tests = highlight_bit | gating_tests;
     pass.edges[1].tests = normal_bit | view_bit;  // not split: does not count
     int children = 0;
     Saturations saturations;

@@ -34,7 +34,7 @@ std::uint64_t brute_force(const std::vector<std::uint32_t>& codes, const Rectang
     return sum;
 }
 
-/// Equal size, inside (clamp) or begun inside (repeat), and placed as algorithm 3.2 D says, by floor
+/// Equal size, inside (clamp) or begun inside (repeat), and placed as golden/ALGORITHM.md 4.2 says, by floor
 /// division.
 bool placed_right(std::uint32_t centre, std::uint32_t first, std::uint32_t extent, std::uint32_t size,
                   AddressMode mode) {

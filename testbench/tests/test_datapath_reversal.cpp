@@ -9,7 +9,7 @@
 #include "testbench/tests/datapath_edge.h"
 #include "testbench/tests/datapath_random.h"
 
-/// Edges from either end, all there are on formats narrow enough to enumerate (modules/datapath/NO_CRACKS.md). What is
+/// Edges from either end, all there are on formats narrow enough to enumerate (modules/datapath/CRACK_FREEDOM.md). What is
 /// enumerated is compared with the definitions too: something that always says no is symmetric as well.
 using namespace tessera;
 using namespace tessera::datapath;

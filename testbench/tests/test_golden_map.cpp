@@ -151,7 +151,7 @@ TEST_CASE("bump: a flat normal map returns the normal, axes and handedness") {
     CHECK(normalise({3, 0, 4}).length == 5);
 }
 
-TEST_CASE("vertex: displaced, inserted and transformed as section 2 says") {
+TEST_CASE("vertex: displaced, inserted and transformed as ALGORITHM.md section 3 says") {
     Map map(4, 4, AddressMode::clamp, AddressMode::clamp,
             {0, 0, 0, 0, 0, 0, 100, 0, 0, 0, 0, 0, 0, 0, 0, 300});
     Parameters p;

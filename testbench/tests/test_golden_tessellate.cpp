@@ -200,7 +200,7 @@ TEST_CASE("half donut on the plane of 18: ends, no T-vertex, area kept") {
 }
 
 TEST_CASE("the printed algorithm's endless case, and the generation test that ends it") {
-    // Section 4: the long edge never splits; the third vertex runs to and fro between the thirds of it.
+    // ALGORITHM.md 4.5: the long edge never splits; the third vertex runs to and fro between the thirds of it.
     const Map map = half_donut(0.6, 0.25);
     Parameters p;
     p.scale = 0.25 / 65535;

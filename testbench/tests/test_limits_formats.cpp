@@ -2,6 +2,7 @@
 
 #include "testbench/benchmark/bare_recursion.h"
 #include "testbench/common/error.h"
+#include "testbench/host/resolve_job.h"
 #include "testbench/job/validate_job.h"
 #include "testbench/tests/datapath_random.h"
 #include "testbench/tests/timed_checks.h"
@@ -174,6 +175,21 @@ TEST_CASE("formats: whole numbers, a cylinder in repeat that spills, timed") {
 }
 TEST_CASE("formats: fractions only, a plane, timed") {
     expect_one_mesh(plane_job(fractions(), Mode::timed));
+}
+
+TEST_CASE("formats: what an intermediate of the datapath cannot hold is refused with its name") {
+    Job job;
+    const BaseMesh mesh = load_mesh(job, {});
+    const HeightMap map = load_map(job, {});
+    job = resolve_job(job, mesh, map).job;
+    job.formats.normal_bits = 40;  // beyond the key's range, which validate() would refuse
+    job.formats.normal_fraction = 26;
+    CHECK_THROWS_WITH(make_setup(job, mesh, map),
+                      Catch::Contains("(S * d + bias) * N in displace") && Catch::Contains("formats"));
+    job.formats = {};
+    job.tests.generation_limit = 16;  // likewise
+    CHECK_THROWS_WITH(make_setup(job, mesh, map), Catch::Contains("tests.generation_limit has 4 bits") &&
+                                                      Catch::Contains("cannot hold 16"));
 }
 
 TEST_CASE("formats: any that a job may have, on any small job: within the bounds, and closed") {

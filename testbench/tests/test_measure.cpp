@@ -123,7 +123,7 @@ TEST_CASE("the map between its texels, interpolated and as the hardware reads it
     CHECK(value(0, 0, S::interpolated, A::clamp) == 0);
     CHECK(value(3, 2, S::interpolated, A::clamp) == 12);
     CHECK(value(3, 2, S::nearest_texel, A::clamp) == 12);
-    CHECK(value(3, 2, S::nearest_texel, A::repeat) == 0);  // algorithm.md 9
+    CHECK(value(3, 2, S::nearest_texel, A::repeat) == 0);  // golden/ALGORITHM.md 2
     CHECK(value(0, 0.5, S::interpolated, A::repeat) == Approx(1));
     CHECK(value(3, 0.5, S::interpolated, A::repeat) == Approx(1));
     CHECK(value(-2.5, -1.5, S::interpolated, A::repeat) == Approx(0));

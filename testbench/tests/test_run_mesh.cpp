@@ -192,7 +192,8 @@ TEST_CASE("another scale: what the host sends again is the normal map, S and the
     CHECK(first.displacement_map == 64 * 64 * 2);
     CHECK(first.normal_map == 64 * 64 * 6);
     CHECK(first.summed_height_table == 65 * 65 * 4);
-    CHECK(first.registers == 4 * register_words(low.registers).size());
+    // choices 1, map 2, tables 3 x 2, tests 5, S and bias, rows 3 x (3 + 2), shifts 2, near plane 2, normals 9, light 4
+    CHECK(first.registers == 4 * 48);
 
     const HostTraffic later = next_frame_traffic(low, high);
     CHECK(later.base_mesh == first.base_mesh);
@@ -203,6 +204,19 @@ TEST_CASE("another scale: what the host sends again is the normal map, S and the
     CHECK(later.total() == first.base_mesh + first.normal_map + 4);
 
     CHECK(next_frame_traffic(low, low).total() == first.base_mesh);
+}
+
+TEST_CASE("the point of w and the Highlight Test's values are registers that the host sends") {
+    const Setup before = setup_of(0.2);
+    Setup now = before;
+    --now.registers.formats.view_distance.fraction;
+    CHECK(next_frame_traffic(before, now).registers == 4);
+    now = before;
+    now.registers.formats.highlight_tag = true;
+    // H 3, cosine 1, threshold 1; its switch stands with the others
+    CHECK(register_words(now.registers).size() == 48 + 5);
+    now.registers.formats.normal = datapath::Format::make_signed(18, 16);
+    CHECK(register_words(now.registers).size() == 48 + 6);  // a cosine of 34 bits
 }
 
 TEST_CASE("a scale that makes the model's own change sends Transform's matrix again") {

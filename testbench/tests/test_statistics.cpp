@@ -141,6 +141,7 @@ TEST_CASE("statistics: two triangles split once, by hand") {
                            {"base_triangles_dropped", 0},
                            {"mesh_bytes", base},
                            {"table_bytes", tables},
+                           {"register_bytes", 4 * 48},
                            {"tessellated_vertices", 9},
                            {"tessellated_mesh_bytes", whole},
                            {"tessellated_mesh_bytes_unindexed", bytes(24 * widths.finished_vertex)},

@@ -13,7 +13,7 @@ namespace tessera {
 
 /// Normal Test (paper figure 8, 2.2, 3.1.4): Calculate New N, Normalise, Bump, and the comparison of the displaced
 /// normals. And, in the same place because it needs the same three normals and their differences, the optional Highlight
-/// Test (algorithm section 7), which asks for more where the Phong highlight is.
+/// Test (golden/ALGORITHM.md 4.6), which asks for more where the Phong highlight is.
 ///
 /// In:   edges, with N, T, N' of both ends and edges[k].texture; vertices of a base triangle, with N, T, t.
 /// Out:  edges[k].normal = N_ij, .tangent = T_ij, .displaced_normal = N'_ij, normal_bit and highlight_bit of

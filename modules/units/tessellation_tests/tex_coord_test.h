@@ -11,7 +11,7 @@
 namespace tessera {
 
 /// Tex Coord Test (paper figure 8, 2.5, 3.1.2): has the map's resolution been reached? And, in the same place because
-/// both bound the recursion, the generation test (algorithm section 4).
+/// both bound the recursion, the generation test (golden/ALGORITHM.md 4.5).
 ///
 /// In:   t and generation of both ends; edges[k].texture. Out: tex_coord_bit and generation_bit of edges[k].tests.
 /// Arithmetic: two compares of bit slices per axis; a maximum, an increment, a compare.

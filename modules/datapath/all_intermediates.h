@@ -1,0 +1,34 @@
+#pragma once
+#include "modules/datapath/bump.h"
+#include "modules/datapath/cull.h"
+#include "modules/datapath/displace.h"
+#include "modules/datapath/edge_tests.h"
+#include "modules/datapath/light.h"
+#include "modules/datapath/midpoint.h"
+#include "modules/datapath/normalise.h"
+#include "modules/datapath/reciprocal.h"
+#include "modules/datapath/rectangle.h"
+#include "modules/datapath/transform.h"
+#include "modules/datapath/triangulate.h"
+
+namespace tessera::datapath {
+
+/// visit(name of a function or group, struct of its intermediates), for all of them, in the order of README.md.
+template <class Visit>
+constexpr void visit_intermediates(const Formats& f, Visit&& visit) {
+    visit("midpoint", MidpointWidths{f});
+    visit("displace", DisplaceWidths{f});
+    visit("normalise", NormaliseWidths(f, BumpWidths{f}.combined.bits));
+    visit("reciprocal_root", ReciprocalRootWidths{f});
+    visit("bump", BumpWidths{f});
+    visit("transform", TransformWidths{f});
+    visit("reciprocal", ReciprocalWidths{f});
+    visit("transform_normal", TransformNormalWidths{f});
+    visit("rectangle_size", RectangleWidths{f});
+    visit("edge tests", EdgeTestWidths{f});
+    visit("choose_second_diagonal", DiagonalWidths{f});
+    visit("faces_away", CullWidths{f});
+    visit("light", LightWidths{f});
+}
+
+}  // namespace tessera::datapath

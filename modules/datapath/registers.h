@@ -1,0 +1,104 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "modules/datapath/parameters.h"
+#include "modules/datapath/transform.h"
+
+namespace tessera::datapath {
+
+enum class RegisterKind : std::uint8_t {
+    choice,           ///< a switch, or one of a few: all of them share one word
+    unsigned_number,  ///< a word of its own, two if it is longer than 32 bits
+    signed_number,    ///< likewise, two's complement
+};
+
+struct Register {
+    const char* name;
+    RegisterKind kind;
+    int bits;
+    const char* meaning;
+};
+
+/// The table of registers: visit(Register, std::array of its values) for each, several alike as one. Formats and the
+/// size of a table's entries are the machine's build; a table's columns and rows follow from the map's size.
+template <class Visit>
+constexpr void visit_registers(const Registers& r, Visit&& visit) {
+    const Formats& f = r.formats;
+    const auto field = [&](const char* name, RegisterKind kind, int bits, const char* meaning,
+                           auto... values) {
+        visit(Register{name, kind, bits, meaning}, std::array{static_cast<std::int64_t>(values)...});
+    };
+    constexpr RegisterKind choice = RegisterKind::choice;
+    constexpr RegisterKind number = RegisterKind::unsigned_number, with_sign = RegisterKind::signed_number;
+    const auto direction = [&](const char* name, const char* meaning, const std::array<std::int32_t, 3>& d) {
+        field(name, with_sign, f.normal.bits, meaning, d[0], d[1], d[2]);
+    };
+    const auto row = [&](const char* name, const char* offset_name, const char* meaning,
+                         const std::array<std::int64_t, 4>& values) {
+        field(name, with_sign, matrix_entry_bits, meaning, values[0], values[1], values[2]);
+        field(offset_name, with_sign, matrix_offset_bits, "its fourth entry", values[3]);
+    };
+    const int map_side_bits = f.texture.bits - f.texture.fraction;
+
+    field("map.address_u", choice, 1, "clamp, repeat", r.map.address_u);
+    field("map.address_v", choice, 1, "clamp, repeat", r.map.address_v);
+    field("tests.normal_test", choice, 1, "on", r.tests.normal_test);
+    field("tests.summed_height_test", choice, 1, "on", r.tests.summed_height_test);
+    field("tests.summed_height_unit", choice, 1, "sum, area", r.tests.summed_height_unit);
+    field("tests.view_test", choice, 1, "on", r.tests.view_test);
+    field("tests.tex_coord_test", choice, 1, "on", r.tests.tex_coord_test);
+    field("tests.generation_test", choice, 1, "on", r.tests.generation_test);
+    field("triangulation", choice, 2, "shorter, first, second diagonal", r.triangulation);
+    field("back_face_culling", choice, 1, "on", r.back_face_culling);
+
+    field("map.width", number, map_side_bits, "texels", r.map.width);
+    field("map.height", number, map_side_bits, "texels", r.map.height);
+    field("displacement_map.base", number, 64, "byte address", r.displacement_map.base);
+    field("normal_map.base", number, 64, "byte address", r.normal_map.base);
+    field("summed_height_table.base", number, 64, "byte address", r.summed_height_table.base);
+
+    field("tests.normal_threshold", number, f.normal.bits, "normal's format", r.tests.normal_threshold);
+    field("tests.summed_height_threshold", number, summed_height_threshold_bits,
+          "sum: four times the threshold, in codes; area: in codes", r.tests.summed_height_threshold);
+    field("tests.view_threshold", number, f.screen.bits + 1, "screen's format", r.tests.view_threshold);
+    field("tests.generation_limit", number, f.generation_bits, "generations", r.tests.generation_limit);
+    if (f.highlight_tag) {  // of a design with a Highlight Test
+        field("tests.highlight_test", choice, 1, "on", r.tests.highlight_test);
+        direction("tests.half_vector", "H, normal's format", r.tests.half_vector);
+        field("tests.highlight_cosine", with_sign, signed_bits(2 * f.normal.fraction),
+              "of the highlight's border, twice the normal's fraction", r.tests.highlight_cosine);
+        field("tests.highlight_normal_threshold", number, f.normal.bits, "normal's format",
+              r.tests.highlight_normal_threshold);
+    }
+
+    field("displacement.scale", with_sign, f.position.bits, "S, position's format", r.displacement.scale);
+    field("displacement.bias", with_sign, f.position.bits, "position's format", r.displacement.bias);
+
+    row("transform.row_x", "transform.row_x.offset", "screen x, 24 fraction bits", r.transform.row_x);
+    row("transform.row_y", "transform.row_y.offset", "screen y, likewise", r.transform.row_y);
+    row("transform.row_w", "transform.row_w.offset", "w, likewise", r.transform.row_w);
+    field("transform.exponent", number, 5, "shift: x and y are multiplied by its power of two",
+          r.transform.exponent);
+    field("transform.view_distance_shift", number, 5,
+          "shift: fraction bits that w has less than the position",
+          f.position.fraction - f.view_distance.fraction);
+    field("transform.near_plane", number, 63, "w as row_w gives it", r.transform.near_plane);
+    const auto& n = r.transform.normal_rows;
+    field("transform.normal_rows", with_sign, f.normal.bits, "world to view, normal's format", n[0][0],
+          n[0][1], n[0][2], n[1][0], n[1][1], n[1][2], n[2][0], n[2][1], n[2][2]);
+
+    direction("light.direction", "in view space, normal's format", r.light.direction);
+    field("light.ambient", number, 9, "of 256", r.light.ambient);
+}
+
+/// Whether a register's bits hold the value.
+constexpr bool holds(const Register& field, std::int64_t value) {
+    const int magnitude_bits = field.kind == RegisterKind::signed_number ? field.bits - 1 : field.bits;
+    if (magnitude_bits >= 63)
+        return true;
+    const std::int64_t beyond = std::int64_t{1} << magnitude_bits;
+    return value < beyond && value >= (field.kind == RegisterKind::signed_number ? -beyond : 0);
+}
+
+}  // namespace tessera::datapath

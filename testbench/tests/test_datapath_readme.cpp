@@ -1,0 +1,154 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "modules/datapath/all_intermediates.h"
+#include "modules/datapath/registers.h"
+
+using namespace tessera::datapath;
+
+namespace {
+
+const std::filesystem::path root = TESSERA_SOURCE_DIR;
+const std::filesystem::path folder = root / "modules/datapath";
+
+std::string text_of(const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    REQUIRE_FALSE(text.str().empty());
+    return text.str();
+}
+
+/// The cells of each row of a Markdown table below `heading`, up to the next heading.
+std::vector<std::vector<std::string>> rows_below(const std::string& heading) {
+    std::istringstream lines(text_of(folder / "README.md"));
+    std::vector<std::vector<std::string>> rows;
+    bool inside = false;
+    for (std::string line; std::getline(lines, line);) {
+        if (line.rfind("## ", 0) == 0)
+            inside = line == "## " + heading;
+        if (!inside || line.rfind("| ", 0) != 0)
+            continue;
+        std::vector<std::string> cells;
+        std::istringstream row(line.substr(1));
+        for (std::string cell; std::getline(row, cell, '|');)
+            cells.push_back(std::regex_replace(cell, std::regex("^ +| +$"), ""));
+        rows.push_back(cells);
+    }
+    REQUIRE(rows.size() > 2);
+    rows.erase(rows.begin(), rows.begin() + 2);  // head and line
+    return rows;
+}
+
+std::set<std::string> matches(const std::string& text, const std::string& pattern) {
+    const std::regex expression(pattern);
+    std::set<std::string> found;
+    for (std::sregex_iterator at(text.begin(), text.end(), expression), end; at != end; ++at)
+        found.insert((*at)[1]);
+    return found;
+}
+
+/// Functions declared at the beginning of a line in the datapath's headers.
+std::set<std::string> functions() {
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        if (entry.path().extension() != ".h")
+            continue;
+        names.merge(matches(
+            text_of(entry.path()),
+            R"((?:^|\n)(?:\[\[nodiscard\]\] )?(?:inline )?(?:constexpr |int )(?:[\w:<>, *]+? )?&?(\w+)\()"));
+    }
+    return names;
+}
+
+std::string in_code(const std::string& name) {
+    return name.find(' ') == std::string::npos ? "`" + name + "`" : name;
+}
+
+}  // namespace
+
+TEST_CASE("the datapath's README names every function of its headers, and no other") {
+    const std::set<std::string> declared = functions();
+    REQUIRE(declared.count("displace") == 1);
+    REQUIRE(declared.count("tessellate") == 1);
+    REQUIRE(declared.count("pack_triangle") == 1);
+    const std::string readme = text_of(folder / "README.md");
+    for (const std::string& name : declared) {
+        INFO(name);
+        CHECK(readme.find("`" + name + "`") != std::string::npos);
+    }
+    for (const auto& row : rows_below("Functions")) {
+        for (const std::string& name : matches(row.at(0), "`(\\w+)`")) {
+            INFO(name);
+            CHECK(declared.count(name) == 1);
+        }
+        INFO(row.at(0));
+        REQUIRE(row.size() == 7);
+        for (const std::string& test : matches(row.at(6), "`(\\w+)`"))
+            CHECK(std::filesystem::exists(root / "testbench/tests" / (test + ".cpp")));
+        CHECK(row.at(6).find("`test_datapath_") != std::string::npos);
+    }
+}
+
+TEST_CASE("the README's intermediates are those of the code, with their widths in the default formats") {
+    std::vector<std::vector<std::string>> expected;
+    visit_intermediates(Formats{}, [&](const char* function, const auto& widths) {
+        for (const Width& width : widths.all())
+            expected.push_back({in_code(function), width.name, std::to_string(width.bits)});
+    });
+    const auto rows = rows_below("Intermediates");
+    REQUIRE(rows.size() == expected.size());
+    for (std::size_t k = 0; k < rows.size(); ++k)
+        CHECK(std::vector<std::string>{rows[k].at(0), rows[k].at(1), rows[k].at(3)} == expected[k]);
+}
+
+TEST_CASE("the README's registers are those of the code, with their widths in the default formats") {
+    Registers registers;
+    registers.formats.highlight_tag = true;
+    std::vector<std::vector<std::string>> expected;
+    visit_registers(registers, [&](const Register& field, const auto& values) {
+        expected.push_back({in_code(field.name),
+                            (values.size() > 1 ? std::to_string(values.size()) + " x " : "") +
+                                (field.kind == RegisterKind::signed_number ? "signed " : "") +
+                                std::to_string(field.bits),
+                            field.meaning});
+    });
+    const auto rows = rows_below("Registers");
+    REQUIRE(rows.size() == expected.size());
+    for (std::size_t k = 0; k < rows.size(); ++k)
+        CHECK(std::vector<std::string>{rows[k].at(0), rows[k].at(2), rows[k].at(3)} == expected[k]);
+}
+
+TEST_CASE("registers: only a design with a Highlight Test has those of the test") {
+    const auto names = [](bool highlight) {
+        Registers registers;
+        registers.formats.highlight_tag = highlight;
+        std::set<std::string> found;
+        visit_registers(registers, [&](const Register& field, const auto&) { found.insert(field.name); });
+        return found;
+    };
+    CHECK(names(false).count("tests.highlight_cosine") == 0);
+    CHECK(names(true).size() == names(false).size() + 4);
+}
+
+TEST_CASE("registers: a register holds what its bits hold") {
+    const Register number{"", RegisterKind::unsigned_number, 9, ""};
+    CHECK(holds(number, 0));
+    CHECK(holds(number, 511));
+    CHECK_FALSE(holds(number, 512));
+    CHECK_FALSE(holds(number, -1));
+    const Register with_sign{"", RegisterKind::signed_number, 26, ""};
+    CHECK(holds(with_sign, 1 << 24));
+    CHECK(holds(with_sign, -(1 << 25)));
+    CHECK_FALSE(holds(with_sign, 1 << 25));
+    CHECK_FALSE(holds(with_sign, -(1 << 25) - 1));
+    CHECK(holds({"", RegisterKind::unsigned_number, 63, ""}, std::numeric_limits<std::int64_t>::max()));
+}
