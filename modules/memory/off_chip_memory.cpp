@@ -11,34 +11,35 @@ OffChipMemory::OffChipMemory(const sc_core::sc_module_name& name, Clock& clock, 
       channel_(timing),
       uncounted_(uncounted) {}
 
-unsigned OffChipMemory::counted(const Payload& payload) const {
-    const unsigned length = payload.get_data_length();
-    return length > uncounted_ ? length - uncounted_ : length;
+unsigned OffChipMemory::counted(const MemoryRequest& request) const {
+    return request.bytes() > uncounted_ ? request.bytes() - uncounted_ : request.bytes();
 }
 
-void OffChipMemory::access(Payload& payload) {
-    if (!payload.is_read() && !payload.is_write()) {
-        payload.set_response_status(tlm::TLM_COMMAND_ERROR_RESPONSE);
-    } else if (move(storage_, payload) == 0) {
-        payload.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE);
+void OffChipMemory::access(MemoryRequest& request) {
+    const bool write = request.command == tlm::TLM_WRITE_COMMAND;
+    if (!write && request.command != tlm::TLM_READ_COMMAND) {
+        request.response = tlm::TLM_COMMAND_ERROR_RESPONSE;
+    } else if (move(storage_, request) == 0) {
+        request.response = tlm::TLM_ADDRESS_ERROR_RESPONSE;
     } else {
-        payload.set_response_status(tlm::TLM_OK_RESPONSE);
-        (payload.is_write() ? bytes_written_ : bytes_read_) += counted(payload);
+        request.response = tlm::TLM_OK_RESPONSE;
+        (write ? bytes_written_ : bytes_read_) += counted(request);
     }
 }
 
-std::uint64_t OffChipMemory::serve(Payload& payload, std::uint64_t cycle) {
-    access(payload);
-    last_address_ = payload.get_address();
-    last_is_write_ = payload.is_write();
-    const std::uint64_t answer_at = channel_.serve(counted(payload), cycle);
+std::uint64_t OffChipMemory::serve(MemoryRequest& request, std::uint64_t cycle) {
+    access(request);
+    last_address_ = request.address[0];
+    last_is_write_ = request.command == tlm::TLM_WRITE_COMMAND;
+    const std::uint64_t answer_at = channel_.serve(counted(request), cycle);
     wake_at(channel_.ready());  // no longer busy
     return answer_at;
 }
 
-void OffChipMemory::b_transport(int, Payload& payload, sc_core::sc_time& delay) {
-    access(payload);
-    delay += clock_.period() * channel_.latency();
+void OffChipMemory::b_transport(int, MemoryRequest& request, sc_core::sc_time& delay) {
+    access(request);
+    if (request.is_ok())
+        delay += clock_.period() * channel_.latency();
 }
 
 /// Shows the request served last.

@@ -26,13 +26,13 @@ class OffChipMemory : public MemoryServer {
     void show(Signals& signals) const override;
 
   private:
-    std::uint64_t ready(const Payload&) const override { return channel_.ready(); }
-    std::uint64_t serve(Payload& payload, std::uint64_t cycle) override;
+    std::uint64_t ready(const MemoryRequest&) const override { return channel_.ready(); }
+    std::uint64_t serve(MemoryRequest& request, std::uint64_t cycle) override;
     bool busy(std::uint64_t cycle) const override { return channel_.ready() > cycle; }
-    void b_transport(int id, Payload& payload, sc_core::sc_time& delay) override;
-    unsigned transport_dbg(int, Payload& payload) override { return move(storage_, payload); }
-    void access(Payload& payload);
-    unsigned counted(const Payload& payload) const;
+    void b_transport(int id, MemoryRequest& request, sc_core::sc_time& delay) override;
+    unsigned transport_dbg(int, MemoryRequest& request) override { return move(storage_, request); }
+    void access(MemoryRequest& request);
+    unsigned counted(const MemoryRequest& request) const;
 
     Storage storage_;
     Channel channel_;

@@ -7,20 +7,6 @@
 
 namespace tessera {
 
-namespace {
-
-struct Entries {
-    const std::uint64_t* addresses;
-    unsigned count;
-};
-
-Entries entries_of(const tlm::tlm_generic_payload& payload, const std::uint64_t& address) {
-    const auto* gather = payload.get_extension<GatherExtension>();
-    return gather == nullptr ? Entries{&address, 1} : Entries{gather->address.data(), gather->count};
-}
-
-}  // namespace
-
 TableMemory::TableMemory(const sc_core::sc_module_name& name, Clock& clock,
                          const datapath::TableLayout& layout, const MemoryTiming& timing,
                          const StallParameters& stalls)
@@ -30,59 +16,37 @@ TableMemory::TableMemory(const sc_core::sc_module_name& name, Clock& clock,
     storage_.all();
 }
 
-void TableMemory::read(Payload& payload) {
-    const unsigned length = payload.get_data_length();
-    if (payload.get_command() != tlm::TLM_READ_COMMAND) {
-        payload.set_response_status(tlm::TLM_COMMAND_ERROR_RESPONSE);
-        return;
+void TableMemory::read(MemoryRequest& request) {
+    if (request.command != tlm::TLM_READ_COMMAND) {
+        request.response = tlm::TLM_COMMAND_ERROR_RESPONSE;
+    } else if (move(storage_, request) == 0) {
+        request.response = tlm::TLM_ADDRESS_ERROR_RESPONSE;
+    } else {
+        request.response = tlm::TLM_OK_RESPONSE;
+        request.dmi_allowed = true;
+        transactions_ += request.count;
     }
-    if (payload.get_byte_enable_ptr() != nullptr) {
-        payload.set_response_status(tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE);
-        return;
-    }
-    if (payload.get_streaming_width() < length) {
-        payload.set_response_status(tlm::TLM_BURST_ERROR_RESPONSE);
-        return;
-    }
-    const std::uint64_t own_address = payload.get_address();
-    const auto [addresses, count] = entries_of(payload, own_address);
-    const unsigned each = length / count;
-    for (unsigned k = 0; k < count; ++k) {
-        if (!storage_.covers(addresses[k], each)) {
-            payload.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE);
-            return;
-        }
-        storage_.read(addresses[k], payload.get_data_ptr() + std::size_t{k} * each, each);
-    }
-    transactions_ += count;
-    payload.set_dmi_allowed(true);
-    payload.set_response_status(tlm::TLM_OK_RESPONSE);
 }
 
-std::uint64_t TableMemory::ready(const Payload& payload) const {
-    const std::uint64_t own_address = payload.get_address();
-    const auto [addresses, count] = entries_of(payload, own_address);
-    return ports_.ready(addresses, count);
+std::uint64_t TableMemory::ready(const MemoryRequest& request) const {
+    return ports_.ready(request.address.data(), request.count);
 }
 
-std::uint64_t TableMemory::serve(Payload& payload, std::uint64_t cycle) {
-    read(payload);
-    const std::uint64_t own_address = payload.get_address();
-    const auto [addresses, count] = entries_of(payload, own_address);
-    last_ = {own_address, count, 0};
-    std::memcpy(&last_.data, payload.get_data_ptr(),
-                std::min<std::size_t>(payload.get_data_length() / count, sizeof last_.data));
-    return ports_.serve(addresses, count, cycle);
+std::uint64_t TableMemory::serve(MemoryRequest& request, std::uint64_t cycle) {
+    read(request);
+    last_ = {request.address[0], request.count, 0};
+    std::memcpy(&last_.data, request.data, std::min<std::size_t>(request.entry_bytes, sizeof last_.data));
+    return ports_.serve(request.address.data(), request.count, cycle);
 }
 
-void TableMemory::b_transport(int, Payload& payload, sc_core::sc_time& delay) {
-    read(payload);
-    if (payload.is_response_ok())
+void TableMemory::b_transport(int, MemoryRequest& request, sc_core::sc_time& delay) {
+    read(request);
+    if (request.is_ok())
         delay += clock_.period() * ports_.latency();
 }
 
-bool TableMemory::get_direct_mem_ptr(int, Payload& payload, tlm::tlm_dmi& dmi) {
-    if (payload.get_command() != tlm::TLM_READ_COMMAND || !storage_.covers(payload.get_address(), 1))
+bool TableMemory::get_direct_mem_ptr(int, MemoryRequest& request, tlm::tlm_dmi& dmi) {
+    if (request.command != tlm::TLM_READ_COMMAND || !storage_.covers(request.address[0], 1))
         return false;
     dmi.set_start_address(storage_.base());
     dmi.set_end_address(storage_.base() + storage_.size() - 1);

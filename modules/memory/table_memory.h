@@ -4,7 +4,6 @@
 #include <systemc>
 
 #include "modules/memory/banked_ports.h"
-#include "modules/memory/gather_extension.h"
 #include "modules/memory/memory_server.h"
 #include "modules/memory/storage.h"
 
@@ -13,11 +12,11 @@ namespace tessera {
 /// A memory that holds one table.
 ///
 /// Address map: [layout.base, layout.base + layout.bytes()); entry (x, y) at layout.address(x, y), little endian.
-/// Read by units, written only by the host's debug transport before the run. A read is of one entry, or gathers
-/// several (gather_extension.h).
-/// Timing: banked_ports.h. b_transport, DMI: the latency for each entry.
-/// Errors: a write gives TLM_COMMAND_ERROR_RESPONSE, an address outside TLM_ADDRESS_ERROR_RESPONSE, byte enables or
-/// streaming the TLM responses for those.
+/// Read by units, written only by the host's debug transport before the run.
+/// Timing: banked_ports.h. b_transport, DMI: the latency, once a request.
+/// Utilisation: of the busiest bank's port slots those that were taken, or of the cycles those in which a request was held
+/// up, whichever is more: banks in conflict hold requests up with most of their ports idle.
+/// Errors: a write gives TLM_COMMAND_ERROR_RESPONSE, an address outside TLM_ADDRESS_ERROR_RESPONSE.
 class TableMemory : public MemoryServer {
   public:
     TableMemory(const sc_core::sc_module_name& name, Clock& clock, const datapath::TableLayout& layout,
@@ -34,12 +33,12 @@ class TableMemory : public MemoryServer {
     void show(Signals& signals) const override;
 
   private:
-    std::uint64_t ready(const Payload& payload) const override;
-    std::uint64_t serve(Payload& payload, std::uint64_t cycle) override;
-    void b_transport(int id, Payload& payload, sc_core::sc_time& delay) override;
-    bool get_direct_mem_ptr(int id, Payload& payload, tlm::tlm_dmi& dmi) override;
-    unsigned transport_dbg(int, Payload& payload) override { return move(storage_, payload); }
-    void read(Payload& payload);
+    std::uint64_t ready(const MemoryRequest& request) const override;
+    std::uint64_t serve(MemoryRequest& request, std::uint64_t cycle) override;
+    void b_transport(int id, MemoryRequest& request, sc_core::sc_time& delay) override;
+    bool get_direct_mem_ptr(int id, MemoryRequest& request, tlm::tlm_dmi& dmi) override;
+    unsigned transport_dbg(int, MemoryRequest& request) override { return move(storage_, request); }
+    void read(MemoryRequest& request);
 
     Storage storage_;
     BankedPorts ports_;
