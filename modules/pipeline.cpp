@@ -10,7 +10,7 @@ namespace tessera {
 Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Registers& registers,
                    const Design& design, Wiring* wiring)
     : sc_module(name),
-      clock("clock", sc_core::sc_time::from_value(design.timing.cycle_picoseconds)),
+      clock("clock", clock_period(this->name(), design.timing.cycle_picoseconds)),
       get_triangle("get_triangle", clock, design.timing, design.tests_units, passes),
       calculate_new_p("calculate_new_p", clock, design.timing),
       displace_vertex("displace_vertex", clock, registers, design.timing, design.direct_memory),

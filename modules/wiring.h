@@ -1,7 +1,6 @@
 #pragma once
 #include "modules/memory/memory_port.h"
 #include "modules/memory/off_chip_memory.h"
-#include "modules/memory/store_port.h"
 #include "modules/memory/table_memory.h"
 #include "modules/stream/stream_input.h"
 #include "modules/stream/stream_output.h"
@@ -20,7 +19,7 @@ class Wiring {
     virtual void join(StreamOutput<Work>& from, StreamInput<Work>& to) { from.bind(to); }
     virtual void join(StreamOutput<LitTriangle>& from, StreamInput<LitTriangle>& to) { from.bind(to); }
     virtual void join(MemoryPort& port, TableMemory& memory) { port.bind(memory); }
-    virtual void join(StorePort& port, OffChipMemory& memory) { port.bind(memory); }
+    virtual void join(MemoryPort& port, OffChipMemory& memory) { port.bind(memory); }
 
     Wiring() = default;
     virtual ~Wiring() = default;

@@ -36,6 +36,9 @@ class CycleObserver {
     virtual ~CycleObserver() = default;
 };
 
+/// A clock's period. SC_ERROR, naming the instance that wants it, if it is no multiple of SystemC's time resolution.
+sc_core::sc_time clock_period(const char* instance, std::uint64_t picoseconds);
+
 /// The clock of timed mode: calls those that asked for a cycle, and skips the cycles nobody asked for.
 ///
 /// Within a cycle the order is that of attachment, whatever the order of asking: attach downstream units first, so

@@ -1,31 +1,31 @@
 #pragma once
 #include <tlm_utils/simple_initiator_socket.h>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <memory>
 #include <systemc>
 #include <tlm>
 #include <vector>
 
 #include "modules/clock/clock.h"
-#include "modules/memory/gather_extension.h"
+#include "modules/memory/memory_request.h"
+#include "modules/unit/ring.h"
 
 namespace tessera {
 
-/// A unit's read port on a table. Every response is checked: one that is not OK is an SC_ERROR that names the port,
-/// the address and the response.
+/// A unit's port on a memory, for entries of one size: a table's, or records in off-chip memory.
 ///
-/// Functional mode: DMI where the memory grants it and the unit may use it, else b_transport; the same values, the
+/// Functional mode: read(). DMI where the memory grants it and the unit may use it, else b_transport; the same values, the
 /// same added time and the same counts either way.
-/// Timed mode: nb_transport, base protocol. One request on offer at a time (END_REQ withheld: the memory's buffer is
-/// full), several under way, answered in order. Breaches of the protocol are SC_ERRORs.
-class MemoryPort : public tlm::tlm_mm_interface {
+/// Timed mode: requests (memory_request.h). One on offer at a time, several under way, answered in order. The unit is
+/// called when a request that had to wait is taken and when an answer comes.
+/// Errors: responses other than OK, and breaches of the protocol, are SC_ERRORs that name the port.
+class MemoryPort {
   public:
-    tlm_utils::simple_initiator_socket<MemoryPort> socket;
+    tlm_utils::simple_initiator_socket<MemoryPort, 32, MemoryProtocol> socket;
 
-    /// entry_bytes: 1 to 8.
-    MemoryPort(const char* name, unsigned entry_bytes, bool use_direct_memory);
-    ~MemoryPort() override;
+    /// entry_bytes: at least 1; read() and entry() are for 8 at most.
+    MemoryPort(const char* name, std::size_t entry_bytes, bool use_direct_memory);
 
     /// Several reads in a row. Through DMI they are counted and timed once, at the end; on destruction.
     class Burst {
@@ -69,32 +69,42 @@ class MemoryPort : public tlm::tlm_mm_interface {
         return Burst(*this, delay).read(address);
     }
 
-    /// Timed mode: `unit` is called when a request that had to wait is taken and when an answer comes.
-    /// most_under_way: requests that may be unanswered at a time.
-    void clocked_by(Clock& clock, Clocked& unit, std::size_t most_under_way);
+    /// Timed mode. most_under_way: requests that may be unanswered at a time; most_entries: of one of them.
+    void clocked_by(Clock& clock, Clocked& unit, std::size_t most_under_way,
+                    unsigned most_entries = datapath::RectangleReads::most);
 
     /// A request may be offered.
-    bool may_request() const { return !on_offer_ && under_way_ < slots_.size(); }
+    bool may_request() const { return !on_offer_ && !slots_.full(); }
     /// The request on offer has not been taken.
     bool on_offer() const { return on_offer_; }
-    bool under_way() const { return under_way_ > 0; }
-    std::size_t requests_under_way() const { return under_way_; }
+    bool under_way() const { return !slots_.empty(); }
+    std::size_t requests_under_way() const { return slots_.size(); }
     /// Of the newest request, if any: the address of its first entry.
-    std::uint64_t last_address() const { return under_way_ == 0 ? 0 : last().payload.get_address(); }
+    std::uint64_t last_address() const { return slots_.empty() ? 0 : slots_.back().request.address[0]; }
 
-    /// Asks for `count` entries, 1 to 9; more than one are a gather (gather_extension.h).
+    /// Asks for `count` entries, 1 to RectangleReads::most.
     void request(const std::uint64_t* addresses, unsigned count);
+    void request(std::uint64_t address) { request(&address, 1); }
+    /// The entry that write() will send; to be filled in just before.
+    unsigned char* entry_to_write() { return slots_.at(slots_.size()).data.data(); }
+    void write(std::uint64_t address);
 
-    /// The first unanswered request has been answered.
+    /// The oldest request under way has been answered.
     bool answered() const { return answered_ > 0; }
+    bool answer_is_read() const { return slots_.front().request.command == tlm::TLM_READ_COMMAND; }
     /// Entry k of that answer, zero-extended.
     std::uint64_t entry(unsigned k) const {
         std::uint64_t value = 0;
-        // Eight bytes are there: the slot has as many for each entry.
-        std::memcpy(&value, &slots_[first_]->data[std::size_t{k} * entry_bytes_], sizeof value);
+        // Eight bytes are there: the slot has as many after its last entry.
+        std::memcpy(&value, &slots_.front().data[std::size_t{k} * entry_bytes_], sizeof value);
         return value & mask_;
     }
-    void pop_answer();
+    /// The bytes of that answer.
+    const unsigned char* answer() const { return slots_.front().data.data(); }
+    void pop_answer() {
+        slots_.pop();
+        --answered_;
+    }
 
     /// Requests made in timed mode; entries read in either.
     std::uint64_t requests() const { return requests_; }
@@ -117,26 +127,17 @@ class MemoryPort : public tlm::tlm_mm_interface {
 
   private:
     struct Slot {
-        explicit Slot(tlm::tlm_mm_interface* manager) : payload(manager) { payload.set_extension(&gather); }
-        ~Slot() { payload.clear_extension(&gather); }
-
-        tlm::tlm_generic_payload payload;
-        GatherExtension gather;
-        std::array<unsigned char, std::size_t{8} * datapath::RectangleReads::most> data{};
-        bool taken = false;
+        MemoryRequest request;
+        std::vector<unsigned char> data;
     };
 
     std::uint64_t read_by_transaction(std::uint64_t address, sc_core::sc_time& delay);
-    void check_response(const tlm::tlm_generic_payload& payload) const;
-    void ask_for_direct_memory();
-    void invalidate_direct_mem_ptr(sc_dt::uint64 start, sc_dt::uint64 end);
-    tlm::tlm_sync_enum nb_transport_bw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
+    void check_response(const MemoryRequest& request) const;
+    void ask_for_direct_memory(MemoryRequest& request);
+    void invalidate_direct_mem_ptr(sc_dt::uint64, sc_dt::uint64) { direct_bytes_ = 0; }
+    void offer(tlm::tlm_command command, const std::uint64_t* addresses, unsigned count);
+    tlm::tlm_sync_enum nb_transport_bw(MemoryRequest& request, tlm::tlm_phase& phase,
                                        sc_core::sc_time& delay);
-    void free(tlm::tlm_generic_payload*) override {}  // the slots are reused
-    Slot& last() const {
-        const std::size_t sum = first_ + under_way_ - 1;
-        return *slots_[sum < slots_.size() ? sum : sum - slots_.size()];
-    }
 
     unsigned entry_bytes_;
     std::uint64_t mask_;
@@ -148,15 +149,12 @@ class MemoryPort : public tlm::tlm_mm_interface {
     // Addresses at which eight bytes may be loaded; the table's last few entries are read by transaction. 0: no DMI.
     std::uint64_t direct_bytes_ = 0;
     sc_core::sc_time direct_time_;
-    tlm::tlm_generic_payload payload_;
 
     Clock* clock_ = nullptr;
     Clocked* unit_ = nullptr;
-    std::vector<std::unique_ptr<Slot>> slots_;  // a ring of requests, oldest first
-    std::size_t first_ = 0;
-    std::size_t under_way_ = 0;
+    Ring<Slot> slots_;          // the requests under way
     std::size_t answered_ = 0;  // of these, the first so many
-    bool on_offer_ = false;
+    bool on_offer_ = false;     // the newest of these
     const sc_core::sc_object* memory_ = nullptr;
 };
 

@@ -17,9 +17,8 @@ TriangleQueue::TriangleQueue(const sc_core::sc_module_name& name, Clock& clock,
                              const Timing& timing)
     : Unit(name, clock),
       off_chip_memory(
-          "off_chip_memory", clock, *this,
-          datapath::packed_triangle_bytes(registers.formats) + datapath::packed_triangle_tag_bytes,
-          timing.off_chip_memory.buffer + 4),
+          "off_chip_memory",
+          datapath::packed_triangle_bytes(registers.formats) + datapath::packed_triangle_tag_bytes, false),
       registers_(registers),
       design_(design),
       timing_(timing.triangle_queue),
@@ -30,6 +29,7 @@ TriangleQueue::TriangleQueue(const sc_core::sc_module_name& name, Clock& clock,
     from_tessellation.serve<&TriangleQueue::b_transport>(*this);
     from_tessellation.clocked_by(clock, *this, timing_.buffer, timing.stalls);
     to_get_triangle.clocked_by(clock, *this);
+    off_chip_memory.clocked_by(clock, *this, timing.off_chip_memory.buffer + 4, 1);
     level.bind(*this);
     SC_HAS_PROCESS(TriangleQueue);
     SC_THREAD(send_waiting);
@@ -78,7 +78,7 @@ void TriangleQueue::level_changed(std::uint64_t cycle) {
 }
 
 void TriangleQueue::spill(const datapath::Triangle& triangle) {
-    if (!datapath::pack_triangle(triangle, registers_.formats, off_chip_memory.record_to_write()))
+    if (!datapath::pack_triangle(triangle, registers_.formats, off_chip_memory.entry_to_write()))
         SC_REPORT_ERROR("tessera/triangle_queue",
                         "a spilled triangle does not fit its format (generations beyond generation_bits?)");
     if (off_chip_ == 0)
@@ -145,7 +145,7 @@ void TriangleQueue::refill() {
     while (off_chip_ > 0 && off_chip_memory.may_request() &&
            (fifo ? on_chip_room() : store_.size() + refills_ <= design_.capacity / 2)) {
         --off_chip_;
-        off_chip_memory.read(place_address(fifo ? off_chip_head_++ : off_chip_head_ + off_chip_));
+        off_chip_memory.request(place_address(fifo ? off_chip_head_++ : off_chip_head_ + off_chip_));
         ++refills_;
     }
 }
@@ -226,7 +226,7 @@ void TriangleQueue::show(Signals& signals) const {
     signals.pulse("spill", spilled_);
     signals.pulse("refill", refilled_);
     signals.flag("request_held", off_chip_memory.on_offer());
-    signals.value("requests_under_way", 16, off_chip_memory.under_way());
+    signals.value("requests_under_way", 16, off_chip_memory.requests_under_way());
 }
 
 }  // namespace tessera

@@ -4,7 +4,7 @@
 #include <systemc>
 
 #include "modules/datapath/parameters.h"
-#include "modules/memory/store_port.h"
+#include "modules/memory/memory_port.h"
 #include "modules/stream/stream_input.h"
 #include "modules/stream/stream_output.h"
 #include "modules/timing.h"
@@ -45,7 +45,7 @@ class TriangleQueue : public Unit, public TriangleQueueLevel {
   public:
     StreamInput<datapath::Triangle> from_tessellation{"from_tessellation"};
     StreamOutput<datapath::Triangle> to_get_triangle{"to_get_triangle"};
-    StorePort off_chip_memory;
+    MemoryPort off_chip_memory;
     sc_core::sc_export<TriangleQueueLevel> level{"level"};
 
     TriangleQueue(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,

@@ -3,10 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <utility>
-
-#include "modules/memory/gather_extension.h"
 
 namespace tessera {
 
@@ -18,37 +17,19 @@ ReadCheck::ReadCheck(const sc_core::sc_module_name& name, std::string port)
     to_memory.register_nb_transport_bw(this, &ReadCheck::nb_transport_bw);
 }
 
-unsigned ReadCheck::transport_dbg(Payload& payload) {
-    return to_memory->transport_dbg(payload);
+unsigned ReadCheck::transport_dbg(MemoryRequest& request) {
+    return to_memory->transport_dbg(request);
 }
 
-ReadCheck::Asked ReadCheck::asked_by(const Payload& payload) {
-    Asked asked;
-    asked.payload = &payload;
-    if (const auto* gather = payload.get_extension<GatherExtension>()) {
-        asked.count = gather->count;
-        asked.address = gather->address;
-    } else {
-        asked.count = 1;
-        asked.address[0] = payload.get_address();
-    }
-    return asked;
-}
-
-void ReadCheck::compare(const Asked& asked, const Payload& payload) {
-    if (!payload.is_read() || !payload.is_response_ok())
+void ReadCheck::compare(const MemoryRequest& asked, const MemoryRequest& answer) {
+    if (asked.command != tlm::TLM_READ_COMMAND || !answer.is_ok())
         return;
-    const unsigned bytes = payload.get_data_length() / asked.count;
+    const unsigned bytes = asked.entry_bytes;
     for (unsigned k = 0; k < asked.count; ++k) {
         std::array<unsigned char, 8> held{};
-        Payload look;
-        look.set_command(tlm::TLM_READ_COMMAND);
-        look.set_address(asked.address[k]);
-        look.set_data_ptr(held.data());
-        look.set_data_length(bytes);
-        look.set_streaming_width(bytes);
+        MemoryRequest look{tlm::TLM_READ_COMMAND, 1, bytes, {asked.address[k]}, held.data()};
         ++result_.entries;
-        const unsigned char* const brought = payload.get_data_ptr() + std::size_t{k} * bytes;
+        const unsigned char* const brought = asked.entry(k);
         if (to_memory->transport_dbg(look) == bytes && std::memcmp(held.data(), brought, bytes) == 0)
             continue;
         if (result_.wrong++ > 0)
@@ -62,30 +43,30 @@ void ReadCheck::compare(const Asked& asked, const Payload& payload) {
     }
 }
 
-void ReadCheck::b_transport(Payload& payload, sc_core::sc_time& delay) {
-    const Asked asked = asked_by(payload);
-    to_memory->b_transport(payload, delay);
-    payload.set_dmi_allowed(false);
-    compare(asked, payload);
+void ReadCheck::b_transport(MemoryRequest& request, sc_core::sc_time& delay) {
+    const MemoryRequest asked = request;
+    to_memory->b_transport(request, delay);
+    request.dmi_allowed = false;
+    compare(asked, request);
 }
 
-tlm::tlm_sync_enum ReadCheck::nb_transport_fw(Payload& payload, tlm::tlm_phase& phase,
+tlm::tlm_sync_enum ReadCheck::nb_transport_fw(MemoryRequest& request, tlm::tlm_phase& phase,
                                               sc_core::sc_time& delay) {
-    under_way_.push_back(asked_by(payload));
-    return to_memory->nb_transport_fw(payload, phase, delay);
+    under_way_.push_back({&request, request});
+    return to_memory->nb_transport_fw(request, phase, delay);
 }
 
-tlm::tlm_sync_enum ReadCheck::nb_transport_bw(Payload& payload, tlm::tlm_phase& phase,
+tlm::tlm_sync_enum ReadCheck::nb_transport_bw(MemoryRequest& request, tlm::tlm_phase& phase,
                                               sc_core::sc_time& delay) {
     if (phase == tlm::BEGIN_RESP) {
         const auto asked = std::find_if(under_way_.begin(), under_way_.end(),
-                                        [&](const Asked& one) { return one.payload == &payload; });
+                                        [&](const Asked& one) { return one.request == &request; });
         if (asked != under_way_.end()) {
-            compare(*asked, payload);
+            compare(asked->copy, request);
             under_way_.erase(asked);
         }
     }
-    return socket->nb_transport_bw(payload, phase, delay);
+    return socket->nb_transport_bw(request, phase, delay);
 }
 
 }  // namespace tessera

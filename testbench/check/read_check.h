@@ -1,14 +1,13 @@
 #pragma once
 #include <tlm_utils/passthrough_target_socket.h>
 #include <tlm_utils/simple_initiator_socket.h>
-#include <array>
 #include <cstdint>
 #include <string>
 #include <systemc>
 #include <tlm>
 #include <vector>
 
-#include "modules/datapath/rectangle.h"
+#include "modules/memory/memory_request.h"
 
 namespace tessera {
 
@@ -27,8 +26,8 @@ struct ReadResult {
 /// go by transaction, three times as long.
 class ReadCheck : public sc_core::sc_module {
   public:
-    tlm_utils::passthrough_target_socket<ReadCheck> socket{"socket"};
-    tlm_utils::simple_initiator_socket<ReadCheck> to_memory{"to_memory"};
+    tlm_utils::passthrough_target_socket<ReadCheck, 32, MemoryProtocol> socket{"socket"};
+    tlm_utils::simple_initiator_socket<ReadCheck, 32, MemoryProtocol> to_memory{"to_memory"};
 
     /// `port`: for messages.
     ReadCheck(const sc_core::sc_module_name& name, std::string port);
@@ -36,20 +35,19 @@ class ReadCheck : public sc_core::sc_module {
     const ReadResult& result() const { return result_; }
 
   private:
-    using Payload = tlm::tlm_generic_payload;
-    /// What was asked for, before anyone downstream can touch it.
+    /// A request under way, and a copy of it that nobody downstream can touch.
     struct Asked {
-        const Payload* payload = nullptr;
-        unsigned count = 0;
-        std::array<std::uint64_t, datapath::RectangleReads::most> address{};
+        const MemoryRequest* request = nullptr;
+        MemoryRequest copy;
     };
 
-    void b_transport(Payload& payload, sc_core::sc_time& delay);
-    tlm::tlm_sync_enum nb_transport_fw(Payload& payload, tlm::tlm_phase& phase, sc_core::sc_time& delay);
-    tlm::tlm_sync_enum nb_transport_bw(Payload& payload, tlm::tlm_phase& phase, sc_core::sc_time& delay);
-    unsigned transport_dbg(Payload& payload);
-    static Asked asked_by(const Payload& payload);
-    void compare(const Asked& asked, const Payload& payload);
+    void b_transport(MemoryRequest& request, sc_core::sc_time& delay);
+    tlm::tlm_sync_enum nb_transport_fw(MemoryRequest& request, tlm::tlm_phase& phase,
+                                       sc_core::sc_time& delay);
+    tlm::tlm_sync_enum nb_transport_bw(MemoryRequest& request, tlm::tlm_phase& phase,
+                                       sc_core::sc_time& delay);
+    unsigned transport_dbg(MemoryRequest& request);
+    void compare(const MemoryRequest& asked, const MemoryRequest& answer);
 
     std::string port_;
     std::vector<Asked> under_way_;

@@ -82,8 +82,7 @@ void CheckedWiring::join(StreamOutput<LitTriangle>& from, StreamInput<LitTriangl
     join_stream(from, to);
 }
 
-template <class Port, class Memory>
-void CheckedWiring::join_memory(Port& port, Memory& memory, bool check_reads) {
+void CheckedWiring::join_memory(MemoryPort& port, MemoryServer& memory, bool check_reads) {
     const std::string name = place_name(port.socket.name());
     ReadCheck* check = nullptr;
     if (check_reads && check_reads_) {
@@ -111,7 +110,7 @@ void CheckedWiring::join(MemoryPort& port, TableMemory& memory) {
     join_memory(port, memory, true);
 }
 // What comes back of a triangle is the work check's to judge.
-void CheckedWiring::join(StorePort& port, OffChipMemory& memory) {
+void CheckedWiring::join(MemoryPort& port, OffChipMemory& memory) {
     join_memory(port, memory, false);
 }
 

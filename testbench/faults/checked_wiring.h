@@ -23,7 +23,7 @@ class CheckedWiring : public Wiring {
     void join(StreamOutput<Work>& from, StreamInput<Work>& to) override;
     void join(StreamOutput<LitTriangle>& from, StreamInput<LitTriangle>& to) override;
     void join(MemoryPort& port, TableMemory& memory) override;
-    void join(StorePort& port, OffChipMemory& memory) override;
+    void join(MemoryPort& port, OffChipMemory& memory) override;
 
     /// To be called when the machine is built. Throws InputError if the fault's place is none that its kind can strike in
     /// the job's mode; names all that there are.
@@ -39,8 +39,7 @@ class CheckedWiring : public Wiring {
     template <class Payload>
     void join_stream(StreamOutput<Payload>& from, StreamInput<Payload>& to);
     bool is_place(const std::string& name, bool applies);
-    template <class Port, class Memory>
-    void join_memory(Port& port, Memory& memory, bool check_reads);
+    void join_memory(MemoryPort& port, MemoryServer& memory, bool check_reads);
 
     Job::Fault fault_;
     datapath::Formats formats_;

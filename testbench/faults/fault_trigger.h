@@ -11,7 +11,7 @@ class FaultTrigger {
   public:
     /// cycle_picoseconds: the clock's period.
     FaultTrigger(const Job::Fault& fault, unsigned cycle_picoseconds)
-        : fault_(fault), cycle_picoseconds_(cycle_picoseconds) {}
+        : fault_(fault), period_(cycle_picoseconds, sc_core::SC_PS) {}
 
     FaultKind kind() const { return fault_.kind; }
     std::uint64_t bit() const { return static_cast<std::uint64_t>(fault_.bit); }
@@ -22,7 +22,7 @@ class FaultTrigger {
         if (disarmed_ || seen_ != static_cast<std::uint64_t>(fault_.transaction))
             return false;
         injected_ = true;
-        cycle_ = sc_core::sc_time_stamp().value() / cycle_picoseconds_;
+        cycle_ = static_cast<std::uint64_t>(sc_core::sc_time_stamp() / period_);
         return true;
     }
     /// No transaction is the one any more: the machine as it stands, without its fault.
@@ -41,7 +41,7 @@ class FaultTrigger {
 
   private:
     Job::Fault fault_;
-    unsigned cycle_picoseconds_;
+    sc_core::sc_time period_;
     std::uint64_t seen_ = 0;
     std::uint64_t cycle_ = 0;
     bool disarmed_ = false;

@@ -1,7 +1,5 @@
 #include "testbench/faults/memory_fault.h"
 
-#include "modules/memory/gather_extension.h"
-
 namespace tessera {
 
 MemoryFault::MemoryFault(const sc_core::sc_module_name& name, FaultTrigger& trigger)
@@ -12,46 +10,44 @@ MemoryFault::MemoryFault(const sc_core::sc_module_name& name, FaultTrigger& trig
     to_memory.register_nb_transport_bw(this, &MemoryFault::nb_transport_bw);
 }
 
-unsigned MemoryFault::transport_dbg(Payload& payload) {
-    return to_memory->transport_dbg(payload);
+unsigned MemoryFault::transport_dbg(MemoryRequest& request) {
+    return to_memory->transport_dbg(request);
 }
 
-void MemoryFault::flip_data(const Payload& payload) {
-    if (trigger_.bit() >= std::uint64_t{8} * payload.get_data_length()) {
+void MemoryFault::flip_data(const MemoryRequest& request) {
+    if (trigger_.bit() >= std::uint64_t{8} * request.bytes()) {
         trigger_.has_no_such_bit();
         return;
     }
-    unsigned char& byte = payload.get_data_ptr()[trigger_.bit() / 8];
+    unsigned char& byte = request.data[trigger_.bit() / 8];
     byte = static_cast<unsigned char>(byte ^ 1u << trigger_.bit() % 8);
 }
 
-void MemoryFault::flip_address(Payload& payload) {
+void MemoryFault::flip_address(MemoryRequest& request) {
     if (trigger_.bit() >= 64) {
         trigger_.has_no_such_bit();
         return;
     }
     const std::uint64_t flip = std::uint64_t{1} << trigger_.bit();
-    payload.set_address(payload.get_address() ^ flip);
-    if (auto* gather = payload.get_extension<GatherExtension>())
-        gather->address[0] ^= flip;
+    request.address[0] ^= flip;
 }
 
-void MemoryFault::b_transport(Payload& payload, sc_core::sc_time& delay) {
+void MemoryFault::b_transport(MemoryRequest& request, sc_core::sc_time& delay) {
     const bool now = trigger_.strikes();
     if (now && trigger_.kind() == FaultKind::address_flip)
-        flip_address(payload);
+        flip_address(request);
     if (now && trigger_.kind() == FaultKind::dropped)
         return;
-    to_memory->b_transport(payload, delay);
-    payload.set_dmi_allowed(false);
+    to_memory->b_transport(request, delay);
+    request.dmi_allowed = false;
     if (!now)
         return;
     if (trigger_.kind() == FaultKind::bit_flip)
-        flip_data(payload);
+        flip_data(request);
     else if (trigger_.kind() == FaultKind::error_response)
-        payload.set_response_status(tlm::TLM_GENERIC_ERROR_RESPONSE);
+        request.response = tlm::TLM_GENERIC_ERROR_RESPONSE;
     else if (trigger_.kind() == FaultKind::response_lost)
-        payload.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
+        request.response = tlm::TLM_INCOMPLETE_RESPONSE;
 }
 
 /// Kinds that need a request which the memory does not take at once.
@@ -59,21 +55,21 @@ bool MemoryFault::strikes_held_back() const {
     return trigger_.kind() == FaultKind::request_before_end || trigger_.kind() == FaultKind::response_early;
 }
 
-tlm::tlm_sync_enum MemoryFault::nb_transport_fw(Payload& payload, tlm::tlm_phase& phase,
+tlm::tlm_sync_enum MemoryFault::nb_transport_fw(MemoryRequest& request, tlm::tlm_phase& phase,
                                                 sc_core::sc_time& delay) {
     bool now = !strikes_held_back() && trigger_.strikes();
     if (now) {
-        struck_ = &payload;
+        struck_ = &request;
         if (trigger_.kind() == FaultKind::dropped) {
             phase = tlm::END_REQ;
             return tlm::TLM_UPDATED;
         }
         if (trigger_.kind() == FaultKind::address_flip)
-            flip_address(payload);
-        if (trigger_.kind() == FaultKind::bit_flip && payload.is_write())
-            flip_data(payload);
+            flip_address(request);
+        if (trigger_.kind() == FaultKind::bit_flip && request.command == tlm::TLM_WRITE_COMMAND)
+            flip_data(request);
     }
-    const tlm::tlm_sync_enum status = to_memory->nb_transport_fw(payload, phase, delay);
+    const tlm::tlm_sync_enum status = to_memory->nb_transport_fw(request, phase, delay);
     if (strikes_held_back() && status == tlm::TLM_ACCEPTED)
         now = trigger_.strikes();
     if (!now)
@@ -82,15 +78,15 @@ tlm::tlm_sync_enum MemoryFault::nb_transport_fw(Payload& payload, tlm::tlm_phase
         case FaultKind::doubled:
         case FaultKind::request_before_end: {
             tlm::tlm_phase again = tlm::BEGIN_REQ;
-            to_memory->nb_transport_fw(payload, again, delay);
+            to_memory->nb_transport_fw(request, again, delay);
             break;
         }
         case FaultKind::response_early:
-            send_back(payload, tlm::BEGIN_RESP);
+            send_back(request, tlm::BEGIN_RESP);
             break;
         case FaultKind::end_request_doubled:
             if (status == tlm::TLM_UPDATED)
-                send_back(payload, tlm::END_REQ);
+                send_back(request, tlm::END_REQ);
             break;
         default:
             break;
@@ -98,25 +94,26 @@ tlm::tlm_sync_enum MemoryFault::nb_transport_fw(Payload& payload, tlm::tlm_phase
     return status;
 }
 
-tlm::tlm_sync_enum MemoryFault::send_back(Payload& payload, const tlm::tlm_phase& phase) {
+tlm::tlm_sync_enum MemoryFault::send_back(MemoryRequest& request, const tlm::tlm_phase& phase) {
     tlm::tlm_phase its_phase = phase;
     sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
-    return socket->nb_transport_bw(payload, its_phase, delay);
+    return socket->nb_transport_bw(request, its_phase, delay);
 }
 
-tlm::tlm_sync_enum MemoryFault::nb_transport_bw(Payload& payload, tlm::tlm_phase& phase,
+tlm::tlm_sync_enum MemoryFault::nb_transport_bw(MemoryRequest& request, tlm::tlm_phase& phase,
                                                 sc_core::sc_time& delay) {
     if (phase == tlm::BEGIN_RESP)
-        return answer(payload, phase, delay);
-    const tlm::tlm_sync_enum status = socket->nb_transport_bw(payload, phase, delay);
-    if (&payload == struck_ && trigger_.kind() == FaultKind::end_request_doubled)
-        send_back(payload, tlm::END_REQ);
+        return answer(request, phase, delay);
+    const tlm::tlm_sync_enum status = socket->nb_transport_bw(request, phase, delay);
+    if (&request == struck_ && trigger_.kind() == FaultKind::end_request_doubled)
+        send_back(request, tlm::END_REQ);
     return status;
 }
 
-tlm::tlm_sync_enum MemoryFault::answer(Payload& payload, tlm::tlm_phase& phase, sc_core::sc_time& delay) {
-    if (&payload != struck_) {
-        const tlm::tlm_sync_enum status = socket->nb_transport_bw(payload, phase, delay);
+tlm::tlm_sync_enum MemoryFault::answer(MemoryRequest& request, tlm::tlm_phase& phase,
+                                       sc_core::sc_time& delay) {
+    if (&request != struck_) {
+        const tlm::tlm_sync_enum status = socket->nb_transport_bw(request, phase, delay);
         if (held_ != nullptr) {
             send_back(*held_, tlm::BEGIN_RESP);
             held_ = nullptr;
@@ -129,21 +126,21 @@ tlm::tlm_sync_enum MemoryFault::answer(Payload& payload, tlm::tlm_phase& phase, 
         case FaultKind::response_lost:
             return tlm::TLM_COMPLETED;
         case FaultKind::response_reordered:
-            held_ = &payload;
+            held_ = &request;
             trigger_.waits_for_next(true);
             return tlm::TLM_COMPLETED;
         case FaultKind::error_response:
-            payload.set_response_status(tlm::TLM_GENERIC_ERROR_RESPONSE);
+            request.response = tlm::TLM_GENERIC_ERROR_RESPONSE;
             break;
         case FaultKind::bit_flip:
-            if (payload.is_read())
-                flip_data(payload);
+            if (request.command == tlm::TLM_READ_COMMAND)
+                flip_data(request);
             break;
         default:
             break;
     }
-    const tlm::tlm_sync_enum status = socket->nb_transport_bw(payload, phase, delay);
-    return trigger_.kind() == FaultKind::response_doubled ? send_back(payload, tlm::BEGIN_RESP) : status;
+    const tlm::tlm_sync_enum status = socket->nb_transport_bw(request, phase, delay);
+    return trigger_.kind() == FaultKind::response_doubled ? send_back(request, tlm::BEGIN_RESP) : status;
 }
 
 }  // namespace tessera

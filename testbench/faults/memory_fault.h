@@ -5,6 +5,7 @@
 #include <systemc>
 #include <tlm>
 
+#include "modules/memory/memory_request.h"
 #include "testbench/faults/fault_trigger.h"
 
 namespace tessera {
@@ -25,28 +26,28 @@ namespace tessera {
 ///   response_reordered   the next request's comes first; the last of a run has none (judge_fault)
 class MemoryFault : public sc_core::sc_module {
   public:
-    tlm_utils::passthrough_target_socket<MemoryFault> socket{"socket"};
-    tlm_utils::simple_initiator_socket<MemoryFault> to_memory{"to_memory"};
+    tlm_utils::passthrough_target_socket<MemoryFault, 32, MemoryProtocol> socket{"socket"};
+    tlm_utils::simple_initiator_socket<MemoryFault, 32, MemoryProtocol> to_memory{"to_memory"};
 
     /// `trigger` must outlive it.
     MemoryFault(const sc_core::sc_module_name& name, FaultTrigger& trigger);
 
   private:
-    using Payload = tlm::tlm_generic_payload;
-
-    void b_transport(Payload& payload, sc_core::sc_time& delay);
-    tlm::tlm_sync_enum nb_transport_fw(Payload& payload, tlm::tlm_phase& phase, sc_core::sc_time& delay);
-    tlm::tlm_sync_enum nb_transport_bw(Payload& payload, tlm::tlm_phase& phase, sc_core::sc_time& delay);
-    unsigned transport_dbg(Payload& payload);
-    tlm::tlm_sync_enum answer(Payload& payload, tlm::tlm_phase& phase, sc_core::sc_time& delay);
-    tlm::tlm_sync_enum send_back(Payload& payload, const tlm::tlm_phase& phase);
-    void flip_data(const Payload& payload);
-    void flip_address(Payload& payload);
+    void b_transport(MemoryRequest& request, sc_core::sc_time& delay);
+    tlm::tlm_sync_enum nb_transport_fw(MemoryRequest& request, tlm::tlm_phase& phase,
+                                       sc_core::sc_time& delay);
+    tlm::tlm_sync_enum nb_transport_bw(MemoryRequest& request, tlm::tlm_phase& phase,
+                                       sc_core::sc_time& delay);
+    unsigned transport_dbg(MemoryRequest& request);
+    tlm::tlm_sync_enum answer(MemoryRequest& request, tlm::tlm_phase& phase, sc_core::sc_time& delay);
+    tlm::tlm_sync_enum send_back(MemoryRequest& request, const tlm::tlm_phase& phase);
+    void flip_data(const MemoryRequest& request);
+    void flip_address(MemoryRequest& request);
     bool strikes_held_back() const;
 
     FaultTrigger& trigger_;
-    const Payload* struck_ = nullptr;  // its answer is still to be broken
-    Payload* held_ = nullptr;          // an answer that waits for the next
+    const MemoryRequest* struck_ = nullptr;  // its answer is still to be broken
+    MemoryRequest* held_ = nullptr;          // an answer that waits for the next
 };
 
 }  // namespace tessera

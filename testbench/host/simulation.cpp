@@ -19,9 +19,9 @@ Simulation::Simulation(const Setup& its_setup, std::uint64_t triangle_limit,
     Wiring straight;
     Wiring& wires = wiring == nullptr ? straight : *wiring;
     wires.join(host.to_get_triangle, pipeline.get_triangle.from_host);
-    host.displacement_map.bind(pipeline.displacement_map.socket);
-    host.normal_map.bind(pipeline.normal_map.socket);
-    host.summed_height_table.bind(pipeline.summed_height_table.socket);
+    host.displacement_map.bind(pipeline.displacement_map.host);
+    host.normal_map.bind(pipeline.normal_map.host);
+    host.summed_height_table.bind(pipeline.summed_height_table.host);
     wires.join(pipeline.lighting.to_rasteriser, rasteriser.from_lighting);
     pipeline.pass_or_tessellate.finished.bind(monitor);
     pipeline.clock.stop_without_progress_for(cycles_without_progress);

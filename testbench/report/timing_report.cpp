@@ -19,8 +19,7 @@ double state_percent(const Unit& unit, State state, std::uint64_t cycles) {
 }
 
 bool is_memory(const Unit& unit) {
-    return dynamic_cast<const TableMemory*>(&unit) != nullptr ||
-           dynamic_cast<const OffChipMemory*>(&unit) != nullptr;
+    return dynamic_cast<const MemoryServer*>(&unit) != nullptr;
 }
 
 /// The largest share of a state that names somebody: who blocks, is waited for or lacks.

@@ -67,12 +67,12 @@ struct Bench {
             std::vector<unsigned char> bytes;
             for (std::uint32_t k = 0; k < registers.normal_map.entry_bytes; ++k)
                 bytes.push_back(static_cast<unsigned char>(entry >> (8 * k)));
-            tlm::tlm_generic_payload payload;
-            payload.set_command(tlm::TLM_WRITE_COMMAND);
-            payload.set_address(registers.normal_map.address(x, 0));
-            payload.set_data_ptr(bytes.data());
-            payload.set_data_length(static_cast<unsigned>(bytes.size()));
-            REQUIRE(unit.normal_map.socket->transport_dbg(payload) == bytes.size());
+            MemoryRequest request{tlm::TLM_WRITE_COMMAND,
+                                  1,
+                                  registers.normal_map.entry_bytes,
+                                  {registers.normal_map.address(x, 0)},
+                                  bytes.data()};
+            REQUIRE(unit.normal_map.socket->transport_dbg(request) == bytes.size());
         }
     }
 

@@ -166,9 +166,9 @@ TEST_CASE("a rasteriser that takes nothing is a deadlock that begins at Lighting
     Host host("host", setup, pipeline.clock);
     Wall wall("wall", pipeline.clock);
     host.to_get_triangle.bind(pipeline.get_triangle.from_host);
-    host.displacement_map.bind(pipeline.displacement_map.socket);
-    host.normal_map.bind(pipeline.normal_map.socket);
-    host.summed_height_table.bind(pipeline.summed_height_table.socket);
+    host.displacement_map.bind(pipeline.displacement_map.host);
+    host.normal_map.bind(pipeline.normal_map.host);
+    host.summed_height_table.bind(pipeline.summed_height_table.host);
     pipeline.lighting.to_rasteriser.bind(wall.in);
     sc_core::sc_start();
     CHECK(pipeline.clock.idle());

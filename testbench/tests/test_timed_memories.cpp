@@ -94,12 +94,12 @@ struct Bench {
     void fill() {
         for (std::uint32_t entry = 0; entry < 256; ++entry) {
             std::uint32_t value = 3 * entry + 1;
-            tlm::tlm_generic_payload payload;
-            payload.set_command(tlm::TLM_WRITE_COMMAND);
-            payload.set_address(layout.base + std::uint64_t{entry} * 4);
-            payload.set_data_ptr(reinterpret_cast<unsigned char*>(&value));
-            payload.set_data_length(4);
-            REQUIRE(reader().port.socket->transport_dbg(payload) == 4);
+            MemoryRequest request{tlm::TLM_WRITE_COMMAND,
+                                  1,
+                                  4,
+                                  {layout.base + std::uint64_t{entry} * 4},
+                                  reinterpret_cast<unsigned char*>(&value)};
+            REQUIRE(reader().port.socket->transport_dbg(request) == 4);
         }
     }
 };
@@ -240,6 +240,17 @@ TEST_CASE("memory: three readers take turns, none starves") {
     CHECK(bench.reader(0).answered == joined({11, 12}, every(13, 3, 28)));
     CHECK(bench.reader(1).answered == joined(every(14, 3, 28), {97, 99}));
     CHECK(bench.reader(2).answered == joined(every(15, 3, 28), {98, 100}));
+}
+
+TEST_CASE("memory: what it holds, in words") {
+    Bench bench(timing(1, 1, 1), 3);
+    for (const auto& reader : bench.readers)
+        reader->reads = single_reads(30);
+    sc_core::sc_start(sc_time(20 * 10, SC_PS));
+    // one being read, one in the buffer, one of each reader at its door
+    CHECK(bench.memory.holds() == "2 requests, 3 at its doors");
+    sc_core::sc_start();
+    CHECK(bench.memory.holds().empty());
 }
 
 TEST_CASE("memory: a reader that comes later gets its turn after at most the others' and the buffer's") {

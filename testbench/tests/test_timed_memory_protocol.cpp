@@ -1,5 +1,3 @@
-#include <tlm_utils/simple_target_socket.h>
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <string>
@@ -10,7 +8,7 @@
 #include "testbench/tests/memory_protocol.h"
 #include "testbench/tests/timed_modules.h"
 
-// The tables' sockets and the ports that read them: base protocol responses, direct access, breaches by either side.
+// The tables' sockets and the ports that read them: responses, direct access, breaches by either side.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -29,7 +27,6 @@ struct TableBench {
     Clock clock{"clock", period};
     TableMemory memory{"memory", clock, layout, MemoryTiming{}, {}};
     Initiator initiator{"initiator"};
-    Manager manager;
     unsigned char data[64] = {};
 
     TableBench() {
@@ -39,102 +36,62 @@ struct TableBench {
     }
 
     /// Blocking and non-blocking transport must give the same response.
-    void expect(Transaction& payload, tlm::tlm_response_status expected) {
-        payload.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
+    void expect(MemoryRequest request, tlm::tlm_response_status expected) {
+        MemoryRequest timed = request;
         sc_time delay(5, SC_PS);
-        initiator.socket->b_transport(payload, delay);
-        CHECK(payload.get_response_status() == expected);
+        initiator.socket->b_transport(request, delay);
+        CHECK(request.response == expected);
         CHECK(delay == sc_time(expected == tlm::TLM_OK_RESPONSE ? 15 : 5, SC_PS));
 
-        payload.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
         initiator.back.clear();
-        payload.acquire();
-        CHECK(initiator.send(payload, tlm::BEGIN_REQ) == tlm::TLM_UPDATED);
+        CHECK(initiator.send(timed, tlm::BEGIN_REQ) == tlm::TLM_UPDATED);
         sc_core::sc_start();
         REQUIRE(initiator.back.size() == 1);
         CHECK(initiator.back[0].first == tlm::BEGIN_RESP);
-        CHECK(payload.get_response_status() == expected);
-        payload.release();
-        CHECK(payload.get_ref_count() == 0);
+        CHECK(timed.response == expected);
     }
 };
 
 }  // namespace
 
-TEST_CASE("table memory: every response of the base protocol, blocking and non-blocking") {
+TEST_CASE("table memory: every response, blocking and non-blocking") {
     TableBench bench;
-    Transaction payload(&bench.manager);
-    make_read(payload, bench.data, layout.base);
-    bench.expect(payload, tlm::TLM_OK_RESPONSE);
-    make_read(payload, bench.data, layout.base + layout.bytes() - 4);
-    bench.expect(payload, tlm::TLM_OK_RESPONSE);
+    bench.expect(read_of(bench.data, layout.base), tlm::TLM_OK_RESPONSE);
+    bench.expect(read_of(bench.data, layout.base + layout.bytes() - 4), tlm::TLM_OK_RESPONSE);
     const std::uint64_t counted = bench.memory.transactions();
     CHECK(counted == 4);
 
     for (const std::uint64_t outside :
          {layout.base - 1, layout.base - 4, layout.base + layout.bytes() - 3, layout.base + layout.bytes(),
-          std::uint64_t{0}, ~std::uint64_t{0} - 2}) {
-        make_read(payload, bench.data, outside);
-        bench.expect(payload, tlm::TLM_ADDRESS_ERROR_RESPONSE);
+          std::uint64_t{0}, ~std::uint64_t{0} - 2})
+        bench.expect(read_of(bench.data, outside), tlm::TLM_ADDRESS_ERROR_RESPONSE);
+    bench.expect(read_of(bench.data, layout.base, static_cast<unsigned>(layout.bytes()) + 1),
+                 tlm::TLM_ADDRESS_ERROR_RESPONSE);
+    for (const tlm::tlm_command command : {tlm::TLM_WRITE_COMMAND, tlm::TLM_IGNORE_COMMAND}) {
+        MemoryRequest other = read_of(bench.data, layout.base);
+        other.command = command;
+        bench.expect(other, tlm::TLM_COMMAND_ERROR_RESPONSE);
     }
-    make_read(payload, bench.data, layout.base, static_cast<unsigned>(layout.bytes()) + 1);
-    bench.expect(payload, tlm::TLM_ADDRESS_ERROR_RESPONSE);
-    make_read(payload, bench.data, layout.base);
-    payload.set_command(tlm::TLM_WRITE_COMMAND);
-    bench.expect(payload, tlm::TLM_COMMAND_ERROR_RESPONSE);
-    payload.set_command(tlm::TLM_IGNORE_COMMAND);
-    bench.expect(payload, tlm::TLM_COMMAND_ERROR_RESPONSE);
-    make_read(payload, bench.data, layout.base);
-    payload.set_streaming_width(2);
-    bench.expect(payload, tlm::TLM_BURST_ERROR_RESPONSE);
-    make_read(payload, bench.data, layout.base);
-    unsigned char enable[4] = {0xff, 0xff, 0xff, 0xff};
-    payload.set_byte_enable_ptr(enable);
-    payload.set_byte_enable_length(4);
-    bench.expect(payload, tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE);
     CHECK(bench.memory.transactions() == counted);  // only what was read
 }
 
 TEST_CASE("table memory: a gather with one address outside is an address error") {
     TableBench bench;
-    Transaction payload(&bench.manager);
-    make_read(payload, bench.data, layout.base, 16);
-    GatherExtension gather;
+    MemoryRequest gather = read_of(bench.data, layout.base);
     gather.count = 4;
     gather.address = {layout.base, layout.base + 4, layout.base + layout.bytes(), layout.base + 8};
-    payload.set_extension(&gather);
-    bench.expect(payload, tlm::TLM_ADDRESS_ERROR_RESPONSE);
+    bench.expect(gather, tlm::TLM_ADDRESS_ERROR_RESPONSE);
     gather.address[2] = layout.base + layout.bytes() - 4;
-    bench.expect(payload, tlm::TLM_OK_RESPONSE);
-    payload.clear_extension(&gather);
-}
-
-TEST_CASE("table memory: a copied request asks for the same addresses") {
-    GatherExtension gather;
-    gather.count = 2;
-    gather.address = {layout.base + 8, layout.base + 60};
-    Transaction payload, copy;
-    payload.set_extension(&gather);
-    copy.deep_copy_from(payload);
-    const auto* copied = copy.get_extension<GatherExtension>();
-    REQUIRE(copied != nullptr);
-    CHECK(copied != &gather);
-    CHECK(copied->count == 2);
-    CHECK(copied->address == gather.address);
-    gather.address[0] = 0;
-    copy.update_extensions_from(payload);
-    CHECK(copied->address[0] == 0);
-    copy.free_all_extensions();
-    payload.clear_extension(&gather);
+    bench.expect(gather, tlm::TLM_OK_RESPONSE);
+    CHECK(bench.memory.transactions() == 2 * 4);
 }
 
 TEST_CASE("table memory: debug access reads and writes what lies in the table, and nothing else") {
     TableBench bench;
-    Transaction payload;
-    const auto access = [&](tlm::tlm_command command, std::uint64_t address, unsigned length = 4) {
-        make_read(payload, bench.data, address, length);
-        payload.set_command(command);
-        return bench.initiator.socket->transport_dbg(payload);
+    const auto access = [&](tlm::tlm_command command, std::uint64_t address) {
+        MemoryRequest request = read_of(bench.data, address);
+        request.command = command;
+        return bench.initiator.socket->transport_dbg(request);
     };
     const std::vector<unsigned char> written{1, 2, 3, 4};
     std::copy(written.begin(), written.end(), bench.data);
@@ -152,17 +109,41 @@ TEST_CASE("table memory: debug access reads and writes what lies in the table, a
     CHECK(sc_core::sc_time_stamp() == SC_ZERO_TIME);
 }
 
+TEST_CASE("table memory: the host loads it by the base protocol's debug transport, any number of bytes") {
+    Clock clock("clock", period);
+    TableMemory memory("memory", clock, layout, MemoryTiming{}, {});
+    struct Host : sc_core::sc_module {
+        tlm_utils::simple_initiator_socket<Host> socket{"socket"};
+        explicit Host(const sc_core::sc_module_name& name) : sc_module(name) {}
+        unsigned access(tlm::tlm_command command, std::uint64_t address, std::vector<unsigned char>& bytes) {
+            tlm::tlm_generic_payload payload;
+            payload.set_command(command);
+            payload.set_address(address);
+            payload.set_data_ptr(bytes.data());
+            payload.set_data_length(static_cast<unsigned>(bytes.size()));
+            return socket->transport_dbg(payload);
+        }
+    } host("host");
+    host.socket.bind(memory.host);
+    sc_core::sc_start(SC_ZERO_TIME);
+    std::vector<unsigned char> row{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+    CHECK(host.access(tlm::TLM_WRITE_COMMAND, layout.base + layout.bytes() - 12, row) == 12);
+    CHECK(host.access(tlm::TLM_WRITE_COMMAND, layout.base + layout.bytes() - 11, row) == 0);
+    std::vector<unsigned char> read(5);
+    CHECK(host.access(tlm::TLM_READ_COMMAND, layout.base + layout.bytes() - 9, read) == 5);
+    CHECK(read == std::vector<unsigned char>{4, 5, 6, 7, 8});
+}
+
 TEST_CASE("table memory: direct access is granted for reads, over the whole table, at its latency") {
     TableBench bench;
-    Transaction payload;
     tlm::tlm_dmi dmi;
-    make_read(payload, bench.data, layout.base + 8);
-    payload.set_command(tlm::TLM_WRITE_COMMAND);
-    CHECK_FALSE(bench.initiator.socket->get_direct_mem_ptr(payload, dmi));
-    make_read(payload, bench.data, layout.base + layout.bytes());
-    CHECK_FALSE(bench.initiator.socket->get_direct_mem_ptr(payload, dmi));
-    make_read(payload, bench.data, layout.base + 8);
-    REQUIRE(bench.initiator.socket->get_direct_mem_ptr(payload, dmi));
+    MemoryRequest request = read_of(bench.data, layout.base + 8);
+    request.command = tlm::TLM_WRITE_COMMAND;
+    CHECK_FALSE(bench.initiator.socket->get_direct_mem_ptr(request, dmi));
+    request = read_of(bench.data, layout.base + layout.bytes());
+    CHECK_FALSE(bench.initiator.socket->get_direct_mem_ptr(request, dmi));
+    request = read_of(bench.data, layout.base + 8);
+    REQUIRE(bench.initiator.socket->get_direct_mem_ptr(request, dmi));
     CHECK(dmi.is_read_allowed());
     CHECK_FALSE(dmi.is_write_allowed());
     CHECK(dmi.get_start_address() == layout.base);
@@ -180,17 +161,14 @@ TEST_CASE("table memory: a plain read takes a port of its own address's bank") {
     Initiator initiator("initiator");
     initiator.socket.bind(memory.socket);
     sc_core::sc_start(SC_ZERO_TIME);
-    Manager manager;
     unsigned char data[8] = {};
-    Transaction first(&manager), second(&manager);
+    MemoryRequest first, second;
     const auto cycles_of = [&](std::uint64_t first_address, std::uint64_t second_address) {
         const std::uint64_t begin = clock.cycle();
-        make_read(first, data, first_address);
-        make_read(second, data, second_address);
-        for (Transaction* it : {&first, &second}) {
-            it->acquire();
-            CHECK(initiator.send(*it, tlm::BEGIN_REQ) == tlm::TLM_UPDATED);
-        }
+        first = read_of(data, first_address);
+        second = read_of(data, second_address);
+        CHECK(initiator.send(first, tlm::BEGIN_REQ) == tlm::TLM_UPDATED);
+        CHECK(initiator.send(second, tlm::BEGIN_REQ) == tlm::TLM_UPDATED);
         sc_core::sc_start();
         return clock.last_cycle() - begin;
     };
@@ -201,11 +179,9 @@ TEST_CASE("table memory: a plain read takes a port of its own address's bank") {
 
 TEST_CASE("table memory: the delay of a request is added before it is served") {
     TableBench bench;
-    Transaction payload(&bench.manager);
-    payload.acquire();
-    make_read(payload, bench.data, layout.base);
+    MemoryRequest request = read_of(bench.data, layout.base);
     // 25 ps on: in cycle 3; answered a latency of 1 later
-    CHECK(bench.initiator.send(payload, tlm::BEGIN_REQ, sc_time(25, SC_PS)) == tlm::TLM_ACCEPTED);
+    CHECK(bench.initiator.send(request, tlm::BEGIN_REQ, sc_time(25, SC_PS)) == tlm::TLM_ACCEPTED);
     sc_core::sc_start(sc_time(29, SC_PS));
     CHECK(bench.initiator.back.empty());
     sc_core::sc_start(sc_time(2, SC_PS));
@@ -218,17 +194,14 @@ TEST_CASE("table memory: the delay of a request is added before it is served") {
 
 TEST_CASE("table memory: breaches of an initiator are errors that name the memory's socket") {
     TableBench bench;
-    Transaction payload(&bench.manager), second(&bench.manager), third(&bench.manager),
-        fourth(&bench.manager);
-    for (Transaction* it : {&payload, &second, &third, &fourth}) {
-        it->acquire();
-        make_read(*it, bench.data, layout.base);
-    }
+    MemoryRequest first = read_of(bench.data, layout.base);
+    MemoryRequest second = first;
+    MemoryRequest third = first;
     for (const tlm::tlm_phase& phase :
          {tlm::tlm_phase(tlm::END_REQ), tlm::tlm_phase(tlm::BEGIN_RESP), tlm::tlm_phase(tlm::END_RESP)})
-        CHECK_THAT(error_of([&] { bench.initiator.send(payload, phase); }),
+        CHECK_THAT(error_of([&] { bench.initiator.send(first, phase); }),
                    Contains("memory.socket") && Contains("other than BEGIN_REQ"));
-    CHECK(bench.initiator.send(payload, tlm::BEGIN_REQ) == tlm::TLM_UPDATED);  // in the buffer
+    CHECK(bench.initiator.send(first, tlm::BEGIN_REQ) == tlm::TLM_UPDATED);    // in the buffer
     CHECK(bench.initiator.send(second, tlm::BEGIN_REQ) == tlm::TLM_ACCEPTED);  // at the door
     CHECK_THAT(error_of([&] { bench.initiator.send(third, tlm::BEGIN_REQ); }),
                Contains("memory.socket") && Contains("BEGIN_REQ before END_REQ"));
@@ -254,7 +227,7 @@ struct PortBench : sc_core::sc_module {
         owner.on_step = [this] { called.push_back(clock.cycle()); };
     }
     void answer(std::size_t k, tlm::tlm_response_status response = tlm::TLM_OK_RESPONSE) {
-        target.come[k]->set_response_status(response);
+        target.come[k]->response = response;
         target.send_back(*target.come[k], tlm::BEGIN_RESP);
     }
 };
@@ -273,8 +246,8 @@ TEST_CASE("memory port: exclusion, requests under way, answers in order") {
     CHECK(bench.port.on_offer());
     CHECK_FALSE(bench.port.may_request());
     REQUIRE(bench.target.come.size() == 3);
-    CHECK(bench.target.come[1]->get_data_length() == 16);
-    CHECK(bench.target.come[2]->get_address() == 108);
+    CHECK(bench.target.come[1]->bytes() == 16);
+    CHECK(bench.target.come[2]->address[0] == 108);
     CHECK_FALSE(bench.port.answered());
     bench.answer(0);
     CHECK(bench.port.answered());
@@ -289,15 +262,13 @@ TEST_CASE("memory port: exclusion, requests under way, answers in order") {
     bench.port.pop_answer();
     CHECK_FALSE(bench.port.under_way());
     CHECK(bench.port.reads() == 6);
-    for (const Transaction* payload : bench.target.come)
-        CHECK(payload->get_ref_count() == 0);
 }
 
 TEST_CASE("memory port: the delay of an answer is added before the owner is called") {
     PortBench bench("bench");
     sc_core::sc_start(SC_ZERO_TIME);
     bench.port.request(bench.addresses, 1);
-    bench.target.come[0]->set_response_status(tlm::TLM_OK_RESPONSE);
+    bench.target.come[0]->response = tlm::TLM_OK_RESPONSE;
     bench.target.send_back(*bench.target.come[0], tlm::BEGIN_RESP, sc_time(31, SC_PS));
     sc_core::sc_start();
     CHECK(bench.called == Cycles{4});
@@ -307,9 +278,9 @@ TEST_CASE("memory port: breaches of a memory are errors that name the port") {
     PortBench bench("bench");
     sc_core::sc_start(SC_ZERO_TIME);
     Target& target = bench.target;
-    Transaction stranger;
-    const auto breach = [&](Transaction& payload, tlm::tlm_phase phase) {
-        return error_of([&] { target.send_back(payload, phase); });
+    MemoryRequest stranger;
+    const auto breach = [&](MemoryRequest& request, tlm::tlm_phase phase) {
+        return error_of([&] { target.send_back(request, phase); });
     };
     CHECK_THAT(breach(stranger, tlm::BEGIN_RESP), Contains("bench.port") && Contains("was not made"));
     CHECK_THAT(breach(stranger, tlm::END_REQ), Contains("bench.port") && Contains("not on offer"));
@@ -329,6 +300,17 @@ TEST_CASE("memory port: breaches of a memory are errors that name the port") {
                Contains("bench.port") && Contains("BEGIN_REQ before END_REQ"));
 }
 
+TEST_CASE("memory port: END_REQ on the backward path and by return is an error") {
+    PortBench bench("bench");
+    sc_core::sc_start(SC_ZERO_TIME);
+    bench.target.on_request = [&](MemoryRequest& request) { bench.target.send_back(request, tlm::END_REQ); };
+    CHECK_THAT(error_of([&] { bench.port.request(bench.addresses, 1); }),
+               Contains("bench.port") && Contains("END_REQ by return"));
+    bench.target.status = tlm::TLM_ACCEPTED;
+    bench.port.request(bench.addresses, 1);
+    CHECK_FALSE(bench.port.on_offer());
+}
+
 TEST_CASE("memory port: an answer by return that is none is an error") {
     PortBench bench("bench");
     sc_core::sc_start(SC_ZERO_TIME);
@@ -345,7 +327,7 @@ namespace {
 
 /// A blocking memory of four entries whose answers about direct access are the test's.
 struct DirectTarget : sc_core::sc_module {
-    tlm_utils::simple_target_socket<DirectTarget> socket{"socket"};
+    tlm_utils::passthrough_target_socket<DirectTarget, 32, MemoryProtocol> socket{"socket"};
     std::vector<unsigned char> bytes = std::vector<unsigned char>(16);
     bool grants = true;
     bool readable = true;
@@ -361,14 +343,14 @@ struct DirectTarget : sc_core::sc_module {
     }
 
   private:
-    void b_transport(Transaction& payload, sc_time& delay) {
+    void b_transport(MemoryRequest& request, sc_time& delay) {
         ++transactions;
-        std::copy_n(&bytes[payload.get_address()], payload.get_data_length(), payload.get_data_ptr());
-        payload.set_dmi_allowed(true);
-        payload.set_response_status(tlm::TLM_OK_RESPONSE);
+        std::copy_n(&bytes[request.address[0]], request.bytes(), request.data);
+        request.dmi_allowed = true;
+        request.response = tlm::TLM_OK_RESPONSE;
         delay += period;
     }
-    bool get_direct_mem_ptr(Transaction&, tlm::tlm_dmi& dmi) {
+    bool get_direct_mem_ptr(MemoryRequest&, tlm::tlm_dmi& dmi) {
         ++asked;
         dmi.set_dmi_ptr(bytes.data());
         dmi.set_start_address(0);

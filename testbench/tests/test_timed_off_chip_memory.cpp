@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "modules/memory/memory_port.h"
 #include "modules/memory/off_chip_memory.h"
-#include "modules/memory/store_port.h"
 #include "testbench/tests/memory_protocol.h"
 #include "testbench/tests/timed_modules.h"
 
-// Off-chip memory to the cycle, and the port that writes and reads it: the protocol, and breaches by either side.
+// Off-chip memory to the cycle, and a port that writes and reads it.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -28,7 +28,7 @@ struct OffChipBench : sc_core::sc_module {
     Clock clock{"clock", period};
     OffChipMemory memory;
     Caller owner{clock};
-    StorePort port{"port", clock, owner, 40, 16};
+    MemoryPort port{"port", 40, false};
     std::vector<std::pair<bool, std::uint64_t>> wanted;  ///< write?, address; each made as soon as it may
     Cycles offered, answered;
     std::vector<int> read_values;
@@ -37,7 +37,8 @@ struct OffChipBench : sc_core::sc_module {
                  const StallParameters& stalls = {})
         : sc_module(name), memory("memory", clock, timing, stalls, 1000, 8) {
         clock.attach(memory);
-        port.socket.bind(memory.socket);
+        port.clocked_by(clock, owner, 16, 1);
+        port.bind(memory);
         owner.on_step = [this] { step(); };
     }
     void run() {
@@ -59,10 +60,10 @@ struct OffChipBench : sc_core::sc_module {
             const auto [write, address] = wanted[offered.size()];
             offered.push_back(clock.cycle());
             if (write) {
-                std::fill_n(port.record_to_write(), 40, static_cast<unsigned char>(offered.size()));
+                std::fill_n(port.entry_to_write(), 40, static_cast<unsigned char>(offered.size()));
                 port.write(address);
             } else {
-                port.read(address);
+                port.request(address);
             }
         }
     }
@@ -133,20 +134,17 @@ TEST_CASE("off-chip memory: as many answers under way as the latency asks for, i
     Initiator initiator("initiator");
     initiator.socket.bind(memory.socket);
     sc_core::sc_start(SC_ZERO_TIME);
-    Manager manager;
     unsigned char data[8] = {};
-    std::vector<std::unique_ptr<Transaction>> payloads;
-    for (unsigned k = 0; k < 50; ++k) {
-        payloads.push_back(std::make_unique<Transaction>(&manager));
-        payloads.back()->acquire();
-        make_read(*payloads.back(), data, 8 * k, 8);  // no longer than what takes no time: counted whole
-        initiator.send(*payloads.back(), tlm::BEGIN_REQ);
-    }
+    std::vector<MemoryRequest> requests;
+    for (unsigned k = 0; k < 50; ++k)
+        requests.push_back(read_of(data, 8 * k, 8));  // no longer than what takes no time: counted whole
+    for (MemoryRequest& request : requests)
+        initiator.send(request, tlm::BEGIN_REQ);
     sc_core::sc_start();
     REQUIRE(initiator.back.size() == 50);
     for (std::size_t k = 0; k < 50; ++k) {
         CHECK(initiator.back[k].first == tlm::BEGIN_RESP);
-        CHECK(initiator.back[k].second == payloads[k].get());
+        CHECK(initiator.back[k].second == &requests[k]);
     }
     CHECK(memory.activity().high_water_mark() == 50);
     CHECK(clock.last_cycle() == 50 + 1000);
@@ -160,65 +158,41 @@ TEST_CASE("off-chip memory: a command that is neither read nor write, and breach
     Initiator initiator("initiator");
     initiator.socket.bind(memory.socket);
     sc_core::sc_start(SC_ZERO_TIME);
-    Manager manager;
     unsigned char data[40] = {};
-    Transaction payload(&manager), second(&manager), third(&manager);
-    for (Transaction* it : {&payload, &second, &third}) {
-        it->acquire();
-        make_read(*it, data, 0, 40);
-    }
-    CHECK_THAT(error_of([&] { initiator.send(payload, tlm::END_RESP); }),
+    MemoryRequest first = read_of(data, 0, 40);
+    MemoryRequest second = first;
+    MemoryRequest third = first;
+    CHECK_THAT(error_of([&] { initiator.send(first, tlm::END_RESP); }),
                Contains("memory.socket") && Contains("other than BEGIN_REQ"));
-    payload.set_command(tlm::TLM_IGNORE_COMMAND);
-    CHECK(initiator.send(payload, tlm::BEGIN_REQ) == tlm::TLM_UPDATED);
+    first.command = tlm::TLM_IGNORE_COMMAND;
+    CHECK(initiator.send(first, tlm::BEGIN_REQ) == tlm::TLM_UPDATED);
     CHECK(initiator.send(second, tlm::BEGIN_REQ) == tlm::TLM_ACCEPTED);
     CHECK_THAT(error_of([&] { initiator.send(third, tlm::BEGIN_REQ); }),
                Contains("memory.socket") && Contains("BEGIN_REQ before END_REQ"));
     sc_core::sc_start();
-    CHECK(payload.get_response_status() == tlm::TLM_COMMAND_ERROR_RESPONSE);
-    CHECK(second.get_response_status() == tlm::TLM_OK_RESPONSE);
+    CHECK(first.response == tlm::TLM_COMMAND_ERROR_RESPONSE);
+    CHECK(second.response == tlm::TLM_OK_RESPONSE);
     initiator.reply = tlm::TLM_ACCEPTED;
     CHECK(initiator.send(third, tlm::BEGIN_REQ) == tlm::TLM_UPDATED);
     CHECK_THAT(error_of([] { sc_core::sc_start(); }),
                Contains("memory.socket") && Contains("BEGIN_RESP was not completed"));
 }
 
-TEST_CASE("store port: breaches of a memory are errors that name the port") {
-    Clock clock("clock", period);
-    Caller owner(clock);
-    struct Owner : sc_core::sc_module {
-        StorePort port;
-        Owner(const sc_core::sc_module_name& name, Clock& its_clock, Clocked& unit)
-            : sc_module(name), port("port", its_clock, unit, 40, 4) {}
-    } unit("unit", clock, owner);
-    Target target("target");
-    unit.port.socket.bind(target.socket);
+TEST_CASE("off-chip memory: b_transport adds the latency, unless there was nothing to be done") {
+    OffChipBench bench("bench", {20, 5, 4});
     sc_core::sc_start(SC_ZERO_TIME);
-    Transaction stranger;
-    const auto breach = [&](Transaction& payload, tlm::tlm_phase phase) {
-        return error_of([&] { target.send_back(payload, phase); });
-    };
-    CHECK_THAT(breach(stranger, tlm::END_REQ), Contains("unit.port") && Contains("not on offer"));
-    CHECK_THAT(breach(stranger, tlm::BEGIN_RESP), Contains("unit.port") && Contains("was not made"));
-    unit.port.read(0);
-    target.status = tlm::TLM_ACCEPTED;
-    unit.port.write(40);
-    CHECK_THAT(error_of([&] { unit.port.write(80); }),
-               Contains("unit.port") && Contains("BEGIN_REQ before END_REQ"));
-    CHECK_THAT(breach(*target.come[1], tlm::BEGIN_RESP), Contains("out of order or before END_REQ"));
-    CHECK_THAT(breach(*target.come[0], tlm::END_RESP), Contains("no memory may send"));
-    CHECK_THAT(breach(stranger, tlm::END_REQ), Contains("unit.port") && Contains("not on offer"));
-    target.come[0]->set_response_status(tlm::TLM_OK_RESPONSE);
-    CHECK(breach(*target.come[0], tlm::BEGIN_RESP).empty());
-    CHECK_THAT(breach(*target.come[1], tlm::BEGIN_RESP), Contains("before END_REQ"));
-    CHECK(unit.port.answered());
-    unit.port.pop_answer();
-    CHECK(breach(*target.come[1], tlm::END_REQ).empty());
-    for (const auto& [status, phase] : std::vector<std::pair<tlm::tlm_sync_enum, tlm::tlm_phase>>{
-             {tlm::TLM_COMPLETED, tlm::END_REQ}, {tlm::TLM_UPDATED, tlm::BEGIN_RESP}}) {
-        target.status = status;
-        target.phase_back = phase;
-        CHECK_THAT(error_of([&] { unit.port.read(0); }),
-                   Contains("unit.port") && Contains("answered by neither"));
-    }
+    unsigned char data[40] = {7};
+    MemoryRequest write{tlm::TLM_WRITE_COMMAND, 1, 40, {80}, data};
+    sc_time delay(3, SC_PS);
+    bench.port.socket->b_transport(write, delay);
+    CHECK(write.is_ok());
+    CHECK(delay == sc_time(203, SC_PS));
+    unsigned char back[40] = {};
+    MemoryRequest read = read_of(back, 80, 40);
+    CHECK(bench.port.socket->transport_dbg(read) == 40);
+    CHECK(back[0] == 7);
+    MemoryRequest beyond = read_of(back, 961, 40);
+    bench.port.socket->b_transport(beyond, delay);
+    CHECK(beyond.response == tlm::TLM_ADDRESS_ERROR_RESPONSE);
+    CHECK(delay == sc_time(203, SC_PS));
 }

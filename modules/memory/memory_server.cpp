@@ -1,0 +1,138 @@
+#include "modules/memory/memory_server.h"
+
+#include <algorithm>
+
+#include "modules/stream/stream.h"
+#include "modules/unit/signals.h"
+
+namespace tessera {
+
+MemoryServer::MemoryServer(const sc_core::sc_module_name& name, Clock& clock, unsigned buffer,
+                           const StallParameters& stalls)
+    : Unit(name, clock), stalls_(stalls, this->name()), queue_(buffer) {
+    socket.register_nb_transport_fw(this, &MemoryServer::nb_transport_fw);
+    socket.register_b_transport(this, &MemoryServer::b_transport);
+    socket.register_get_direct_mem_ptr(this, &MemoryServer::get_direct_mem_ptr);
+    socket.register_transport_dbg(this, &MemoryServer::transport_dbg);
+    host.register_transport_dbg(this, &MemoryServer::host_transport_dbg);
+}
+
+std::string MemoryServer::holds() const {
+    return listed(count_of(queue_.size() + answers_.size(), "request"),
+                  waiting_ == 0   ? ""
+                  : waiting_ == 1 ? "one at its door"
+                                  : std::to_string(waiting_) + " at its doors");
+}
+
+tlm::tlm_sync_enum MemoryServer::nb_transport_fw(int id, MemoryRequest& request, tlm::tlm_phase& phase,
+                                                 sc_core::sc_time& delay) {
+    if (phase != tlm::BEGIN_REQ)
+        stream_protocol_error(socket.name(), "a phase other than BEGIN_REQ", &clock_);
+    const auto port = static_cast<std::size_t>(id);
+    if (held_back_.size() <= port)
+        held_back_.resize(port + 1);
+    if (!held_back_[port].empty())
+        stream_protocol_error(socket.name(), "BEGIN_REQ before END_REQ of the request before", &clock_);
+    const std::uint64_t cycle = now();
+    const std::uint64_t wait = stalls_.next() + clock_.cycles(delay);
+    activity_.item_in(cycle);
+    if (wait > 0 || !queue_.full())
+        clock_.wake_at(*this, cycle + wait);
+    else
+        clock_.show(*this);
+    if (wait == 0 && !queue_.full() && waiting_ == 0) {
+        queue_.push({&request, id});
+        phase = tlm::END_REQ;
+        return tlm::TLM_UPDATED;
+    }
+    held_back_[port].hold(request, cycle + wait);
+    ++waiting_;
+    return tlm::TLM_ACCEPTED;
+}
+
+void MemoryServer::admit(std::uint64_t cycle) {
+    for (std::size_t tries = 0; tries < held_back_.size() && !queue_.full(); ++tries) {
+        const std::size_t port = turn_;
+        turn_ = turn_ + 1 == held_back_.size() ? 0 : turn_ + 1;
+        if (!held_back_[port].due(cycle))
+            continue;
+        MemoryRequest& request = held_back_[port].take();
+        --waiting_;
+        queue_.push({&request, static_cast<int>(port)});
+        tlm::tlm_phase phase = tlm::END_REQ;
+        sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
+        socket[static_cast<int>(port)]->nb_transport_bw(request, phase, delay);
+    }
+}
+
+void MemoryServer::answer(const Served& served) {
+    tlm::tlm_phase phase = tlm::BEGIN_RESP;
+    sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
+    if (socket[served.id]->nb_transport_bw(*served.request, phase, delay) != tlm::TLM_COMPLETED)
+        stream_protocol_error(socket.name(), "BEGIN_RESP was not completed at once", &clock_);
+}
+
+void MemoryServer::finish(const MemoryRequest& request, std::uint64_t cycle) {
+    const auto served = std::find_if(answers_.begin(), answers_.end(),
+                                     [&](const Served& one) { return one.request == &request; });
+    served->answer_at = cycle;
+    wake_at(cycle);
+}
+
+void MemoryServer::step() {
+    const std::uint64_t cycle = clock_.last_cycle();
+    if (held_up_)
+        cycles_held_up_ += cycle - held_up_since_;
+    if (waiting_ > 0)
+        admit(cycle);
+    std::uint64_t next = 0;
+    while (!queue_.empty() && (next = ready(*queue_.front().request)) <= cycle) {
+        Served served = queue_.front();
+        queue_.pop();
+        served.answer_at = serve(*served.request, cycle);
+        answers_.push_back(served);
+        if (waiting_ > 0)
+            admit(cycle);
+    }
+    held_up_ = !queue_.empty();
+    held_up_since_ = cycle;
+    while (!answers_.empty() && answers_.front().answer_at <= cycle) {
+        const Served served = answers_.front();
+        answers_.pop_front();
+        activity_.item_out(cycle);
+        answer(served);
+    }
+    activity_.set(cycle, busy(cycle) ? State::busy : State::starved);
+    if (held_up_)
+        wake_at(next);
+    if (!answers_.empty())
+        wake_at(answers_.front().answer_at);
+}
+
+unsigned MemoryServer::move(Storage& storage, MemoryRequest& request) {
+    if (request.command != tlm::TLM_READ_COMMAND && request.command != tlm::TLM_WRITE_COMMAND)
+        return 0;
+    for (unsigned k = 0; k < request.count; ++k) {
+        if (!storage.covers(request.address[k], request.entry_bytes))
+            return 0;
+        if (request.command == tlm::TLM_READ_COMMAND)
+            storage.read(request.address[k], request.entry(k), request.entry_bytes);
+        else
+            storage.write(request.address[k], request.entry(k), request.entry_bytes);
+    }
+    return request.bytes();
+}
+
+unsigned MemoryServer::host_transport_dbg(tlm::tlm_generic_payload& payload) {
+    MemoryRequest request{
+        payload.get_command(), 1, payload.get_data_length(), {payload.get_address()}, payload.get_data_ptr()};
+    return transport_dbg(0, request);
+}
+
+void MemoryServer::show_waiting(Signals& signals) const {
+    signals.flag("stalled", waiting_ > 0);
+    signals.value("queued", 16, queue_.size());
+    signals.value("answers_due", 16, answers_.size());
+}
+
+}  // namespace tessera

@@ -1,0 +1,50 @@
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+namespace tessera {
+
+/// A memory's bytes, at addresses [base, base + size): 0 until written. Room is taken up to the highest byte written.
+class Storage {
+  public:
+    Storage(std::uint64_t base, std::uint64_t size) : base_(base), size_(size) {}
+
+    std::uint64_t base() const { return base_; }
+    std::uint64_t size() const { return size_; }
+    bool covers(std::uint64_t address, std::uint64_t length) const {
+        return length <= size_ && address - base_ <= size_ - length;
+    }
+
+    /// Only what is covered may be read or written.
+    void read(std::uint64_t address, unsigned char* to, std::size_t length) const {
+        const std::uint64_t first = address - base_;
+        if (first + length <= bytes_.size()) {
+            std::memcpy(to, &bytes_[first], length);
+            return;
+        }
+        const std::size_t written = first < bytes_.size() ? bytes_.size() - first : 0;
+        std::copy_n(bytes_.end() - static_cast<std::ptrdiff_t>(written), written, to);
+        std::fill(to + written, to + length, static_cast<unsigned char>(0));
+    }
+    void write(std::uint64_t address, const unsigned char* from, std::size_t length) {
+        const std::uint64_t first = address - base_;
+        if (bytes_.size() < first + length)
+            bytes_.resize(std::max<std::uint64_t>(first + length, std::min(2 * bytes_.size(), size_)));
+        std::copy_n(from, length, &bytes_[first]);
+    }
+
+    /// All bytes, which stay where they are from now on.
+    unsigned char* all() {
+        bytes_.resize(size_);
+        return bytes_.data();
+    }
+
+  private:
+    std::uint64_t base_;
+    std::uint64_t size_;
+    std::vector<unsigned char> bytes_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,102 @@
+#pragma once
+#include <tlm_utils/passthrough_target_socket.h>
+#include <tlm_utils/peq_with_get.h>
+#include <tlm_utils/simple_target_socket.h>
+#include <cstdint>
+#include <map>
+#include <systemc>
+#include <tlm>
+
+/// Memories of the TLM-2.0 base protocol, as somebody else would write them.
+namespace tessera::testing {
+
+/// Bytes that read as their own addresses until written.
+struct Bytes {
+    std::map<std::uint64_t, unsigned char> written;
+
+    /// Returns the bytes read or written.
+    unsigned access(tlm::tlm_generic_payload& payload) {
+        for (unsigned k = 0; k < payload.get_data_length(); ++k) {
+            const std::uint64_t address = payload.get_address() + k;
+            if (payload.is_write())
+                written[address] = payload.get_data_ptr()[k];
+            else
+                payload.get_data_ptr()[k] =
+                    written.count(address) > 0 ? written[address] : static_cast<unsigned char>(address);
+        }
+        payload.set_response_status(tlm::TLM_OK_RESPONSE);
+        return payload.get_data_length();
+    }
+};
+
+/// Blocking transport alone, in a simple_target_socket: END_REQ is implied by the answer.
+struct BlockingMemory : sc_core::sc_module {
+    tlm_utils::simple_target_socket<BlockingMemory> socket{"socket"};
+    Bytes bytes;
+    sc_core::sc_time latency;
+    unsigned accesses = 0;
+
+    BlockingMemory(const sc_core::sc_module_name& name, const sc_core::sc_time& its_latency)
+        : sc_module(name), latency(its_latency) {
+        socket.register_b_transport(this, &BlockingMemory::b_transport);
+        socket.register_transport_dbg(this, &BlockingMemory::transport_dbg);
+    }
+
+  private:
+    void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
+        ++accesses;
+        bytes.access(payload);
+        delay += latency;
+    }
+    unsigned transport_dbg(tlm::tlm_generic_payload& payload) { return bytes.access(payload); }
+};
+
+/// Any latency and bandwidth, pipelined: END_REQ when the request's bytes are through, the answer a latency later.
+struct PipelinedMemory : sc_core::sc_module {
+    tlm_utils::passthrough_target_socket<PipelinedMemory> socket{"socket"};
+    Bytes bytes;
+    unsigned bandwidth;  ///< bytes a cycle; 0: any number
+    unsigned uncounted;  ///< bytes at the end of a request that take no time
+    sc_core::sc_time its_period;
+    unsigned latency;
+
+    PipelinedMemory(const sc_core::sc_module_name& name, const sc_core::sc_time& cycle, unsigned its_latency,
+                    unsigned its_bandwidth = 0, unsigned its_uncounted = 0)
+        : sc_module(name),
+          bandwidth(its_bandwidth),
+          uncounted(its_uncounted),
+          its_period(cycle),
+          latency(its_latency) {
+        socket.register_nb_transport_fw(this, &PipelinedMemory::nb_transport_fw);
+        socket.register_transport_dbg(this, &PipelinedMemory::transport_dbg);
+        SC_HAS_PROCESS(PipelinedMemory);
+        SC_METHOD(answer);
+        sensitive << answers_.get_event();
+        dont_initialize();
+    }
+
+  private:
+    tlm::tlm_sync_enum nb_transport_fw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
+                                       sc_core::sc_time& delay) {
+        bytes.access(payload);
+        const unsigned counted = payload.get_data_length() - uncounted;
+        const unsigned taken = bandwidth == 0 ? 1 : (counted + bandwidth - 1) / bandwidth;
+        // a table's port takes the address in its cycle; a channel answers after the last byte
+        answers_.notify(payload, its_period * (latency + (bandwidth == 0 ? 0 : taken)));
+        phase = tlm::END_REQ;
+        delay = its_period * taken;
+        return tlm::TLM_UPDATED;
+    }
+    unsigned transport_dbg(tlm::tlm_generic_payload& payload) { return bytes.access(payload); }
+    void answer() {
+        while (tlm::tlm_generic_payload* payload = answers_.get_next_transaction()) {
+            tlm::tlm_phase phase = tlm::BEGIN_RESP;
+            sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
+            socket->nb_transport_bw(*payload, phase, delay);
+        }
+    }
+
+    tlm_utils::peq_with_get<tlm::tlm_generic_payload> answers_{"answers"};
+};
+
+}  // namespace tessera::testing

@@ -1,0 +1,130 @@
+#include <array>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <vector>
+
+#include "modules/memory/banked_ports.h"
+#include "modules/memory/channel.h"
+#include "modules/memory/storage.h"
+
+// When a memory serves a request, and what it holds: plain C++, without a kernel.
+
+using namespace tessera;
+using Addresses = std::vector<std::uint64_t>;
+
+namespace {
+
+const datapath::TableLayout layout{4096, 16, 16, 4};
+
+/// Ports that are asked for entries by their numbers.
+struct Ports {
+    BankedPorts ports;
+
+    explicit Ports(const MemoryTiming& timing) : ports(timing, layout) {}
+    static Addresses at(const std::vector<unsigned>& entries) {
+        Addresses addresses;
+        for (const unsigned entry : entries)
+            addresses.push_back(layout.base + std::uint64_t{4} * entry);
+        return addresses;
+    }
+    std::uint64_t ready(const std::vector<unsigned>& entries) const {
+        return ports.ready(at(entries).data(), static_cast<unsigned>(entries.size()));
+    }
+    std::uint64_t serve(const std::vector<unsigned>& entries, std::uint64_t cycle) {
+        return ports.serve(at(entries).data(), static_cast<unsigned>(entries.size()), cycle);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("banked ports: one port takes one address a cycle") {
+    Ports p({1, 1, 3});
+    CHECK(p.ready({7}) == 0);
+    CHECK(p.serve({7}, 10) == 13);
+    CHECK(p.ready({8}) == 11);
+    CHECK(p.serve({8, 9, 10, 11}, 11) == 14 + 3);  // 11 to 14
+    CHECK(p.ready({7}) == 15);
+    CHECK(p.serve({7}, 100) == 103);  // idle in between
+    CHECK(p.ports.slots_taken() == 6);
+    CHECK(p.ports.slots_per_cycle() == 1);
+    CHECK(p.ports.occupied_cycles() == 6);
+}
+
+TEST_CASE("banked ports: several ports of a bank share a request") {
+    Ports p({2, 1, 1});
+    CHECK(p.serve({0, 1, 2}, 10) == 11 + 1);  // two in cycle 10, one in 11
+    CHECK(p.ready({3}) == 11);                // the other port of 11
+    CHECK(p.serve({3}, 11) == 12);
+    CHECK(p.ready({3}) == 12);
+    CHECK(p.ports.slots_per_cycle() == 2);
+    CHECK(p.ports.occupied_cycles() == 2);
+}
+
+TEST_CASE("banked ports: entry k is in bank k mod banks, and each bank counts for itself") {
+    Ports p({1, 4, 1});
+    CHECK(p.serve({0, 1, 2, 3}, 10) == 11);
+    CHECK(p.serve({0, 4, 8}, 11) == 13 + 1);  // all in bank 0: 11, 12, 13
+    CHECK(p.ready({12}) == 14);
+    CHECK(p.ready({1}) == 11);
+    CHECK(p.ready({1, 16}) == 14);  // ready when each of its banks is
+    CHECK(p.ports.slots_per_cycle() == 4);
+    CHECK(p.ports.slots_taken() == 7);
+    CHECK(p.ports.occupied_cycles() == 4);  // bank 0's
+}
+
+TEST_CASE("banked ports: a port narrower than an entry takes ceil(bytes / width) cycles for it") {
+    for (const auto& [width, cycles] :
+         std::array<std::array<unsigned, 2>, 6>{{{1, 4}, {2, 2}, {3, 2}, {4, 1}, {64, 1}, {0, 1}}}) {
+        CAPTURE(width);
+        Ports p({1, 1, 5, width});
+        CHECK(p.serve({0, 1}, 10) == 10 + 2 * cycles - 1 + 5);
+        CHECK(p.ready({2}) == 10 + 2 * cycles);
+        CHECK(p.ports.slots_taken() == 2 * cycles);
+    }
+}
+
+TEST_CASE("channel: ceil(bytes / bandwidth) cycles each, answered a latency after the last byte") {
+    Channel channel({20, 5, 4});
+    CHECK(channel.ready() == 0);
+    CHECK(channel.serve(32, 10) == 10 + 7 + 20);
+    CHECK(channel.ready() == 17);
+    CHECK(channel.serve(5, 17) == 17 + 1 + 20);
+    CHECK(channel.serve(6, 30) == 30 + 2 + 20);
+    CHECK(channel.ready() == 32);
+    CHECK(channel.occupied_cycles() == 7 + 1 + 2);
+    CHECK(channel.latency() == 20);
+}
+
+TEST_CASE("storage: what was never written is 0, what was is there, and nothing else is covered") {
+    Storage storage(100, 50);
+    for (const auto& [address, length, covered] :
+         std::vector<std::array<std::uint64_t, 3>>{{100, 50, 1},
+                                                   {149, 1, 1},
+                                                   {100, 51, 0},
+                                                   {149, 2, 0},
+                                                   {150, 1, 0},
+                                                   {99, 1, 0},
+                                                   {0, 1, 0},
+                                                   {~std::uint64_t{0}, 1, 0},
+                                                   {~std::uint64_t{0}, 200, 0}}) {
+        CAPTURE(address, length);
+        CHECK(storage.covers(address, length) == (covered == 1));
+    }
+    std::array<unsigned char, 4> bytes{1, 2, 3, 4};
+    storage.write(110, bytes.data(), 4);
+    const auto read = [&](std::uint64_t address) {
+        std::array<unsigned char, 4> result{9, 9, 9, 9};
+        storage.read(address, result.data(), 4);
+        return result;
+    };
+    CHECK(read(110) == bytes);
+    CHECK(read(108) == std::array<unsigned char, 4>{0, 0, 1, 2});
+    CHECK(read(112) == std::array<unsigned char, 4>{3, 4, 0, 0});  // half of it beyond what was written
+    CHECK(read(146) == std::array<unsigned char, 4>{0, 0, 0, 0});
+    storage.write(146, bytes.data(), 4);
+    CHECK(read(146) == bytes);
+    CHECK(read(110) == bytes);
+    const unsigned char* const all = storage.all();
+    CHECK(all[10] == 1);
+    CHECK(all[49] == 4);
+}
