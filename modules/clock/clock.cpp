@@ -1,23 +1,24 @@
 #include "modules/clock/clock.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <string>
 
 namespace tessera {
 
-sc_core::sc_time clock_period(const char* instance, std::uint64_t picoseconds) {
-    const sc_core::sc_time resolution = sc_core::sc_get_time_resolution();
-    const auto femtoseconds = static_cast<std::uint64_t>(std::llround(resolution.to_seconds() * 1e15));
-    if (femtoseconds > 1000 && picoseconds % (femtoseconds / 1000) != 0) {
+sc_core::sc_time clock_period(const char* instance, unsigned picoseconds) {
+    constexpr std::uint64_t picoseconds_a_second = 1'000'000'000'000;
+    const std::uint64_t steps_a_second = sc_core::sc_time(1, sc_core::SC_SEC).value();
+    if (steps_a_second < picoseconds_a_second &&
+        (steps_a_second == 0 || picoseconds % (picoseconds_a_second / steps_a_second) != 0)) {
         const std::string message =
             std::string(instance) + ": a clock period of " + std::to_string(picoseconds) +
-            " ps is no multiple of SystemC's time resolution, " + resolution.to_string() +
+            " ps is no multiple of SystemC's time resolution, " +
+            sc_core::sc_get_time_resolution().to_string() +
             "; choose another period, or call sc_set_time_resolution(1, SC_PS) before anything is built";
         SC_REPORT_ERROR("tessera/clock", message.c_str());
     }
-    return {static_cast<double>(picoseconds), sc_core::SC_PS};
+    return sc_core::sc_time(picoseconds, sc_core::SC_PS);
 }
 
 Clock::Clock(const sc_core::sc_module_name& name, const sc_core::sc_time& period)

@@ -37,7 +37,7 @@ class CycleObserver {
 };
 
 /// A clock's period. SC_ERROR, naming the instance that wants it, if it is no multiple of SystemC's time resolution.
-sc_core::sc_time clock_period(const char* instance, std::uint64_t picoseconds);
+sc_core::sc_time clock_period(const char* instance, unsigned picoseconds);
 
 /// The clock of timed mode: calls those that asked for a cycle, and skips the cycles nobody asked for.
 ///

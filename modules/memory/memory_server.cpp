@@ -123,6 +123,15 @@ unsigned MemoryServer::move(Storage& storage, MemoryRequest& request) {
     return request.bytes();
 }
 
+void MemoryServer::access(Storage& storage, MemoryRequest& request, bool may_write) {
+    if (request.command != tlm::TLM_READ_COMMAND && !(may_write && request.command == tlm::TLM_WRITE_COMMAND))
+        request.response = tlm::TLM_COMMAND_ERROR_RESPONSE;
+    else if (move(storage, request) == 0)
+        request.response = tlm::TLM_ADDRESS_ERROR_RESPONSE;
+    else
+        request.response = tlm::TLM_OK_RESPONSE;
+}
+
 unsigned MemoryServer::host_transport_dbg(tlm::tlm_generic_payload& payload) {
     MemoryRequest request{
         payload.get_command(), 1, payload.get_data_length(), {payload.get_address()}, payload.get_data_ptr()};

@@ -57,6 +57,8 @@ class MemoryServer : public Unit {
 
     /// Reads or writes the entries and returns the bytes moved; 0: neither is meant, or not all are there.
     static unsigned move(Storage& storage, MemoryRequest& request);
+    /// The same, and sets the response.
+    static void access(Storage& storage, MemoryRequest& request, bool may_write);
 
     void show_waiting(Signals& signals) const;
     bool held_up() const { return held_up_; }

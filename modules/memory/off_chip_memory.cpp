@@ -15,20 +15,14 @@ unsigned OffChipMemory::counted(const MemoryRequest& request) const {
     return request.bytes() > uncounted_ ? request.bytes() - uncounted_ : request.bytes();
 }
 
-void OffChipMemory::access(MemoryRequest& request) {
-    const bool write = request.command == tlm::TLM_WRITE_COMMAND;
-    if (!write && request.command != tlm::TLM_READ_COMMAND) {
-        request.response = tlm::TLM_COMMAND_ERROR_RESPONSE;
-    } else if (move(storage_, request) == 0) {
-        request.response = tlm::TLM_ADDRESS_ERROR_RESPONSE;
-    } else {
-        request.response = tlm::TLM_OK_RESPONSE;
-        (write ? bytes_written_ : bytes_read_) += counted(request);
-    }
+void OffChipMemory::count_access(MemoryRequest& request) {
+    access(storage_, request, true);
+    if (request.is_ok())
+        (request.command == tlm::TLM_WRITE_COMMAND ? bytes_written_ : bytes_read_) += counted(request);
 }
 
 std::uint64_t OffChipMemory::serve(MemoryRequest& request, std::uint64_t cycle) {
-    access(request);
+    count_access(request);
     last_address_ = request.address[0];
     last_is_write_ = request.command == tlm::TLM_WRITE_COMMAND;
     const std::uint64_t answer_at = channel_.serve(counted(request), cycle);
@@ -37,7 +31,7 @@ std::uint64_t OffChipMemory::serve(MemoryRequest& request, std::uint64_t cycle) 
 }
 
 void OffChipMemory::b_transport(int, MemoryRequest& request, sc_core::sc_time& delay) {
-    access(request);
+    count_access(request);
     if (request.is_ok())
         delay += clock_.period() * channel_.latency();
 }

@@ -31,7 +31,7 @@ class OffChipMemory : public MemoryServer {
     bool busy(std::uint64_t cycle) const override { return channel_.ready() > cycle; }
     void b_transport(int id, MemoryRequest& request, sc_core::sc_time& delay) override;
     unsigned transport_dbg(int, MemoryRequest& request) override { return move(storage_, request); }
-    void access(MemoryRequest& request);
+    void count_access(MemoryRequest& request);
     unsigned counted(const MemoryRequest& request) const;
 
     Storage storage_;

@@ -17,15 +17,10 @@ TableMemory::TableMemory(const sc_core::sc_module_name& name, Clock& clock,
 }
 
 void TableMemory::read(MemoryRequest& request) {
-    if (request.command != tlm::TLM_READ_COMMAND) {
-        request.response = tlm::TLM_COMMAND_ERROR_RESPONSE;
-    } else if (move(storage_, request) == 0) {
-        request.response = tlm::TLM_ADDRESS_ERROR_RESPONSE;
-    } else {
-        request.response = tlm::TLM_OK_RESPONSE;
-        request.dmi_allowed = true;
+    access(storage_, request, false);
+    request.dmi_allowed = request.is_ok();
+    if (request.is_ok())
         transactions_ += request.count;
-    }
 }
 
 std::uint64_t TableMemory::ready(const MemoryRequest& request) const {

@@ -255,10 +255,10 @@ TEST_CASE("bridge: END_REQ may come later, and its delay counts") {
     });
     bench.in_cycle(16, [&] { CHECK(bench.memory.come.size() == 1); });
     bench.in_cycle(17, [&] { CHECK(bench.memory.come.size() == 2); });
-    bench.in_cycle(20, [&] { bench.answer(1); });  // END_REQ implied
-    bench.in_cycle(21, [&] { bench.answer(0, sc_time(15, SC_PS)); });
+    bench.in_cycle(20, [&] { bench.answer(1, sc_time(35, SC_PS)); });  // END_REQ implied; an answer in 24
+    bench.in_cycle(21, [&] { bench.answer(0, sc_time(15, SC_PS)); });  // in 23
     bench.run();
-    CHECK(bench.reader.answered == Cycles{23});
+    CHECK(bench.reader.answered == Cycles{24});
 }
 
 TEST_CASE("bridge: answers in any order; the reader gets them in the order of its requests") {

@@ -25,6 +25,11 @@ TEST_CASE("time resolution 1 ns: another period is an error that says what to do
                        Contains("1 ns") && Contains("sc_set_time_resolution"));
 }
 
+TEST_CASE("time resolution 10 s: no period is a multiple of that") {
+    sc_core::sc_set_time_resolution(10, sc_core::SC_SEC);
+    CHECK_THAT(error_of([] { clock_period("machine", 5000); }), Contains("10 s"));
+}
+
 TEST_CASE("time resolution 1 ns: a machine refuses the period, in its own name") {
     sc_core::sc_set_time_resolution(1, sc_core::SC_NS);
     Job job = full_split_job(1, 1);
