@@ -1,0 +1,49 @@
+#pragma once
+#include <cstddef>
+#include <vector>
+
+namespace tessera {
+
+/// A queue of fixed capacity, oldest item first. Allocates only when constructed. A popped item stays in its place until
+/// another is pushed there, so items may own storage that is reused.
+template <class Item>
+class Ring {
+  public:
+    explicit Ring(std::size_t capacity = 0) : items_(capacity), capacity_(capacity) {}
+
+    bool empty() const { return size_ == 0; }
+    bool full() const { return size_ == capacity_; }
+    std::size_t size() const { return size_; }
+    std::size_t capacity() const { return capacity_; }
+
+    /// Item k, the oldest being 0. From size() on: the places that the next pushes take.
+    Item& at(std::size_t k) { return items_[place(k)]; }
+    const Item& at(std::size_t k) const { return items_[place(k)]; }
+    Item& front() { return items_[first_]; }
+    const Item& front() const { return items_[first_]; }
+    /// The item pushed last, even if it has been popped since.
+    Item& back() { return items_[place((size_ == 0 ? capacity_ : size_) - 1)]; }
+    const Item& back() const { return items_[place((size_ == 0 ? capacity_ : size_) - 1)]; }
+
+    /// Not when full. Returns the new item, which is as the place was left: to be filled in.
+    Item& push() { return items_[place(size_++)]; }
+    void push(const Item& item) { push() = item; }
+    /// Not when empty.
+    void pop() {
+        first_ = place(1);
+        --size_;
+    }
+
+  private:
+    std::size_t place(std::size_t k) const {
+        const std::size_t sum = first_ + k;
+        return sum < capacity_ ? sum : sum - capacity_;
+    }
+
+    std::vector<Item> items_;
+    std::size_t capacity_;
+    std::size_t first_ = 0;
+    std::size_t size_ = 0;
+};
+
+}  // namespace tessera

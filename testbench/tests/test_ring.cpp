@@ -1,0 +1,83 @@
+#include <catch2/catch.hpp>
+#include <memory>
+#include <vector>
+
+#include "modules/unit/pending_item.h"
+#include "modules/unit/ring.h"
+
+// The ring that buffers are made of, and the item that waits before a full one.
+
+using namespace tessera;
+
+TEST_CASE("ring: items leave in the order they came, round and round") {
+    Ring<int> ring(3);
+    CHECK(ring.capacity() == 3);
+    CHECK(ring.empty());
+    int pushed = 0;
+    int popped = 0;
+    for (int round = 0; round < 5; ++round) {
+        while (!ring.full()) {
+            ring.push(pushed++);
+            CHECK(ring.back() == pushed - 1);
+        }
+        CHECK(ring.size() == 3);
+        for (std::size_t k = 0; k < 3; ++k)
+            CHECK(ring.at(k) == popped + static_cast<int>(k));
+        for (int k = 0; k < 2; ++k) {
+            CHECK(ring.front() == popped++);
+            ring.pop();
+        }
+        CHECK(ring.size() == 1);
+    }
+    ring.pop();
+    CHECK(ring.empty());
+    CHECK(ring.back() == pushed - 1);  // the last one, though it has left
+}
+
+TEST_CASE("ring: a capacity of one") {
+    Ring<int> ring(1);
+    for (int k = 0; k < 3; ++k) {
+        ring.push(k);
+        CHECK(ring.full());
+        CHECK(ring.front() == k);
+        CHECK(ring.back() == k);
+        ring.pop();
+        CHECK(ring.empty());
+        CHECK(ring.back() == k);
+    }
+}
+
+TEST_CASE("ring: a capacity of none is full and empty") {
+    const Ring<int> ring;
+    CHECK(ring.empty());
+    CHECK(ring.full());
+}
+
+TEST_CASE("ring: places keep what they own, and a pushed place is as it was left") {
+    struct Slot {
+        std::unique_ptr<int> owned = std::make_unique<int>(0);  // not copied
+    };
+    Ring<Slot> ring(2);
+    const int* const first = ring.at(0).owned.get();
+    *ring.push().owned = 7;
+    ring.pop();
+    ring.push();
+    ring.pop();
+    CHECK(ring.push().owned.get() == first);
+    CHECK(*ring.front().owned == 7);
+}
+
+TEST_CASE("pending item: due from its cycle on, until it is taken") {
+    int item = 5;
+    PendingItem<int> pending;
+    CHECK(pending.empty());
+    CHECK_FALSE(pending.due(100));
+    pending.hold(item, 10);
+    CHECK_FALSE(pending.empty());
+    CHECK(pending.due_cycle() == 10);
+    CHECK_FALSE(pending.due(9));
+    CHECK(pending.due(10));
+    CHECK(&pending.take() == &item);
+    CHECK(pending.empty());
+    CHECK_FALSE(pending.due(100));
+}
