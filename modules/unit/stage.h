@@ -1,15 +1,12 @@
 #pragma once
-#include <array>
-#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <systemc>
 
 #include "modules/stream/stream_input.h"
 #include "modules/stream/stream_output.h"
 #include "modules/stream/work.h"
-#include "modules/unit/elastic_pipeline.h"
-#include "modules/unit/fork.h"
 #include "modules/unit/reads.h"
 #include "modules/unit/unit.h"
 
@@ -36,19 +33,19 @@ class Stage : public Unit {
     /// servers: pipelines side by side that take turns. memory_latency: of the table it reads.
     Stage(const sc_core::sc_module_name& name, Clock& clock, const UnitTiming& timing, unsigned servers = 1,
           unsigned memory_latency = 0);
+    ~Stage() override;
 
-    /// To be called in a derived unit's constructor: its input, each output and the parts that it is for, and the port it
+    /// To be called in a derived unit's constructor: its input; each output, and the parts that it is for; the port it
     /// reads through, if it does (most_requests: of one item).
     void takes_from(StreamInput<In>& input, const StallParameters& stalls);
     void delivers_to(StreamOutput<Out>& output, Parts only = all_parts);
     void reads_through(MemoryPort& port, unsigned most_requests);
 
-    /// False: the item lacks what another input brings. Functional mode: then it is an error, and `delay` is set to when
-    /// that came, if it is later.
+    /// False: the item waits for what another input brings. Functional mode: that is an error.
     virtual bool may_start(const In&) const { return true; }
-    virtual sc_core::sc_time may_start_after(const In&) const { return sc_core::SC_ZERO_TIME; }
-    /// Who brings it.
+    /// Who brings it; functional mode: when it came.
     virtual const sc_core::sc_object* lacks() const { return nullptr; }
+    virtual sc_core::sc_time may_start_after(const In&) const { return sc_core::SC_ZERO_TIME; }
 
     /// The entries an item needs.
     virtual void reads(const In&, Reads&) const {}
@@ -57,39 +54,23 @@ class Stage : public Unit {
 
     /// In traces: operands of an item that has started, and results of one that has been worked on.
     virtual void trace_started(Signals&, const In&) const {}
-    virtual void trace_processed(Signals&, const In&, const Out&) const {}
+    virtual void trace_processed(Signals&, const In&, const Out&) const = 0;
 
     void step() override;
 
     const UnitTiming timing_;
 
   private:
-    struct Slot {
-        In item{};
-        Out result{};
-        std::uint8_t requests = 0;                             // that the item makes
-        std::uint8_t answered = 0;                             // of these
-        std::array<std::uint8_t, Reads::most_requests> count;  // entries of each
-    };
+    struct Machinery;  // stage_steps.h
 
     void b_transport(In& item, sc_core::sc_time& delay);
     Out read_and_process(const In& part, sc_core::sc_time& delay);
     void start(std::uint64_t cycle);
-    bool ask();
     void take_answers(std::uint64_t cycle);
-    void skip_processed();
 
-    unsigned servers_;
     StreamInput<In>* input_ = nullptr;
     MemoryPort* port_ = nullptr;  // null: the unit reads nothing
-    Fork<Out> fork_;
-    ElasticPipeline<Slot> pipeline_;
-    Reads reads_;         // of the item started last
-    unsigned asked_ = 0;  // of these requests, made
-    unsigned asked_entries_ = 0;
-    Entries entries_{};        // that have come for the first item that waits for any
-    unsigned come_ = 0;        // so many
-    std::size_t waiting_ = 0;  // the first item whose answers have not all come
+    const std::unique_ptr<Machinery> machinery_;
 };
 
 extern template class Stage<Work>;

@@ -31,8 +31,7 @@ void CalculateNewP::trace_processed(Signals& signals, const Work& work, const Wo
     signals.texture("t_j_u", "t_j_v", end.texture);
     signals.position("p_i_x", "p_i_y", "p_i_z", begin.position);
     signals.position("p_j_x", "p_j_y", "p_j_z", end.position);
-    signals.position("p_ij_x", "p_ij_y", "p_ij_z",
-                     Signals::pass_of(work).new_vertex[Signals::index_of(work)].position);
+    signals.position("p_ij_x", "p_ij_y", "p_ij_z", Signals::pass_of(work).new_vertex[work.index()].position);
 }
 
 }  // namespace tessera

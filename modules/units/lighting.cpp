@@ -6,6 +6,8 @@
 
 namespace tessera {
 
+template class Stage<datapath::Triangle, LitTriangle>;
+
 Lighting::Lighting(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
                    const Timing& timing)
     : Stage(name, clock, timing.lighting), registers_(registers) {

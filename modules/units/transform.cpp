@@ -36,9 +36,9 @@ Work Transform::process(const Work& part, const Entries&) {
 }
 
 void Transform::trace_processed(Signals& signals, const Work& work, const Work&) const {
-    const datapath::NewVertex& made = Signals::pass_of(work).new_vertex[Signals::index_of(work)];
+    const datapath::NewVertex& made = Signals::pass_of(work).new_vertex[work.index()];
     const datapath::Vertex& vertex = Signals::begin_of(work);
-    const bool edge = Signals::is_edge(work);
+    const bool edge = work.is_edge();
     signals.position("displaced_x", "displaced_y", "displaced_z", edge ? made.displaced : vertex.displaced);
     signals.screen("screen_x", "screen_y", edge ? made.screen : vertex.screen);
     signals.value("w", 32, static_cast<std::uint64_t>((edge ? made.screen : vertex.screen).w));

@@ -31,7 +31,7 @@ void TexCoordTest::show(Signals& signals) const {
 }
 
 void TexCoordTest::trace_processed(Signals& signals, const Work& work, const Work&) const {
-    const unsigned tests = Signals::pass_of(work).edges[Signals::index_of(work)].tests;
+    const unsigned tests = Signals::pass_of(work).edges[work.index()].tests;
     signals.edge_textures(work);
     signals.value("generation_i", 8, Signals::begin_of(work).generation);
     signals.value("generation_j", 8, Signals::end_of(work).generation);

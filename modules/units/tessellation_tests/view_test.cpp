@@ -16,25 +16,23 @@ ViewTest::ViewTest(const sc_core::sc_module_name& name, Clock& clock, const data
     takes_from(input, timing.stalls);
     delivers_to(output);
     from_transform.clocked_by(clock, *this, 1, timing.stalls);
-    from_transform.serve<&ViewTest::b_transport_from_transform>(*this);
+    from_transform.serve<&ViewTest::take_corner>(*this);
 }
 
 void ViewTest::end_of_elaboration() {
     transform_ = module_behind(from_transform.get_base_port().get_interface());
 }
 
-void ViewTest::b_transport_from_transform(Work& work, sc_core::sc_time& delay) {
-    Corners& corners = corners_.find_or_open(work.tag());
-    corners.on_screen |= work.parts;
-    corners.since = std::max(corners.since, delay);
+void ViewTest::take_corner(Work& corner, sc_core::sc_time& when) {
+    Corners& corners = corners_.find_or_open(corner.tag());
+    corners.on_screen |= corner.parts;
+    corners.since = std::max(corners.since, when);
 }
 
 void ViewTest::step() {
-    while (!from_transform.empty()) {
-        sc_core::sc_time now;
-        b_transport_from_transform(from_transform.front(), now);
-        from_transform.pop();
-    }
+    sc_core::sc_time now;
+    for (; !from_transform.empty(); from_transform.pop())
+        take_corner(from_transform.front(), now);
     Stage::step();
 }
 
@@ -72,7 +70,7 @@ void ViewTest::trace_processed(Signals& signals, const Work& work, const Work&) 
     signals.screen("screen_i_x", "screen_i_y", i);
     signals.screen("screen_j_x", "screen_j_y", j);
     signals.value("length", 33, i.in_front && j.in_front ? screen_length(i, j) : 0);
-    const unsigned tests = Signals::pass_of(work).edges[Signals::index_of(work)].tests;
+    const unsigned tests = Signals::pass_of(work).edges[work.index()].tests;
     signals.flag("view", (tests & datapath::view_bit) != 0);
 }
 

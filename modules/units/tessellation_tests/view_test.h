@@ -36,7 +36,7 @@ class ViewTest final : public Stage<Work> {
         sc_core::sc_time since;
     };
 
-    void b_transport_from_transform(Work& work, sc_core::sc_time& delay);
+    void take_corner(Work& corner, sc_core::sc_time& when);
     void step() override;
     bool may_start(const Work& edge) const override;
     sc_core::sc_time may_start_after(const Work& edge) const override;
