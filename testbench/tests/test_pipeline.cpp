@@ -258,7 +258,9 @@ struct DetourWiring : Wiring {
 }  // namespace
 
 TEST_CASE("functional mode: triangles may overtake one another on every stream, and the mesh is the same") {
-    const Setup setup = setup_of({});
+    Job job;
+    job.hardware.queue_watermark = 1000;  // so that the host sends while the queue does
+    const Setup setup = setup_of(job);
     DetourWiring wiring;
     Simulation simulation(setup, 1'000'000, 0, &wiring);
     check_run(setup, simulation);
