@@ -33,7 +33,7 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
       random_stalls_(design.timing.stalls.per_mille > 0) {
     tessellation_tests.init(design.tests_units, [&](const char* unit_name, std::size_t number) {
         return new TessellationTests(unit_name, clock, registers, design.timing,
-                                     static_cast<unsigned>(number), design.direct_memory);
+                                     static_cast<unsigned>(number), design.tests_units, design.direct_memory);
     });
     Wiring straight;
     wire(wiring == nullptr ? straight : *wiring);
@@ -55,10 +55,6 @@ void Pipeline::wire(Wiring& wiring) {
         wiring.join(tests.collect_tests.to_pass_or_tessellate, pass_or_tessellate.from_tessellation_tests[k]);
         wiring.join(tests.summed_height_test.summed_height_table, summed_height_table);
         wiring.join(tests.normal_test.normal_map, normal_map);
-        for (TessellationTests& other : tessellation_tests) {
-            if (&other != &tests)
-                tests.normal_test.tells(other.normal_test);
-        }
     }
     wiring.join(pass_or_tessellate.to_tessellation, tessellation.from_pass_or_tessellate);
     wiring.join(pass_or_tessellate.to_lighting, lighting.from_pass_or_tessellate);

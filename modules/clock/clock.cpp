@@ -114,7 +114,7 @@ std::uint64_t Clock::call_due() {
         if constexpr (Observed)
             called |= due_now_ & -due_now_;
         due_now_ &= due_now_ - 1;
-        units_[unit]->step();
+        units_[unit]->admit_and_step();
     }
     return called;
 }

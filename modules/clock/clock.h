@@ -9,12 +9,34 @@ namespace tessera {
 
 class Clock;
 
+/// An input of something clocked, at which an item may have to wait: the clock admits it.
+class ClockedInput {
+  public:
+    virtual ~ClockedInput() = default;
+    ClockedInput(const ClockedInput&) = delete;
+    ClockedInput& operator=(const ClockedInput&) = delete;
+
+  protected:
+    ClockedInput() = default;
+
+    /// Called before each step of its owner while an item waits.
+    virtual void admit() = 0;
+    bool waiting_ = false;  ///< an item waits
+
+  private:
+    friend class Clocked;
+    ClockedInput* next_ = nullptr;  // of the same owner
+};
+
 /// What the clock calls: a unit, a memory, a driver.
 class Clocked {
   public:
     /// Everything that can happen in the clock's present cycle. Called as often as something new may be possible, so
     /// that a second call without cause changes nothing.
     virtual void step() = 0;
+
+    /// `input` must live as long as its owner is stepped. To be called once for each input.
+    void add_input(ClockedInput& input) { input.next_ = std::exchange(first_input_, &input); }
 
     Clocked() = default;
     virtual ~Clocked() = default;
@@ -23,6 +45,15 @@ class Clocked {
 
   private:
     friend class Clock;
+    void admit_and_step() {
+        for (ClockedInput* input = first_input_; input != nullptr; input = input->next_) {
+            if (input->waiting_)
+                input->admit();
+        }
+        step();
+    }
+
+    ClockedInput* first_input_ = nullptr;
     std::uint64_t bit_ = 0;  // its place among the attached
 };
 

@@ -3,23 +3,25 @@
 #include <cstdint>
 #include <systemc>
 #include <tlm>
-#include <vector>
 
 #include "modules/clock/clock.h"
 #include "modules/stream/random_stalls.h"
 #include "modules/stream/stream.h"
+#include "modules/unit/pending_item.h"
+#include "modules/unit/ring.h"
 
 namespace tessera {
 
 /// A unit's input. Functional mode: hands b_transport to the unit. Timed mode: a buffer of `depth` items; an item that
-/// finds it full waits at the door, its END_REQ withheld. Checks the producer's phases.
+/// finds it full waits, its END_REQ withheld. Checks the producer's phases.
 template <class Payload>
 class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
-                    public tlm::tlm_fw_transport_if<Stream<Payload>> {
+                    public tlm::tlm_fw_transport_if<Stream<Payload>>,
+                    private ClockedInput {
     using Socket = tlm::tlm_target_socket<32, Stream<Payload>>;
 
   public:
-    explicit StreamInput(const char* name) : Socket(name), ring_(1) {
+    explicit StreamInput(const char* name) : Socket(name), buffer_(1) {
         Socket::bind(static_cast<tlm::tlm_fw_transport_if<Stream<Payload>>&>(*this));
     }
 
@@ -32,12 +34,12 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
         };
     }
 
-    /// Timed mode: `unit` is called when an item has come. depth: at least 1.
+    /// Timed mode: `unit` is called when an item has come. depth: at least 1. To be called once.
     void clocked_by(Clock& clock, Clocked& unit, std::size_t depth, const StallParameters& stalls) {
         clock_ = &clock;
         unit_ = &unit;
-        ring_.assign(depth, Payload{});
-        depth_ = depth;
+        unit.add_input(*this);
+        buffer_ = Ring<Payload>(depth);
         stalls_ = RandomStalls(stalls, this->name());
     }
 
@@ -48,41 +50,36 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
         ++empty_inputs;
     }
 
-    bool empty() const { return size_ == 0; }
-    std::size_t size() const { return size_; }
-    std::size_t depth() const { return depth_; }
-    /// An item waits at the door.
-    bool holds_back() const { return at_the_door_ != nullptr; }
+    bool empty() const { return buffer_.empty(); }
+    std::size_t size() const { return buffer_.size(); }
+    std::size_t depth() const { return buffer_.capacity(); }
+    /// An item waits to be taken into the buffer.
+    bool holds_back() const { return !pending_.empty(); }
     std::uint64_t taken() const { return taken_; }
 
-    Payload& front() { return ring_[first_]; }
-    const Payload& front() const { return ring_[first_]; }
+    Payload& front() { return buffer_.front(); }
+    const Payload& front() const { return buffer_.front(); }
 
-    /// Removes the first item, and lets the one at the door in.
+    /// Removes the first item, and takes one that waits into the buffer.
     void pop() {
-        first_ = first_ + 1 == depth_ ? 0 : first_ + 1;
-        --size_;
-        if (empty_inputs_ != nullptr && size_ == 0)
+        buffer_.pop();
+        if (empty_inputs_ != nullptr && buffer_.empty())
             ++*empty_inputs_;
-        admit();
-    }
-
-    /// Lets the item at the door in if its time has come and there is room. To be called at the start of each step.
-    void admit() {
-        if (at_the_door_ != nullptr)
-            open_the_door();
+        if (!pending_.empty())
+            admit();
     }
 
   private:
-    void open_the_door() {
-        if (size_ == depth_)
+    /// Takes the item that waits, if its time has come and there is room.
+    void admit() override {
+        if (buffer_.full())
             return;
-        if (clock_->cycle() < door_opens_) {
-            clock_->wake_at(*unit_, door_opens_);
+        if (!pending_.due(clock_->cycle())) {
+            clock_->wake_at(*unit_, pending_.due_cycle());
             return;
         }
-        Payload& payload = *at_the_door_;
-        at_the_door_ = nullptr;
+        Payload& payload = pending_.take();
+        waiting_ = false;
         push(payload);
         tlm::tlm_phase phase = tlm::END_REQ;
         sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
@@ -93,12 +90,12 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
                                        sc_core::sc_time& delay) override {
         if (phase != tlm::BEGIN_REQ)
             stream_protocol_error(this->name(), "a phase other than BEGIN_REQ", clock_);
-        if (at_the_door_ != nullptr)
+        if (!pending_.empty())
             stream_protocol_error(this->name(), "BEGIN_REQ before END_REQ of the item before", clock_);
         if (unit_ == nullptr)
             stream_protocol_error(this->name(), "nb_transport in functional mode", clock_);
         const std::uint64_t wait = stalls_.next() + clock_->cycles(delay);
-        if (wait == 0 && size_ < depth_) {
+        if (wait == 0 && !buffer_.full()) {
             push(payload);
             if (empty_inputs_ == nullptr || *empty_inputs_ == 0)
                 clock_->wake(*unit_);
@@ -107,10 +104,10 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
             phase = tlm::END_REQ;
             return tlm::TLM_UPDATED;
         }
-        at_the_door_ = &payload;
-        door_opens_ = clock_->cycle() + wait;
-        if (size_ < depth_)
-            clock_->wake_at(*unit_, door_opens_);
+        pending_.hold(payload, clock_->cycle() + wait);
+        waiting_ = true;
+        if (!buffer_.full())
+            clock_->wake_at(*unit_, pending_.due_cycle());
         else
             clock_->show(*unit_);
         return tlm::TLM_ACCEPTED;
@@ -121,11 +118,9 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
     unsigned transport_dbg(Payload&) override { return 0; }
 
     void push(const Payload& payload) {
-        const std::size_t place = first_ + size_;
-        ring_[place < depth_ ? place : place - depth_] = payload;
-        if (empty_inputs_ != nullptr && size_ == 0)
+        if (empty_inputs_ != nullptr && buffer_.empty())
             --*empty_inputs_;
-        ++size_;
+        buffer_.push(payload);
         ++taken_;
     }
 
@@ -133,12 +128,8 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
     void (*serve_)(void*, Payload&, sc_core::sc_time&) = nullptr;
     Clock* clock_ = nullptr;
     Clocked* unit_ = nullptr;
-    std::vector<Payload> ring_;
-    std::size_t depth_ = 1;
-    std::size_t first_ = 0;
-    std::size_t size_ = 0;
-    Payload* at_the_door_ = nullptr;
-    std::uint64_t door_opens_ = 0;
+    Ring<Payload> buffer_;
+    PendingItem<Payload> pending_;
     unsigned* empty_inputs_ = nullptr;
     std::uint64_t taken_ = 0;
     RandomStalls stalls_;

@@ -44,6 +44,13 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
         return false;
     }
 
+    /// Offers an item once and, called again with the same one, waits for it to be taken. True: the consumer has taken
+    /// it; until then it must stay where it is.
+    bool deliver(Payload& payload) {
+        delivering_ = delivering_ ? !free() : !send(payload);
+        return !delivering_;
+    }
+
     /// The module that takes the items: who blocks this one.
     const sc_core::sc_object* consumer() const {
         if (consumer_ == nullptr)
@@ -66,6 +73,7 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
     Clock* clock_ = nullptr;
     Clocked* unit_ = nullptr;
     const Payload* on_offer_ = nullptr;
+    bool delivering_ = false;                               // deliver() has yet to say that its item is taken
     mutable const sc_core::sc_object* consumer_ = nullptr;  // looked up once: it is slow
 };
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "modules/timing.h"
+#include "modules/unit/ring.h"
 
 namespace tessera {
 
@@ -24,14 +25,13 @@ class ElasticPipeline {
           interval_(timing.interval),
           servers_(servers),
           next_start_(servers, 0),
-          capacity_(std::size_t{servers} *
-                    std::max(1u, (timing.latency + further_stages + timing.interval - 1) / timing.interval)),
-          ring_(capacity_) {}
+          stages_(std::size_t{servers} *
+                  std::max(1u, (timing.latency + further_stages + timing.interval - 1) / timing.interval)) {}
 
-    bool empty() const { return size_ == 0; }
-    bool full() const { return size_ == capacity_; }
-    std::size_t size() const { return size_; }
-    std::size_t capacity() const { return capacity_; }
+    bool empty() const { return stages_.empty(); }
+    bool full() const { return stages_.full(); }
+    std::size_t size() const { return stages_.size(); }
+    std::size_t capacity() const { return stages_.capacity(); }
 
     bool may_start(std::uint64_t cycle) const { return !full() && cycle >= next_start_[server_]; }
 
@@ -39,29 +39,26 @@ class ElasticPipeline {
     Item& start(std::uint64_t cycle) {
         next_start_[server_] = cycle + interval_;
         server_ = server_ + 1 == servers_ ? 0 : server_ + 1;
-        Slot& slot = ring_[place(size_++)];
-        slot.finished = cycle + latency_;
-        return slot.item;
+        Stage& stage = stages_.push();
+        stage.finished = cycle + latency_;
+        return stage.item;
     }
 
-    Item& front() { return ring_[first_].item; }
-    const Item& front() const { return ring_[first_].item; }
-    Item& at(std::size_t k) { return ring_[place(k)].item; }
-    const Item& at(std::size_t k) const { return ring_[place(k)].item; }
+    Item& front() { return stages_.front().item; }
+    const Item& front() const { return stages_.front().item; }
+    Item& at(std::size_t k) { return stages_.at(k).item; }
+    const Item& at(std::size_t k) const { return stages_.at(k).item; }
     /// The item started last, even if it has left since; before the first, an empty one.
-    const Item& newest() const { return ring_[(first_ + size_ + capacity_ - 1) % capacity_].item; }
-    bool front_finished(std::uint64_t cycle) const { return size_ > 0 && ring_[first_].finished <= cycle; }
-    void finish(std::size_t k, std::uint64_t cycle) { ring_[place(k)].finished = cycle; }
+    const Item& newest() const { return stages_.back().item; }
+    bool front_finished(std::uint64_t cycle) const { return !empty() && stages_.front().finished <= cycle; }
+    void finish(std::size_t k, std::uint64_t cycle) { stages_.at(k).finished = cycle; }
     std::uint64_t latency() const { return latency_; }
 
-    void pop() {
-        first_ = first_ + 1 == capacity_ ? 0 : first_ + 1;
-        --size_;
-    }
+    void pop() { stages_.pop(); }
 
     /// The next cycle after `cycle` at which the first item is finished; `never` if that is not known or past.
     std::uint64_t next_finished(std::uint64_t cycle) const {
-        return size_ > 0 && ring_[first_].finished > cycle ? ring_[first_].finished : never;
+        return !empty() && stages_.front().finished > cycle ? stages_.front().finished : never;
     }
     /// The next cycle after `cycle` at which an item may be started; `never` if that waits for a place.
     std::uint64_t next_start(std::uint64_t cycle) const {
@@ -69,25 +66,17 @@ class ElasticPipeline {
     }
 
   private:
-    struct Slot {
+    struct Stage {
         Item item{};
         std::uint64_t finished = 0;
     };
-
-    std::size_t place(std::size_t k) const {
-        const std::size_t sum = first_ + k;
-        return sum < capacity_ ? sum : sum - capacity_;
-    }
 
     std::uint64_t latency_;
     std::uint64_t interval_;
     std::size_t servers_;
     std::vector<std::uint64_t> next_start_;  // one a server
     std::size_t server_ = 0;                 // whose turn it is
-    std::size_t capacity_;
-    std::vector<Slot> ring_;
-    std::size_t first_ = 0;
-    std::size_t size_ = 0;
+    Ring<Stage> stages_;
 };
 
 }  // namespace tessera

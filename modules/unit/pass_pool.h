@@ -8,7 +8,7 @@
 
 namespace tessera {
 
-/// Timed mode: the passes under way. Get Triangle takes one for each triangle it starts; Pass or Tessellate or
+/// The passes under way in timed mode. Get Triangle takes one for each triangle it starts; Pass or Tessellate or
 /// Tessellation, where the pass ends, gives it back. Grows to the most that were ever under way; no allocation
 /// after that.
 class PassPool {
@@ -22,9 +22,11 @@ class PassPool {
         Pass& pass = *free_.back();
         free_.pop_back();
         pass = Pass{};
-        pass.number = next_number_++;
+        pass.number = next_tag();
         return pass;
     }
+    /// Functional mode, where a pass lives as long as the call that brings its triangle.
+    Tag next_tag() { return next_tag_++; }
     void give_back(Pass& pass) { free_.push_back(&pass); }
 
     std::size_t under_way() const { return passes_.size() - free_.size(); }
@@ -33,7 +35,7 @@ class PassPool {
   private:
     std::deque<Pass> passes_;
     std::vector<Pass*> free_;
-    std::uint32_t next_number_ = 0;
+    Tag next_tag_ = 0;
 };
 
 }  // namespace tessera

@@ -1,6 +1,9 @@
 #include "modules/unit/signals.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "modules/trace/vcd_writer.h"
 
 namespace tessera {
 
@@ -60,6 +63,77 @@ unsigned UnitNumbers::of(const sc_core::sc_object* object) {
     const unsigned number = found == all().end() ? other : found->number;
     known_.emplace(object, number);
     return number;
+}
+
+void Signals::value(const char* name, unsigned bits, std::uint64_t value) {
+    if (declaring_)
+        declare(name, bits);
+    else
+        vcd_.set(handles_[signal_++], value);
+}
+
+bool Signals::changed(std::uint64_t value) {
+    if (declaring_) {
+        remembered_.push_back(0);
+        return false;
+    }
+    return std::exchange(remembered_[memory_++], value) != value;
+}
+
+void Signals::unit(const char* name, const sc_core::sc_object* object) {
+    group(changed(reinterpret_cast<std::uintptr_t>(object)),
+          [&] { value(name, UnitNumbers::bits, declaring_ ? 0 : numbers_.of(object)); });
+}
+
+void Signals::texture(const char* u, const char* v, const datapath::TexCoord& t) {
+    value(u, 25, t.u);
+    value(v, 25, t.v);
+}
+
+void Signals::position(const char* x, const char* y, const char* z, const datapath::Position& p) {
+    value(x, 32, static_cast<std::uint64_t>(p.x));
+    value(y, 32, static_cast<std::uint64_t>(p.y));
+    value(z, 32, static_cast<std::uint64_t>(p.z));
+}
+
+void Signals::direction(const char* x, const char* y, const char* z, const datapath::Direction& n) {
+    value(x, 18, static_cast<std::uint64_t>(n.x));
+    value(y, 18, static_cast<std::uint64_t>(n.y));
+    value(z, 18, static_cast<std::uint64_t>(n.z));
+}
+
+void Signals::screen(const char* x, const char* y, const datapath::ScreenPosition& s) {
+    value(x, 31, static_cast<std::uint64_t>(s.x));
+    value(y, 31, static_cast<std::uint64_t>(s.y));
+}
+
+void Signals::work(const Work& work) {
+    value("triangle", 32, pass_of(work).number);
+    value("part", part_bits, part_of(work));
+}
+
+void Signals::edge_textures(const Work& work) {
+    texture("t_i_u", "t_i_v", begin_of(work).texture);
+    texture("t_j_u", "t_j_v", end_of(work).texture);
+    texture("t_ij_u", "t_ij_v", pass_of(work).edges[work.index()].texture);
+}
+
+void Signals::pulse_if(const char* name, bool now) {
+    if (declaring_)
+        declare(name, 1);
+    else if (now)
+        vcd_.pulse(handles_[signal_++]);
+    else
+        vcd_.set(handles_[signal_++], 0);
+}
+
+void Signals::pulse_or_level(const char* name, bool pulse, bool level) {
+    if (declaring_)
+        declare(name, 1);
+    else if (pulse && !level)
+        vcd_.pulse(handles_[signal_++]);
+    else
+        vcd_.set(handles_[signal_++], level ? 1 : 0);
 }
 
 void Signals::declare(const char* name, unsigned bits) {

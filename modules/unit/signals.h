@@ -9,9 +9,10 @@
 
 #include "modules/datapath/vertex.h"
 #include "modules/stream/work.h"
-#include "modules/trace/vcd_writer.h"
 
 namespace tessera {
+
+class VcdWriter;
 
 /// Numbers of units in waveforms, the same in every design, so that waveforms/units.txt can name them.
 class UnitNumbers {
@@ -51,27 +52,13 @@ class Signals {
     void set_running() { running_ = true; }
     bool running() const { return running_; }
 
-    void value(const char* name, unsigned bits, std::uint64_t value) {
-        if (declaring_)
-            declare(name, bits);
-        else
-            vcd_.set(handles_[signal_++], value);
-    }
+    void value(const char* name, unsigned bits, std::uint64_t value);
     void flag(const char* name, bool value) { this->value(name, 1, value ? 1 : 0); }
     /// One cycle long when `count` has changed since the last call.
     void pulse(const char* name, std::uint64_t count) { pulse_if(name, changed(count) && running_); }
 
     /// Whether `value` differs from what it was at the last call, 0 before the first: that something new has come.
-    bool changed(std::uint64_t value) {
-        if (declaring_) {
-            remembered_.push_back(0);
-            return false;
-        }
-        std::uint64_t& last = remembered_[memory_++];
-        const bool differs = value != last;
-        last = value;
-        return differs;
-    }
+    bool changed(std::uint64_t value);
 
     /// `show` shows signals that hold their values unless `known`. It is called to declare them as well.
     template <class Show>
@@ -103,80 +90,39 @@ class Signals {
     }
 
     /// A number for another unit, by name in waveforms/units.txt.
-    void unit(const char* name, const sc_core::sc_object* object) {
-        group(changed(reinterpret_cast<std::uintptr_t>(object)),
-              [&] { value(name, UnitNumbers::bits, declaring_ ? 0 : numbers_.of(object)); });
-    }
+    void unit(const char* name, const sc_core::sc_object* object);
 
     /// Widths are those of the largest configuration, so that a save file fits all.
-    void texture(const char* u, const char* v, const datapath::TexCoord& t) {
-        value(u, 25, t.u);
-        value(v, 25, t.v);
-    }
-    void position(const char* x, const char* y, const char* z, const datapath::Position& p) {
-        value(x, 32, static_cast<std::uint64_t>(p.x));
-        value(y, 32, static_cast<std::uint64_t>(p.y));
-        value(z, 32, static_cast<std::uint64_t>(p.z));
-    }
-    void direction(const char* x, const char* y, const char* z, const datapath::Direction& n) {
-        value(x, 18, static_cast<std::uint64_t>(n.x));
-        value(y, 18, static_cast<std::uint64_t>(n.y));
-        value(z, 18, static_cast<std::uint64_t>(n.z));
-    }
-    void screen(const char* x, const char* y, const datapath::ScreenPosition& s) {
-        value(x, 31, static_cast<std::uint64_t>(s.x));
-        value(y, 31, static_cast<std::uint64_t>(s.y));
-    }
+    void texture(const char* u, const char* v, const datapath::TexCoord& t);
+    void position(const char* x, const char* y, const char* z, const datapath::Position& p);
+    void direction(const char* x, const char* y, const char* z, const datapath::Direction& n);
+    void screen(const char* x, const char* y, const datapath::ScreenPosition& s);
 
     /// Number of the triangle's pass, and which of its parts (waveforms/parts.txt).
-    void work(const Work& work) {
-        value("triangle", 32, pass_of(work).number);
-        value("part", part_bits, part_of(work));
-    }
+    void work(const Work& work);
 
     /// t_i, t_j and, from Calculate New U on, t_ij.
-    void edge_textures(const Work& work) {
-        texture("t_i_u", "t_i_v", begin_of(work).texture);
-        texture("t_j_u", "t_j_v", end_of(work).texture);
-        texture("t_ij_u", "t_ij_v", pass_of(work).edges[index_of(work)].texture);
-    }
+    void edge_textures(const Work& work);
 
     static constexpr unsigned part_bits = 4;
     static unsigned part_of(const Work& work) {
         return work.parts == 0 ? 0 : static_cast<unsigned>(__builtin_ctz(work.parts));
     }
-    static bool is_edge(const Work& work) { return (work.parts & edge_parts) != 0; }
-    /// 0 to 2: which edge, normal or vertex.
-    static unsigned index_of(const Work& work) { return part_of(work) % 3; }
     static const Pass& pass_of(const Work& work) {
         static const Pass none;
         return work.pass == nullptr ? none : *work.pass;
     }
     /// The vertices an edge joins; of a vertex or normal, itself twice.
     static const datapath::Vertex& begin_of(const Work& work) {
-        return pass_of(work).triangle.vertices[index_of(work)];
+        return pass_of(work).triangle.vertices[work.index()];
     }
     static const datapath::Vertex& end_of(const Work& work) {
-        return is_edge(work) ? pass_of(work).edge_end(static_cast<int>(index_of(work))) : begin_of(work);
+        return work.is_edge() ? pass_of(work).edge_end(static_cast<int>(work.index())) : begin_of(work);
     }
 
   private:
-    void pulse_if(const char* name, bool now) {
-        if (declaring_)
-            declare(name, 1);
-        else if (now)
-            vcd_.pulse(handles_[signal_++]);
-        else
-            vcd_.set(handles_[signal_++], 0);
-    }
-    void pulse_or_level(const char* name, bool pulse, bool level) {
-        if (declaring_)
-            declare(name, 1);
-        else if (pulse && !level)
-            vcd_.pulse(handles_[signal_++]);
-        else
-            vcd_.set(handles_[signal_++], level ? 1 : 0);
-    }
+    void pulse_if(const char* name, bool now);
+    void pulse_or_level(const char* name, bool pulse, bool level);
     void declare(const char* name, unsigned bits);
 
     VcdWriter& vcd_;
@@ -185,7 +131,7 @@ class Signals {
     const char* inner_scope_ = nullptr;
     bool declaring_ = true;
     bool running_ = false;
-    std::vector<VcdWriter::Signal> handles_;
+    std::vector<std::uint32_t> handles_;  // VcdWriter::Signal
     std::vector<std::uint64_t> remembered_;
     std::vector<std::size_t> group_sizes_;
     std::size_t signal_ = 0;

@@ -1,11 +1,7 @@
 #pragma once
 #include <systemc>
 
-#include "modules/stream/stream_input.h"
-#include "modules/stream/stream_output.h"
-#include "modules/stream/work.h"
-#include "modules/timing.h"
-#include "modules/unit/work_stage.h"
+#include "modules/unit/stage.h"
 
 namespace tessera {
 
@@ -18,19 +14,16 @@ namespace tessera {
 /// Arithmetic: add, arithmetic shift right by 1.
 /// Timing: one vertex, normal or edge per interval; latency 1, interval 1 by default.
 /// Waits for nothing but its input; held back by Displace Vertex.
-class CalculateNewP : public WorkStage<CalculateNewP> {
+class CalculateNewP final : public Stage<Work> {
   public:
     StreamInput<Work> from_get_triangle{"from_get_triangle"};
     StreamOutput<Work> to_displace_vertex{"to_displace_vertex"};
 
     CalculateNewP(const sc_core::sc_module_name& name, Clock& clock, const Timing& timing);
 
-    void process(const Work& work);
-
   private:
-    friend class WorkStage<CalculateNewP>;
-    void b_transport(Work& work, sc_core::sc_time& delay);
-    void trace_item(Signals& signals, const Work& work) const;
+    Work process(const Work& part, const Entries& entries) override;
+    void trace_processed(Signals& signals, const Work& part, const Work& result) const override;
 };
 
 }  // namespace tessera

@@ -10,81 +10,49 @@ namespace tessera {
 DisplaceVertex::DisplaceVertex(const sc_core::sc_module_name& name, Clock& clock,
                                const datapath::Registers& registers, const Timing& timing,
                                bool use_direct_memory)
-    : TableStage(name, clock, timing.displace_vertex, timing.displacement_map.latency),
+    : Stage(name, clock, timing.displace_vertex, 1, timing.displacement_map.latency),
       displacement_map("displacement_map", registers.displacement_map.entry_bytes, use_direct_memory),
       registers_(registers) {
     takes_from(from_calculate_new_p, timing.stalls);
     delivers_to(to_transform);
     reads_through(displacement_map, 1);
-    from_calculate_new_p.serve<&DisplaceVertex::b_transport>(*this);
 }
 
-std::uint64_t DisplaceVertex::address(const datapath::TexCoord& t) const {
-    return texel_address(t, registers_.displacement_map, registers_.map, registers_.formats);
+void DisplaceVertex::reads(const Work& part, Reads& reads) const {
+    if (part.is_normal())
+        return;
+    const datapath::TexCoord& t = part.is_edge() ? part.pass->new_vertex[part.index()].texture
+                                                 : part.pass->triangle.vertices[part.index()].texture;
+    reads.add(texel_address(t, registers_.displacement_map, registers_.map, registers_.formats));
 }
 
-void DisplaceVertex::displace_vertex(datapath::Vertex& vertex, std::uint64_t code) {
-    vertex.displaced = displace(vertex.position, vertex.normal, static_cast<std::uint32_t>(code),
-                                registers_.displacement, registers_.formats, saturations_);
+Work DisplaceVertex::process(const Work& part, const Entries& codes) {
+    const datapath::Formats& formats = registers_.formats;
+    const auto code = static_cast<std::uint32_t>(codes[0]);
+    if (part.is_edge()) {
+        datapath::NewVertex& made = part.pass->new_vertex[part.index()];
+        const datapath::Direction normal = normalise(made.mean_normal, formats, saturations_);
+        made.displaced =
+            displace(made.position, normal, code, registers_.displacement, formats, saturations_);
+    } else if (part.is_vertex()) {
+        datapath::Vertex& vertex = part.pass->triangle.vertices[part.index()];
+        vertex.displaced =
+            displace(vertex.position, vertex.normal, code, registers_.displacement, formats, saturations_);
+    }
+    return part;
 }
 
-void DisplaceVertex::displace_edge(datapath::NewVertex& made, std::uint64_t code) {
-    const datapath::Direction normal = normalise(made.mean_normal, registers_.formats, saturations_);
-    made.displaced = displace(made.position, normal, static_cast<std::uint32_t>(code),
-                              registers_.displacement, registers_.formats, saturations_);
+void DisplaceVertex::trace_started(Signals& signals, const Work& part) const {
+    const datapath::NewVertex& made = Signals::pass_of(part).new_vertex[part.index()];
+    const datapath::Vertex& vertex = Signals::begin_of(part);
+    signals.texture("t_u", "t_v", part.is_edge() ? made.texture : vertex.texture);
+    signals.position("p_x", "p_y", "p_z", part.is_edge() ? made.position : vertex.position);
 }
 
-void DisplaceVertex::b_transport(Work& work, sc_core::sc_time& delay) {
-    Pass& pass = *work.pass;
-    for_each_of_three(work.parts, 0, [&](unsigned k) {
-        datapath::Vertex& vertex = pass.triangle.vertices[k];
-        displace_vertex(vertex, displacement_map.read(address(vertex.texture), delay));
-    });
-    for_each_of_three(work.parts, first_edge_part, [&](unsigned k) {
-        datapath::NewVertex& made = pass.new_vertex[k];
-        displace_edge(made, displacement_map.read(address(made.texture), delay));
-    });
-    delay += clock_.period() * timing_.latency;
-    to_transform->b_transport(work, delay);
-}
-
-unsigned DisplaceVertex::begin(TableItem& item) {
-    return (item.work.parts & normal_parts) == 0 ? 1 : 0;
-}
-
-void DisplaceVertex::ask(TableItem& item, unsigned) {
-    const Pass& pass = *item.work.pass;
-    const auto ask_at = [&](const datapath::TexCoord& t) {
-        const std::uint64_t at = address(t);
-        displacement_map.request(&at, 1);
-    };
-    for_each_of_three(item.work.parts, 0, [&](unsigned k) { ask_at(pass.triangle.vertices[k].texture); });
-    for_each_of_three(item.work.parts, first_edge_part,
-                      [&](unsigned k) { ask_at(pass.new_vertex[k].texture); });
-}
-
-void DisplaceVertex::receive(TableItem& item, unsigned) {
-    Pass& pass = *item.work.pass;
-    const std::uint64_t code = displacement_map.entry(0);
-    for_each_of_three(item.work.parts, 0,
-                      [&](unsigned k) { displace_vertex(pass.triangle.vertices[k], code); });
-    for_each_of_three(item.work.parts, first_edge_part,
-                      [&](unsigned k) { displace_edge(pass.new_vertex[k], code); });
-}
-
-void DisplaceVertex::trace_item(Signals& signals, const TableItem& item) const {
-    const datapath::NewVertex& made = Signals::pass_of(item.work).new_vertex[Signals::index_of(item.work)];
-    const datapath::Vertex& vertex = Signals::begin_of(item.work);
-    const bool edge = Signals::is_edge(item.work);
-    signals.texture("t_u", "t_v", edge ? made.texture : vertex.texture);
-    signals.position("p_x", "p_y", "p_z", edge ? made.position : vertex.position);
-}
-
-void DisplaceVertex::trace_answered(Signals& signals, const TableItem& item) const {
-    const unsigned k = Signals::index_of(item.work);
+void DisplaceVertex::trace_processed(Signals& signals, const Work& part, const Work&) const {
     signals.position("displaced_x", "displaced_y", "displaced_z",
-                     Signals::is_edge(item.work) ? Signals::pass_of(item.work).new_vertex[k].displaced
-                                                 : Signals::begin_of(item.work).displaced);
+                     part.is_edge() ? Signals::pass_of(part).new_vertex[part.index()].displaced
+                                    : Signals::begin_of(part).displaced);
 }
 
 }  // namespace tessera

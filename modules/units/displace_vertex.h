@@ -3,11 +3,7 @@
 
 #include "modules/datapath/parameters.h"
 #include "modules/memory/memory_port.h"
-#include "modules/stream/stream_input.h"
-#include "modules/stream/stream_output.h"
-#include "modules/stream/work.h"
-#include "modules/timing.h"
-#include "modules/unit/table_stage.h"
+#include "modules/unit/stage.h"
 
 namespace tessera {
 
@@ -19,7 +15,7 @@ namespace tessera {
 /// Arithmetic: normalise (the pipeline's existing unit), multiply, round, multiply-accumulate, saturate (counted).
 /// Timing: one vertex, normal or edge per interval; latency 6 plus the map read, interval 1 by default.
 /// Waits for the displacement map; held back by Transform.
-class DisplaceVertex : public TableStage<DisplaceVertex, TableItem> {
+class DisplaceVertex final : public Stage<Work> {
   public:
     StreamInput<Work> from_calculate_new_p{"from_calculate_new_p"};
     StreamOutput<Work> to_transform{"to_transform"};
@@ -31,17 +27,10 @@ class DisplaceVertex : public TableStage<DisplaceVertex, TableItem> {
     const datapath::Saturations& saturations() const { return saturations_; }
 
   private:
-    friend class TableStage<DisplaceVertex, TableItem>;
-    void b_transport(Work& work, sc_core::sc_time& delay);
-    unsigned begin(TableItem& item);
-    void ask(TableItem& item, unsigned k);
-    void receive(TableItem& item, unsigned k);
-    void trace_item(Signals& signals, const TableItem& item) const;
-    void trace_answered(Signals& signals, const TableItem& item) const;
-
-    std::uint64_t address(const datapath::TexCoord& t) const;
-    void displace_vertex(datapath::Vertex& vertex, std::uint64_t code);
-    void displace_edge(datapath::NewVertex& made, std::uint64_t code);
+    void reads(const Work& part, Reads& reads) const override;
+    Work process(const Work& part, const Entries& codes) override;
+    void trace_started(Signals& signals, const Work& part) const override;
+    void trace_processed(Signals& signals, const Work& part, const Work& result) const override;
 
     const datapath::Registers& registers_;
     datapath::Saturations saturations_;

@@ -16,11 +16,14 @@ GetTriangle::GetTriangle(const sc_core::sc_module_name& name, Clock& clock, cons
     from_triangle_queue.serve<&GetTriangle::b_transport_from_triangle_queue>(*this);
     from_host.clocked_by(clock, *this, timing_.buffer, timing.stalls);
     from_triangle_queue.clocked_by(clock, *this, timing_.buffer, timing.stalls);
-    branches_[branch_count_++].output = &to_calculate_new_p;
-    for (StreamOutput<Work>& output : to_tessellation_tests)
-        branches_[branch_count_++].output = &output;
-    for (unsigned k = 0; k < branch_count_; ++k)
-        branches_[k].output->clocked_by(clock, *this);
+    const auto add = [&](StreamOutput<Work>& output, Parts takes) {
+        output.clocked_by(clock, *this);
+        branches_[branch_count_].output = &output;
+        branches_[branch_count_++].takes = takes;
+    };
+    add(to_calculate_new_p, all_parts);
+    for (unsigned k = 0; k < tests_units; ++k)
+        add(to_tessellation_tests[k], parts_for_tests(k, tests_units));
 }
 
 void GetTriangle::prepare(datapath::TrianglePass& pass) {
@@ -38,17 +41,20 @@ void GetTriangle::prepare(datapath::TrianglePass& pass) {
 }
 
 void GetTriangle::send_whole(const datapath::Triangle& triangle, sc_core::sc_time& delay) {
-    ++whole_.number;
-    whole_.triangle = triangle;
-    prepare(whole_);
+    Pass pass;
+    pass.number = passes_.next_tag();
+    pass.triangle = triangle;
+    prepare(pass);
     delay += clock_.period() * timing_.latency;
-    sc_core::sc_time geometry = delay;
-    sc_core::sc_time tests = delay;
-    Work work{&whole_, parts_of(whole_)};
-    to_calculate_new_p->b_transport(work, geometry);
-    if (whole_.tested)
-        to_tessellation_tests[0]->b_transport(work, tests);
-    delay = std::max(geometry, tests);
+    const sc_core::sc_time start = delay;
+    for (unsigned k = 0; k < branch_count_; ++k) {
+        if (k > 0 && !pass.tested)
+            break;
+        Work work{&pass, static_cast<Parts>(parts_of(pass) & branches_[k].takes)};
+        sc_core::sc_time its_delay = start;
+        (*branches_[k].output)->b_transport(work, its_delay);
+        delay = std::max(delay, its_delay);
+    }
 }
 
 void GetTriangle::b_transport_from_host(datapath::Triangle& triangle, sc_core::sc_time& delay) {
@@ -79,15 +85,9 @@ bool GetTriangle::begin(std::uint64_t cycle) {
     source->pop();
     prepare(*pass_);
     activity_.item_in(cycle);
-    const Parts parts = parts_of(*pass_);
-    pass_->geometry_left = parts;
-    pass_->tests_left = static_cast<Parts>(parts & edge_parts);
-    const auto tested = static_cast<Parts>(pass_->tested ? parts & (vertex_parts | edge_parts) : 0);
     for (unsigned k = 0; k < branch_count_; ++k) {
         Branch& branch = branches_[k];
-        branch.left = k == 0 ? parts : tested;
-        if (k > 0 && branch_count_ > 2)
-            branch.left = static_cast<Parts>(branch.left & 0111u << (k - 1));
+        branch.left = static_cast<Parts>(k == 0 || pass_->tested ? parts_of(*pass_) & branch.takes : 0);
         branch.next = std::max(branch.next, cycle + timing_.latency);
     }
     return true;
@@ -117,8 +117,6 @@ bool GetTriangle::send_parts(Branch& branch, std::uint64_t cycle) {
 
 void GetTriangle::step() {
     const std::uint64_t cycle = now();
-    from_host.admit();
-    from_triangle_queue.admit();
     for (;;) {
         if (pass_ == nullptr && !begin(cycle))
             break;

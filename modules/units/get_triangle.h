@@ -23,7 +23,7 @@ namespace tessera {
 ///   finished, without N's  its normals only: no edge is tested again
 ///
 /// In:   triangles. Out: to Calculate New P all parts, to Tessellation Tests vertices and edges; with three Tessellation
-///       Tests units vertex and edge k to unit k.
+///       Tests units edge k and its two vertices to unit k.
 /// Timing: one part per interval (1) on each output, the first a latency (1) after the triangle was taken. Capacity: one
 ///       triangle; the next is taken when all parts of the last have been.
 /// Waits for the Triangle Queue or the host; takes a host triangle only while the queue is below its watermark and has
@@ -58,6 +58,7 @@ class GetTriangle : public Unit {
     /// One output's share of the pass: what is left to send, and what is on offer.
     struct Branch {
         StreamOutput<Work>* output = nullptr;
+        Parts takes = 0;  // of a triangle
         Parts left = 0;
         Work offered;
         std::uint64_t next = 0;
@@ -72,7 +73,6 @@ class GetTriangle : public Unit {
 
     UnitTiming timing_;
     PassPool& passes_;
-    Pass whole_;            // functional mode
     Pass* pass_ = nullptr;  // timed mode: what is being sent
     std::array<Branch, 4> branches_;
     unsigned branch_count_ = 0;

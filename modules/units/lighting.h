@@ -5,11 +5,7 @@
 
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/vertex.h"
-#include "modules/stream/stream_input.h"
-#include "modules/stream/stream_output.h"
-#include "modules/timing.h"
-#include "modules/unit/elastic_pipeline.h"
-#include "modules/unit/unit.h"
+#include "modules/unit/stage.h"
 
 namespace tessera {
 
@@ -29,7 +25,7 @@ struct LitTriangle {
 /// Arithmetic: three multiplications and a maximum per vertex, one multiplication; truncated to 8 bits, saturates (counted).
 /// Timing: one triangle per interval; latency 4, interval 1 by default.
 /// Waits for nothing but its input; held back by the rasteriser.
-class Lighting : public Unit {
+class Lighting final : public Stage<datapath::Triangle, LitTriangle> {
   public:
     StreamInput<datapath::Triangle> from_pass_or_tessellate{"from_pass_or_tessellate"};
     StreamOutput<LitTriangle> to_rasteriser{"to_rasteriser"};
@@ -39,21 +35,12 @@ class Lighting : public Unit {
 
     const datapath::Saturations& saturations() const { return saturations_; }
 
-    std::string holds() const override;
-    std::uint64_t occupied_cycles() const override { return activity_.items_in() * timing_.interval; }
-    void show(Signals& signals) const override;
-    /// Counts only: a triangle comes without its number.
-    Begun begun() const override { return {activity_.items_in()}; }
-
   private:
-    void b_transport(datapath::Triangle& triangle, sc_core::sc_time& delay);
-    void step() override;
-    LitTriangle light(const datapath::Triangle& triangle);
+    LitTriangle process(const datapath::Triangle& triangle, const Entries& entries) override;
+    void trace_processed(Signals& signals, const datapath::Triangle& triangle,
+                         const LitTriangle& lit) const override;
 
     const datapath::Registers& registers_;
-    UnitTiming timing_;
-    ElasticPipeline<LitTriangle> pipeline_;
-    bool offered_ = false;  // the first is on offer to the rasteriser
     datapath::Saturations saturations_;
 };
 

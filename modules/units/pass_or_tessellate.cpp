@@ -19,10 +19,10 @@ PassOrTessellate::PassOrTessellate(const sc_core::sc_module_name& name, Clock& c
       passes_(passes),
       incomplete_(timing.pass_or_tessellate.buffer),
       pipeline_(timing.pass_or_tessellate) {
-    from_transform.serve<&PassOrTessellate::b_transport>(*this);
+    from_transform.serve<&PassOrTessellate::b_transport_from_transform>(*this);
     from_transform.clocked_by(clock, *this, 1, timing.stalls);
     for (StreamInput<Work>& input : from_tessellation_tests) {
-        input.serve<&PassOrTessellate::b_transport>(*this);
+        input.serve<&PassOrTessellate::b_transport_from_tests>(*this);
         input.clocked_by(clock, *this, timing_.buffer * 3 / tests_units, timing.stalls);
     }
     to_tessellation.clocked_by(clock, *this);
@@ -35,27 +35,51 @@ void PassOrTessellate::end_of_elaboration() {
         tests_.push_back(module_behind(input.get_base_port().get_interface()));
 }
 
-void PassOrTessellate::b_transport(Work& work, sc_core::sc_time& delay) {
-    Pass& pass = *work.pass;
-    if (pass.tested) {
-        if (waiting_ == nullptr) {
-            waiting_ = &pass;
-            waiting_number_ = pass.number;
-            waiting_delay_ = delay;
-            return;
-        }
-        if (waiting_ != &pass || waiting_number_ != pass.number)
-            SC_REPORT_ERROR("tessera/pass_or_tessellate", "the two branches brought different triangles");
-        waiting_ = nullptr;
-        delay = std::max(delay, waiting_delay_);
+/// The place of a part's triangle, opened for it if it has none.
+PassOrTessellate::Incomplete& PassOrTessellate::place_of(const Work& part) {
+    Incomplete* place = incomplete_.find(part.tag());
+    if (place == nullptr) {
+        place = &incomplete_.open(part.tag());
+        place->pass = part.pass;
+        place->geometry_left = parts_of(*part.pass);
+        place->tests_left = static_cast<Parts>(parts_of(*part.pass) & edge_parts);
     }
-    delay += clock_.period() * timing_.latency;
-    switch (join(pass)) {
+    return *place;
+}
+
+void PassOrTessellate::take(Parts& left, const Work& part) const {
+    if ((left & part.parts) != part.parts)
+        SC_REPORT_ERROR("tessera/pass_or_tessellate", "a part of a triangle came twice");
+    left = static_cast<Parts>(left & ~part.parts);
+}
+
+void PassOrTessellate::b_transport_from_transform(Work& work, sc_core::sc_time& delay) {
+    Incomplete& triangle = place_of(work);
+    take(triangle.geometry_left, work);
+    finish_if_complete(triangle, work, delay);
+}
+
+void PassOrTessellate::b_transport_from_tests(Work& work, sc_core::sc_time& delay) {
+    Incomplete* triangle = incomplete_.find(work.tag());
+    if (triangle == nullptr)
+        SC_REPORT_ERROR("tessera/pass_or_tessellate", "the two branches brought different triangles");
+    take(triangle->tests_left, work);
+    finish_if_complete(*triangle, work, delay);
+}
+
+void PassOrTessellate::finish_if_complete(Incomplete& triangle, const Work& part, sc_core::sc_time& delay) {
+    triangle.latest = std::max(triangle.latest, delay);
+    if (!triangle.complete())
+        return;
+    delay = triangle.latest + clock_.period() * timing_.latency;
+    incomplete_.close(part.tag());
+    Work whole{part.pass, parts_of(*part.pass)};
+    switch (join(*part.pass)) {
         case Way::tessellation:
-            to_tessellation->b_transport(work, delay);
+            to_tessellation->b_transport(whole, delay);
             break;
         case Way::lighting:
-            to_lighting->b_transport(pass.triangle, delay);
+            to_lighting->b_transport(part.pass->triangle, delay);
             break;
         case Way::dropped:
             break;
@@ -64,27 +88,23 @@ void PassOrTessellate::b_transport(Work& work, sc_core::sc_time& delay) {
 
 bool PassOrTessellate::take_parts(std::uint64_t cycle) {
     bool taken = false;
-    from_transform.admit();
-    while (!from_transform.empty()) {
-        const Work& work = from_transform.front();
-        if (!work.pass->at_the_join) {
-            if (incomplete_count_ == incomplete_.size())
+    for (; !from_transform.empty(); from_transform.pop()) {
+        const Work& part = from_transform.front();
+        if (incomplete_.find(part.tag()) == nullptr) {
+            if (incomplete_.size() == timing_.buffer)
                 break;
-            incomplete_[(first_incomplete_ + incomplete_count_++) % incomplete_.size()] = work.pass;
-            most_incomplete_ = std::max(most_incomplete_, incomplete_count_);
-            work.pass->at_the_join = true;
             activity_.item_in(cycle);
         }
-        work.pass->geometry_left = static_cast<Parts>(work.pass->geometry_left & ~work.parts);
-        from_transform.pop();
+        take(place_of(part).geometry_left, part);
+        most_incomplete_ = std::max(most_incomplete_, incomplete_.size());
         taken = true;
     }
     for (StreamInput<Work>& input : from_tessellation_tests) {
-        input.admit();
-        while (!input.empty() && input.front().pass->at_the_join) {
-            const Work& work = input.front();
-            work.pass->tests_left = static_cast<Parts>(work.pass->tests_left & ~work.parts);
-            input.pop();
+        for (; !input.empty(); input.pop()) {
+            Incomplete* triangle = incomplete_.find(input.front().tag());
+            if (triangle == nullptr)
+                break;
+            take(triangle->tests_left, input.front());
             taken = true;
         }
     }
@@ -94,9 +114,9 @@ bool PassOrTessellate::take_parts(std::uint64_t cycle) {
 bool PassOrTessellate::deliver(Decided& next) {
     switch (next.way) {
         case Way::tessellation:
-            return offered_ ? to_tessellation.free() : to_tessellation.send(next.work);
+            return to_tessellation.deliver(next.work);
         case Way::lighting:
-            if (offered_ ? !to_lighting.free() : !to_lighting.send(next.work.pass->triangle))
+            if (!to_lighting.deliver(next.work.pass->triangle))
                 return false;
             break;
         case Way::dropped:
@@ -108,24 +128,16 @@ bool PassOrTessellate::deliver(Decided& next) {
 
 void PassOrTessellate::step() {
     const std::uint64_t cycle = now();
-    while (pipeline_.front_finished(cycle)) {
-        if (!deliver(pipeline_.front())) {
-            offered_ = true;
-            break;
-        }
-        offered_ = false;
+    while (pipeline_.front_finished(cycle) && deliver(pipeline_.front())) {
         pipeline_.pop();
         activity_.item_out(cycle);
     }
     bool changed = true;
     while (changed) {
         changed = take_parts(cycle);
-        while (incomplete_count_ > 0 && pipeline_.may_start(cycle)) {
-            Pass& pass = *incomplete_[first_incomplete_];
-            if (pass.geometry_left != 0 || pass.tests_left != 0)
-                break;
-            first_incomplete_ = first_incomplete_ + 1 == incomplete_.size() ? 0 : first_incomplete_ + 1;
-            --incomplete_count_;
+        while (first_is_complete() && pipeline_.may_start(cycle)) {
+            Pass& pass = *incomplete_.oldest().state.pass;
+            incomplete_.close_oldest();
             Decided& next = pipeline_.start(cycle);
             next.work = {&pass, parts_of(pass)};
             next.way = join(pass);
@@ -133,47 +145,41 @@ void PassOrTessellate::step() {
             changed = true;
         }
     }
-    if (offered_)
-        activity_.set(cycle, State::blocked,
-                      to_lighting.free() ? to_tessellation.consumer() : to_lighting.consumer());
+    if (!to_lighting.free())
+        activity_.set(cycle, State::blocked, to_lighting.consumer());
+    else if (!to_tessellation.free())
+        activity_.set(cycle, State::blocked, to_tessellation.consumer());
     else if (!pipeline_.empty() || first_is_complete())
         activity_.set(cycle, State::busy);
     else
         activity_.set(cycle, State::starved, lacks());
     wake_at(pipeline_.next_finished(cycle));
-    if (incomplete_count_ > 0)
+    if (!incomplete_.empty())
         wake_at(pipeline_.next_start(cycle));
-}
-
-bool PassOrTessellate::first_is_complete() const {
-    if (incomplete_count_ == 0)
-        return false;
-    const Pass& first = *incomplete_[first_incomplete_];
-    return first.geometry_left == 0 && first.tests_left == 0;
 }
 
 /// The branch of which something lacks while all of the other's is there; null: neither is late.
 const sc_core::sc_object* PassOrTessellate::lacks() const {
-    if (incomplete_count_ == 0) {
+    if (incomplete_.empty()) {
         for (const StreamInput<Work>& input : from_tessellation_tests) {
             if (!input.empty())
                 return transform_;
         }
         return nullptr;
     }
-    const Pass& first = *incomplete_[first_incomplete_];
+    const Incomplete& first = incomplete_.oldest().state;
     if (first.geometry_left == 0)
-        return tests_[tests_.size() == 1 ? 0 : Signals::index_of({nullptr, first.tests_left})];
+        return tests_[tests_.size() == 1 ? 0 : Work{nullptr, first.tests_left}.index()];
     return first.tests_left == 0 ? transform_ : nullptr;
 }
 
 std::string PassOrTessellate::holds() const {
     std::string text;
     const auto add = [&](const std::string& what) { text = listed(text, what, "; "); };
-    if (incomplete_count_ > 0) {
-        const Pass& first = *incomplete_[first_incomplete_];
-        add(count_of(incomplete_count_, "triangle") + " to be joined, the first (" +
-            std::to_string(first.number) + ") " +
+    if (!incomplete_.empty()) {
+        const Incomplete& first = incomplete_.oldest().state;
+        add(count_of(incomplete_.size(), "triangle") + " to be joined, the first (" +
+            std::to_string(incomplete_.oldest().tag) + ") " +
             (first_is_complete()        ? "complete"
              : first.geometry_left == 0 ? "lacks its parts from Tessellation Tests"
              : first.tests_left == 0    ? "lacks its parts from Transform"
@@ -263,7 +269,7 @@ void PassOrTessellate::show(Signals& signals) const {
     signals.input(from_transform, "from_transform");
     for (const StreamInput<Work>& input : from_tessellation_tests)
         signals.input(input, input.basename());
-    signals.value("incomplete", 16, incomplete_count_);
+    signals.value("incomplete", 16, incomplete_.size());
     const std::uint64_t decided_so_far = counts_.passes + counts_.normal_passes;
     signals.pulse("decided", decided_so_far);
     signals.group(signals.changed(decided_so_far) && !pipeline_.empty(), [&] {

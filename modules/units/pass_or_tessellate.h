@@ -13,6 +13,7 @@
 #include "modules/timing.h"
 #include "modules/unit/elastic_pipeline.h"
 #include "modules/unit/pass_pool.h"
+#include "modules/unit/per_triangle.h"
 #include "modules/unit/unit.h"
 
 namespace tessera {
@@ -65,8 +66,8 @@ class PassOrTessellate : public Unit {
                      const Timing& timing, unsigned tests_units, PassPool& passes);
 
     const Counts& counts() const { return counts_; }
-    /// Functional mode: no pass waits for its other branch.
-    bool joined() const { return waiting_ == nullptr; }
+    /// No triangle waits for a branch.
+    bool joined() const { return incomplete_.empty(); }
     /// Most triangles that waited for a branch at a time.
     std::size_t most_incomplete() const { return most_incomplete_; }
 
@@ -85,11 +86,26 @@ class PassOrTessellate : public Unit {
         Way way = Way::dropped;
     };
 
-    void b_transport(Work& work, sc_core::sc_time& delay);
+    /// A triangle that is not complete: the parts that still have to come from Transform and from Tessellation Tests;
+    /// functional mode: when the last one came.
+    struct Incomplete {
+        Pass* pass = nullptr;
+        Parts geometry_left = 0;
+        Parts tests_left = 0;
+        sc_core::sc_time latest;
+
+        bool complete() const { return geometry_left == 0 && tests_left == 0; }
+    };
+
+    void b_transport_from_transform(Work& work, sc_core::sc_time& delay);
+    void b_transport_from_tests(Work& work, sc_core::sc_time& delay);
+    void finish_if_complete(Incomplete& triangle, const Work& part, sc_core::sc_time& delay);
     void step() override;
     bool take_parts(std::uint64_t cycle);
+    Incomplete& place_of(const Work& part);
+    void take(Parts& left, const Work& part) const;
     bool deliver(Decided& next);
-    bool first_is_complete() const;
+    bool first_is_complete() const { return !incomplete_.empty() && incomplete_.oldest().state.complete(); }
     const sc_core::sc_object* lacks() const;
     void end_of_elaboration() override;
 
@@ -101,15 +117,9 @@ class PassOrTessellate : public Unit {
     const datapath::Registers& registers_;
     UnitTiming timing_;
     PassPool& passes_;
-    const Pass* waiting_ = nullptr;     // functional mode: the pass of which one branch has come
-    std::uint32_t waiting_number_ = 0;  // which, for the place may be another's by now
-    sc_core::sc_time waiting_delay_;    // and when
-    std::vector<Pass*> incomplete_;     // timed mode: a ring, in order of arrival
-    std::size_t first_incomplete_ = 0;
-    std::size_t incomplete_count_ = 0;
+    PerTriangle<Incomplete> incomplete_;
     std::size_t most_incomplete_ = 0;
     ElasticPipeline<Decided> pipeline_;
-    bool offered_ = false;  // the pipeline's first is on offer
     const sc_core::sc_object* transform_ = nullptr;
     std::vector<const sc_core::sc_object*> tests_;  // one per Tessellation Tests unit
     Counts counts_;

@@ -25,7 +25,6 @@ void Tessellation::b_transport(Work& work, sc_core::sc_time& delay) {
 
 void Tessellation::step() {
     const std::uint64_t cycle = now();
-    from_pass_or_tessellate.admit();
     for (;;) {
         while (sent_ < made_ && to_triangle_queue.free() && next_ <= cycle) {
             next_ = cycle + timing_.interval;

@@ -1,15 +1,9 @@
 #pragma once
 #include <cstdint>
-#include <memory>
 #include <systemc>
-#include <vector>
 
 #include "modules/datapath/parameters.h"
-#include "modules/stream/stream_input.h"
-#include "modules/stream/stream_output.h"
-#include "modules/stream/work.h"
-#include "modules/timing.h"
-#include "modules/unit/work_stage.h"
+#include "modules/unit/stage.h"
 
 namespace tessera {
 
@@ -24,7 +18,7 @@ namespace tessera {
 /// Timing: one vertex, normal or edge per interval and pipeline; latency 20, interval 1, one pipeline by default.
 ///       Several pipelines take turns; items stay in order.
 /// Waits for nothing but its input; held back by Pass or Tessellate.
-class Transform : public WorkStage<Transform> {
+class Transform final : public Stage<Work> {
   public:
     StreamInput<Work> from_displace_vertex{"from_displace_vertex"};
     StreamOutput<Work> to_pass_or_tessellate{"to_pass_or_tessellate"};
@@ -37,17 +31,11 @@ class Transform : public WorkStage<Transform> {
     std::uint64_t positions() const { return positions_; }
     std::uint64_t normals() const { return normals_; }
 
-    std::uint64_t occupied_cycles() const override { return WorkStage::occupied_cycles() / pipelines_; }
-
   private:
-    friend class WorkStage<Transform>;
-    void b_transport(Work& work, sc_core::sc_time& delay);
-    void process(const Work& work);
-    unsigned targets(const Work& work) const;
-    void trace_item(Signals& signals, const Work& work) const;
+    Work process(const Work& part, const Entries& entries) override;
+    void trace_processed(Signals& signals, const Work& part, const Work& result) const override;
 
     const datapath::Registers& registers_;
-    unsigned pipelines_;
     datapath::Saturations saturations_;
     std::uint64_t positions_ = 0;
     std::uint64_t normals_ = 0;

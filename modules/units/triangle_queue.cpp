@@ -152,16 +152,10 @@ void TriangleQueue::refill() {
 
 void TriangleQueue::step() {
     const std::uint64_t cycle = now();
-    from_tessellation.admit();
     take_back();
     for (bool changed = true; changed;) {
         changed = false;
-        while (leaving_.front_finished(cycle)) {
-            if (offered_ ? !to_get_triangle.free() : !to_get_triangle.send(leaving_.front())) {
-                offered_ = true;
-                break;
-            }
-            offered_ = false;
+        while (leaving_.front_finished(cycle) && to_get_triangle.deliver(leaving_.front())) {
             leaving_.pop();
             activity_.item_out(cycle);
             changed = true;
@@ -181,7 +175,7 @@ void TriangleQueue::step() {
         if (changed)
             level_changed(cycle);
     }
-    if (offered_)
+    if (!to_get_triangle.free())
         activity_.set(cycle, State::blocked, to_get_triangle.consumer());
     else if (!leaving_.empty() || !store_.empty())
         activity_.set(cycle, State::busy);

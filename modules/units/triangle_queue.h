@@ -100,7 +100,6 @@ class TriangleQueue : public Unit, public TriangleQueueLevel {
     std::size_t record_bytes_;
     TriangleStore store_;
     ElasticPipeline<datapath::Triangle> leaving_;
-    bool offered_ = false;             // the first of leaving_ is on offer
     std::uint64_t next_in_ = 0;        // cycle from which a triangle may be taken
     std::uint64_t off_chip_ = 0;       // triangles in off-chip memory
     std::uint64_t off_chip_head_ = 0;  // place of the oldest

@@ -54,9 +54,14 @@ void add_triangles(Equations& list, const Simulation& simulation) {
              counts.finished - counts.culled);
 }
 
+/// Vertices that go to Tessellation Tests: of three units, each takes those that its edge joins.
+std::uint64_t bumps(const Pipeline& p, std::uint64_t vertices) {
+    return p.tessellation_tests.size() == 1 ? vertices : 2 * vertices;
+}
+
 void add_reads(Equations& list, const Pipeline& p, std::uint64_t vertices, std::uint64_t edges) {
     list.add("reads of displace_vertex = vertices and edges", p.displacement_map_reads(), vertices + edges);
-    list.add("reads of normal_test = vertices and edges", p.normal_map_reads(), vertices + edges);
+    list.add("reads of normal_test = vertices and edges", p.normal_map_reads(), bumps(p, vertices) + edges);
     list.add("positions of transform = vertices and edges", p.transform.positions(), vertices + edges);
 }
 
@@ -82,9 +87,9 @@ void add_timed(Equations& list, const Simulation& simulation, std::uint64_t vert
     // along the tests: vertices end in the Normal Test
     const auto tests = [&](auto figure) { return sum_over_tests(p, figure); };
     list.add("parts in calculate_new_u = vertices and edges",
-             tests([](const auto& t) { return items(t.calculate_new_u); }), vertices + edges);
+             tests([](const auto& t) { return items(t.calculate_new_u); }), bumps(p, vertices) + edges);
     list.add("parts in normal_test = vertices and edges",
-             tests([](const auto& t) { return items(t.normal_test); }), vertices + edges);
+             tests([](const auto& t) { return items(t.normal_test); }), bumps(p, vertices) + edges);
     list.add("edges in tex_coord_test = edges", tests([](const auto& t) { return items(t.tex_coord_test); }),
              edges);
     list.add("edges in summed_height_test = edges",
@@ -108,7 +113,7 @@ void add_timed(Equations& list, const Simulation& simulation, std::uint64_t vert
              p.summed_height_table.transactions(), p.summed_height_table_reads());
     list.add("requests to displacement_map = vertices and edges", items(p.displacement_map),
              vertices + edges);
-    list.add("requests to normal_map = vertices and edges", items(p.normal_map), vertices + edges);
+    list.add("requests to normal_map = vertices and edges", items(p.normal_map), bumps(p, vertices) + edges);
     list.add("requests to summed_height_table = three an edge, if it tests", items(p.summed_height_table),
              simulation.setup.registers.tests.summed_height_test ? 3 * edges : 0);
 

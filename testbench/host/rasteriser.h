@@ -32,7 +32,6 @@ class Rasteriser : public sc_core::sc_module, public Clocked {
         taken.write(triangle);
     }
     void step() override {
-        from_lighting.admit();
         while (!from_lighting.empty()) {
             take(from_lighting.front());
             from_lighting.pop();

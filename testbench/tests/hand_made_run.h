@@ -72,6 +72,7 @@ class HandMadeRun {
     void fetch_normals(bool turned_away) {
         Pass pass = known_pass();
         pass.triangle.finished = true;
+        pass.new_normals = 7;
         pass.triangle.vertices[0].screen = {0, 0, 1, true};
         pass.triangle.vertices[turned_away ? 2 : 1].screen = {1, 0, 1, true};
         pass.triangle.vertices[turned_away ? 1 : 2].screen = {0, 1, 1, true};

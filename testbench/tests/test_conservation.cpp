@@ -303,36 +303,38 @@ TEST_CASE("conservation: a vertex transformed, and triangles decided, too many")
 
     // one of its branches: Pass or Tessellate waits for the other
     pass.tested = true;
-    Work vertex_and_normal{&pass, 1 | 1u << first_normal_part};
-    expect_change("transform works on a vertex and a normal", simulation,
-                  [&] { give(p.displace_vertex.to_transform, vertex_and_normal); },
-                  {{"positions of transform = vertices and edges", {1, 0}},
-                   {"positions and normals of transform = parts", {2, 0}}});
+    pass.new_vertices = 1;
+    pass.new_normals = 2;
+    Work whole{&pass, parts_of(pass)};
+    expect_change("transform works on a vertex, a normal and three edges", simulation,
+                  [&] { give(p.displace_vertex.to_transform, whole); },
+                  {{"positions of transform = vertices and edges", {4, 0}},
+                   {"positions and normals of transform = parts", {5, 0}}});
+    Work edges{&pass, edge_parts};
     pass.edges[0].tests = datapath::normal_bit | datapath::gating_tests;
-    expect_change(
-        "its other branch: one edge splits", simulation,
-        [&] { give(p.tessellation_tests[0].collect_tests.to_pass_or_tessellate, vertex_and_normal); },
-        {{"triangles taken by get_triangle = decided", {0, 1}},
-         {"children of tessellation = taken by triangle_queue", {2, 2}},
-         {"taken by triangle_queue = by get_triangle from it", {2, 0}},
-         {"triangles cut by tessellation + finished = decided", {1, 1}},
-         {"finished = base triangles + edges split", {0, 1}},
-         {"reads of displace_vertex = vertices and edges", {0, 3}},
-         {"reads of normal_test = vertices and edges", {0, 3}},
-         {"positions of transform = vertices and edges", {0, 3}},
-         {"triangles in get_triangle = decided", {0, 1}},
-         {"triangles in pass_or_tessellate = decided", {0, 1}},
-         {"triangles in triangle_queue = taken by it", {0, 2}},
-         {"parts in calculate_new_u = vertices and edges", {0, 3}},
-         {"parts in normal_test = vertices and edges", {0, 3}},
-         {"edges in tex_coord_test = edges", {0, 3}},
-         {"edges in summed_height_test = edges", {0, 3}},
-         {"edges in view_test = edges", {0, 3}},
-         {"edges taken from collect_tests = edges", {0, 3}},
-         {"edges in collect_tests = edges", {0, 3}},
-         {"requests to displacement_map = vertices and edges", {0, 3}},
-         {"requests to normal_map = vertices and edges", {0, 3}},
-         {"requests to summed_height_table = three an edge, if it tests", {0, 9}}});
+    expect_change("its other branch: one edge splits", simulation,
+                  [&] { give(p.tessellation_tests[0].collect_tests.to_pass_or_tessellate, edges); },
+                  {{"triangles taken by get_triangle = decided", {0, 1}},
+                   {"children of tessellation = taken by triangle_queue", {2, 2}},
+                   {"taken by triangle_queue = by get_triangle from it", {2, 0}},
+                   {"triangles cut by tessellation + finished = decided", {1, 1}},
+                   {"finished = base triangles + edges split", {0, 1}},
+                   {"reads of displace_vertex = vertices and edges", {0, 3}},
+                   {"reads of normal_test = vertices and edges", {0, 3}},
+                   {"positions of transform = vertices and edges", {0, 3}},
+                   {"triangles in get_triangle = decided", {0, 1}},
+                   {"triangles in pass_or_tessellate = decided", {0, 1}},
+                   {"triangles in triangle_queue = taken by it", {0, 2}},
+                   {"parts in calculate_new_u = vertices and edges", {0, 3}},
+                   {"parts in normal_test = vertices and edges", {0, 3}},
+                   {"edges in tex_coord_test = edges", {0, 3}},
+                   {"edges in summed_height_test = edges", {0, 3}},
+                   {"edges in view_test = edges", {0, 3}},
+                   {"edges taken from collect_tests = edges", {0, 3}},
+                   {"edges in collect_tests = edges", {0, 3}},
+                   {"requests to displacement_map = vertices and edges", {0, 3}},
+                   {"requests to normal_map = vertices and edges", {0, 3}},
+                   {"requests to summed_height_table = three an edge, if it tests", {0, 9}}});
 
     Pass untested = finished_pass();
     Work work{&untested, 0};

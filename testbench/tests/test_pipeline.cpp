@@ -1,5 +1,7 @@
 #include <catch2/catch.hpp>
+#include <memory>
 #include <tuple>
+#include <vector>
 
 #include "testbench/benchmark/bare_recursion.h"
 #include "testbench/check/invariants.h"
@@ -203,6 +205,75 @@ TEST_CASE("constant map splits nothing: sphere, repeat") {
     Job job = sphere_job();
     job.map.address_u = Addressing::repeat;
     expect_whole(job, 0.001);
+}
+
+namespace {
+
+/// Every third item of a stream waits on its way: the host's triangles and the queue's may overtake one another there.
+struct Detour : sc_core::sc_module,
+                tlm::tlm_fw_transport_if<Stream<Work>>,
+                tlm::tlm_bw_transport_if<Stream<Work>> {
+    tlm::tlm_target_socket<32, Stream<Work>> in{"in"};
+    tlm::tlm_initiator_socket<32, Stream<Work>> out{"out"};
+    unsigned items = 0;
+    unsigned under_way = 0;
+    unsigned overtaken = 0;
+
+    explicit Detour(const sc_core::sc_module_name& name) : sc_module(name) {
+        in.bind(*this);
+        out.bind(*this);
+    }
+
+  private:
+    void b_transport(Work& work, sc_core::sc_time& delay) override {
+        ++under_way;
+        if (++items % 3 == 0) {
+            const unsigned before = items;
+            sc_core::wait(sc_core::sc_time(50, sc_core::SC_NS));
+            overtaken += items > before ? 1 : 0;
+        }
+        --under_way;
+        out->b_transport(work, delay);
+    }
+    tlm::tlm_sync_enum nb_transport_fw(Work&, tlm::tlm_phase&, sc_core::sc_time&) override {
+        return tlm::TLM_ACCEPTED;
+    }
+    tlm::tlm_sync_enum nb_transport_bw(Work&, tlm::tlm_phase&, sc_core::sc_time&) override {
+        return tlm::TLM_ACCEPTED;
+    }
+    bool get_direct_mem_ptr(Work&, tlm::tlm_dmi&) override { return false; }
+    unsigned transport_dbg(Work&) override { return 0; }
+    void invalidate_direct_mem_ptr(sc_dt::uint64, sc_dt::uint64) override {}
+};
+
+struct DetourWiring : Wiring {
+    std::vector<std::unique_ptr<Detour>> detours;
+    using Wiring::join;
+    void join(StreamOutput<Work>& from, StreamInput<Work>& to) override {
+        detours.push_back(std::make_unique<Detour>(sc_core::sc_gen_unique_name("detour")));
+        from.bind(detours.back()->in);
+        detours.back()->out.bind(to);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("functional mode: triangles may overtake one another on every stream, and the mesh is the same") {
+    Job job;
+    job.hardware.queue_watermark = 1000;  // so that the host sends while the queue does
+    const Setup setup = setup_of(job);
+    DetourWiring wiring;
+    Simulation simulation(setup, 1'000'000, 0, &wiring);
+    check_run(setup, simulation);
+    BareRecursion bare(setup);
+    EmittedMesh mesh;
+    CHECK(bare.run(mesh) == simulation.pipeline.edges_tested());
+    CHECK((keys(mesh) == keys(simulation.monitor.mesh)));  // not to be printed
+    CHECK(simulation.pipeline.idle());
+    unsigned overtaken = 0;
+    for (const auto& detour : wiring.detours)
+        overtaken += detour->overtaken;
+    CHECK(overtaken > 0);
 }
 
 TEST_CASE("the triangle limit ends a run with a message that names its key") {

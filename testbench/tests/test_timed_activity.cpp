@@ -6,6 +6,7 @@
 #include "modules/unit/activity.h"
 #include "modules/unit/fork.h"
 #include "modules/unit/level_history.h"
+#include "modules/unit/per_triangle.h"
 #include "modules/unit/signals.h"
 #include "modules/units/triangle_store.h"
 #include "testbench/tests/timed_modules.h"
@@ -110,9 +111,73 @@ TEST_CASE("fork: says who holds it up, and has four outputs at most") {
         bench.fork.add(*bench.outputs[k]);
     CHECK_THAT(error_of([&] { bench.fork.add(*bench.outputs[4]); }), Contains("more than four"));
     CHECK(bench.fork.blocked_by() == nullptr);
+    for (const std::size_t k : {0u, 1u, 3u}) {
+        bench.targets[k]->status = tlm::TLM_UPDATED;
+        bench.targets[k]->phase_back = tlm::END_REQ;
+    }
     int item = 5;
-    CHECK_FALSE(bench.fork.deliver(item, 1u << 2));
+    CHECK_FALSE(bench.fork.deliver(item));
     CHECK(bench.fork.blocked_by() == bench.targets[2].get());
+    for (const auto& target : bench.targets)
+        target->status = tlm::TLM_COMPLETED;  // a second offer would be a breach
+    CHECK_FALSE(bench.fork.deliver(item));
+    bench.targets[2]->send_back(item, tlm::END_REQ, sc_core::SC_ZERO_TIME);
+    CHECK(bench.fork.deliver(item));
+}
+
+TEST_CASE("fork: an output gets the parts that it is for, in both modes") {
+    struct Bench : sc_core::sc_module {
+        StreamOutput<Work> all{"all"}, edges{"edges"}, vertices{"vertices"};
+        Fork<Work> fork;
+        explicit Bench(const sc_core::sc_module_name& name) : sc_module(name) {
+            fork.add(all);
+            fork.add(edges, edge_parts);
+            fork.add(vertices, vertex_parts);
+        }
+    } bench("bench");
+    Clock clock("clock", sc_core::sc_time(10, sc_core::SC_PS));
+    Sink<Work> all("all", clock), edges("edges", clock), vertices("vertices", clock);
+    bench.all.bind(all.in);
+    bench.edges.bind(edges.in);
+    bench.vertices.bind(vertices.in);
+    const auto parts_in = [](const Sink<Work>& sink) {
+        std::vector<unsigned> parts;
+        for (const Work& item : sink.items)
+            parts.push_back(item.parts);
+        return parts;
+    };
+    Work edge{nullptr, 0200}, normal{nullptr, 0020};
+    sc_core::sc_start(sc_core::SC_ZERO_TIME);
+    CHECK(bench.fork.deliver(edge));
+    sc_core::sc_start(sc_core::sc_time(10, sc_core::SC_PS));
+    CHECK(bench.fork.deliver(normal));
+    sc_core::sc_start(sc_core::sc_time(10, sc_core::SC_PS));
+    Work whole{nullptr, 0725};
+    sc_core::sc_time delay;
+    bench.fork.b_transport(whole, delay);
+    CHECK(parts_in(all) == std::vector<unsigned>{0200, 0020, 0725});
+    CHECK(parts_in(edges) == std::vector<unsigned>{0200, 0700});
+    CHECK(parts_in(vertices) == std::vector<unsigned>{0005});
+}
+
+TEST_CASE("per triangle: found by tag, closed in any order, and it grows") {
+    PerTriangle<int> kept(2);
+    CHECK(kept.find(7) == nullptr);
+    kept.open(7) = 70;
+    kept.find_or_open(8) = 80;
+    CHECK(kept.full());
+    kept.find_or_open(9) = 90;
+    CHECK(kept.size() == 3);
+    CHECK(kept.find_or_open(8) == 80);
+    kept.close(8);
+    kept.close(8);  // has gone
+    CHECK(kept.size() == 2);
+    CHECK(kept.oldest().tag == 7);
+    CHECK(*kept.find(9) == 90);
+    kept.close_oldest();
+    CHECK(kept.oldest().tag == 9);
+    CHECK(kept.find(7) == nullptr);
+    CHECK(kept.open(7) == 0);  // anew
 }
 
 TEST_CASE("unit numbers: the units of a machine, anything else is other, nothing is nobody") {

@@ -248,19 +248,20 @@ TEST_CASE("one triangle, every latency another") {
     }
 }
 
-// Three Tessellation Tests units: each has one vertex and one edge, sent in G and G + 1 on its branch; geometry as
-// before. All three edges reach the Summed Height Tests in G + 1 + C = 3 and share the one port for 36 cycles: last
-// address 38, data 39, test 42. The Normal Tests wait for the third corner, read in cycle 4 (the map's one port: 2, 3, 4),
-// come in 5: edges read in 5, 6, 7, are through in 17. View 32, geometry 34. J = 42, then 38.
-TEST_CASE("one triangle, three tests units: 81 cycles") {
+// Three Tessellation Tests units: each has an edge and its two vertices, sent in G, G + 1 and G + 2 on its branch;
+// geometry as before. All three edges reach the Summed Height Tests in G + 2 + C = 4 and share the one port for 36 cycles:
+// last address 39, data 40, test 43. The Normal Tests read six corners through the map's one port, in 2 to 7; the last has
+// come in 8: edges read in 8 to 10 at the latest, are through in 20. View 32, geometry 34. J = 43, then 38.
+TEST_CASE("one triangle, three tests units: 82 cycles") {
     Setup setup = one_triangle({});
     setup.design.tests_units = 3;
     Simulation simulation(setup, 1000);
     run_timed(simulation);
-    CHECK(simulation.cycles() == 42 + 38 + 1);
+    CHECK(simulation.cycles() == 43 + 38 + 1);
+    CHECK(simulation.pipeline.normal_map.transactions() == 6 + 3);
 }
 
-// Nine gathers of one cycle each: last address 3 + 8 = 11, data 12, test 15: the last edge's geometry is later, in 34.
+// Nine gathers of one cycle each: last address 4 + 8 = 12, data 13, test 16: the last edge's geometry is later, in 34.
 TEST_CASE("one triangle, three tests units and four ports: the tests are hidden behind Transform") {
     Setup setup = one_triangle({});
     setup.design.tests_units = 3;

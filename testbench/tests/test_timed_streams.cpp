@@ -24,12 +24,13 @@ struct Holder : sc_core::sc_module {
     StreamInput<int> in{"in"};
     Caller owner{clock};
     std::vector<std::uint64_t> called;
+    std::vector<bool> room_when_called;
 
     explicit Holder(const sc_core::sc_module_name& name, std::size_t depth) : sc_module(name) {
         in.clocked_by(clock, owner, depth, {});
         owner.on_step = [this] {
             called.push_back(clock.cycle());
-            in.admit();
+            room_when_called.push_back(!in.holds_back());
         };
     }
 };
@@ -80,7 +81,8 @@ TEST_CASE("stream input: takes as many items as its buffer holds, the next waits
     CHECK(phase == tlm::BEGIN_REQ);
     CHECK(holder.in.holds_back());
     CHECK(producer.ended.empty());
-    holder.in.admit();  // no room: it stays where it is
+    holder.clock.wake(holder.owner);
+    sc_core::sc_start(sc_time(1, SC_PS));  // no room: it stays where it is
     CHECK(producer.ended.empty());
     items[2] = 20;  // the producer's still: copied with END_REQ, not before
 
@@ -106,14 +108,17 @@ TEST_CASE("stream input: the delay of nb_transport_fw is added before the item i
     // 21 ps from cycle 10 on: there in cycle 13, cycles rounded up; until then the door is closed, room or not
     CHECK(producer.offer(item, phase, sc_time(21, SC_PS)) == tlm::TLM_ACCEPTED);
     CHECK(holder.in.empty());
-    holder.in.admit();
+    holder.clock.wake(holder.owner);
+    sc_core::sc_start(sc_time(9, SC_PS));
+    CHECK(holder.called == std::vector<std::uint64_t>{10});
     CHECK(holder.in.empty());
-    sc_core::sc_start(sc_time(29, SC_PS));
+    sc_core::sc_start(sc_time(20, SC_PS));
     CHECK(producer.ended.empty());
     sc_core::sc_start(sc_time(2, SC_PS));
     REQUIRE(producer.ended.size() == 1);
     CHECK(holder.in.size() == 1);
     CHECK(holder.called.back() == 13);
+    CHECK(holder.room_when_called == std::vector<bool>{false, true});  // admitted before its owner's step
 }
 
 TEST_CASE("stream output: the delay of nb_transport_bw is added before its owner is called") {
@@ -144,6 +149,25 @@ TEST_CASE("stream output: END_REQ by return leaves it free, and its owner is not
     CHECK(out.free());
     sc_core::sc_start();
     CHECK(offerer.called.empty());
+}
+
+TEST_CASE("stream output: deliver offers an item once, and says once that it is taken") {
+    Offerer offerer("offerer");
+    StreamOutput<int>& out = offerer.out;
+    BareTarget<int> target("target");
+    out.bind(target.in);
+    sc_core::sc_start(SC_ZERO_TIME);
+    int item = 1;
+    CHECK_FALSE(out.deliver(item));
+    CHECK_FALSE(out.deliver(item));  // a second BEGIN_REQ would be a breach
+    target.send_back(item, tlm::END_REQ, SC_ZERO_TIME);
+    target.status = tlm::TLM_COMPLETED;  // an answer to a BEGIN_REQ that would be a breach
+    CHECK(out.deliver(item));
+    target.status = tlm::TLM_UPDATED;
+    target.phase_back = tlm::END_REQ;
+    CHECK(out.deliver(item));  // the next, taken at once
+    target.status = tlm::TLM_ACCEPTED;
+    CHECK_FALSE(out.deliver(item));
 }
 
 TEST_CASE("stream: one item a cycle is never taken twice, lost or reordered behind a consumer of one place") {

@@ -23,9 +23,9 @@ constexpr std::uint64_t finished = 18 * 256;
 constexpr std::uint64_t parts = 32292;
 
 // From the first cycle until the first edge's first address: Get Triangle 1, its three vertices go first, Calculate
-// New U 1. With a Tessellation Tests unit for each edge only one vertex goes first.
+// New U 1. With a Tessellation Tests unit for each edge only its two vertices go first.
 constexpr std::uint64_t fill = 5;
-constexpr std::uint64_t fill_of_three = 3;
+constexpr std::uint64_t fill_of_three = 4;
 // After the last address: data 1, Summed Height Test 3, Pass or Tessellate 1, Lighting 4.
 constexpr std::uint64_t drain = 9;
 // From the cycle a base triangle is taken in until its corners are on the screen (test_timed_pipeline.cpp): the longest
@@ -127,7 +127,7 @@ TEST_CASE("with ports to spare a part a cycle is what binds") {
     CHECK(simulation.pipeline.get_triangle.occupied_cycles() == parts);
 }
 
-// Three Tessellation Tests units share the one port: nothing gained but the first triangle's three cycles and two vertices.
+// Three Tessellation Tests units share the one port: nothing gained but the first triangle's three cycles and one vertex.
 TEST_CASE("three tests units on one port: 36 cycles a pass as before") {
     Setup setup = full_split();
     setup.design.tests_units = 3;

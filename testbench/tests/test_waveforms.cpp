@@ -146,7 +146,7 @@ TEST_CASE("filters name every number as the code does") {
                 continue;
             const Work work{nullptr, static_cast<Parts>(1u << part)};
             CHECK(Signals::part_of(work) == part);
-            CHECK(parts.at(part) == name + std::to_string(Signals::index_of(work)));
+            CHECK(parts.at(part) == name + std::to_string(work.index()));
         }
     };
     check_parts(vertex_parts, "vertex ");

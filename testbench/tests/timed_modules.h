@@ -69,7 +69,6 @@ class Sink : public sc_core::sc_module, public Clocked {
         delays.push_back(delay);
     }
     void step() override {
-        in.admit();
         while (!in.empty()) {
             items.push_back(in.front());
             cycles.push_back(clock_.cycle());

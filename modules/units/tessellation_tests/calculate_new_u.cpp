@@ -6,40 +6,25 @@
 namespace tessera {
 
 CalculateNewU::CalculateNewU(const sc_core::sc_module_name& name, Clock& clock, const Timing& timing)
-    : WorkStage(name, clock, timing.calculate_new_u) {
+    : Stage(name, clock, timing.calculate_new_u) {
     takes_from(input, timing.stalls);
-    input.serve<&CalculateNewU::b_transport>(*this);
     delivers_to(to_normal_test);
-    delivers_to(to_tex_coord_test);
-    delivers_to(to_summed_height_test);
-    delivers_to(to_view_test);
+    delivers_to(to_tex_coord_test, edge_parts);
+    delivers_to(to_summed_height_test, edge_parts);
+    delivers_to(to_view_test, edge_parts);
 }
 
-void CalculateNewU::process(const Work& work) {
-    Pass& pass = *work.pass;
-    for_each_of_three(work.parts, first_edge_part, [&](unsigned k) {
-        const int edge = static_cast<int>(k);
-        pass.edges[k].tests = 0;
-        pass.edges[k].texture = midpoint(pass.edge_begin(edge).texture, pass.edge_end(edge).texture);
-    });
-}
-
-unsigned CalculateNewU::targets(const Work& work) const {
-    return (work.parts & edge_parts) != 0 ? 15u : 1u;  // a vertex goes to the Normal Test alone
-}
-
-void CalculateNewU::b_transport(Work& work, sc_core::sc_time& delay) {
-    process(work);
-    delay += clock_.period() * timing_.latency;
-    // The four tests work side by side, from the same time on.
-    for (StreamOutput<Work>* test : {&to_normal_test, &to_tex_coord_test, &to_summed_height_test}) {
-        sc_core::sc_time its_delay = delay;
-        (*test)->b_transport(work, its_delay);
+Work CalculateNewU::process(const Work& part, const Entries&) {
+    if (part.is_edge()) {
+        const int k = static_cast<int>(part.index());
+        datapath::EdgeTests& edge = part.pass->edges[part.index()];
+        edge.tests = 0;
+        edge.texture = midpoint(part.pass->edge_begin(k).texture, part.pass->edge_end(k).texture);
     }
-    to_view_test->b_transport(work, delay);
+    return part;
 }
 
-void CalculateNewU::trace_item(Signals& signals, const Work& work) const {
+void CalculateNewU::trace_processed(Signals& signals, const Work& work, const Work&) const {
     signals.edge_textures(work);
 }
 

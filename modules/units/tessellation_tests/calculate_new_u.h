@@ -1,22 +1,18 @@
 #pragma once
 #include <systemc>
 
-#include "modules/stream/stream_input.h"
-#include "modules/stream/stream_output.h"
-#include "modules/stream/work.h"
-#include "modules/timing.h"
-#include "modules/unit/work_stage.h"
+#include "modules/unit/stage.h"
 
 namespace tessera {
 
 /// Calculate New U (paper figure 8, 3.1.2): the texture coordinate of the edge's midpoint, which all tests start from.
 ///
-/// In:   edges, with t_i, t_j; vertices of a base triangle, on their way to the Normal Test, pass unchanged.
+/// In:   edges, with t_i, t_j; vertices of a base triangle, which pass unchanged, to the Normal Test alone.
 /// Out:  edges[k].texture = (t_i + t_j) >> 1, to all four tests.
 /// Arithmetic: add, shift by 1.
 /// Timing: one edge or vertex per interval; latency 1, interval 1 by default.
 /// Waits for nothing but its input; held back by the slowest of the tests.
-class CalculateNewU : public WorkStage<CalculateNewU> {
+class CalculateNewU final : public Stage<Work> {
   public:
     StreamInput<Work> input{"input"};
     StreamOutput<Work> to_tex_coord_test{"to_tex_coord_test"};
@@ -27,11 +23,8 @@ class CalculateNewU : public WorkStage<CalculateNewU> {
     CalculateNewU(const sc_core::sc_module_name& name, Clock& clock, const Timing& timing);
 
   private:
-    friend class WorkStage<CalculateNewU>;
-    void b_transport(Work& work, sc_core::sc_time& delay);
-    void process(const Work& work);
-    unsigned targets(const Work& work) const;
-    void trace_item(Signals& signals, const Work& work) const;
+    Work process(const Work& part, const Entries& entries) override;
+    void trace_processed(Signals& signals, const Work& part, const Work& result) const override;
 };
 
 }  // namespace tessera

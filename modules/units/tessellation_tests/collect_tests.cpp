@@ -19,21 +19,20 @@ CollectTests::CollectTests(const sc_core::sc_module_name& name, Clock& clock,
 }
 
 void CollectTests::b_transport(Work& work, sc_core::sc_time& delay) {
-    latest_ = come_ == 0 ? delay : std::max(latest_, delay);
-    if (++come_ < 4)
+    Decided& decided = decided_.find_or_open(work.tag());
+    decided.latest = std::max(decided.latest, delay);
+    if (++decided.tests < 4)
         return;
-    come_ = 0;
-    delay = latest_;
+    delay = decided.latest;
+    decided_.close(work.tag());
     to_pass_or_tessellate->b_transport(work, delay);
 }
 
 void CollectTests::step() {
     const std::uint64_t cycle = now();
-    for (StreamInput<Work>* input : inputs())
-        input->admit();
     for (;;) {
         if (leaves_) {
-            if (!to_pass_or_tessellate.free())
+            if (!to_pass_or_tessellate.deliver(leaving_))
                 break;
             leaves_ = false;
             activity_.item_out(cycle);
@@ -48,7 +47,6 @@ void CollectTests::step() {
         }
         leaves_ = true;
         activity_.item_in(cycle);
-        to_pass_or_tessellate.send(leaving_);
     }
     if (leaves_)
         activity_.set(cycle, State::blocked, to_pass_or_tessellate.consumer());
@@ -76,7 +74,7 @@ void CollectTests::show(Signals& signals) const {
     signals.input(from_summed_height_test, "from_summed_height_test");
     signals.input(from_view_test, "from_view_test");
     signals.group(signals.changed(activity_.items_in()) && (leaves_ || signals.running()), [&] {
-        const unsigned tests = Signals::pass_of(leaving_).edges[Signals::index_of(leaving_)].tests;
+        const unsigned tests = Signals::pass_of(leaving_).edges[leaving_.index()].tests;
         signals.work(leaving_);
         signals.flag("normal", (tests & datapath::normal_bit) != 0);
         signals.flag("summed_height", (tests & datapath::summed_height_bit) != 0);

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <systemc>
 
@@ -7,6 +8,7 @@
 #include "modules/stream/stream_output.h"
 #include "modules/stream/work.h"
 #include "modules/timing.h"
+#include "modules/unit/per_triangle.h"
 #include "modules/unit/unit.h"
 
 namespace tessera {
@@ -35,6 +37,12 @@ class CollectTests : public Unit {
     Begun begun() const override { return Begun::of(activity_.items_in(), leaving_); }
 
   private:
+    /// How many tests have decided the edges of a triangle, and when the last of them had.
+    struct Decided {
+        unsigned tests = 0;
+        sc_core::sc_time latest;
+    };
+
     void b_transport(Work& work, sc_core::sc_time& delay);
     void step() override;
     std::array<StreamInput<Work>*, 4> inputs() {
@@ -45,8 +53,7 @@ class CollectTests : public Unit {
     Work leaving_;
     bool leaves_ = false;
     unsigned empty_inputs_ = 0;
-    unsigned come_ = 0;        // functional mode: tests that have decided the pass
-    sc_core::sc_time latest_;  // and when the last of them had
+    PerTriangle<Decided> decided_{1};  // functional mode
 };
 
 }  // namespace tessera

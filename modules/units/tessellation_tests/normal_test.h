@@ -3,11 +3,8 @@
 
 #include "modules/datapath/parameters.h"
 #include "modules/memory/memory_port.h"
-#include "modules/stream/stream_input.h"
-#include "modules/stream/stream_output.h"
-#include "modules/stream/work.h"
-#include "modules/timing.h"
-#include "modules/unit/table_stage.h"
+#include "modules/unit/per_triangle.h"
+#include "modules/unit/stage.h"
 
 namespace tessera {
 
@@ -25,45 +22,37 @@ namespace tessera {
 ///       threshold and three with a cosine; the differences are the Normal Test's.
 /// Timing: one edge or vertex per interval; latency 9 plus the map read, interval 1 by default. A Highlight Test adds its
 ///       own latency, 1 by default, and nothing to the interval.
-/// Waits for Calculate New U and the normal map; with three Tessellation Tests units an edge of a base triangle also
-/// for the corner that another unit bumps. Held back by the collection of the tests.
-class NormalTest : public TableStage<NormalTest, TableItem> {
+///         An edge of a base triangle starts when the map entries of all corners that come to the unit have come.
+/// State: one register: a base triangle's tag and which of its corners have been bumped.
+/// Waits for Calculate New U and the normal map. Held back by the collection of the tests.
+class NormalTest final : public Stage<Work> {
   public:
     StreamInput<Work> input{"input"};
     StreamOutput<Work> output{"output"};
     MemoryPort normal_map;
 
+    /// takes: the vertices and edges of a triangle that come to the unit (parts_for_tests).
     NormalTest(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
-               const Timing& timing, bool use_direct_memory);
-
-    /// The Normal Tests of the other Tessellation Tests units, which wait for the corners that this one bumps.
-    void tells(Clocked& other) { others_.push_back(&other); }
+               const Timing& timing, bool use_direct_memory, Parts takes = parts_for_tests(0, 1));
 
     const datapath::Saturations& saturations() const { return saturations_; }
 
     void show(Signals& signals) const override;
 
   private:
-    friend class TableStage<NormalTest, TableItem>;
-    void b_transport(Work& work, sc_core::sc_time& delay);
-    unsigned begin(TableItem&) { return 1; }
-    void ask(TableItem& item, unsigned k);
-    void receive(TableItem& item, unsigned k);
-    bool goes_on(const TableItem& item) const { return (item.work.parts & edge_parts) != 0; }
-    bool may_begin(const Work& work);
-    void trace_item(Signals& signals, const TableItem& item) const;
-    void trace_answered(Signals& signals, const TableItem& item) const;
+    bool may_start(const Work& part) const override;
+    void reads(const Work& part, Reads& reads) const override;
+    Work process(const Work& part, const Entries& entries) override;
+    void trace_started(Signals& signals, const Work& part) const override;
+    void trace_processed(Signals& signals, const Work& part, const Work& result) const override;
 
-    std::uint64_t address(const datapath::TexCoord& t) const;
     datapath::Direction bumped(const datapath::Direction& n, const datapath::Direction& t, int handedness,
                                std::uint64_t entry);
-    void bump_corner(datapath::Vertex& vertex, std::uint64_t entry);
-    void test_edge(Pass& pass, unsigned edge, std::uint64_t entry);
-    /// Apart from test_edge, which in a design without it would still pay for the registers it takes.
-    [[gnu::noinline]] void test_for_highlight(const Work& work) const;
+    void test_edge(const Work& edge, std::uint64_t entry);
 
     const datapath::Registers& registers_;
-    std::vector<Clocked*> others_;
+    Parts takes_;
+    PerTriangle<Parts> corners_bumped_{1};  // of base triangles
     datapath::Saturations saturations_;
 };
 

@@ -6,11 +6,7 @@
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/rectangle.h"
 #include "modules/memory/memory_port.h"
-#include "modules/stream/stream_input.h"
-#include "modules/stream/stream_output.h"
-#include "modules/stream/work.h"
-#include "modules/timing.h"
-#include "modules/unit/table_stage.h"
+#include "modules/unit/stage.h"
 
 namespace tessera {
 
@@ -24,7 +20,7 @@ namespace tessera {
 /// Timing: one edge per interval, latency 3, interval 1 by default, plus the table reads: with one port a rectangle
 ///         takes four cycles, an edge 12, a triangle 36.
 /// Waits for Calculate New U and the Summed Height Table; held back by the collection of the tests.
-class SummedHeightTest : public TableStage<SummedHeightTest, struct SummedHeightItem> {
+class SummedHeightTest final : public Stage<Work> {
   public:
     StreamInput<Work> input{"input"};
     StreamOutput<Work> output{"output"};
@@ -36,26 +32,17 @@ class SummedHeightTest : public TableStage<SummedHeightTest, struct SummedHeight
     void show(Signals& signals) const override;
 
   private:
-    friend class TableStage<SummedHeightTest, SummedHeightItem>;
-    void b_transport(Work& work, sc_core::sc_time& delay);
-    unsigned begin(SummedHeightItem& item);
-    void ask(SummedHeightItem& item, unsigned k);
-    void receive(SummedHeightItem& item, unsigned k);
-    void trace_item(Signals& signals, const SummedHeightItem& item) const;
-    void trace_answered(Signals& signals, const SummedHeightItem& item) const;
-    void decide(Pass& pass, unsigned edge, const datapath::RectangleSize& size,
-                const std::array<std::uint64_t, 3>& sums) const;
+    void reads(const Work& edge, Reads& reads) const override;
+    Work process(const Work& edge, const Entries& entries) override;
+    void trace_started(Signals& signals, const Work& edge) const override;
+    void trace_processed(Signals& signals, const Work& edge, const Work& result) const override;
+
+    datapath::RectangleSize size(const Work& edge) const;
+    datapath::RectangleReads rectangle(const Work& edge, const datapath::RectangleSize& size,
+                                       unsigned number) const;
 
     const datapath::Registers& registers_;
-};
-
-/// An edge in the Summed Height Test: rectangles around t_i, t_j, t_ij in this order.
-struct SummedHeightItem : TableItem {
-    unsigned edge = 0;
-    datapath::RectangleSize size;
-    std::array<std::uint32_t, 3> subtracted{};  // entries of each rectangle's reads
-    std::array<std::uint8_t, 3> count{};
-    std::array<std::uint64_t, 3> sums{};
+    std::array<std::uint64_t, 3> sums_{};  // of the edge decided last
 };
 
 }  // namespace tessera

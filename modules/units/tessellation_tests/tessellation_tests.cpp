@@ -4,13 +4,13 @@ namespace tessera {
 
 TessellationTests::TessellationTests(const sc_core::sc_module_name& name, Clock& clock,
                                      const datapath::Registers& registers, const Timing& timing,
-                                     unsigned number, bool use_direct_memory)
+                                     unsigned number, unsigned units, bool use_direct_memory)
     : sc_module(name),
       calculate_new_u("calculate_new_u", clock, timing),
       tex_coord_test("tex_coord_test", clock, registers, timing),
       summed_height_test("summed_height_test", clock, registers, timing, use_direct_memory),
-      normal_test("normal_test", clock, registers, timing, use_direct_memory),
-      view_test("view_test", clock, registers, timing, number),
+      normal_test("normal_test", clock, registers, timing, use_direct_memory, parts_for_tests(number, units)),
+      view_test("view_test", clock, registers, timing, parts_for_tests(number, units)),
       collect_tests("collect_tests", clock, registers, timing) {}
 
 void TessellationTests::wire(Wiring& wiring) {

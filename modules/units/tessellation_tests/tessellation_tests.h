@@ -23,6 +23,7 @@ namespace tessera {
 ///
 /// In:   calculate_new_u.input: edges; vertices of a base triangle. view_test.from_transform: their screen positions.
 /// Out:  collect_tests.to_pass_or_tessellate: edges[k] with the midpoint's t, N, T, N' and the tests' bits.
+/// Of three units, each takes one edge of a triangle and, of a base triangle, the two vertices it joins (parts_for_tests).
 /// Timing: edges go one after another through one pipeline; bound by the Summed Height Test's table reads. A design has
 ///       one such unit or three, one for each edge of a triangle, which share the memories.
 /// Waits for Transform (base triangles), the Summed Height Table, the normal map; held back by Pass or Tessellate.
@@ -35,9 +36,9 @@ class TessellationTests : public sc_core::sc_module {
     ViewTest view_test;
     CollectTests collect_tests;
 
-    /// number: 0, or 0 to 2 of three.
+    /// number: of the unit, of 1 or 3.
     TessellationTests(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
-                      const Timing& timing, unsigned number, bool use_direct_memory);
+                      const Timing& timing, unsigned number, unsigned units, bool use_direct_memory);
 
     /// Joins the units inside. To be called once.
     void wire(Wiring& wiring);

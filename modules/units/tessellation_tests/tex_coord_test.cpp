@@ -7,39 +7,31 @@ namespace tessera {
 
 TexCoordTest::TexCoordTest(const sc_core::sc_module_name& name, Clock& clock,
                            const datapath::Registers& registers, const Timing& timing)
-    : WorkStage(name, clock, timing.tex_coord_test), registers_(registers) {
+    : Stage(name, clock, timing.tex_coord_test), registers_(registers) {
     takes_from(input, timing.stalls);
     delivers_to(output);
-    input.serve<&TexCoordTest::b_transport>(*this);
 }
 
-void TexCoordTest::process(const Work& work) {
+Work TexCoordTest::process(const Work& part, const Entries&) {
     const datapath::TestParameters& tests = registers_.tests;
-    Pass& pass = *work.pass;
-    for_each_of_three(work.parts, first_edge_part, [&](unsigned k) {
-        const datapath::Vertex& i = pass.edge_begin(static_cast<int>(k));
-        const datapath::Vertex& j = pass.edge_end(static_cast<int>(k));
-        datapath::EdgeTests& edge = pass.edges[k];
-        if (!tests.tex_coord_test || tex_coord_test(i.texture, j.texture, edge.texture, registers_.formats))
-            edge.tests |= datapath::tex_coord_bit;
-        if (!tests.generation_test || generation_test(i, j, tests))
-            edge.tests |= datapath::generation_bit;
-    });
-}
-
-void TexCoordTest::b_transport(Work& work, sc_core::sc_time& delay) {
-    process(work);
-    delay += clock_.period() * timing_.latency;
-    output->b_transport(work, delay);
+    const int k = static_cast<int>(part.index());
+    const datapath::Vertex& i = part.pass->edge_begin(k);
+    const datapath::Vertex& j = part.pass->edge_end(k);
+    datapath::EdgeTests& edge = part.pass->edges[part.index()];
+    if (!tests.tex_coord_test || tex_coord_test(i.texture, j.texture, edge.texture, registers_.formats))
+        edge.tests |= datapath::tex_coord_bit;
+    if (!tests.generation_test || generation_test(i, j, tests))
+        edge.tests |= datapath::generation_bit;
+    return part;
 }
 
 void TexCoordTest::show(Signals& signals) const {
-    WorkStage::show(signals);
+    Stage::show(signals);
     signals.value("generation_limit", 32, registers_.tests.generation_limit);
 }
 
-void TexCoordTest::trace_item(Signals& signals, const Work& work) const {
-    const unsigned tests = Signals::pass_of(work).edges[Signals::index_of(work)].tests;
+void TexCoordTest::trace_processed(Signals& signals, const Work& work, const Work&) const {
+    const unsigned tests = Signals::pass_of(work).edges[work.index()].tests;
     signals.edge_textures(work);
     signals.value("generation_i", 8, Signals::begin_of(work).generation);
     signals.value("generation_j", 8, Signals::end_of(work).generation);

@@ -2,11 +2,7 @@
 #include <systemc>
 
 #include "modules/datapath/parameters.h"
-#include "modules/stream/stream_input.h"
-#include "modules/stream/stream_output.h"
-#include "modules/stream/work.h"
-#include "modules/timing.h"
-#include "modules/unit/work_stage.h"
+#include "modules/unit/stage.h"
 
 namespace tessera {
 
@@ -17,7 +13,7 @@ namespace tessera {
 /// Arithmetic: two compares of bit slices per axis; a maximum, an increment, a compare.
 /// Timing: one edge per interval; latency 1, interval 1 by default.
 /// Waits for Calculate New U; held back by the collection of the tests.
-class TexCoordTest : public WorkStage<TexCoordTest> {
+class TexCoordTest final : public Stage<Work> {
   public:
     StreamInput<Work> input{"input"};
     StreamOutput<Work> output{"output"};
@@ -28,10 +24,8 @@ class TexCoordTest : public WorkStage<TexCoordTest> {
     void show(Signals& signals) const override;
 
   private:
-    friend class WorkStage<TexCoordTest>;
-    void b_transport(Work& work, sc_core::sc_time& delay);
-    void process(const Work& work);
-    void trace_item(Signals& signals, const Work& work) const;
+    Work process(const Work& part, const Entries& entries) override;
+    void trace_processed(Signals& signals, const Work& part, const Work& result) const override;
 
     const datapath::Registers& registers_;
 };

@@ -2,11 +2,8 @@
 #include <systemc>
 
 #include "modules/datapath/parameters.h"
-#include "modules/stream/stream_input.h"
-#include "modules/stream/stream_output.h"
-#include "modules/stream/work.h"
-#include "modules/timing.h"
-#include "modules/unit/work_stage.h"
+#include "modules/unit/per_triangle.h"
+#include "modules/unit/stage.h"
 
 namespace tessera {
 
@@ -16,36 +13,42 @@ namespace tessera {
 ///       counts as long, with both as invisible.
 /// Arithmetic: two subtractions, absolute values, add, compare.
 /// Timing: one edge per interval; latency 1, interval 1 by default.
+/// State: for each base triangle under way between Transform and Pass or Tessellate its tag and which of its corners are on
+///        the screen: as many places as Pass or Tessellate has, and two for what waits at its input.
 /// Waits for Calculate New U, and for a base triangle's edge until Transform has sent the screen positions of its
 /// vertices, which it takes at any time. Held back by the collection of the tests.
-class ViewTest : public WorkStage<ViewTest> {
+class ViewTest final : public Stage<Work> {
   public:
     StreamInput<Work> input{"input"};
     StreamInput<Work> from_transform{"from_transform"};
     StreamOutput<Work> output{"output"};
 
-    /// number: of the Tessellation Tests unit it is part of.
+    /// takes: the vertices and edges of a triangle that come to the unit (parts_for_tests).
     ViewTest(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
-             const Timing& timing, unsigned number);
+             const Timing& timing, Parts takes);
 
     void show(Signals& signals) const override;
 
   private:
-    friend class WorkStage<ViewTest>;
-    void b_transport(Work& work, sc_core::sc_time& delay);
-    void b_transport_from_transform(Work& work, sc_core::sc_time& delay);
-    void process(const Work& work);
-    void trace_item(Signals& signals, const Work& work) const;
-    bool may_begin(const Work& work);
-    const sc_core::sc_object* lacks() const { return transform_; }
+    /// Which of a base triangle's corners are on the screen; functional mode: since when.
+    struct Corners {
+        Parts on_screen = 0;
+        sc_core::sc_time since;
+    };
+
+    void take_corner(Work& corner, sc_core::sc_time& when);
     void step() override;
+    bool may_start(const Work& edge) const override;
+    sc_core::sc_time may_start_after(const Work& edge) const override;
+    const sc_core::sc_object* lacks() const override { return transform_; }
+    Work process(const Work& edge, const Entries& entries) override;
+    void trace_processed(Signals& signals, const Work& edge, const Work& result) const override;
     void end_of_elaboration() override;
 
     const datapath::Registers& registers_;
-    unsigned number_;
+    Parts last_edge_;  // that comes of a triangle
+    PerTriangle<Corners> corners_;
     const sc_core::sc_object* transform_ = nullptr;
-    const Pass* on_screen_ = nullptr;   // functional mode: base triangle whose screen positions have come
-    sc_core::sc_time on_screen_delay_;  // and when
 };
 
 }  // namespace tessera

@@ -1,0 +1,265 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string>
+#include <type_traits>
+
+#include "modules/memory/memory_port.h"
+#include "modules/unit/elastic_pipeline.h"
+#include "modules/unit/fork.h"
+#include "modules/unit/signals.h"
+#include "modules/unit/stage.h"
+
+namespace tessera {
+
+// How a Stage does what stage.h says. To be included where one is instantiated.
+
+/// Calls `each(part)` for each part of an item: what timed mode sends one after another and functional mode together.
+template <class Item, class Each>
+void for_each_part(const Item& whole, Each&& each) {
+    each(whole);
+}
+template <class Each>
+void for_each_part(const Work& whole, Each&& each) {
+    for (unsigned left = whole.parts; left != 0; left &= left - 1)
+        each(Work{whole.pass, static_cast<Parts>(left & -left)});
+}
+
+/// What a stage is made of.
+template <class In, class Out>
+struct Stage<In, Out>::Machinery {
+    /// An item under way: its requests, how many of them have been answered, and the entries that each asks for.
+    struct Slot {
+        In item{};
+        Out result{};
+        std::uint8_t requests = 0;
+        std::uint8_t answered = 0;
+        std::array<std::uint8_t, Reads::most_requests> count;
+
+        bool processed() const { return answered == requests; }
+    };
+
+    Machinery(const UnitTiming& timing, unsigned pipelines, unsigned memory_latency)
+        : servers(pipelines), pipeline(timing, pipelines, memory_latency) {}
+
+    /// Makes as many of the started items' requests as the memory takes. True: all.
+    bool ask(MemoryPort& port) {
+        for (; asked < reads.requests(); ++asked) {
+            if (!port.may_request())
+                return false;
+            port.request(reads.addresses() + asked_entries, reads.count(asked));
+            asked_entries += reads.count(asked);
+        }
+        return !port.on_offer();
+    }
+
+    /// Past the items whose answers have all come.
+    void skip_processed() {
+        while (waiting < pipeline.size() && pipeline.at(waiting).processed())
+            ++waiting;
+    }
+
+    const unsigned servers;
+    Fork<Out> fork;
+    ElasticPipeline<Slot> pipeline;
+    Reads reads;                 // of the item started last
+    unsigned asked = 0;          // of these requests, made
+    unsigned asked_entries = 0;  // and of the entries
+    Entries entries{};           // that have come for the first item that waits for any
+    unsigned come = 0;           // so many
+    std::size_t waiting = 0;     // the first item whose answers have not all come
+};
+
+template <class In, class Out>
+Stage<In, Out>::Stage(const sc_core::sc_module_name& name, Clock& clock, const UnitTiming& timing,
+                      unsigned servers, unsigned memory_latency)
+    : Unit(name, clock),
+      timing_(timing),
+      machinery_(std::make_unique<Machinery>(timing, servers, memory_latency)) {}
+
+template <class In, class Out>
+Stage<In, Out>::~Stage() = default;
+
+template <class In, class Out>
+void Stage<In, Out>::takes_from(StreamInput<In>& input, const StallParameters& stalls) {
+    input_ = &input;
+    input.template serve<&Stage::b_transport>(*this);
+    input.clocked_by(clock_, *this, timing_.buffer, stalls);
+}
+
+template <class In, class Out>
+void Stage<In, Out>::delivers_to(StreamOutput<Out>& output, Parts only) {
+    machinery_->fork.add(output, only);
+    output.clocked_by(clock_, *this);
+}
+
+template <class In, class Out>
+void Stage<In, Out>::reads_through(MemoryPort& port, unsigned most_requests) {
+    port_ = &port;
+    port.clocked_by(clock_, *this, machinery_->pipeline.capacity() * most_requests);
+}
+
+template <class In, class Out>
+void Stage<In, Out>::b_transport(In& item, sc_core::sc_time& delay) {
+    Out result{};
+    for_each_part(item, [&](const In& part) {
+        if (!may_start(part))
+            SC_REPORT_ERROR("tessera/stage",
+                            (std::string(name()) + ": an item came before what it waits for").c_str());
+        delay = std::max(delay, may_start_after(part));
+        result = read_and_process(part, delay);
+    });
+    delay += clock_.period() * timing_.latency;
+    if constexpr (std::is_same_v<In, Out>)
+        machinery_->fork.b_transport(item, delay);
+    else
+        machinery_->fork.b_transport(result, delay);
+}
+
+template <class In, class Out>
+Out Stage<In, Out>::read_and_process(const In& part, sc_core::sc_time& delay) {
+    Entries entries;
+    if (port_ != nullptr) {
+        Reads needed;
+        reads(part, needed);
+        MemoryPort::Burst burst(*port_, delay);
+        for (unsigned k = 0; k < needed.entries(); ++k)
+            entries[k] = burst.read(needed.addresses()[k]);
+    }
+    return process(part, entries);
+}
+
+template <class In, class Out>
+void Stage<In, Out>::start(std::uint64_t cycle) {
+    Machinery& m = *machinery_;
+    typename Machinery::Slot& slot = m.pipeline.start(cycle);
+    slot.item = input_->front();
+    slot.requests = slot.answered = 0;
+    activity_.item_in(cycle);
+    if (port_ != nullptr) {
+        m.reads = Reads{};
+        m.asked = m.asked_entries = 0;
+        reads(slot.item, m.reads);
+        slot.requests = static_cast<std::uint8_t>(m.reads.requests());
+        for (unsigned k = 0; k < m.reads.requests(); ++k)
+            slot.count[k] = static_cast<std::uint8_t>(m.reads.count(k));
+    }
+    if (slot.requests > 0)
+        m.pipeline.finish(m.pipeline.size() - 1, never);
+    else
+        slot.result = process(slot.item, m.entries);
+    input_->pop();
+}
+
+template <class In, class Out>
+void Stage<In, Out>::take_answers(std::uint64_t cycle) {
+    Machinery& m = *machinery_;
+    while (port_->answered()) {
+        m.skip_processed();
+        typename Machinery::Slot& slot = m.pipeline.at(m.waiting);
+        for (unsigned k = 0; k < slot.count[slot.answered]; ++k)
+            m.entries[m.come++] = port_->entry(k);
+        port_->pop_answer();
+        ++slot.answered;
+        if (slot.processed()) {
+            m.come = 0;
+            slot.result = process(slot.item, m.entries);
+            m.pipeline.finish(m.waiting, cycle + m.pipeline.latency());
+        }
+    }
+    m.skip_processed();
+}
+
+template <class In, class Out>
+void Stage<In, Out>::step() {
+    const std::uint64_t cycle = clock_.last_cycle();
+    Machinery& m = *machinery_;
+    if (port_ != nullptr)
+        take_answers(cycle);
+    while (m.pipeline.front_finished(cycle) && m.fork.deliver(m.pipeline.front().result)) {
+        m.pipeline.pop();
+        if (port_ != nullptr)
+            --m.waiting;
+        activity_.item_out(cycle);
+    }
+    bool lacking = false;
+    while ((port_ == nullptr || m.ask(*port_)) && !input_->empty() && m.pipeline.may_start(cycle)) {
+        lacking = !may_start(input_->front());
+        if (lacking)
+            break;
+        start(cycle);
+    }
+    if (port_ != nullptr)
+        m.skip_processed();
+    if (m.pipeline.front_finished(cycle))
+        activity_.set(cycle, State::blocked, m.fork.blocked_by());
+    else if (port_ != nullptr && m.waiting == 0 && port_->under_way())
+        activity_.set(cycle, State::waiting_for_memory, port_->memory());
+    else if (!m.pipeline.empty() || (!lacking && !input_->empty()))
+        activity_.set(cycle, State::busy);
+    else
+        activity_.set(cycle, State::starved, lacking ? lacks() : nullptr);
+    wake_at(m.pipeline.next_finished(cycle));
+    if (!input_->empty())
+        wake_at(m.pipeline.next_start(cycle));
+}
+
+template <class In, class Out>
+std::uint64_t Stage<In, Out>::occupied_cycles() const {
+    return activity_.items_in() * timing_.interval / machinery_->servers;
+}
+
+template <class In, class Out>
+std::string Stage<In, Out>::holds() const {
+    std::string text = count_of(machinery_->pipeline.size() + input_->size(), "item");
+    if (port_ != nullptr && port_->on_offer())
+        text = listed(text, "a request its memory does not take");
+    return listed(text, input_->holds_back() ? "one at its door" : "");
+}
+
+/// Shows the item started last; of a unit that reads, the request made last, how many requests and reads there were, and the
+/// item whose last read came last.
+template <class In, class Out>
+void Stage<In, Out>::show(Signals& signals) const {
+    const Machinery& m = *machinery_;
+    Unit::show(signals);
+    signals.input(*input_);
+    signals.group(signals.changed(activity_.items_in()) && !m.pipeline.empty(), [&] {
+        const typename Machinery::Slot& newest = m.pipeline.newest();
+        if constexpr (std::is_same_v<In, Work>)
+            signals.work(newest.item);
+        trace_started(signals, newest.item);
+        if (port_ == nullptr)
+            trace_processed(signals, newest.item, newest.result);
+    });
+    if (port_ == nullptr)
+        return;
+    signals.pulse("request", port_->requests());
+    signals.value("requests", 32, port_->requests());
+    signals.value("reads", 32, port_->reads());
+    signals.flag("request_held", port_->on_offer());
+    signals.value("requests_under_way", 16, port_->requests_under_way());
+    signals.group(signals.changed(port_->reads()) && port_->under_way(),
+                  [&] { signals.value("address", 32, port_->last_address()); });
+    signals.group(signals.changed(activity_.items_out() + m.waiting) && m.waiting > 0, [&] {
+        const typename Machinery::Slot& processed =
+            m.waiting > 0 ? m.pipeline.at(m.waiting - 1) : m.pipeline.newest();
+        if constexpr (std::is_same_v<In, Work>) {
+            signals.value("answered_triangle", 32, Signals::pass_of(processed.item).number);
+            signals.value("answered_part", Signals::part_bits, Signals::part_of(processed.item));
+        }
+        trace_processed(signals, processed.item, processed.result);
+    });
+}
+
+/// A triangle comes without its number.
+template <class In, class Out>
+Begun Stage<In, Out>::begun() const {
+    if constexpr (std::is_same_v<In, Work>)
+        return Begun::of(activity_.items_in(), machinery_->pipeline.newest().item);
+    else
+        return {activity_.items_in()};
+}
+
+}  // namespace tessera
