@@ -30,6 +30,8 @@ class BankedPorts {
 
     /// The first cycle in which the entries at these addresses can be asked for; a past one: at once.
     std::uint64_t ready(const std::uint64_t* addresses, unsigned count) const {
+        if (banks_ == 1)
+            return port_free_[first_free_port(0)];
         std::uint64_t cycle = 0;
         for (unsigned k = 0; k < count; ++k)
             cycle = std::max(cycle, port_free_[first_free_port(bank_of(addresses[k]))]);

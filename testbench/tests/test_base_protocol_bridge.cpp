@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <functional>
 #include <map>
@@ -64,11 +65,16 @@ std::uint64_t own_address(std::uint64_t address) {
 
 /// A reader and a bridge before a memory of the base protocol.
 struct Bench {
-    Clock clock{"clock", period};
+    Clock clock;
     BaseProtocolBridge bridge;
-    Reader reader{"reader", clock};
+    Reader reader;
 
-    explicit Bench(unsigned buffer = 1) : bridge("bridge", clock, buffer) { reader.port.bind(bridge); }
+    explicit Bench(unsigned buffer = 1, const std::string& prefix = "")
+        : clock((prefix + "clock").c_str(), period),
+          bridge((prefix + "bridge").c_str(), clock, buffer),
+          reader((prefix + "reader").c_str(), clock) {
+        reader.port.bind(bridge);
+    }
 
     void run() {
         sc_core::sc_start();
@@ -132,7 +138,7 @@ namespace {
 
 /// Non-blocking transport, in the way a test chooses.
 struct ScriptedMemory : sc_core::sc_module {
-    enum class Way { completed, begin_response, end_request, accepted };
+    enum class Way { completed, begin_response, end_request, accepted, begin_request };
 
     tlm_utils::passthrough_target_socket<ScriptedMemory> socket{"socket"};
     Bytes bytes;
@@ -168,6 +174,8 @@ struct ScriptedMemory : sc_core::sc_module {
                 return tlm::TLM_UPDATED;
             case Way::end_request:
                 phase = tlm::END_REQ;
+                return tlm::TLM_UPDATED;
+            case Way::begin_request:  // a breach
                 return tlm::TLM_UPDATED;
             default:
                 return tlm::TLM_ACCEPTED;
@@ -322,6 +330,13 @@ TEST_CASE("bridge: an answer before the call returns and another by return is an
                Contains("bridge.to_memory") && Contains("answered twice"));
 }
 
+TEST_CASE("bridge: an answer by return that is none is an error") {
+    ScriptedBench bench(Way::begin_request);
+    bench.reader.reads = gathers(1, 1);
+    CHECK_THAT(error_of([] { sc_core::sc_start(); }),
+               Contains("bridge.to_memory") && Contains("neither END_REQ nor BEGIN_RESP"));
+}
+
 namespace {
 TLM_DECLARE_EXTENDED_PHASE(of_its_own);
 }
@@ -414,6 +429,21 @@ struct DirectMemory : sc_core::sc_module {
 };
 
 }  // namespace
+
+TEST_CASE("bridge: debug transport is passed on, all bytes or none") {
+    Bench bench;
+    BlockingMemory memory("memory", period);
+    bench.bridge.to_memory.bind(memory.socket);
+    Bench other(1, "other");
+    DirectMemory without("without");
+    other.bridge.to_memory.bind(without.socket);
+    sc_core::sc_start(SC_ZERO_TIME);
+    std::array<unsigned char, 8> data{};
+    MemoryRequest look{tlm::TLM_READ_COMMAND, 2, 4, {40, 80}, data.data()};
+    CHECK(bench.reader.port.socket->transport_dbg(look) == 8);
+    CHECK(data == std::array<unsigned char, 8>{40, 41, 42, 43, 80, 81, 82, 83});
+    CHECK(other.reader.port.socket->transport_dbg(look) == 0);
+}
 
 TEST_CASE("bridge: functional mode reads entry by entry, then directly until that is withdrawn") {
     Bench bench;
