@@ -47,13 +47,10 @@ Work SummedHeightTest::process(const Work& edge, const Entries& entries) {
     if (!registers_.tests.summed_height_test)
         return edge;
     const datapath::RectangleSize its_size = size(edge);
-    unsigned first = 0;
-    for (unsigned k = 0; k < 3; ++k) {
-        const datapath::RectangleReads its = rectangle(edge, its_size, k);
-        sums_[k] =
-            rectangle_sum(its, registers_.formats, [&](unsigned entry) { return entries[first + entry]; });
-        first += its.count;
-    }
+    unsigned next = 0;
+    for (unsigned k = 0; k < 3; ++k)
+        sums_[k] = rectangle_sum(rectangle(edge, its_size, k), registers_.formats,
+                                 [&](unsigned) { return entries[next++]; });
     if (summed_height_test(sums_[0], sums_[1], sums_[2], its_size, registers_.tests))
         edge.pass->edges[edge.index()].tests |= datapath::summed_height_bit;
     return edge;
