@@ -1,7 +1,5 @@
 #include "modules/memory/memory_server.h"
 
-#include <algorithm>
-
 #include "modules/stream/stream.h"
 #include "modules/unit/signals.h"
 
@@ -73,9 +71,10 @@ void MemoryServer::answer(const Served& served) {
 }
 
 void MemoryServer::finish(const MemoryRequest& request, std::uint64_t cycle) {
-    const auto served = std::find_if(answers_.begin(), answers_.end(),
-                                     [&](const Served& one) { return one.request == &request; });
-    served->answer_at = cycle;
+    std::size_t k = 0;
+    while (answers_.at(k).request != &request)
+        ++k;
+    answers_.at(k).answer_at = cycle;
     wake_at(cycle);
 }
 
@@ -90,7 +89,9 @@ void MemoryServer::step() {
         Served served = queue_.front();
         queue_.pop();
         served.answer_at = serve(*served.request, cycle);
-        answers_.push_back(served);
+        if (answers_.full())
+            answers_.grow();
+        answers_.push(served);
         if (waiting_ > 0)
             admit(cycle);
     }
@@ -98,7 +99,7 @@ void MemoryServer::step() {
     held_up_since_ = cycle;
     while (!answers_.empty() && answers_.front().answer_at <= cycle) {
         const Served served = answers_.front();
-        answers_.pop_front();
+        answers_.pop();
         activity_.item_out(cycle);
         answer(served);
     }

@@ -2,7 +2,6 @@
 #include <tlm_utils/multi_passthrough_target_socket.h>
 #include <tlm_utils/passthrough_target_socket.h>
 #include <cstdint>
-#include <deque>
 #include <string>
 #include <systemc>
 #include <tlm>
@@ -81,7 +80,7 @@ class MemoryServer : public Unit {
     std::size_t turn_ = 0;                               // of these, the next to be let in
     std::size_t waiting_ = 0;                            // how many of these there are
     Ring<Served> queue_;
-    std::deque<Served> answers_;  // due; as many as the ports have under way
+    Ring<Served> answers_;  // due; grows to as many as the ports have under way
     std::uint64_t held_up_since_ = 0;
     bool held_up_ = false;
     std::uint64_t cycles_held_up_ = 0;

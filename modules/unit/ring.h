@@ -1,10 +1,11 @@
 #pragma once
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace tessera {
 
-/// A queue of fixed capacity, oldest item first. Allocates only when constructed. A popped item stays in its place until
+/// A queue of fixed capacity, oldest item first. Allocates only when constructed or grown. A popped item stays in its place until
 /// another is pushed there, so items may own storage that is reused.
 template <class Item>
 class Ring {
@@ -32,6 +33,16 @@ class Ring {
     void pop() {
         first_ = place(1);
         --size_;
+    }
+
+    /// Twice the capacity, at least one; the items stay in their order.
+    void grow() {
+        std::vector<Item> larger(capacity_ == 0 ? 1 : 2 * capacity_);
+        for (std::size_t k = 0; k < size_; ++k)
+            larger[k] = std::move(at(k));
+        items_.swap(larger);
+        capacity_ = items_.size();
+        first_ = 0;
     }
 
   private:

@@ -117,7 +117,7 @@ double EndToEndResult::more_triangles() const {
 }
 
 bool EndToEndResult::passed() const {
-    return !bound_hit && std::abs(more_triangles()) <= allowed.triangles && farther() <= allowed.triangles &&
+    return !bound_hit && std::abs(more_triangles()) <= allowed.triangles && farther() <= allowed_farther() &&
            rms_model() <= allowed_rms_model();
 }
 

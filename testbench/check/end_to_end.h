@@ -32,7 +32,7 @@ struct EndToEndResult {
     /// What the result is judged by: rounding moves a point of the surface a little, and a part of the surface may be
     /// triangulated otherwise, since decisions flip near their thresholds. Model units.
     struct Allowed {
-        double triangles = 100;      ///< percent: more or fewer, and of the points farther than `rounding`
+        double triangles = 100;      ///< percent: more or fewer
         double rounding = INFINITY;  ///< the farthest that rounding moves a vertex
         double displacement = 0;     ///< between two displacements of one point of the base surface
     };
@@ -55,6 +55,9 @@ struct EndToEndResult {
     double rms_model() const { return std::max(hardware_to_golden.rms_model, golden_to_hardware.rms_model); }
     double max_model() const { return std::max(hardware_to_golden.max_model, golden_to_hardware.max_model); }
     double farther() const { return std::max(hardware_to_golden.farther, golden_to_hardware.farther); }
+    /// Percent of the points. An edge decided otherwise adds a triangle on each of its sides, two of N. It moves its own
+    /// vertex and the centroids of at most four triangles a side: 9 of the 1.5 N points.
+    double allowed_farther() const { return 3 * allowed.triangles; }
     /// The points within `rounding` and those farther away, which are within `displacement`.
     double allowed_rms_model() const {
         return allowed.rounding + std::sqrt(farther() / 100) * allowed.displacement;
@@ -68,8 +71,8 @@ struct EndToEndResult {
 /// `progress`: told the part done, 0..1, now and then; null: nobody.
 /// `base_triangles`: which of the mesh's triangles the machine was given (SetupResult).
 /// `allowed_triangles`: in percent; infinite where the machine's values saturated, which golden's do not. Where both cut the
-/// same triangles, a point of one surface lies within r of the other; the rest is at most this share f of the points, and
-/// lies within h. So
+/// same triangles, a point of one surface lies within r of the other; the rest is at most a share f of the points
+/// (allowed_farther), and lies within h. So
 ///     points farther than r <= f      RMS <= r + sqrt(points farther than r) h
 /// r: per axis (G / 2 + 2) LSB of the position after G generations and, by the normal, 2 (G + 1) LSB of it times the largest
 /// displacement; nothing by the normals of a plane across an axis, which are exact. h: over one point of the base surface,

@@ -409,7 +409,7 @@ std::vector<KeyTable> declare_keys() {
         key.add("end_to_end", &Check::end_to_end, "Golden run of the whole mesh, compared with the hardware's; also every register and table entry, as with check.golden");
         key.add("invariants", &Check::invariants, "The emitted mesh is closed, without T-vertices, and covers the texture");
         key.add("allowed_flips", &Check::allowed_flips, "percent of edges", between(0, 100), "Decisions that differ within the formats' error bound; more fail the run");
-        key.add("allowed_triangles", &Check::allowed_triangles, "percent of triangles", between(0, 1000), "Largest difference in the number of triangles between golden's own run and the hardware; beyond it the run fails, as it does if a larger part of the points lies farther from the other surface than rounding explains. A run whose positions saturate is not judged by it. Raise it for thresholds finer than the formats");
+        key.add("allowed_triangles", &Check::allowed_triangles, "percent of triangles", between(0, 1000), "Largest difference in the number of triangles between golden's own run and the hardware; beyond it the run fails, as it does if three times that share of the points lies farther from the other surface than rounding explains. A run whose positions saturate is not judged by it. Raise it for thresholds finer than the formats");
         key.add("work", &Check::work, "No triangle is lost, doubled or altered on its way through the machine, and what goes into a unit comes out of another");
         key.add("reads", &Check::reads, "Every table read against what the memory holds; in functional mode reads then go by transaction, which is slow");
     });

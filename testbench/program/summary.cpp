@@ -55,11 +55,12 @@ std::string checks_rows(const Checks& checks) {
                 ? fmt::format("more than {} triangles, where its run was stopped", count(e.bound))
                 : fmt::format(
                       "{} triangles ({:+.2f} %, allowed {}); {:.2f} % of the points farther apart than "
-                      "rounding explains, at most {:.3g} model units, RMS {:.3g} (allowed {:.3g})",
+                      "rounding explains (allowed {:.3g}), at most {:.3g} model units, RMS {:.3g} (allowed "
+                      "{:.3g})",
                       count(e.golden_triangles), e.more_triangles(),
                       std::isinf(e.allowed.triangles) ? std::string("any, since values saturated")
                                                       : fmt::format("{} %", e.allowed.triangles),
-                      e.farther(), e.max_model(), e.rms_model(), e.allowed_rms_model()));
+                      e.farther(), e.allowed_farther(), e.max_model(), e.rms_model(), e.allowed_rms_model()));
         const double unseen = std::max(e.hardware_to_golden.unseen, e.golden_to_hardware.unseen);
         if (unseen > 0)
             text += row(

@@ -80,11 +80,11 @@ std::string end_to_end_text(const EndToEndResult& result) {
         "End to end: {}. The golden model run by itself from the job: its own camera, heights, normal map "
         "and "
         "thresholds.\nOnly map values (to displacement codes) and texture coordinates are rounded, as in the "
-        "hardware. Allowed: {} % more or\nfewer triangles; as many of the points farther from the other "
+        "hardware. Allowed: {} % more or\nfewer triangles; {} % of the points farther from the other "
         "surface "
         "than rounding moves them, {:.3g} model units;\nan RMS distance of {:.6g} model units.\n\n"
         "  triangles: hardware {}, golden {}\n",
-        verdict(result.passed()), result.allowed.triangles, result.allowed.rounding,
+        verdict(result.passed()), result.allowed.triangles, result.allowed_farther(), result.allowed.rounding,
         result.allowed_rms_model(), result.hardware_triangles,
         result.bound_hit ? fmt::format("more than {}, where its run was stopped", result.bound)
                          : fmt::format("{} ({:+.4f} %)", result.golden_triangles, result.more_triangles()));

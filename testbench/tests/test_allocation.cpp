@@ -39,18 +39,22 @@ void expect_no_allocation_checked(const Job& job) {
 }  // namespace
 
 TEST_CASE("functional mode allocates nothing per edge") {
-    const Job job;
+    Job job;
+    job.mode = Mode::functional;
     const Setup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);
     expect_no_allocation(setup, simulation);
 }
 
 TEST_CASE("functional mode with the scoreboard allocates nothing per edge") {
-    expect_no_allocation_checked({});
+    Job job;
+    job.mode = Mode::functional;
+    expect_no_allocation_checked(job);
 }
 
 TEST_CASE("functional mode with a Highlight Test and the scoreboard allocates nothing per edge") {
     Job job;
+    job.mode = Mode::functional;
     job.tests.highlight = true;
     expect_no_allocation_checked(job);
 }

@@ -123,18 +123,12 @@ void give(Output& output, Payload& payload) {
 }
 
 /// A read of one entry past the unit that reads the table.
-template <class Socket>
-void read_directly(Socket& socket, std::uint64_t address, unsigned bytes) {
+void read_directly(MemoryPort& port, std::uint64_t address) {
     std::array<unsigned char, 8> data{};
-    tlm::tlm_generic_payload payload;
-    payload.set_read();
-    payload.set_address(address);
-    payload.set_data_ptr(data.data());
-    payload.set_data_length(bytes);
-    payload.set_streaming_width(bytes);
+    MemoryRequest request{tlm::TLM_READ_COMMAND, 1, port.entry_bytes(), {address}, data.data()};
     sc_core::sc_time delay;
-    socket->b_transport(payload, delay);
-    REQUIRE(payload.is_response_ok());
+    port.socket->b_transport(request, delay);
+    REQUIRE(request.response == tlm::TLM_OK_RESPONSE);
 }
 
 }  // namespace
@@ -254,20 +248,16 @@ TEST_CASE("conservation: a read too many") {
                   },
                   {{"entries of summed_height_table = read by summed_height_test", {1, 1}}});
     // the same past the units
-    Host& host = simulation.host;
-    expect_change("displacement map, by the host", simulation,
-                  [&] {
-                      read_directly(host.displacement_map, r.displacement_map.base,
-                                    r.displacement_map.entry_bytes);
-                  },
+    expect_change("displacement map, past its unit", simulation,
+                  [&] { read_directly(p.displace_vertex.displacement_map, r.displacement_map.base); },
                   {{"entries of displacement_map = read by displace_vertex", {1, 0}}});
-    expect_change("normal map, by the host", simulation,
-                  [&] { read_directly(host.normal_map, r.normal_map.base, r.normal_map.entry_bytes); },
+    expect_change("normal map, past its unit", simulation,
+                  [&] { read_directly(p.tessellation_tests[0].normal_test.normal_map, r.normal_map.base); },
                   {{"entries of normal_map = read by normal_test", {1, 0}}});
-    expect_change("Summed Height Table, by the host", simulation,
+    expect_change("Summed Height Table, past its unit", simulation,
                   [&] {
-                      read_directly(host.summed_height_table, r.summed_height_table.base,
-                                    r.summed_height_table.entry_bytes);
+                      read_directly(p.tessellation_tests[0].summed_height_test.summed_height_table,
+                                    r.summed_height_table.base);
                   },
                   {{"entries of summed_height_table = read by summed_height_test", {1, 0}}});
 }

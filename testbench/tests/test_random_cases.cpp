@@ -6,6 +6,7 @@
 #include "testbench/benchmark/bare_recursion.h"
 #include "testbench/check/invariants.h"
 #include "testbench/host/inputs.h"
+#include "testbench/host/resolve_job.h"
 #include "testbench/job/read_job.h"
 #include "testbench/random_cases/lineage_check.h"
 #include "testbench/random_cases/random_case.h"
@@ -64,7 +65,7 @@ TEST_CASE("random case: a seed gives the same bytes from every compiler") {
         const RandomCase made = make_random_case(seed);
         text += made.mesh.obj + made.map.pgm() + made.summary();
     }
-    CHECK(digest(text) == 0xd640523b7471576aU);
+    CHECK(digest(text) == 0x09111fe19677cd64U);
 }
 
 TEST_CASE("random cases: meshes of every kind, most of them split") {
@@ -114,6 +115,7 @@ TEST_CASE("lineage: two triangles close along their edge, and with an end that d
     made.mesh.obj =
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0.4\nvt 0 0\nvt 1 0\nvt 0 1\nvt 1 1\n"
         "f 1/1 2/2 3/3\nf 2/2 4/4 3/3\n";
+    made.job = resolve_job(made.job, made.base_mesh(), made.height_map()).job;
     const Setup setup = made.setup();
     const LineageResult whole = check_lineage(setup);
     INFO(whole.first_fault);

@@ -34,6 +34,26 @@ TEST_CASE("ring: items leave in the order they came, round and round") {
     CHECK(ring.back() == pushed - 1);  // the last one, though it has left
 }
 
+TEST_CASE("ring: grown, it has twice the places and its items in their order") {
+    Ring<int> ring(3);
+    for (int k = 0; k < 3; ++k)
+        ring.push(k);
+    ring.pop();
+    ring.push(3);  // the oldest is not in the first place
+    ring.grow();
+    CHECK(ring.capacity() == 6);
+    for (int k = 4; k < 7; ++k)
+        ring.push(k);
+    CHECK(ring.full());
+    for (int k = 1; k < 7; ++k) {
+        CHECK(ring.front() == k);
+        ring.pop();
+    }
+    Ring<int> none;
+    none.grow();
+    CHECK(none.capacity() == 1);
+}
+
 TEST_CASE("ring: a capacity of one") {
     Ring<int> ring(1);
     for (int k = 0; k < 3; ++k) {
