@@ -398,7 +398,6 @@ TEST_CASE("the timeline's stretches tile the window and agree with the statistic
     for (const auto& [number, name] : tracks) {
         INFO(name);
         CHECK(reached[number] == std::min(last + 1, cycles));
-        // queues and wires have no states in the statistics
         if (first > 0 || !statistics.at("timing." + name).contains("busy"))
             continue;
         ++with_states;
@@ -410,7 +409,7 @@ TEST_CASE("the timeline's stretches tile the window and agree with the statistic
             CHECK((spent[{name, state}]) == count(statistics, "timing." + name, figure));
     }
     CHECK(with_states ==
-          (first > 0 ? 0 : tracks.size() - 2));  // the queue's and the results' between tests and join
+          (first > 0 ? 0 : tracks.size() - 2));  // all but queue and results, which have no states
 }
 
 TEST_CASE("a triangle can be followed through the timeline") {
