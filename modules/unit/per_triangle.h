@@ -34,7 +34,7 @@ class PerTriangle {
 
     State& open(Tag tag) {
         if (full())
-            grow();
+            entries_.grow();
         return (entries_.push() = {tag, State{}}).state;
     }
     State& find_or_open(Tag tag) {
@@ -58,13 +58,6 @@ class PerTriangle {
     }
 
   private:
-    void grow() {
-        Ring<Entry> larger(2 * entries_.capacity() + 1);
-        for (; !entries_.empty(); entries_.pop())
-            larger.push(entries_.front());
-        entries_ = larger;
-    }
-
     Ring<Entry> entries_;
 };
 
