@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "modules/trace/vcd_writer.h"
-
 namespace tessera {
 
 const std::vector<UnitNumbers::Entry>& UnitNumbers::all() {
@@ -69,7 +67,7 @@ void Signals::value(const char* name, unsigned bits, std::uint64_t value) {
     if (declaring_)
         declare(name, bits);
     else
-        vcd_.set(handles_[signal_++], value);
+        sink_.set(handles_[signal_++], value);
 }
 
 bool Signals::changed(std::uint64_t value) {
@@ -122,23 +120,23 @@ void Signals::pulse_if(const char* name, bool now) {
     if (declaring_)
         declare(name, 1);
     else if (now)
-        vcd_.pulse(handles_[signal_++]);
+        sink_.pulse(handles_[signal_++]);
     else
-        vcd_.set(handles_[signal_++], 0);
+        sink_.set(handles_[signal_++], 0);
 }
 
 void Signals::pulse_or_level(const char* name, bool pulse, bool level) {
     if (declaring_)
         declare(name, 1);
     else if (pulse && !level)
-        vcd_.pulse(handles_[signal_++]);
+        sink_.pulse(handles_[signal_++]);
     else
-        vcd_.set(handles_[signal_++], level ? 1 : 0);
+        sink_.set(handles_[signal_++], level ? 1 : 0);
 }
 
 void Signals::declare(const char* name, unsigned bits) {
     const std::string scope = inner_scope_ == nullptr ? scope_ : scope_ + "." + inner_scope_;
-    handles_.push_back(vcd_.add(scope, name, bits));
+    handles_.push_back(sink_.add(scope, name, bits));
 }
 
 }  // namespace tessera

@@ -9,10 +9,9 @@
 
 #include "modules/datapath/vertex.h"
 #include "modules/stream/work.h"
+#include "modules/unit/signal_sink.h"
 
 namespace tessera {
-
-class VcdWriter;
 
 /// Numbers of units in waveforms, the same in every design, so that waveforms/units.txt can name them.
 class UnitNumbers {
@@ -40,8 +39,8 @@ class UnitNumbers {
 /// Signals stand in the unit's own scope unless a scope within it is given.
 class Signals {
   public:
-    Signals(VcdWriter& vcd, UnitNumbers& numbers, std::string scope)
-        : vcd_(vcd), numbers_(numbers), scope_(std::move(scope)) {}
+    Signals(SignalSink& sink, UnitNumbers& numbers, std::string scope)
+        : sink_(sink), numbers_(numbers), scope_(std::move(scope)) {}
 
     /// Begins a call of Unit::show.
     void begin(bool declaring) {
@@ -125,13 +124,13 @@ class Signals {
     void pulse_or_level(const char* name, bool pulse, bool level);
     void declare(const char* name, unsigned bits);
 
-    VcdWriter& vcd_;
+    SignalSink& sink_;
     UnitNumbers& numbers_;
     std::string scope_;
     const char* inner_scope_ = nullptr;
     bool declaring_ = true;
     bool running_ = false;
-    std::vector<std::uint32_t> handles_;  // VcdWriter::Signal
+    std::vector<SignalSink::Signal> handles_;
     std::vector<std::uint64_t> remembered_;
     std::vector<std::size_t> group_sizes_;
     std::size_t signal_ = 0;

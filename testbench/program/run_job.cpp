@@ -27,13 +27,13 @@
 #include "testbench/program/run_files.h"
 #include "testbench/program/run_frames.h"
 #include "testbench/program/summary.h"
-#include "testbench/program/traces.h"
 #include "testbench/render/render_run.h"
 #include "testbench/report/conformance_report.h"
 #include "testbench/report/obj_writer.h"
 #include "testbench/report/ply_writer.h"
 #include "testbench/report/statistics.h"
 #include "testbench/report/timing_report.h"
+#include "testbench/trace/traces.h"
 
 namespace tessera {
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "modules/trace/timeline_writer.h"
+#include "testbench/trace/timeline_writer.h"
 
 namespace tessera {
 namespace {

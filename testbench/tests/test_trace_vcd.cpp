@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "modules/trace/vcd_writer.h"
+#include "testbench/trace/vcd_writer.h"
 
 namespace tessera {
 namespace {

@@ -1,4 +1,4 @@
-#include "modules/trace/timeline_writer.h"
+#include "testbench/trace/timeline_writer.h"
 
 #include <algorithm>
 #include <array>

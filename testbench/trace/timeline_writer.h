@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "modules/trace/trace_window.h"
+#include "testbench/trace/trace_window.h"
 
 namespace tessera {
 

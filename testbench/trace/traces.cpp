@@ -1,4 +1,4 @@
-#include "testbench/program/traces.h"
+#include "testbench/trace/traces.h"
 
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -15,9 +15,9 @@
 #include <string_view>
 #include <system_error>
 
-#include "modules/trace/recorder.h"
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/error.h"
+#include "testbench/trace/recorder.h"
 
 namespace tessera {
 

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "modules/trace/trace_window.h"
+#include "modules/unit/signal_sink.h"
+#include "testbench/trace/trace_window.h"
 
 namespace tessera {
 
@@ -20,19 +21,16 @@ namespace tessera {
 /// differs between equal runs: no date.
 /// Limits: a cycle's time in picoseconds fits 64 bits, as in sc_time. Whether the stream took the bytes is the
 /// caller's to check. Misuse is a std::logic_error, except a Signal that add() never gave.
-class VcdWriter {
+class VcdWriter final : public SignalSink {
   public:
-    using Signal = std::uint32_t;
-
     VcdWriter(std::ostream& out, std::uint64_t cycle_picoseconds, TraceWindow window = {});
     VcdWriter(const VcdWriter&) = delete;
     VcdWriter& operator=(const VcdWriter&) = delete;
 
-    /// scope: the hierarchy, dotted; bits: 1 to 64. To be called before the first end_cycle(), once per scope and name.
-    Signal add(const std::string& scope, const std::string& name, unsigned bits);
+    /// Before the first end_cycle().
+    Signal add(const std::string& scope, const std::string& name, unsigned bits) override;
 
-    /// From this cycle on. Bits beyond the signal's are dropped; a signed value comes as its two's complement.
-    void set(Signal signal, std::uint64_t value) {
+    void set(Signal signal, std::uint64_t value) override {
         Wire& wire = wires_[signal];
         value &= wire.mask;
         if (value == wire.value && wire.state != State::pulsed)
@@ -43,8 +41,8 @@ class VcdWriter {
         wire.state = State::changed;
     }
 
-    /// 1 in this cycle and 0 in the next one, unless set or pulsed there; nobody need be awake then.
-    void pulse(Signal signal) {
+    /// Its fall in the next cycle needs no call.
+    void pulse(Signal signal) override {
         Wire& wire = wires_[signal];
         if (wire.state == State::quiet)
             changed_[changed_count_++] = signal;

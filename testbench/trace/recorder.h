@@ -8,11 +8,11 @@
 
 #include "modules/clock/clock.h"
 #include "modules/pipeline.h"
-#include "modules/trace/timeline_writer.h"
-#include "modules/trace/trace_window.h"
-#include "modules/trace/vcd_writer.h"
 #include "modules/unit/activity.h"
 #include "modules/unit/signals.h"
+#include "testbench/trace/timeline_writer.h"
+#include "testbench/trace/trace_window.h"
+#include "testbench/trace/vcd_writer.h"
 
 namespace tessera {
 

@@ -1,4 +1,4 @@
-#include "modules/trace/vcd_writer.h"
+#include "testbench/trace/vcd_writer.h"
 
 #include <algorithm>
 #include <array>

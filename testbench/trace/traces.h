@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "modules/trace/trace_window.h"
 #include "testbench/common/atomic_set.h"
 #include "testbench/host/simulation.h"
 #include "testbench/job/job.h"
+#include "testbench/trace/trace_window.h"
 
 namespace tessera {
 

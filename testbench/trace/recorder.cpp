@@ -1,4 +1,4 @@
-#include "modules/trace/recorder.h"
+#include "testbench/trace/recorder.h"
 
 #include <algorithm>
 #include <array>
