@@ -382,8 +382,8 @@ struct Threshold {
     const char* format_key;
 };
 
-/// Rounded down. Refused is what does not fit, and what would be 0 without being meant to: a test against 0 asks another
-/// question, and rounding answers it.
+/// Rounded down. Refused is what does not fit, and what would be 0 without being meant to: a test against 0
+/// asks another question, and rounding answers it.
 std::uint64_t to_register(const Threshold& threshold) {
     const double fixed = std::floor(threshold.value * threshold.scale);
     if (fixed > threshold.limit)
