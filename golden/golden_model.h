@@ -15,8 +15,8 @@ namespace tessera::golden {
 /// Section 5: which diagonal cuts the quadrilateral that is left when two edges split.
 enum class Diagonal { shorter, first, second };
 
-/// By how much of the first diagonal's length the second must be shorter to be chosen: so that diagonals of equal length
-/// are told apart by their place, never by rounding.
+/// By how much of the first diagonal's length the second must be shorter to be chosen: so that diagonals of
+/// equal length are told apart by their place, never by rounding.
 inline constexpr double diagonal_margin = 1.0 / 64;
 
 /// What the mesh's author and the view supply. A test that is not enabled counts as false (normal, summed
@@ -125,8 +125,8 @@ EdgeEvaluation evaluate_edge(const Vertex& i, const Vertex& j, const Map& map, c
 ///              walk the boundary 0 3 1 4 2 5, leaving out the unsplit edge's midpoint and the corner
 ///              diagonal q0-q2: (q0 q1 q2) (q0 q2 q3)         diagonal q1-q3: (q0 q1 q3) (q1 q2 q3)
 ///     three    (0 3 5) (3 1 4) (5 4 2) (3 4 5)
-/// `shorter` compares Manhattan lengths of displaced world positions: q1-q3 if it is shorter than q0-q2 by more than the
-/// margin.
+/// `shorter` compares Manhattan lengths of displaced world positions: q1-q3 if it is shorter than q0-q2 by
+/// more than the margin.
 struct Subdivision {
     int count = 0;
     std::array<std::array<int, 3>, 4> children{};

@@ -4,8 +4,8 @@
 #include "golden/golden_map.h"
 #include "golden/golden_model.h"
 
-/// From a job, in the model's own units, to what the golden model runs on (ALGORITHM.md section 6), in double precision.
-/// Written from that page, so that it shares no line with the host.
+/// From a job, in the model's own units, to what the golden model runs on (ALGORITHM.md section 6), in double
+/// precision. Written from that page, so that it shares no line with the host.
 namespace tessera::golden {
 
 /// From the model to the world: world = scale * (model - centre). The host chooses it so that the world fits the
@@ -24,7 +24,8 @@ struct Camera {
     glm::dvec2 viewport{1, 1};           ///< width and height in pixels
 };
 
-/// The camera's axes and its transform, as Parameters has it. Pixel (0, 0) is the viewport's lower left corner, y runs up.
+/// The camera's axes and its transform, as Parameters has it. Pixel (0, 0) is the viewport's lower left
+/// corner, y runs up.
 struct View {
     glm::dvec3 right{1, 0, 0}, up{0, 1, 0}, backward{0, 0, 1};  ///< unit, world; backward: towards the viewer
     glm::dvec3 eye{0};                                          ///< world
@@ -66,8 +67,8 @@ glm::dvec3 light_as_seen(const Scene& scene);
 /// The code that a map value stands for, before it is rounded: 0 at `low`, highest_code at `high`, held between them.
 double code_of(double value, double low, double high, double highest_code);
 
-/// A base vertex, of which `uv` = 1 spans the map once, in world units and texels. A clamped axis holds the coordinate on
-/// the map.
+/// A base vertex, of which `uv` = 1 spans the map once, in world units and texels. A clamped axis holds the
+/// coordinate on the map.
 Vertex place_vertex(const Vertex& in_model_units, const glm::dvec2& uv, const Placement& placement,
                     const Map& map);
 

@@ -18,8 +18,8 @@ class BareRecursion {
     /// So far. The machine normalises N_ij in two units and counts there twice; Lighting is not part of this.
     const datapath::Saturations& saturations() const { return saturations_; }
 
-    /// Tessellates every base triangle; returns the edges evaluated. `mesh` is cleared first, its memory kept. Gives up,
-    /// the mesh incomplete, once `most_edges` have been.
+    /// Tessellates every base triangle; returns the edges evaluated. `mesh` is cleared first, its memory
+    /// kept. Gives up, the mesh incomplete, once `most_edges` have been.
     std::uint64_t run(EmittedMesh& mesh, std::uint64_t most_edges = UINT64_MAX);
 
     /// Its parts, for who walks in another way. What the machine does to a base triangle's vertices on its first pass:

@@ -11,8 +11,8 @@
 #include "testbench/job/read_job.h"
 #include "testbench/job/validate_job.h"
 
-// What the Highlight Test buys where lighting is per vertex: a job's mesh without it, with it, and without it at a Normal
-// Test threshold that gives as many triangles. One Markdown table on standard output.
+// What the Highlight Test buys where lighting is per vertex: a job's mesh without it, with it, and without it
+// at a Normal Test threshold that gives as many triangles. One Markdown table on standard output.
 //
 //     tessera_highlight_study [--data FOLDER] [JOB.toml] [TABLE.KEY=VALUE]...
 
@@ -44,8 +44,8 @@ class Study {
         return {mesh.triangles.size(), measure_gouraud(mesh, setup, GoldenInputs(setup), highlight_)};
     }
 
-    /// The largest Normal Test threshold found that gives at least so many triangles without a Highlight Test; next to 0
-    /// if none does: the other tests allow no more.
+    /// The largest Normal Test threshold found that gives at least so many triangles without a Highlight
+    /// Test; next to 0 if none does: the other tests allow no more.
     double threshold_for(std::size_t triangles) const {
         double low = 0, high = job_.tests.normal_threshold;
         for (int step = 0; step < 16; ++step) {

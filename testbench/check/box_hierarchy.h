@@ -9,8 +9,8 @@ namespace tessera {
 
 /// Boxes sorted for the question which of them lie near a point. Embree's single precision only leaves boxes out: they
 /// are rounded outwards and radii upwards, so none that lies within the radius is ever missed; distances are the
-/// asker's own, in double precision. Built on one thread; several may ask at once. Coordinates are best near 1 and near 0:
-/// far from 0 more boxes than necessary come.
+/// asker's own, in double precision. Built on one thread; several may ask at once. Coordinates are best near
+/// 1 and near 0: far from 0 more boxes than necessary come.
 class BoxHierarchy {
   public:
     struct Box {

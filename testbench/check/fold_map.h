@@ -11,9 +11,9 @@ struct Place {
     std::int64_t x, y;
 };
 
-/// Where in the plane a patch may be folded: under triangles that collapsed or turned over. Anywhere else the patch lies
-/// on the plane like a map, and no two of its vertices share a place. Kept in cells, so it may say yes for a place
-/// nearby.
+/// Where in the plane a patch may be folded: under triangles that collapsed or turned over. Anywhere else the
+/// patch lies on the plane like a map, and no two of its vertices share a place. Kept in cells, so it may say
+/// yes for a place nearby.
 class FoldMap {
   public:
     /// Forgets all. The patch lies between these, but for rounding.

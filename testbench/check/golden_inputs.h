@@ -55,8 +55,9 @@ class Dequantise {
 /// plane, 64 bit integers that a double rounds at the 53rd bit.
 golden::Parameters golden_parameters(const datapath::Registers& registers);
 
-/// What golden works on for the scoreboard: map and registers as the hardware holds them, dequantised, so that the two can
-/// differ in arithmetic only. Sound, as each entry is judged against golden's own (setup_check.h). Memory: 36 bytes per texel.
+/// What golden works on for the scoreboard: map and registers as the hardware holds them, dequantised, so
+/// that the two can differ in arithmetic only. Sound, as each entry is judged against golden's own
+/// (setup_check.h). Memory: 36 bytes per texel.
 struct GoldenInputs {
     golden::Map map;
     golden::Parameters parameters;

@@ -14,8 +14,8 @@ namespace tessera {
 /// puts the model in the world (ModelScale), which is its own to choose. What the host made of the same job is judged
 /// against this (setup_check.h), and golden's own run starts here (end_to_end.h).
 ///
-/// The map's codes are golden's own, of the width that the job asks for: what that width costs is for `tessera widths` to
-/// say. Memory: 12 bytes per texel.
+/// The map's codes are golden's own, of the width that the job asks for: what that width costs is for
+/// `tessera widths` to say. Memory: 12 bytes per texel.
 class GoldenJob {
   public:
     /// `job` must be resolved (resolve_job.h), `mesh` and `height_map` must outlive this.

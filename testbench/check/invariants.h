@@ -63,8 +63,8 @@ struct InvariantResult {
     std::uint64_t turned_over = 0;            ///< the texture area's sign is not the base triangle's
     std::uint64_t turned_over_explained = 0;  ///< likewise
     std::uint64_t displaced_collapsed = 0;    ///< two corners at one P'
-    /// Vertices as inconsistent as above, but where collapsed or turned over triangles fold their patch both in t and in
-    /// P (seen along an axis): there two different vertices can round to one (P, t).
+    /// Vertices as inconsistent as above, but where collapsed or turned over triangles fold their patch both
+    /// in t and in P (seen along an axis): there two different vertices can round to one (P, t).
     std::uint64_t coincident_vertices = 0;
     /// Edges of more than two triangles that still close in pairs; and pieces of joined base edges that do not seem to
     /// meet where such edges make it impossible to say which one it is.

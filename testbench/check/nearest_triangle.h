@@ -26,8 +26,8 @@ inline double squared_distance(const std::array<glm::dvec3, 3>& triangle, const 
 inline constexpr double rounding_slack = 1 + 1e-12;
 
 /// Looks up the triangle nearest to a point. Of triangles equally near the first in the soup is it, so the answer
-/// depends on the soup alone. Long thin triangles are sorted by boxes about parts of them: a box about a whole one holds
-/// mostly what is far from it. Several threads may ask at once, each with a guess of its own.
+/// depends on the soup alone. Long thin triangles are sorted by boxes about parts of them: a box about a
+/// whole one holds mostly what is far from it. Several threads may ask at once, each with a guess of its own.
 class NearestTriangle {
   public:
     struct Found {
@@ -42,7 +42,8 @@ class NearestTriangle {
     /// `soup` must outlive this and not be empty.
     explicit NearestTriangle(const TriangleSoup& soup);
 
-    /// What was found last: where to begin. Quick if points come in an order in which neighbours are neighbours in space.
+    /// What was found last: where to begin. Quick if points come in an order in which neighbours are
+    /// neighbours in space.
     struct Guess {
         std::size_t triangle = 0;
         double distance = std::numeric_limits<double>::infinity();
@@ -52,8 +53,8 @@ class NearestTriangle {
     /// How many boxes p lies in: what nearest(p) looks at, at least.
     std::size_t boxes_around(const glm::dvec3& p) const;
 
-    /// Every triangle within `radius` of p, each once, by its place in the soup; false, and not all of them, if there are
-    /// more than `most`.
+    /// Every triangle within `radius` of p, each once, by its place in the soup; false, and not all of them,
+    /// if there are more than `most`.
     bool within(const glm::dvec3& p, double radius, std::size_t most, std::vector<Found>& found) const;
 
   private:

@@ -22,8 +22,8 @@ struct ReadResult {
 
 /// Stands before a unit's memory port, passes everything on, and compares what each read brought with what the memory
 /// holds at the addresses that were asked for (debug transport). So a flipped bit is found even where it changes no
-/// decision. Denies DMI. Only in runs that ask for it: timed mode takes a sixth longer, functional mode, whose reads then
-/// go by transaction, three times as long.
+/// decision. Denies DMI. Only in runs that ask for it: timed mode takes a sixth longer, functional mode,
+/// whose reads then go by transaction, three times as long.
 class ReadCheck : public sc_core::sc_module {
   public:
     tlm_utils::passthrough_target_socket<ReadCheck, 32, MemoryProtocol> socket{"socket"};

@@ -22,8 +22,8 @@ struct SetupResult {
     std::vector<Part> parts;
     std::string first_wrong;  ///< its name, index, value and what is allowed; empty: none
 
-    /// Of each of the machine's base triangles, which of the mesh's it is: the host leaves out those that collapse in the
-    /// formats.
+    /// Of each of the machine's base triangles, which of the mesh's it is: the host leaves out those that
+    /// collapse in the formats.
     std::vector<std::uint32_t> base_triangles;
 
     std::uint64_t compared() const;
@@ -32,19 +32,20 @@ struct SetupResult {
 };
 
 /// Judges what the host set against what the golden model derives from the job by itself: each register, each field of
-/// each base vertex, each entry of the three tables as the memories hold it. So the scoreboard, which takes registers and
-/// tables as they are, compares arithmetic within tight bounds, and a mistake of the host still fails the run.
+/// each base vertex, each entry of the three tables as the memories hold it. So the scoreboard, which takes
+/// registers and tables as they are, compares arithmetic within tight bounds, and a mistake of the host still
+/// fails the run.
 ///
 /// Bounds, of hardware minus golden in LSB of the value's format:
 ///     rounded to nearest   -1/2 .. 1/2: transform, normal rows, displacement, light, half vector, highlight cosine,
 ///                          base vertices, displacement map
 ///     rounded down         above -1, up to 0: thresholds, near plane
-///     normal map           golden's slopes are of the same codes and of S unrounded; S's register is off by at most 1/2
-///                          LSB of the position, so a slope s by |s| / (2 |S|): each component lies between the least and
-///                          the greatest over those slopes, and 1/2
+///     normal map           golden's slopes are of the same codes and of S unrounded; S's register is off by
+///                          at most 1/2 LSB of the position, so a slope s by |s| / (2 |S|): each component
+///                          lies between the least and the greatest over those slopes, and 1/2
 ///     exact                formats, flags, the map's size and addressing, the Summed Height Table modulo 2^bits
-/// To each, what double precision itself may be off by: 2^-48 of the terms. In a fourth column of the transform, which is
-/// finer than a double where the eye is far, that is more than an LSB.
+/// To each, what double precision itself may be off by: 2^-48 of the terms. In a fourth column of the
+/// transform, which is finer than a double where the eye is far, that is more than an LSB.
 ///
 /// The host's own choice, of which only soundness is judged: the model's scale (a power of two with which the displaced
 /// mesh fits the position's format), the transform's exponent (entries reach 1/2 and not beyond 1), the view distance's

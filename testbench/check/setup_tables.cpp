@@ -113,8 +113,8 @@ class TableCheck {
                    });
     }
 
-    /// The components of normalise(-a, -b, 1) where a and b are off by up to `error` of themselves. The first falls with
-    /// a and shrinks with |b|; the second likewise; the third shrinks with both.
+    /// The components of normalise(-a, -b, 1) where a and b are off by up to `error` of themselves. The first
+    /// falls with a and shrinks with |b|; the second likewise; the third shrinks with both.
     struct NormalRange {
         NormalRange(const glm::dvec2& slope, double error) {
             const glm::dvec2 least = glm::abs(slope) * (1 - error), most = glm::abs(slope) * (1 + error);

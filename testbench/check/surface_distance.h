@@ -23,16 +23,17 @@ struct SurfaceDistance {
     }
 };
 
-/// How many boxes may be looked at in all: some two seconds. Of about 30 a point on a usual surface, on a thicket of long
-/// thin triangles thousands.
+/// How many boxes may be looked at in all: some two seconds. Of about 30 a point on a usual surface, on a
+/// thicket of long thin triangles thousands.
 inline constexpr std::uint64_t most_looks = std::uint64_t{1} << 24;
 
 /// From the points of `from` to the nearest point of `to`. Infinite if `to` is empty and `from` is not.
 ///
-/// If measuring all points would take more than `most` looks, a subset is measured: the points, in the soup's order, are
-/// cut into equal parts, a power of two in number, and a seeded random number chooses one of each. What a point takes
-/// follows from the boxes in which some of the points lie. Distances are in double precision; Embree's single precision
-/// only sorts the triangles out. The same soups give the same result on any number of threads.
+/// If measuring all points would take more than `most` looks, a subset is measured: the points, in the soup's
+/// order, are cut into equal parts, a power of two in number, and a seeded random number chooses one of each.
+/// What a point takes follows from the boxes in which some of the points lie. Distances are in double
+/// precision; Embree's single precision only sorts the triangles out. The same soups give the same result on
+/// any number of threads.
 SurfaceDistance distance_between(const TriangleSoup& from, const TriangleSoup& to,
                                  std::uint64_t most = most_looks, double near = 0);
 

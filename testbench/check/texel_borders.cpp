@@ -14,10 +14,12 @@ namespace tessera {
 namespace {
 
 /// A file's coordinates are decimals. Those of thirds, cut off, lie beside a border in exact arithmetic, too: 10 % of
-/// edges below one made 0.2 % of the decisions differ on a scanned head's cylinder, the 67 % of 256 texels on 3 quads 15.6 %.
+/// edges below one made 0.2 % of the decisions differ on a scanned head's cylinder, the 67 % of 256 texels on
+/// 3 quads 15.6 %.
 constexpr double least_share_of_a_file = 0.2;
 
-/// Whether an axis of `quads` has its base vertices on coordinates that the format holds: quads divide texels * 2^fraction.
+/// Whether an axis of `quads` has its base vertices on coordinates that the format holds: quads divide
+/// texels * 2^fraction.
 bool held(std::int64_t texels, std::int64_t quads, std::int64_t fraction) {
     return (texels << fraction) % quads == 0;
 }

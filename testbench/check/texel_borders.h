@@ -21,8 +21,8 @@ struct TexelBorderCount {
 
 /// Counts edges with an end or a midpoint one LSB of the texture coordinate below a texel's border. That is where
 /// rounding down puts a midpoint that lies on the border in exact arithmetic but between base vertices that the format
-/// cannot hold, such as thirds of 256 texels: it then reads the texel before, with formats of any width. A coordinate on
-/// the border itself is not counted.
+/// cannot hold, such as thirds of 256 texels: it then reads the texel before, with formats of any width. A
+/// coordinate on the border itself is not counted.
 class TexelBorders : public tlm::tlm_analysis_if<datapath::TrianglePass> {
   public:
     explicit TexelBorders(const datapath::Formats& formats);

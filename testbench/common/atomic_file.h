@@ -15,11 +15,10 @@ namespace tessera {
 ///
 /// Destroyed without commit(), after an error or an Interruption it leaves nothing. Only a process that is killed can
 /// leave the unfinished file: a program that wants to live with `ulimit -f` must ignore SIGXFSZ. While an AtomicSet
-/// lives, commit() hands the complete file to it instead of renaming it. A link is
-/// replaced, never followed; a folder or a device is refused. What earlier processes that were killed left unfinished in
-/// the folder is removed. Errors, with file and the
-/// system's reason: ResourceError if disk, quota, file size or memory ran out or the disk failed, else
-/// InputError (no such folder, not writable).
+/// lives, commit() hands the complete file to it instead of renaming it. A link is replaced, never followed; a
+/// folder or a device is refused. What earlier processes that were killed left unfinished in the folder is
+/// removed. Errors, with file and the system's reason: ResourceError if disk, quota, file size or memory ran
+/// out or the disk failed, else InputError (no such folder, not writable).
 class AtomicFile {
   public:
     explicit AtomicFile(const std::filesystem::path& path);

@@ -9,11 +9,12 @@
 namespace tessera {
 
 /// Files that appear under their names together, while others go away: while one lives, each AtomicFile that is
-/// committed waits here, whole and on the disk, until commit() renames all of them; an interrupt waits for that. Without
-/// commit() none appears, and what stood under the names stays. One at a time.
+/// committed waits here, whole and on the disk, until commit() renames all of them; an interrupt waits for
+/// that. Without commit() none appears, and what stood under the names stays. One at a time.
 ///
-/// A process that is killed within commit() can leave a part: of the files taken away before any is new, then of the new
-/// ones. In each folder job.toml appears first and goes last: a folder with any of a run's files has it.
+/// A process that is killed within commit() can leave a part: of the files taken away before any is new, then
+/// of the new ones. In each folder job.toml appears first and goes last: a folder with any of a run's files
+/// has it.
 class AtomicSet {
   public:
     AtomicSet();

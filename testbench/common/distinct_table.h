@@ -11,8 +11,8 @@ constexpr std::uint64_t mix_hash(std::uint64_t hash, std::uint64_t word) {
     return hash ^ (hash >> 29);
 }
 
-/// Numbers distinct items from 0 in the order they come. The caller keeps the items. Open addressing, four bytes a slot,
-/// at most half of them taken. Fewer than 2^32 - 1 items.
+/// Numbers distinct items from 0 in the order they come. The caller keeps the items. Open addressing, four
+/// bytes a slot, at most half of them taken. Fewer than 2^32 - 1 items.
 class DistinctTable {
   public:
     /// The number of an item of this hash: of the known one for which same(number) holds, else the next, size() before.

@@ -16,8 +16,8 @@ namespace tessera {
 
 namespace {
 
-// The handler may call little (signal-safety(7)) and come between any two instructions: so fixed places, and a flag that
-// is set when a place is complete.
+// The handler may call little (signal-safety(7)) and come between any two instructions: so fixed places, and
+// a flag that is set when a place is complete.
 struct Place {
     std::atomic<bool> taken{false};
     std::atomic<bool> complete{false};

@@ -5,8 +5,9 @@
 
 namespace tessera {
 
-/// What a process leaves that is asked to end (Ctrl-C, SIGTERM, a terminal that closes): one line on standard error that
-/// says how far it was, no unfinished file, and the same signal as its end, so that a shell or script sees it.
+/// What a process leaves that is asked to end (Ctrl-C, SIGTERM, a terminal that closes): one line on standard
+/// error that says how far it was, no unfinished file, and the same signal as its end, so that a shell or
+/// script sees it.
 class Interruption {
   public:
     /// From now on. A signal that is ignored already (nohup) stays ignored.
@@ -24,8 +25,8 @@ class Interruption {
         Delay& operator=(const Delay&) = delete;
     };
 
-    /// While one lives, a signal is handed on to this process and else waits: for work that another process does. One at
-    /// a time.
+    /// While one lives, a signal is handed on to this process and else waits: for work that another process
+    /// does. One at a time.
     class Child {
       public:
         explicit Child(pid_t process);

@@ -27,8 +27,8 @@ FaultRun run_with_fault(Simulation& simulation);
 /// Over all read checks.
 ReadResult read_result(const CheckedWiring& wiring);
 
-/// Who noticed something, in this order: who stopped the run, read check, scoreboard, work conservation, invariants. The
-/// last two only of a run that drained; those not asked for are null.
+/// Who noticed something, in this order: who stopped the run, read check, scoreboard, work conservation,
+/// invariants. The last two only of a run that drained; those not asked for are null.
 std::vector<Caught> who_noticed(const CheckedWiring& wiring, const FaultRun& run,
                                 const ConformanceResult* conformance, const WorkResult* work,
                                 const InvariantResult* invariants);

@@ -25,8 +25,8 @@ class CheckedWiring : public Wiring {
     void join(MemoryPort& port, TableMemory& memory) override;
     void join(MemoryPort& port, OffChipMemory& memory) override;
 
-    /// To be called when the machine is built. Throws InputError if the fault's place is none that its kind can strike in
-    /// the job's mode; names all that there are.
+    /// To be called when the machine is built. Throws InputError if the fault's place is none that its kind
+    /// can strike in the job's mode; names all that there are.
     void require_placed() const;
 
     /// From now on the fault does not come.

@@ -5,7 +5,8 @@
 
 namespace tessera::fuzz {
 
-/// Numbers from a fuzzer's bytes, in order; zero bytes after their end. The same bytes give the same numbers everywhere.
+/// Numbers from a fuzzer's bytes, in order; zero bytes after their end. The same bytes give the same numbers
+/// everywhere.
 class ByteSource {
   public:
     explicit ByteSource(std::string_view bytes) : bytes_(bytes) {}

@@ -188,8 +188,8 @@ class Checker {
         promise(!constant || !machine_.summed_height(i, j), "a constant map passes the Summed Height Test");
     }
 
-    /// The patch, tessellated to its end, is as closed as it was: what its edges leave over are the base's borders, each
-    /// split as the edge alone decides.
+    /// The patch, tessellated to its end, is as closed as it was: what its edges leave over are the base's
+    /// borders, each split as the edge alone decides.
     void check_recursion() {
         EdgeAccount account;
         std::vector<Waiting> work;

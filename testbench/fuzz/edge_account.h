@@ -9,8 +9,9 @@
 namespace tessera::fuzz {
 
 /// The directed edges of triangles, those that run in opposite directions between the same two vertices taken against
-/// each other. Vertices are the same if all the machine knows of them is, bit for bit; so what is left of a mesh are its
-/// borders and, where two sides of an edge were split differently or to different places, its cracks.
+/// each other. Vertices are the same if all the machine knows of them is, bit for bit; so what is left of a
+/// mesh are its borders and, where two sides of an edge were split differently or to different places, its
+/// cracks.
 class EdgeAccount {
   public:
     void add(const datapath::Triangle& triangle);

@@ -18,9 +18,9 @@ void promise(bool kept, std::string_view what);
 /// quote.
 void promise_message(std::string_view message, std::string_view file);
 
-/// One kind of input and all that is promised of whatever bytes come as such: a result that holds what its type says, or
-/// an InputError or ResourceError in words. Throws BrokenPromise where that fails; any other exception is a failure as
-/// well.
+/// One kind of input and all that is promised of whatever bytes come as such: a result that holds what its
+/// type says, or an InputError or ResourceError in words. Throws BrokenPromise where that fails; any other
+/// exception is a failure as well.
 struct FuzzTarget {
     std::string_view name;  ///< also of its folder in corpus/
     void (*check)(std::string_view bytes);

@@ -33,7 +33,8 @@ std::array<double, 3> array(const glm::dvec3& v) {
     return {v.x, v.y, v.z};
 }
 
-/// To six digits of a number of the reference's size, so that a job file shows what is meant, whatever libm computed it.
+/// To six digits of a number of the reference's size, so that a job file shows what is meant, whatever libm
+/// computed it.
 double rounded(double value, double reference) {
     if (reference == 0)
         return value;

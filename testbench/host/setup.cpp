@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 
 #include "modules/datapath/all_intermediates.h"
 #include "modules/datapath/map_entry.h"
@@ -67,15 +68,22 @@ void check_intermediates(const datapath::Formats& formats) {
     });
 }
 
+/// Which keys to change where a value does not fit its register.
+const char* remedy(std::string_view register_name) {
+    if (register_name == "map.width" || register_name == "map.height")
+        return "use a smaller map or raise formats.texture_integer";
+    if (register_name == "tests.generation_limit")
+        return "lower tests.generation_limit or raise formats.generation_bits";
+    return "change the job's value or formats that it is made of";
+}
+
 /// That every value fits its register.
 void check_registers(const datapath::Registers& registers) {
     datapath::visit_registers(registers, [](const datapath::Register& field, const auto& values) {
         for (const std::int64_t value : values) {
             if (!datapath::holds(field, value))
-                throw InputError(
-                    fmt::format("the register {} has {} bits and cannot hold {}: change the job's "
-                                "value or formats that it is made of",
-                                field.name, field.bits, value));
+                throw InputError(fmt::format("the register {} has {} bits and cannot hold {}: {}", field.name,
+                                             field.bits, value, remedy(field.name)));
         }
     });
 }
@@ -374,8 +382,8 @@ struct Threshold {
     const char* format_key;
 };
 
-/// Rounded down. Refused is what does not fit, and what would be 0 without being meant to: a test against 0 asks another
-/// question, and rounding answers it.
+/// Rounded down. Refused is what does not fit, and what would be 0 without being meant to: a test against 0
+/// asks another question, and rounding answers it.
 std::uint64_t to_register(const Threshold& threshold) {
     const double fixed = std::floor(threshold.value * threshold.scale);
     if (fixed > threshold.limit)

@@ -23,8 +23,8 @@ struct ModelScale {
     glm::dvec3 to_model(const glm::dvec3& world) const { return world / scale + centre; }
 };
 
-/// What of the host's own values did not fit its format and was set to the nearest value that does. fit() leaves room, so
-/// that nothing should.
+/// What of the host's own values did not fit its format and was set to the nearest value that does. fit()
+/// leaves room, so that nothing should.
 struct InputSaturations {
     std::uint64_t position = 0;   ///< components of base vertices
     std::uint64_t normal = 0;     ///< components of base vertices' normals and tangents
@@ -52,9 +52,9 @@ struct Setup {
 };
 
 /// Rounds mesh, map, camera, thresholds to the formats. The job must be resolved (resolve_job.h). Errors: InputError
-/// where something cannot fit and no repair keeps the meaning (a table entry too narrow for the largest rectangle, an eye
-/// too far away, a texture coordinate beyond the format, a threshold beyond its register or below its step), with value,
-/// limit and what to do.
+/// where something cannot fit and no repair keeps the meaning (a table entry too narrow for the largest
+/// rectangle, an eye too far away, a texture coordinate beyond the format, a threshold beyond its register or
+/// below its step), with value, limit and what to do.
 Setup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& map);
 
 /// The tests' part of it alone: the registers a job's [tests] are rounded to. InputError as above.

@@ -16,9 +16,9 @@ struct Simulation {
     Simulation(const Setup& setup, std::uint64_t triangle_limit, std::uint64_t cycles_without_progress = 0,
                Wiring* wiring = nullptr);
 
-    /// Runs until nothing is left to do. Empty: everything drained. Else a deadlock or livelock: what happened, and what
-    /// each unit holds and waits for, one line each. Throws ResourceError when the mesh reaches the triangle limit, or
-    /// the Triangle Queue its capacity where that is an error.
+    /// Runs until nothing is left to do. Empty: everything drained. Else a deadlock or livelock: what
+    /// happened, and what each unit holds and waits for, one line each. Throws ResourceError when the mesh
+    /// reaches the triangle limit, or the Triangle Queue its capacity where that is an error.
     std::string run();
 
     /// Timed mode: cycles from the first to the end of the last in which anything happened.

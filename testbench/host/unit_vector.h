@@ -5,8 +5,8 @@
 
 namespace tessera {
 
-/// v times the power of two that brings its largest component to 1/2 .. 1: exact, so that what is calculated from it has
-/// the same digits, and no product is too small or too large for a double. v is not zero.
+/// v times the power of two that brings its largest component to 1/2 .. 1: exact, so that what is calculated
+/// from it has the same digits, and no product is too small or too large for a double. v is not zero.
 inline glm::dvec3 brought_near_one(const glm::dvec3& v) {
     int exponent = 0;
     std::frexp(std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}), &exponent);

@@ -13,8 +13,8 @@ struct EncodedMap {
     double step = 0;             ///< model units from one sample's value to the next; 0: not quantised
 };
 
-/// Heights as a map file that read_height_map.h reads: texel (x, y) is heights[y * width + x], y = 0 the bottom row, model
-/// units, finite. The same heights give the same bytes.
+/// Heights as a map file that read_height_map.h reads: texel (x, y) is heights[y * width + x], y = 0 the
+/// bottom row, model units, finite. The same heights give the same bytes.
 ///
 /// pgm, png: 16 bit; the lowest height is sample 0, the highest 65535, every other the nearest in between, so at most
 /// half a step off. Where all are the same, scale is 1 and every sample 0. exr: one channel Y of 32-bit floats, without

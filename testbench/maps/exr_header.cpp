@@ -464,8 +464,8 @@ std::uint64_t decoded_bytes(std::string_view compression, const std::string& pay
 }
 
 // libOpenEXR does not look at the table as long as it reads scan lines in order, so it reads a damaged
-// table's file without a word. (It uses a tiled file's table, and rebuilds one with zeros.) Nor does it see that a chunk
-// decodes to less than its pixels.
+// table's file without a word. (It uses a tiled file's table, and rebuilds one with zeros.) Nor does it see
+// that a chunk decodes to less than its pixels.
 void HeaderReader::check_chunks() {
     const std::uint64_t chunks = chunk_count();
     const std::string table = bytes(chunks * 8);

@@ -25,7 +25,8 @@ struct MapDisplacement {
 
     double of(double value) const { return bias + scale * value; }
 
-    /// displacement.bias at span_low, and displacement.scale more at span_high. If the two are one value, the map is flat.
+    /// displacement.bias at span_low, and displacement.scale more at span_high. If the two are one value, the
+    /// map is flat.
     static MapDisplacement from(const Job::Displacement& job, const HeightMap& map) {
         const double span = map.span_high - map.span_low;
         const double scale = span > 0 ? job.scale / span : 0;

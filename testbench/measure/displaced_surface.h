@@ -12,14 +12,16 @@ namespace tessera {
 
 /// How the map is read between its samples.
 ///
-/// `interpolated`: bilinear between texel centres. The headline. A map is samples of a surface, and this is the simplest
-/// surface through them that is continuous: a mesh of enough triangles can come as near to it as it likes, so an error
-/// against it measures the tessellation. It includes what the hardware's own reading costs: up to half a texel sideways.
+/// `interpolated`: bilinear between texel centres. The headline. A map is samples of a surface, and this is
+/// the simplest surface through them that is continuous: a mesh of enough triangles can come as near to it as
+/// it likes, so an error against it measures the tessellation. It includes what the hardware's own reading
+/// costs: up to half a texel sideways.
 ///
-/// `nearest_texel`: as the hardware reads it, the texel that holds t (golden/ALGORITHM.md 2: the last border reads the last
-/// texel, or the first where the map repeats). That surface is a staircase with a step at every texel's edge: no mesh
-/// without cracks follows it, and an error against it does not fall below half of the map's steps. Reported beside the
-/// headline because it tells the two causes apart: small against this and large against the other is addressing.
+/// `nearest_texel`: as the hardware reads it, the texel that holds t (golden/ALGORITHM.md 2: the last border
+/// reads the last texel, or the first where the map repeats). That surface is a staircase with a step at
+/// every texel's edge: no mesh without cracks follows it, and an error against it does not fall below half of
+/// the map's steps. Reported beside the headline because it tells the two causes apart: small against this
+/// and large against the other is addressing.
 enum class Sampling : std::uint8_t { interpolated, nearest_texel };
 
 /// What turns map values into displacement, and how the map goes on beyond its borders.

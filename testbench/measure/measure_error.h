@@ -79,10 +79,9 @@ struct MeshError {
     std::string no_vertical;                ///< why there is none
 };
 
-/// Takes some seconds a walk on two cores, whatever the map and mesh: their samples are limited. Memory: about 250 bytes a
-/// triangle and 60 MB a core. Errors: InputError if the mesh names base
-/// triangles the base mesh lacks; ResourceError beyond height_field.h's limits and when
-/// Embree's memory runs out.
+/// Takes some seconds a walk on two cores, whatever the map and mesh: their samples are limited. Memory:
+/// about 250 bytes a triangle and 60 MB a core. Errors: InputError if the mesh names base triangles the base
+/// mesh lacks; ResourceError beyond height_field.h's limits and when Embree's memory runs out.
 MeshError measure_error(const BaseMesh& base, const HeightMap& map, const DisplacementOf& displacement,
                         const RecordedMesh& mesh, const MeasureLimits& limits = {});
 

@@ -13,10 +13,11 @@ namespace tessera {
 /// that leaves no edge of a facet longer than a quarter of a texel along u or along v, and at least 4: a base surface
 /// with few texels is curved too.
 ///
-/// Beyond `most_samples` the density is lowered, for all base triangles by one factor, and density() says to what; to one
-/// facet a base triangle at the least, however many there are.
-/// Between the samples the reference is flat; bilinear interpolation is not quite: where its slope along an axis changes
-/// at a texel centre, by a height of s a texel, a facet's edge cuts off a corner of at most s / 16.
+/// Beyond `most_samples` the density is lowered, for all base triangles by one factor, and density() says to
+/// what; to one facet a base triangle at the least, however many there are.
+/// Between the samples the reference is flat; bilinear interpolation is not quite: where its slope along an
+/// axis changes at a texel centre, by a height of s a texel, a facet's edge cuts off a corner of at most
+/// s / 16.
 ///
 /// Not stored but evaluated in tiles of 16 by 16 cells, each cell two facets.
 class ReferenceLattice {

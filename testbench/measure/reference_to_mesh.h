@@ -8,9 +8,10 @@ namespace tessera {
 
 /// From every sample of a reference lattice to the nearest point of a mesh, a tile at a time. One a thread.
 ///
-/// Samples are so dense that asking for each alone would take minutes. Of a block of samples only the centre asks: if it
-/// is d from the mesh and the block's radius is r, no sample's nearest triangle is farther than d + 2 r from the centre.
-/// Those triangles, nearest first, are all its samples look at; a block that has too many is cut in four.
+/// Samples are so dense that asking for each alone would take minutes. Of a block of samples only the centre
+/// asks: if it is d from the mesh and the block's radius is r, no sample's nearest triangle is farther than
+/// d + 2 r from the centre. Those triangles, nearest first, are all its samples look at; a block that has too
+/// many is cut in four.
 class ReferenceToMesh {
   public:
     struct Sample {
@@ -21,8 +22,8 @@ class ReferenceToMesh {
         double weight = 0;         ///< the base surface's area it stands for in this tile
     };
 
-    /// Lattice, soup and the search through it must outlive this. With an empty soup, and no search, tiles are evaluated,
-    /// nothing measured.
+    /// Lattice, soup and the search through it must outlive this. With an empty soup, and no search, tiles
+    /// are evaluated, nothing measured.
     ReferenceToMesh(const ReferenceLattice& lattice, Sampling sampling, const TriangleSoup& soup,
                     const NearestTriangle* nearest);
 

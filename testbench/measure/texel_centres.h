@@ -28,8 +28,9 @@ inline std::array<GridRange, 2> grid_box(const std::array<glm::dvec2, 3>& t) {
             grid_lines(std::min({t[0].y, t[1].y, t[2].y}), std::max({t[0].y, t[1].y, t[2].y}))};
 }
 
-/// Calls at(x, y, b) for the texels of columns and rows whose centre lies in the triangle `t`, its border included; t in
-/// texels, b the centre's barycentric coordinates. Row by row upwards. A triangle without area has none.
+/// Calls at(x, y, b) for the texels of columns and rows whose centre lies in the triangle `t`, its border
+/// included; t in texels, b the centre's barycentric coordinates. Row by row upwards. A triangle without area
+/// has none.
 template <class At>
 void for_texel_centres(const std::array<glm::dvec2, 3>& t, const GridRange& columns, const GridRange& rows,
                        At&& at) {

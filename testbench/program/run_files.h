@@ -14,14 +14,14 @@ std::filesystem::path real_place(const std::filesystem::path& path);
 /// The same of the name itself, where a file is written: a link there is not followed.
 std::filesystem::path place_of_name(const std::filesystem::path& path);
 
-/// What `files` holds appears in the place of all that a run before it, of one frame or of several, left in `folder`: a job
-/// beside the mesh or the picture of another would be believed. What others left there stays: all files of a folder that
-/// no run left (its job.toml does not begin with run_job_heading), what has no name of a run's file, what is no plain
-/// file; and a frame's folder that holds more.
+/// What `files` holds appears in the place of all that a run before it, of one frame or of several, left in
+/// `folder`: a job beside the mesh or the picture of another would be believed. What others left there stays:
+/// all files of a folder that no run left (its job.toml does not begin with run_job_heading), what has no
+/// name of a run's file, what is no plain file; and a frame's folder that holds more.
 void replace_run(const std::filesystem::path& folder, AtomicSet& files);
 
-/// Throws InputError if job.output.folder is not one for a run: the root, a folder above the working folder, one in which
-/// a file has the name of a run's file and no run left it (frames' folders likewise).
+/// Throws InputError if job.output.folder is not one for a run: the root, a folder above the working folder,
+/// one in which a file has the name of a run's file and no run left it (frames' folders likewise).
 void require_run_folder(const Job& job);
 
 /// Throws InputError if this run would take away what it reads: the run of mesh.source = "run" lies in output.folder or

@@ -14,9 +14,9 @@ using RunFrame =
     std::function<ExitCode(const Job& frame, const std::string& name, const std::filesystem::path& replaced)>;
 
 /// The frames of a job (frame_job.h), one after another, each by `run` in a process of its own: SystemC elaborates once
-/// in a process, and a machine that starts anew leaves, by construction, what a plain run of the frame's job leaves. What
-/// the hardware would keep from frame to frame (displacement map, Summed Height Table, most registers) is in the figures
-/// of what the host sends instead (host_traffic.h).
+/// in a process, and a machine that starts anew leaves, by construction, what a plain run of the frame's job
+/// leaves. What the hardware would keep from frame to frame (displacement map, Summed Height Table, most
+/// registers) is in the figures of what the host sends instead (host_traffic.h).
 ///
 /// All frames are made ready before the first runs, so that one that cannot be is refused at once. When the first is
 /// complete, it takes the place of all that an earlier run left in the folder, frames and plain run.

@@ -40,15 +40,16 @@ struct EdgeMeasures {
     std::int64_t cosine = 0;           ///< largest N'.H of the three
 };
 
-/// The arithmetic's definitions again, by other means: divisions that round down instead of shifts, sums of texels, exact
-/// square roots and quotients in doubles where the datapath has tables and Newton's steps. Shares no function with it.
+/// The arithmetic's definitions again, by other means: divisions that round down instead of shifts, sums of
+/// texels, exact square roots and quotients in doubles where the datapath has tables and Newton's steps.
+/// Shares no function with it.
 class DirectEdge {
   public:
     DirectEdge(const datapath::Registers& registers, const DirectMap& map)
         : registers_(registers), map_(map) {}
 
-    /// Whether the vertex inserted on (i, j) is what the definitions say, each component exactly, those that are divided
-    /// or brought to unit length within the datasheets' bounds. Null, or what is not.
+    /// Whether the vertex inserted on (i, j) is what the definitions say, each component exactly, those that
+    /// are divided or brought to unit length within the datasheets' bounds. Null, or what is not.
     const char* fault_of_vertex(const datapath::Vertex& i, const datapath::Vertex& j,
                                 const datapath::Vertex& inserted) const;
 

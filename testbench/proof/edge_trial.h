@@ -27,9 +27,9 @@ struct EdgeTrial {
     std::uint64_t faults() const { return unlike_reversed + unlike_moved + unlike_direct; }
 };
 
-/// Each edge from its one end and from its other, with whatever third vertex on either side, and against the definitions
-/// (direct_edge.h). Formats in turn usual, narrow, wide, any. Of four thresholds one is exactly what it is compared with
-/// and one is 1 less.
+/// Each edge from its one end and from its other, with whatever third vertex on either side, and against the
+/// definitions (direct_edge.h). Formats in turn usual, narrow, wide, any. Of four thresholds one is exactly
+/// what it is compared with and one is 1 less.
 EdgeTrial try_random_edges(std::uint64_t seed, std::uint64_t edges);
 
 }  // namespace tessera

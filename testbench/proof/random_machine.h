@@ -14,8 +14,8 @@ struct RandomMachine {
     DirectMap map;
 };
 
-/// Maps up to 64 x 64, one of four 1 x N or N x 1: noise, extremes (0 and full scale), steps. Formats up to the widest a
-/// job may ask for. A camera whose near plane cuts through the vertices.
+/// Maps up to 64 x 64, one of four 1 x N or N x 1: noise, extremes (0 and full scale), steps. Formats up to
+/// the widest a job may ask for. A camera whose near plane cuts through the vertices.
 RandomMachine make_random_machine(Random& random, FormatWidths widths);
 
 /// A base vertex anywhere: on the map, its borders and, where it repeats, periods beyond; or near another one, where

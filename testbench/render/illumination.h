@@ -31,8 +31,8 @@ class Illumination {
         std::vector<std::uint8_t> traced, occluded;
     };
 
-    /// The light at points that share a sub-pixel position; quick if they are neighbours. Where the first `probes` of them
-    /// all see a direction, or none does, so it is for the others.
+    /// The light at points that share a sub-pixel position; quick if they are neighbours. Where the first
+    /// `probes` of them all see a direction, or none does, so it is for the others.
     void light(std::size_t sample, const std::vector<ShadingPoint>& points, std::size_t probes,
                std::vector<Light>& lights, Scratch& scratch) const;
 

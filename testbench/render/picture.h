@@ -14,8 +14,8 @@ struct Picture {
 /// A picture all of one colour.
 Picture plain_picture(int width, int height, const Colour& colour, bool linear);
 
-/// Copies `from` into `to` with its upper left corner at (left, top); cut off where it does not fit. What is in sight there is in sight
-/// here.
+/// Copies `from` into `to` with its upper left corner at (left, top); cut off where it does not fit. What is
+/// in sight there is in sight here.
 void paste(const Picture& from, int left, int top, Picture& to);
 
 /// Text and legends are drawn on the image alone. This takes them over into linear light: a pixel whose colour in the

@@ -241,8 +241,8 @@ class Renderer {
         return !points.empty();
     }
 
-    /// How many points tell for all which directions they see: the first quarter, a pixel of each square of 2 x 2, where
-    /// the mesh covers the tile and is nearly flat in it.
+    /// How many points tell for all which directions they see: the first quarter, a pixel of each square of
+    /// 2 x 2, where the mesh covers the tile and is nearly flat in it.
     static std::size_t probes(const std::vector<ShadingPoint>& points, std::size_t rays) {
         if (points.size() < rays)
             return points.size();

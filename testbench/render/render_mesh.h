@@ -24,7 +24,8 @@ struct RenderMesh {
     std::vector<glm::vec3> positions;  ///< P'
     std::vector<glm::vec3> normals;    ///< N', about unit length; zero where the hardware had none
     std::vector<Triangle> triangles;
-    /// Distance to a reference, model units: per vertex, interpolated, or per triangle, which goes first; empty: unknown.
+    /// Distance to a reference, model units: per vertex, interpolated, or per triangle, which goes first;
+    /// empty: unknown.
     std::vector<float> vertex_errors, triangle_errors;
     std::uint64_t base_triangles = 0;  ///< how many these descend from, for the caption; 0: unknown
 };

@@ -18,7 +18,8 @@ struct MeshCounts {
     std::uint64_t tested_edges() const { return edges + inserted_vertices; }
 };
 
-/// Counts by 64 bit hashes: 24 bytes a triangle while it counts. Of a million vertices two collide in one of 10^7 meshes.
+/// Counts by 64 bit hashes: 24 bytes a triangle while it counts. Of a million vertices two collide in one of
+/// 10^7 meshes.
 MeshCounts count_mesh(const EmittedMesh& mesh);
 
 }  // namespace tessera

@@ -19,8 +19,8 @@ struct SaturationFigure {
         nullptr;  ///< where no width helps: what to make of the count; null: the setup remarks on it
 };
 
-/// Of every quantity that can saturate, in the machine (`saturations`) or on its way into it (Setup), in the order of the
-/// pipeline; those of count 0 too.
+/// Of every quantity that can saturate, in the machine (`saturations`) or on its way into it (Setup), in the
+/// order of the pipeline; those of count 0 too.
 std::vector<SaturationFigure> saturation_figures(const Setup& setup,
                                                  const datapath::Saturations& saturations);
 

@@ -30,7 +30,8 @@ struct Limit {
 struct Bottleneck {
     Limit first;
     Limit next;  ///< of the units that are not in `first`
-    /// `first` is what the run's length follows from. If not, latency is: too little was under way to keep any unit busy.
+    /// `first` is what the run's length follows from. If not, latency is: too little was under way to keep
+    /// any unit busy.
     bool binding = false;
 
     /// How many times faster the run could be at most: without `first`, or, if latency binds, with no wait at all. The

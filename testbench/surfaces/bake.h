@@ -22,7 +22,8 @@ struct BakedMap {
 };
 
 /// Heights over the plane z = 0. Texel (x, y) of a quadric is at low + (x + 0.5, y + 0.5) / (width, height) of the
-/// domain; of a NURBS patch at that part of its parameters. Sides 1..4096. Throws InputError where a quadric is nowhere.
+/// domain; of a NURBS patch at that part of its parameters. Sides 1..4096. Throws InputError where a quadric
+/// is nowhere.
 BakedMap bake_heights(const Surface& surface, int width, int height);
 
 /// A quadric over a base mesh: at each texel's centre the base triangle that covers it in texture space gives the
@@ -36,8 +37,9 @@ BakedMap bake_heights(const Surface& surface, int width, int height);
 /// - A texel whose centre no triangle covers gets the value of the covered one that is nearest in steps from texel to
 ///   texel, along u first: vertices on a border of the covered part may read it.
 ///
-/// The displaced points lie on the quadric whatever the base mesh. The normal map takes the base surface for as smooth as
-/// its normals, so a coarse round base shows its facets in the shading: half the angle between two of them at most.
+/// The displaced points lie on the quadric whatever the base mesh. The normal map takes the base surface for
+/// as smooth as its normals, so a coarse round base shows its facets in the shading: half the angle between
+/// two of them at most.
 ///
 /// Throws InputError where no triangle covers any texel's centre, and where the quadric is nowhere; ResourceError for
 /// triangles that span more than 2^31 texels together.

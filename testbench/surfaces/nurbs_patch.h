@@ -25,7 +25,8 @@ struct BasisFunctions {
 };
 
 /// By the recursion of Cox and de Boor, only sums and products of numbers >= 0: accurate to rounding. `t` within the
-/// range knots[degree] .. knots[knots.size() - degree - 1]; its upper end belongs to the last interval that is not empty.
+/// range knots[degree] .. knots[knots.size() - degree - 1]; its upper end belongs to the last interval that
+/// is not empty.
 BasisFunctions basis_functions(const std::vector<double>& knots, std::size_t degree, double t);
 
 double height_of(const NurbsPatch& patch, const BasisFunctions& u, const BasisFunctions& v);

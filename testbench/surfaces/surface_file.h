@@ -28,8 +28,8 @@ struct Surface {
     glm::dvec2 low{-1}, high{1};
 };
 
-/// Reads a surface file, TOML: one of these tables, and [domain] where wanted. Unknown keys are errors. Lengths in model
-/// units, -1e6 .. 1e6.
+/// Reads a surface file, TOML: one of these tables, and [domain] where wanted. Unknown keys are errors.
+/// Lengths in model units, -1e6 .. 1e6.
 ///
 ///     [domain]                  the default plane of a job
 ///     x = [-1.0, 1.0]

@@ -7,8 +7,8 @@
 
 namespace tessera {
 
-/// One table of a surface file. Every key is asked for by what it must be; finish() then knows the ones nobody asked for.
-/// All errors are InputErrors with file, line and column.
+/// One table of a surface file. Every key is asked for by what it must be; finish() then knows the ones
+/// nobody asked for. All errors are InputErrors with file, line and column.
 class TomlFields {
   public:
     /// `name` of the table, empty for the file's top level, and `file` for messages. The table must outlive this.

@@ -7,8 +7,8 @@
 
 namespace tessera::testing {
 
-/// A machine that has decided passes made by hand, so that each of its counts is another number. Functional mode, no base
-/// triangles; culling and the Highlight Test are on.
+/// A machine that has decided passes made by hand, so that each of its counts is another number. Functional
+/// mode, no base triangles; culling and the Highlight Test are on.
 ///
 ///   passes 11, of three edges: 33 tested; by edges split 1 x 1, 2 x 2, 4 x 3: 17 split
 ///   split by: normal alone 3 * 3 + 1, summed height alone 2 * 2, both 1, highlight alone 2; in the highlight 3

@@ -73,7 +73,8 @@ inline int brightness(const Image& image, int x, int y) {
     return colour[0] + colour[1] + colour[2];
 }
 
-/// Quads side by side, each from x = 2 i - n to x = 2 i + 2 - n and from y = -1 to 1, facing +z: quad i of two triangles.
+/// Quads side by side, each from x = 2 i - n to x = 2 i + 2 - n and from y = -1 to 1, facing +z: quad i of
+/// two triangles.
 inline RenderMesh make_row(std::uint32_t quads) {
     RenderMesh mesh;
     for (std::uint32_t i = 0; i <= quads; ++i)

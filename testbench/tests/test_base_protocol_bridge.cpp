@@ -11,7 +11,8 @@
 #include "testbench/tests/base_protocol_memories.h"
 #include "testbench/tests/timed_modules.h"
 
-// Memories of the base protocol, which know nothing of gathers, behind the bridge: the rules of the protocol, one by one.
+// Memories of the base protocol, which know nothing of gathers, behind the bridge: the rules of the protocol,
+// one by one.
 
 using namespace tessera;
 using namespace tessera::testing;

@@ -14,8 +14,8 @@
 #include "testbench/tests/job_results.h"
 #include "testbench/tests/timed_checks.h"
 
-// The machine with memories of the base protocol in the places of its own: the same mesh, and with the same latencies the
-// same cycles.
+// The machine with memories of the base protocol in the places of its own: the same mesh, and with the same
+// latencies the same cycles.
 
 using namespace tessera;
 using namespace tessera::testing;

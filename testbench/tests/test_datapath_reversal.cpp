@@ -9,8 +9,9 @@
 #include "testbench/tests/datapath_edge.h"
 #include "testbench/tests/datapath_random.h"
 
-/// Edges from either end, all there are on formats narrow enough to enumerate (modules/datapath/CRACK_FREEDOM.md). What is
-/// enumerated is compared with the definitions too: something that always says no is symmetric as well.
+/// Edges from either end, all there are on formats narrow enough to enumerate
+/// (modules/datapath/CRACK_FREEDOM.md). What is enumerated is compared with the definitions too: something
+/// that always says no is symmetric as well.
 using namespace tessera;
 using namespace tessera::datapath;
 using tessera::testing::Random;
@@ -54,8 +55,8 @@ struct NarrowMap {
     }
 };
 
-/// Every vertex of few positions, every texture coordinate of the map and, where it repeats, a period beyond, few frames,
-/// both handednesses.
+/// Every vertex of few positions, every texture coordinate of the map and, where it repeats, a period beyond,
+/// few frames, both handednesses.
 std::vector<Vertex> all_vertices(Machine& machine) {
     const MapGeometry& map = machine.registers.map;
     const std::array<Direction, 4> normals{{{0, 0, 16}, {-16, 0, 0}, {9, 9, -9}, {0, 0, -16}}};

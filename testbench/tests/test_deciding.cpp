@@ -1,5 +1,5 @@
-// How often each test was the one that decided, and how many edges lie beside a texel's border. SystemC elaborates once a
-// process, so each case runs one simulation.
+// How often each test was the one that decided, and how many edges lie beside a texel's border. SystemC
+// elaborates once a process, so each case runs one simulation.
 #include <catch2/catch.hpp>
 #include <cmath>
 

@@ -180,10 +180,11 @@ constexpr Place streams[] = {
     {"triangle_queue.to_get_triangle", 0, 5},
     {"lighting.to_rasteriser", 0, 3},
 };
+constexpr const char* summed_height_table = "tessellation_tests_0.summed_height_test.summed_height_table";
 constexpr Place memories[] = {
     {"displace_vertex.displacement_map", 3, 5},
     {"tessellation_tests_0.normal_test.normal_map", 3, 5},
-    {"tessellation_tests_0.summed_height_test.summed_height_table", 0, 5},
+    {summed_height_table, 0, 5},
     {"triangle_queue.off_chip_memory", 0, 5},
 };
 constexpr FaultKind stream_kinds[] = {FaultKind::bit_flip,
@@ -307,6 +308,26 @@ TEST_CASE("read checks without a fault find none, and the mesh is the same") {
         CHECK(checked.catchers.empty());
         CHECK(checked.mesh == plain.mesh);
     }
+}
+
+// The first edge is the plane's lower side, 32 texels long: its rectangles are 16 texels wide and 1 high. Rows of
+// the table have 33 entries of 4 bytes. Timed mode: functional mode asks for one entry at a time.
+TEST_CASE("read checks compare every entry of a rectangle, and name the address of the wrong one") {
+    std::vector<std::uint64_t> wrong;
+    for (const int corner : {0, 1, 2, 3}) {
+        const Outcome outcome =
+            run(with_fault(Mode::timed, FaultKind::bit_flip, summed_height_table, 1, 32 * corner));
+        INFO(outcome.text);
+        CHECK(outcome.catchers == "R");
+        const std::string before = "a read at address ";
+        const std::size_t at = outcome.text.find(before);
+        REQUIRE(at != std::string::npos);
+        wrong.push_back(std::stoull(outcome.text.substr(at + before.size()), nullptr, 16));
+    }
+    // top right, top left, bottom right, bottom left
+    CHECK(wrong[0] - wrong[1] == 4 * 16);
+    CHECK(wrong[0] - wrong[2] == 4 * 33);
+    CHECK(wrong[2] - wrong[3] == 4 * 16);
 }
 
 TEST_CASE("a fault that cannot be is refused with what can") {

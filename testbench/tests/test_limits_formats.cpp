@@ -189,7 +189,28 @@ TEST_CASE("formats: what an intermediate of the datapath cannot hold is refused 
     job.formats = {};
     job.tests.generation_limit = 16;  // likewise
     CHECK_THROWS_WITH(make_setup(job, mesh, map), Catch::Contains("tests.generation_limit has 4 bits") &&
-                                                      Catch::Contains("cannot hold 16"));
+                                                      Catch::Contains("cannot hold 16") &&
+                                                      Catch::Contains("raise formats.generation_bits"));
+}
+
+// 5 integer bits hold texels up to 32; a register of the map's side has one bit more.
+TEST_CASE("formats: a map larger than its registers hold is refused, even where no texture coordinate is") {
+    Job job;
+    job.formats.texture_integer = 5;
+    BaseMesh mesh = load_mesh(job, {});
+    for (BaseVertex& vertex : mesh.vertices)
+        vertex.texture *= 0.25;
+    const auto refused = [&](std::int64_t width, std::int64_t height, const std::string& side) {
+        job.map.width = width;
+        job.map.height = height;
+        const HeightMap map = load_map(job, {});
+        CHECK_THROWS_WITH(make_setup(resolve_job(job, mesh, map).job, mesh, map),
+                          "the register map." + side +
+                              " has 6 bits and cannot hold 64: use a smaller map or raise "
+                              "formats.texture_integer");
+    };
+    refused(64, 63, "width");
+    refused(63, 64, "height");
 }
 
 TEST_CASE("formats: any that a job may have, on any small job: within the bounds, and closed") {

@@ -9,8 +9,8 @@
 #include "testbench/job/validate_job.h"
 #include "testbench/widths/width_run.h"
 
-// Every key of a job at the ends of its range, beyond them, and at what no number should be: a message that names it, or
-// a mesh like any other.
+// Every key of a job at the ends of its range, beyond them, and at what no number should be: a message that
+// names it, or a mesh like any other.
 
 using namespace tessera;
 

@@ -80,7 +80,8 @@ TEST_CASE("highlight run: functional and timed mode, with a queue that spills, l
     CHECK((mesh_of({"hardware.queue_capacity=4", "hardware.tests_units=3"}) == functional));
 }
 
-// A Highlight Test that never asks: its mesh is that of a design without, and so is its every cycle, but for the latency.
+// A Highlight Test that never asks: its mesh is that of a design without, and so is its every cycle, but for
+// the latency.
 TEST_CASE("highlight run: to the cycle a Normal Test as much longer") {
     const TestFolder here;
     const auto levels_of = [&](const std::vector<std::string>& more) {

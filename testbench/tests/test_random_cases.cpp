@@ -85,8 +85,8 @@ TEST_CASE("random cases: meshes of every kind, most of them split") {
     CHECK(split > cases / 2);
 }
 
-/// Narrow positions on which edges or base vertices of a folded patch fall into one place: no cracks, which the check by
-/// descent says without looking at places.
+/// Narrow positions on which edges or base vertices of a folded patch fall into one place: no cracks, which
+/// the check by descent says without looking at places.
 TEST_CASE("invariants: what rounding puts into one place of a folded patch is no crack") {
     std::uint64_t coincident = 0;
     for (const std::uint64_t seed :

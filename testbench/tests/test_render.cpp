@@ -106,9 +106,9 @@ TEST_CASE("A ball over a sheet throws a shadow") {
     CHECK(brightness(image, shadow, 80) + 100 < brightness(image, shadow, 130));
     CHECK(std::abs(brightness(image, 35, 80) - brightness(image, 35, 130)) < 30);
 
-    // Tiles elsewhere on the mesh: the shadow's edge does not show where they begin. A pixel may be lit as the nearest of
-    // its tile's probes, of which there is one in each square of 2 x 2: a neighbour. So its brightness changes by no more
-    // than it does among its neighbours.
+    // Tiles elsewhere on the mesh: the shadow's edge does not show where they begin. A pixel may be lit as
+    // the nearest of its tile's probes, of which there is one in each square of 2 x 2: a neighbour. So its
+    // brightness changes by no more than it does among its neighbours.
     View moved = look_down(4, 160, 160, 240);
     moved.centre += glm::dvec2(4, 4);
     const Image other = render(mesh, moved, style);

@@ -115,7 +115,8 @@ TEST_CASE(
 }
 
 TEST_CASE("a triangle without area that holds a T-vertex's place stays") {
-    // (2, 0) lies on the edge from (0, 0) to (4, 0): whole on one side, cut on the other, and the flat triangle between.
+    // (2, 0) lies on the edge from (0, 0) to (4, 0): whole on one side, cut on the other, and the flat
+    // triangle between.
     const BaseMesh mesh = read_back({triangle(corner(0, 0), corner(4, 0), corner(4, 4)),
                                      triangle(corner(4, 0), corner(0, 0), corner(2, 0)),
                                      triangle(corner(2, 0), corner(0, 0), corner(2, -4)),

@@ -15,7 +15,8 @@ TEST_CASE("the figures of a quantity, by hand") {
         v.position = {0, 0, 0};
     triangle.vertices[1].position.x = 1;
     datapath::TrianglePass pass = c.evaluate(triangle, true);
-    // Midpoints of 0 and 1 are rounded down to 0 on edges 0 and 1: -1/2, and the bound is just that. All others are exact.
+    // Midpoints of 0 and 1 are rounded down to 0 on edges 0 and 1: -1/2, and the bound is just that. All
+    // others are exact.
     ConformanceResult result = check(c, pass);
     CHECK(result.passes == 1);
     CHECK(result.edges == 3);

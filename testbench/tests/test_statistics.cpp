@@ -198,9 +198,10 @@ TEST_CASE("statistics: what every test stopped stands in the emitted triangle, t
                                              {datapath::generation_bit, 1}});
 }
 
-// The schedule of test_timed_pipeline.cpp. First round: parts leave Get Triangle in cycles 1 to 6; vertices enter Displace
-// Vertex in 2, 3, 4 (+ map 1), Transform in 9, 10, 11, edges in 12, 13, 14; joined in 47. Second round: taken in 50, three
-// normals, which read nothing, in Displace Vertex from 52, in Transform from 58; joined in 80, lit in 81, out in 85.
+// The schedule of test_timed_pipeline.cpp. First round: parts leave Get Triangle in cycles 1 to 6; vertices
+// enter Displace Vertex in 2, 3, 4 (+ map 1), Transform in 9, 10, 11, edges in 12, 13, 14; joined in 47.
+// Second round: taken in 50, three normals, which read nothing, in Displace Vertex from 52, in Transform from
+// 58; joined in 80, lit in 81, out in 85.
 TEST_CASE("statistics: one triangle's cycles, unit by unit, by hand") {
     const Setup setup = one_triangle();
     Simulation simulation(setup, 1000);
@@ -257,7 +258,8 @@ TEST_CASE("statistics: one triangle's cycles, unit by unit, by hand") {
     f.require("timing.tessellation_tests_0.calculate_new_u",
               {{"blocked", 31 - 6}, {"blocked_by_tessellation_tests_0.view_test", 31 - 6}});
     f.require("timing.displace_vertex", {{"waiting_for_displacement_map", 1}});
-    // queues and wires have a rate and a level: one triangle for a cycle, and three edges of which two wait for the third
+    // queues and wires have a rate and a level: one triangle for a cycle, and three edges of which two wait
+    // for the third
     f.require("timing.tessellation_tests_0.collect_tests",
               {{"items", 3}, {"items_out", 3}, {"throughput", 3.0 / 86}});
     for (const char* const name : {"triangle_queue", "tessellation_tests_0.collect_tests"})

@@ -4,8 +4,8 @@
 #include "testbench/tests/timed_checks.h"
 #include "testbench/tests/timed_modules.h"
 
-// The clock's period under time resolutions of SystemC other than its default, 1 ps. A program of its own: the constants
-// of other tests fix the resolution before main.
+// The clock's period under time resolutions of SystemC other than its default, 1 ps. A program of its own:
+// the constants of other tests fix the resolution before main.
 
 using namespace tessera;
 using namespace tessera::testing;

@@ -36,8 +36,9 @@ Job full_queue_job(Overflow overflow) {
 }  // namespace
 
 // First in first out, eight places. When the queue is full, Tessellation keeps a child; Pass or Tessellate keeps what
-// Tessellation does not take; the tests and Transform what Pass or Tessellate does not take; Get Triangle a triangle whose
-// parts nobody takes; and the queue's first triangle waits for Get Triangle: the ring is closed.
+// Tessellation does not take; the tests and Transform what Pass or Tessellate does not take; Get Triangle a
+// triangle whose parts nobody takes; and the queue's first triangle waits for Get Triangle: the ring is
+// closed.
 TEST_CASE("a full queue that stalls is a deadlock, told unit by unit") {
     const Setup setup = setup_of(full_queue_job(Overflow::stall));
     Simulation simulation(setup, 1'000'000, 1'000'000);
@@ -124,8 +125,8 @@ TEST_CASE("a triangle decided is progress, though none is lit for long") {
     CHECK(simulation.cycles() > 1530 * 36);
 }
 
-// Lighting, one triangle in 500 cycles, has places for all that wait for it: most are lit when the last has long been decided,
-// and each takes more than one cycle in which something is called.
+// Lighting, one triangle in 500 cycles, has places for all that wait for it: most are lit when the last has
+// long been decided, and each takes more than one cycle in which something is called.
 TEST_CASE("a triangle lit is progress, though none is decided any more") {
     Setup setup = setup_of(full_split_job(2, 2));
     setup.design.timing.lighting = {4, 500, 128};

@@ -30,10 +30,10 @@
 // Pass or Tessellate completes it in
 //   J = max(V + 3, max(W, A + 2) + Mn + N, S + slots - 1 + Ms + H, max(W, V + 2) + L).
 //
-// Second round: Pass or Tessellate (O), Tessellation (E), the Triangle Queue (Q), Get Triangle (G) and the last of three
-// normals 2 later, Calculate New P, Displace Vertex (which reads nothing for normals), Transform, Pass or Tessellate,
-// Lighting (I): the rasteriser has it in J + O + E + Q + G + 2 + P + D + T + O + I. The run's cycles: one more, since
-// the first is number 0.
+// Second round: Pass or Tessellate (O), Tessellation (E), the Triangle Queue (Q), Get Triangle (G) and the
+// last of three normals 2 later, Calculate New P, Displace Vertex (which reads nothing for normals),
+// Transform, Pass or Tessellate, Lighting (I): the rasteriser has it in
+// J + O + E + Q + G + 2 + P + D + T + O + I. The run's cycles: one more, since the first is number 0.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -159,8 +159,8 @@ TEST_CASE("one triangle, four ports on the Summed Height Table: no faster than t
     expect_derived(timing, 42 + 38 + 1);
 }
 
-// What the header of each unit says, and the sums above rest on. The tests' own figures do not hold the defaults of units off
-// the critical path.
+// What the header of each unit says, and the sums above rest on. The tests' own figures do not hold the
+// defaults of units off the critical path.
 TEST_CASE("the paper's design: latency, interval and buffer of every unit and memory") {
     const Timing t;
     struct Default {
@@ -203,7 +203,8 @@ TEST_CASE("the paper's design: latency, interval and buffer of every unit and me
 }
 
 // Each unit with a latency of its own, all different: what is forgotten or counted twice shows.
-// V = 3 + 2 + 5 + 7 + 11 + 40 = 68, A = 3 + 2 + 2 + 4 = 11, W = 68 (edge 2 waits at the end of Calculate New U), S = 68,
+// V = 3 + 2 + 5 + 7 + 11 + 40 = 68, A = 3 + 2 + 2 + 4 = 11,
+// W = 68 (edge 2 waits at the end of Calculate New U), S = 68,
 // J = max(71, 68 + 4 + 13, 68 + 11 + 9 + 17, 70 + 6) = 105,
 // then 8 + 10 + 12 + 3 + 2 + 5 + 11 + 40 + 8 + 14 = 113.
 TEST_CASE("one triangle, every latency another") {
@@ -249,9 +250,10 @@ TEST_CASE("one triangle, every latency another") {
 }
 
 // Three Tessellation Tests units: each has an edge and its two vertices, sent in G, G + 1 and G + 2 on its branch;
-// geometry as before. All three edges reach the Summed Height Tests in G + 2 + C = 4 and share the one port for 36 cycles:
-// last address 39, data 40, test 43. The Normal Tests read six corners through the map's one port, in 2 to 7; the last has
-// come in 8: edges read in 8 to 10 at the latest, are through in 20. View 32, geometry 34. J = 43, then 38.
+// geometry as before. All three edges reach the Summed Height Tests in G + 2 + C = 4 and share the one port
+// for 36 cycles: last address 39, data 40, test 43. The Normal Tests read six corners through the map's one
+// port, in 2 to 7; the last has come in 8: edges read in 8 to 10 at the latest, are through in 20. View 32,
+// geometry 34. J = 43, then 38.
 TEST_CASE("one triangle, three tests units: 82 cycles") {
     Setup setup = one_triangle({});
     setup.design.tests_units = 3;
@@ -306,9 +308,9 @@ TEST_CASE("one triangle: cycles do not depend on the clock's period, time does")
     CHECK(sc_core::sc_time_stamp().value() == 85 * 1234);
 }
 
-// Transform's interval 4, parts 4 cycles apart from G + P + Md + D = 9 on: vertices start in 9, 13, 17, on the screen in
-// 29, 33, 37 = V; edges in 41, 45, 49. W = 38, S = 38, J = max(49, 38 + 15) = 53. Second round: normals enter Transform
-// 4 apart: 2 normals later 8 instead of 2: 38 + 6.
+// Transform's interval 4, parts 4 cycles apart from G + P + Md + D = 9 on: vertices start in 9, 13, 17, on
+// the screen in 29, 33, 37 = V; edges in 41, 45, 49. W = 38, S = 38, J = max(49, 38 + 15) = 53. Second round:
+// normals enter Transform 4 apart: 2 normals later 8 instead of 2: 38 + 6.
 TEST_CASE("one triangle, Transform every 4 cycles") {
     Setup setup = one_triangle({});
     setup.design.timing.transform.interval = 4;
@@ -317,8 +319,8 @@ TEST_CASE("one triangle, Transform every 4 cycles") {
     CHECK(simulation.cycles() == 53 + 44 + 1);
 }
 
-// Two pipelines that take turns, each every 4 cycles: starts in 9, 10, 13: V = 33, W = 34, edges 34, 37, 38. J = 34 + 15.
-// Normals: the third starts 4 after the first: 38 + 2.
+// Two pipelines that take turns, each every 4 cycles: starts in 9, 10, 13: V = 33, W = 34, edges 34, 37, 38.
+// J = 34 + 15. Normals: the third starts 4 after the first: 38 + 2.
 TEST_CASE("one triangle, two Transform pipelines every 4 cycles") {
     Setup setup = one_triangle({});
     setup.design.timing.transform.interval = 4;

@@ -4,8 +4,8 @@
 
 #include "testbench/tests/timed_checks.h"
 
-// A machine that is stopped anywhere, cycle by cycle: a unit says that it holds something while it does, in whole words,
-// and what it says of the pipeline as a whole is true.
+// A machine that is stopped anywhere, cycle by cycle: a unit says that it holds something while it does, in
+// whole words, and what it says of the pipeline as a whole is true.
 
 using namespace tessera;
 using namespace tessera::testing;

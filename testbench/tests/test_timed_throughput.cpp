@@ -52,9 +52,9 @@ void require_sole_bottleneck(const Simulation& simulation, const Unit* unit) {
 
 }  // namespace
 
-// One port takes 3 edges x 3 rectangles x 4 entries = 36 cycles a pass, without a break but for one: the first triangle's
-// third edge comes in cycle 32 (test_timed_pipeline.cpp), 3 after the first two's 24 entries have been read in 5 to 28.
-// From then on the next triangle's edges wait when one is through.
+// One port takes 3 edges x 3 rectangles x 4 entries = 36 cycles a pass, without a break but for one: the
+// first triangle's third edge comes in cycle 32 (test_timed_pipeline.cpp), 3 after the first two's 24 entries
+// have been read in 5 to 28. From then on the next triangle's edges wait when one is through.
 TEST_CASE("the paper's design is bound by the Summed Height Table: 36 cycles a pass") {
     const Setup setup = full_split();
     Simulation simulation(setup, 1'000'000);
@@ -63,8 +63,8 @@ TEST_CASE("the paper's design is bound by the Summed Height Table: 36 cycles a p
     CHECK(simulation.cycles() == fill + 3 + 36 * passes + drain);
     CHECK(p.summed_height_table.activity().cycles_in(State::busy) == 36 * passes);
     CHECK(p.summed_height_table.occupied_cycles() == 36 * passes);
-    // and the unit that reads it works 3 cycles on each edge and waits for it, and no other, the rest of that time; behind
-    // the first triangle's second edge, and the last, there is nothing to wait for
+    // and the unit that reads it works 3 cycles on each edge and waits for it, and no other, the rest of that
+    // time; behind the first triangle's second edge, and the last, there is nothing to wait for
     const Activity& test = p.tessellation_tests[0].summed_height_test.activity();
     CHECK(test.cycles_in(State::busy) == 3 * 3 * passes);
     CHECK(test.cycles_in(State::waiting_for_memory) == 36 * passes - 3 * (3 * passes - 2));
@@ -113,9 +113,10 @@ TEST_CASE("four banks of the Summed Height Table are between one port and four")
     CHECK(simulation.cycles() < fill + 3 + 36 * passes + drain);
 }
 
-// 64 ports: a rectangle takes no more than its cycle, and what binds is one part a cycle, out of Get Triangle and through
-// Calculate New P, Displace Vertex and Transform alike. The first leaves in cycle 1, the last takes Calculate New P 1, the
-// map 1, Displace Vertex 6, Transform 20, Pass or Tessellate 1, Lighting 4 to come out.
+// 64 ports: a rectangle takes no more than its cycle, and what binds is one part a cycle, out of Get Triangle
+// and through Calculate New P, Displace Vertex and Transform alike. The first leaves in cycle 1, the last
+// takes Calculate New P 1, the map 1, Displace Vertex 6, Transform 20, Pass or Tessellate 1, Lighting 4 to
+// come out.
 TEST_CASE("with ports to spare a part a cycle is what binds") {
     Setup setup = full_split();
     setup.design.timing.summed_height_table.ports = 64;
@@ -127,7 +128,8 @@ TEST_CASE("with ports to spare a part a cycle is what binds") {
     CHECK(simulation.pipeline.get_triangle.occupied_cycles() == parts);
 }
 
-// Three Tessellation Tests units share the one port: nothing gained but the first triangle's three cycles and one vertex.
+// Three Tessellation Tests units share the one port: nothing gained but the first triangle's three cycles and
+// one vertex.
 TEST_CASE("three tests units on one port: 36 cycles a pass as before") {
     Setup setup = full_split();
     setup.design.tests_units = 3;
@@ -146,9 +148,9 @@ TEST_CASE("three tests units on four ports: 9 cycles a pass") {
     CHECK(simulation.cycles() <= fill_of_three + 9 * passes + drain + base * until_on_screen);
 }
 
-// Transform starts a part every 8 cycles, the first in cycle 9 (Get Triangle 1, Calculate New P 1, map 1, Displace Vertex
-// 6); the last, 8 * (parts - 1) later, is out 20 later, the triangle decided 1, lit 4 later. The table, with four ports,
-// needs 9 cycles of the 24 and more that three edges take here.
+// Transform starts a part every 8 cycles, the first in cycle 9 (Get Triangle 1, Calculate New P 1, map 1,
+// Displace Vertex 6); the last, 8 * (parts - 1) later, is out 20 later, the triangle decided 1, lit 4 later.
+// The table, with four ports, needs 9 cycles of the 24 and more that three edges take here.
 TEST_CASE("Transform every 8 cycles binds: 8 cycles a part") {
     Setup setup = full_split();
     setup.design.timing.summed_height_table.ports = 4;
@@ -264,8 +266,8 @@ TEST_CASE("an interval that lasts is no lack of work") {
     require_sole_bottleneck(simulation, &p.displace_vertex);
 }
 
-// Little's law, exactly: where nothing is ever held up, what is in a unit, summed over all cycles, is items times latency:
-// mean occupancy = throughput * latency.
+// Little's law, exactly: where nothing is ever held up, what is in a unit, summed over all cycles, is items
+// times latency: mean occupancy = throughput * latency.
 TEST_CASE("mean occupancy is throughput times latency in units that are never blocked") {
     const Setup setup = full_split();
     Simulation simulation(setup, 1'000'000);

@@ -27,8 +27,8 @@ struct Machine {
     TessellationTests& tests = pipeline.tessellation_tests[0];
 };
 
-/// `count` items one after another, from cycle `first` on, of one cycle each; with one interval a cycle the unit is so many
-/// cycles occupied.
+/// `count` items one after another, from cycle `first` on, of one cycle each; with one interval a cycle the
+/// unit is so many cycles occupied.
 void work_on(Unit& unit, std::uint64_t count, std::uint64_t first = 0) {
     for (std::uint64_t k = 0; k < count; ++k) {
         unit.activity().item_in(first + k);
@@ -145,8 +145,8 @@ TEST_CASE("bottleneck: the next limit names all within a per cent of it, in the 
           "tessellation_tests_0.view_test, which tie at 40.0 %");
 }
 
-// The bound is on the run's length, so it rests on the work that remains, not on how much more the first limit has: what is
-// 90 % taken and gone leaves half of the cycles at least.
+// The bound is on the run's length, so it rests on the work that remains, not on how much more the first
+// limit has: what is 90 % taken and gone leaves half of the cycles at least.
 TEST_CASE("bottleneck: the bound is what remains to be done, and who waits longest is named") {
     Machine m;
     work_on(m.pipeline.lighting, 900);

@@ -463,7 +463,7 @@ TEST_CASE("a triangle can be followed through the timeline") {
                          "a part is named where parts are taken");
     }
 
-    // Each step stands in a slice of its triangle. A flow begins once, in Get Triangle; ends once, where no unit follows.
+    // Steps lie in their triangle's slices. A flow begins once, in Get Triangle; ends once, in its last unit.
     std::map<std::string, std::uint64_t> ends;
     std::size_t unfinished = 0;
     for (const auto& [triangle, steps] : timeline.flows) {

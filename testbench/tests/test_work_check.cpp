@@ -36,8 +36,8 @@ void require_work_conserved(const Job& job) {
     CHECK_THAT(doubled.first_violation, Contains("1 triangles more were lit than were to be"));
 }
 
-/// One base triangle, decided and not split, finished and lit. It faces the viewer; N' are zero, and so are N's, so that
-/// only ambient light is left.
+/// One base triangle, decided and not split, finished and lit. It faces the viewer; N' are zero, and so are
+/// N's, so that only ambient light is left.
 struct OneTriangle {
     datapath::Registers registers;
     datapath::Triangle base;

@@ -11,7 +11,8 @@ namespace tessera {
 /// What Quantity::set() answers where validate() of the job refuses the formats it set, and says why.
 inline constexpr const char* by_the_job = "refused by the job";
 
-/// A format whose width is swept. Of its integer and fraction bits one part is the job's and the other takes what is left.
+/// A format whose width is swept. Of its integer and fraction bits one part is the job's and the other takes
+/// what is left.
 struct Quantity {
     const char* name;
     const char* description;
@@ -28,8 +29,8 @@ const std::vector<Quantity>& quantities();
 /// Null: no such quantity.
 const Quantity* find_quantity(std::string_view name);
 
-/// The widths that a sweep of it takes by itself: all, or of more than 16 every second, of more than 32 every fourth; the
-/// job's own among them. Widest first.
+/// The widths that a sweep of it takes by itself: all, or of more than 16 every second, of more than 32 every
+/// fourth; the job's own among them. Widest first.
 std::vector<std::int64_t> usual_widths(const Quantity& quantity, const Job::Formats& job);
 
 }  // namespace tessera

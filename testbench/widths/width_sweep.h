@@ -65,8 +65,8 @@ struct WidthSweep {
         texel_borders;  ///< a warning, see texel_borders.h, of the first design that was made; empty: none
 };
 
-/// The result does not depend on the number of threads. on_progress(what, 0..1) is called from one thread at a time. Throws
-/// what make_setup() throws of the job itself; widths that it refuses are rows.
+/// The result does not depend on the number of threads. on_progress(what, 0..1) is called from one thread at
+/// a time. Throws what make_setup() throws of the job itself; widths that it refuses are rows.
 WidthSweep sweep_widths(const WidthRequest& request, const BaseMesh& mesh, const HeightMap& map,
                         const std::function<void(const std::string&, double)>& on_progress);
 
