@@ -7,19 +7,34 @@
 
 namespace tessera {
 
+Pipeline::Units Pipeline::make(const UnitContext& context, UnitFactory& factory) {
+    Units made;
+    made.get_triangle = factory.get_triangle("get_triangle", context);
+    made.calculate_new_p = factory.calculate_new_p("calculate_new_p", context);
+    made.displace_vertex = factory.displace_vertex("displace_vertex", context);
+    made.transform = factory.transform("transform", context);
+    made.pass_or_tessellate = factory.pass_or_tessellate("pass_or_tessellate", context);
+    made.tessellation = factory.tessellation("tessellation", context);
+    made.triangle_queue = factory.triangle_queue("triangle_queue", context);
+    made.lighting = factory.lighting("lighting", context);
+    return made;
+}
+
+namespace {
+
+UnitFactory& standard_units() {
+    static UnitFactory factory;
+    return factory;
+}
+
+}  // namespace
+
 Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Registers& registers,
-                   const Design& design, Wiring* wiring)
+                   const Design& design, UnitFactory* factory)
     : sc_module(name),
       clock("clock", clock_period(this->name(), design.timing.cycle_picoseconds)),
-      get_triangle("get_triangle", clock, design.timing, design.tests_units, passes),
-      calculate_new_p("calculate_new_p", clock, design.timing),
-      displace_vertex("displace_vertex", clock, registers, design.timing, design.direct_memory),
-      transform("transform", clock, registers, design.timing, design.transform_pipelines, design.tests_units),
+      made_(make({clock, registers, design}, factory == nullptr ? standard_units() : *factory)),
       tessellation_tests("tessellation_tests"),
-      pass_or_tessellate("pass_or_tessellate", clock, registers, design.timing, design.tests_units, passes),
-      tessellation("tessellation", clock, registers, design.timing, passes),
-      triangle_queue("triangle_queue", clock, registers, design.queue, design.timing),
-      lighting("lighting", clock, registers, design.timing),
       displacement_map("displacement_map", clock, registers.displacement_map, design.timing.displacement_map,
                        design.timing.stalls),
       normal_map("normal_map", clock, registers.normal_map, design.timing.normal_map, design.timing.stalls),
@@ -31,44 +46,57 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
                       datapath::packed_triangle_tag_bytes),
       transport_(design.transport),
       random_stalls_(design.timing.stalls.per_mille > 0) {
+    UnitFactory& units = factory == nullptr ? standard_units() : *factory;
     tessellation_tests.init(design.tests_units, [&](const char* unit_name, std::size_t number) {
-        return new TessellationTests(unit_name, clock, registers, design.timing,
-                                     static_cast<unsigned>(number), design.tests_units, design.direct_memory);
+        return new TessellationTests(unit_name, {clock, registers, design}, units,
+                                     static_cast<unsigned>(number));
     });
-    Wiring straight;
-    wire(wiring == nullptr ? straight : *wiring);
     attach();
+    wire(units);
+    SC_HAS_PROCESS(Pipeline);
+    SC_METHOD(see_whether_drained);
+    dont_initialize();
+    sensitive << clock.quiet() << triangle_queue.emptied();
 }
 
-void Pipeline::wire(Wiring& wiring) {
-    wiring.join(get_triangle.to_calculate_new_p, calculate_new_p.from_get_triangle);
-    get_triangle.queue_level.bind(triangle_queue.level);
-    wiring.join(calculate_new_p.to_displace_vertex, displace_vertex.from_calculate_new_p);
-    wiring.join(displace_vertex.to_transform, transform.from_displace_vertex);
-    wiring.join(displace_vertex.displacement_map, displacement_map);
-    wiring.join(transform.to_pass_or_tessellate, pass_or_tessellate.from_transform);
+void Pipeline::see_whether_drained() {
+    if (idle())
+        drained_.notify();
+}
+
+void Pipeline::wire(UnitFactory& factory) {
+    for (Unit* unit : units_)
+        factory.made(*unit);
+    for (TessellationTests& tests : tessellation_tests)
+        tests.wire();
+    get_triangle.to_calculate_new_p.bind(calculate_new_p.from_get_triangle);
+    get_triangle.to_pass_or_tessellate.bind(pass_or_tessellate.from_get_triangle);
+    triangle_queue.level.bind(get_triangle.queue_level);
+    calculate_new_p.to_displace_vertex.bind(displace_vertex.from_calculate_new_p);
+    displace_vertex.to_transform.bind(transform.from_displace_vertex);
+    factory.join(displace_vertex.displacement_map, displacement_map);
+    transform.to_pass_or_tessellate.bind(pass_or_tessellate.from_transform);
     for (std::size_t k = 0; k < tessellation_tests.size(); ++k) {
         TessellationTests& tests = tessellation_tests[k];
-        tests.wire(wiring);
-        wiring.join(get_triangle.to_tessellation_tests[k], tests.calculate_new_u.input);
-        wiring.join(transform.to_view_test[k], tests.view_test.from_transform);
-        wiring.join(tests.collect_tests.to_pass_or_tessellate, pass_or_tessellate.from_tessellation_tests[k]);
-        wiring.join(tests.summed_height_test.summed_height_table, summed_height_table);
-        wiring.join(tests.normal_test.normal_map, normal_map);
+        get_triangle.to_tessellation_tests[k].bind(tests.calculate_new_u.input);
+        transform.to_view_test[k].bind(tests.view_test.from_transform);
+        tests.collect_tests.to_pass_or_tessellate.bind(pass_or_tessellate.from_tessellation_tests[k]);
+        factory.join(tests.summed_height_test.summed_height_table, summed_height_table);
+        factory.join(tests.normal_test.normal_map, normal_map);
     }
-    wiring.join(pass_or_tessellate.to_tessellation, tessellation.from_pass_or_tessellate);
-    wiring.join(pass_or_tessellate.to_lighting, lighting.from_pass_or_tessellate);
-    wiring.join(tessellation.to_triangle_queue, triangle_queue.from_tessellation);
-    wiring.join(triangle_queue.to_get_triangle, get_triangle.from_triangle_queue);
-    wiring.join(triangle_queue.off_chip_memory, off_chip_memory);
+    pass_or_tessellate.to_tessellation.bind(tessellation.from_pass_or_tessellate);
+    pass_or_tessellate.to_lighting.bind(lighting.from_pass_or_tessellate);
+    tessellation.to_triangle_queue.bind(triangle_queue.from_tessellation);
+    triangle_queue.to_get_triangle.bind(get_triangle.from_triangle_queue);
+    factory.join(triangle_queue.off_chip_memory, off_chip_memory);
 }
 
 /// On the clock: downstream first (clock.h); in the list: as the figures are read.
 void Pipeline::attach() {
     units_ = {&get_triangle, &calculate_new_p, &displace_vertex, &transform};
     for (TessellationTests& tests : tessellation_tests)
-        units_.insert(units_.end(), {&tests.calculate_new_u, &tests.tex_coord_test, &tests.summed_height_test,
-                                     &tests.normal_test, &tests.view_test, &tests.collect_tests});
+        for (Unit* unit : tests.units())
+            units_.push_back(unit);
     units_.insert(units_.end(), {&pass_or_tessellate, &tessellation, &triangle_queue, &lighting,
                                  &displacement_map, &normal_map, &summed_height_table, &off_chip_memory});
     clock.attach(off_chip_memory);
@@ -98,6 +126,11 @@ bool Pipeline::idle() const {
         return triangle_queue.drained() && pass_or_tessellate.joined();
     return std::all_of(units_.begin(), units_.end(),
                        [](const Unit* unit) { return unit->idle() && unit->holds().empty(); });
+}
+
+std::uint64_t Pipeline::passes_under_way() const {
+    return get_triangle.activity().items_in() + tessellation.from_pass_or_tessellate.size() -
+           pass_or_tessellate.activity().items_out();
 }
 
 std::uint64_t Pipeline::normal_map_reads() const {

@@ -1,40 +1,17 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <systemc>
 #include <vector>
 
 #include "modules/clock/clock.h"
+#include "modules/design.h"
 #include "modules/memory/off_chip_memory.h"
 #include "modules/memory/table_memory.h"
-#include "modules/unit/pass_pool.h"
-#include "modules/units/calculate_new_p.h"
-#include "modules/units/displace_vertex.h"
-#include "modules/units/get_triangle.h"
-#include "modules/units/lighting.h"
-#include "modules/units/pass_or_tessellate.h"
-#include "modules/units/tessellation.h"
+#include "modules/unit_factory.h"
 #include "modules/units/tessellation_tests/tessellation_tests.h"
-#include "modules/units/transform.h"
-#include "modules/units/triangle_queue.h"
-#include "modules/wiring.h"
 
 namespace tessera {
-
-/// How the units talk to one another.
-enum class Transport {
-    blocking,      ///< blocking transport: every result, no cycles (functional mode)
-    non_blocking,  ///< non-blocking transport: the same results, to the cycle (timed mode)
-};
-
-/// What is built, as opposed to what is set before a run (datapath::Registers).
-struct Design {
-    Transport transport = Transport::blocking;
-    Timing timing;
-    QueueDesign queue;
-    unsigned tests_units = 1;  ///< Tessellation Tests units: 1 or 3
-    unsigned transform_pipelines = 1;
-    bool direct_memory = true;  ///< units read memories through DMI in functional mode
-};
 
 /// The machine of the paper's figure 7: every unit, every memory, and the wires between them.
 ///
@@ -47,29 +24,47 @@ struct Design {
 ///
 /// Outside: get_triangle.from_host, lighting.to_rasteriser, and the memories' sockets for the host's preload.
 class Pipeline : public sc_core::sc_module {
+    struct Units {
+        std::unique_ptr<GetTriangle> get_triangle;
+        std::unique_ptr<CalculateNewP> calculate_new_p;
+        std::unique_ptr<DisplaceVertex> displace_vertex;
+        std::unique_ptr<Transform> transform;
+        std::unique_ptr<PassOrTessellate> pass_or_tessellate;
+        std::unique_ptr<Tessellation> tessellation;
+        std::unique_ptr<TriangleQueue> triangle_queue;
+        std::unique_ptr<Lighting> lighting;
+    };
+
   public:
     Clock clock;
-    PassPool passes;
-    GetTriangle get_triangle;
-    CalculateNewP calculate_new_p;
-    DisplaceVertex displace_vertex;
-    Transform transform;
+
+  private:
+    const Units made_;
+
+  public:
+    GetTriangle& get_triangle = *made_.get_triangle;
+    CalculateNewP& calculate_new_p = *made_.calculate_new_p;
+    DisplaceVertex& displace_vertex = *made_.displace_vertex;
+    Transform& transform = *made_.transform;
     sc_core::sc_vector<TessellationTests> tessellation_tests;
-    PassOrTessellate pass_or_tessellate;
-    Tessellation tessellation;
-    TriangleQueue triangle_queue;
-    Lighting lighting;
+    PassOrTessellate& pass_or_tessellate = *made_.pass_or_tessellate;
+    Tessellation& tessellation = *made_.tessellation;
+    TriangleQueue& triangle_queue = *made_.triangle_queue;
+    Lighting& lighting = *made_.lighting;
     DisplacementMap displacement_map;
     NormalMap normal_map;
     SummedHeightTable summed_height_table;
     OffChipMemory off_chip_memory;
 
-    /// `registers` must outlive the pipeline. wiring: null: outputs straight to inputs.
+    /// `registers` must outlive the pipeline. factory: null: the units of this folder.
     Pipeline(const sc_core::sc_module_name& name, const datapath::Registers& registers, const Design& design,
-             Wiring* wiring = nullptr);
+             UnitFactory* factory = nullptr);
 
     /// Nothing is in flight.
     bool idle() const;
+
+    /// Notified whenever the machine has nothing left to do and nothing in flight: all that came in has gone out.
+    const sc_core::sc_event& drained() const { return drained_; }
 
     /// Every unit and memory, in the order of the figures.
     const std::vector<Unit*>& units() const { return units_; }
@@ -77,6 +72,8 @@ class Pipeline : public sc_core::sc_module {
     /// Items are held back at random.
     bool random_stalls() const { return random_stalls_; }
 
+    /// Triangles between Get Triangle and where their pass ends, in Tessellation or on the way to Lighting.
+    std::uint64_t passes_under_way() const;
     std::uint64_t edges_tested() const { return 3 * pass_or_tessellate.counts().passes; }
     std::uint64_t displacement_map_reads() const { return displace_vertex.displacement_map.reads(); }
     std::uint64_t normal_map_reads() const;
@@ -84,9 +81,12 @@ class Pipeline : public sc_core::sc_module {
     datapath::Saturations saturations() const;
 
   private:
-    void wire(Wiring& wiring);
+    static Units make(const UnitContext& context, UnitFactory& factory);
+    void wire(UnitFactory& factory);
     void attach();
+    void see_whether_drained();
 
+    sc_core::sc_event drained_{"drained"};
     Transport transport_;
     bool random_stalls_;
     std::vector<Unit*> units_;

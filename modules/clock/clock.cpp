@@ -58,6 +58,8 @@ void Clock::wake_from_outside(const Clocked& unit, std::uint64_t cycle) {
     } else {
         wake_far(unit, cycle);
     }
+    if (halted_)
+        return;
     if (cycle > most_cycles_) {
         end_time();
     } else if (!scheduled_ || cycle < next_tick_) {
@@ -69,7 +71,8 @@ void Clock::wake_from_outside(const Clocked& unit, std::uint64_t cycle) {
 
 void Clock::end_time() {
     out_of_time_ = true;
-    sc_core::sc_stop();
+    halt();
+    quiet_.notify(sc_core::SC_ZERO_TIME);
 }
 
 void Clock::take_far() {
@@ -151,11 +154,12 @@ void Clock::tick() {
     running_ = false;
     if (cycles_without_progress_ > most_without_progress_ && most_without_progress_ != 0) {
         stalled_ = true;
-        sc_core::sc_stop();
+        halt();
+    }
+    if (halted_ || !find_next(next_tick_)) {
+        quiet_.notify(sc_core::SC_ZERO_TIME);
         return;
     }
-    if (!find_next(next_tick_))
-        return;
     if (next_tick_ > most_cycles_) {
         end_time();
     } else {

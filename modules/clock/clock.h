@@ -107,8 +107,8 @@ class Clock : public sc_core::sc_module {
         }
     }
 
-    /// Nothing that `unit` could act upon has happened to it, but something an observer may want to see: calls it in the
-    /// present cycle if that is observed.
+    /// Nothing that `unit` could act upon has happened to it, but something an observer may want to see: calls it in
+    /// the present cycle if that is observed.
     void show(const Clocked& unit) {
         if (observer_ != nullptr && cycle_ >= observed_first_)
             wake(unit);
@@ -129,16 +129,23 @@ class Clock : public sc_core::sc_module {
     /// Nobody asked for a later cycle.
     bool idle() const { return !running_ && !scheduled_; }
 
+    /// Notified at the end of a cycle after which nobody has asked for a later one, or the clock has halted.
+    const sc_core::sc_event& quiet() const { return quiet_; }
+
+    /// Calls nobody after the present cycle any more.
+    void halt() { halted_ = true; }
+    bool halted() const { return halted_; }
+
     /// Told when work is completed (a triangle decided, or lit). When something was called in more than `most` cycles
-    /// without it, 0: for ever, the clock stops the simulation. Cycles in which all just wait do not count: a latency,
+    /// without it, 0: for ever, the clock halts. Cycles in which all just wait do not count: a latency,
     /// however long, comes to its end.
     void progress() { cycles_without_progress_ = 0; }
-    void stop_without_progress_for(std::uint64_t most) { most_without_progress_ = most; }
+    void halt_without_progress_for(std::uint64_t most) { most_without_progress_ = most; }
     std::uint64_t most_without_progress() const { return most_without_progress_; }
     /// The clock did that.
     bool stalled() const { return stalled_; }
 
-    /// The clock stopped the simulation because a cycle was asked for that begins after the end of SystemC's time, 2^64 - 1
+    /// The clock halted because a cycle was asked for that begins after the end of SystemC's time, 2^64 - 1
     /// time steps.
     bool out_of_time() const { return out_of_time_; }
 
@@ -176,6 +183,7 @@ class Clock : public sc_core::sc_module {
     std::uint64_t most_cycles_ = 0;            // that begin within SystemC's time
     std::array<sc_core::sc_time, 16> delays_;  // of so many cycles: sc_time is slow to make
     sc_core::sc_event tick_event_{"tick_event"};
+    sc_core::sc_event quiet_{"quiet"};
     std::vector<Clocked*> units_;
     std::array<std::uint64_t, span> due_{};            // by cycle modulo span: one bit a unit
     std::array<std::uint64_t, span / 64> occupied_{};  // one bit a cycle: due_ is not zero
@@ -187,6 +195,7 @@ class Clock : public sc_core::sc_module {
     bool scheduled_ = false;
     std::uint64_t cycles_without_progress_ = 0;
     std::uint64_t most_without_progress_ = 0;
+    bool halted_ = false;
     bool stalled_ = false;
     bool out_of_time_ = false;
     CycleObserver* observer_ = nullptr;

@@ -15,8 +15,8 @@ constexpr int bump_shift(const Formats& f) {
 }
 
 /// Handedness of a vertex inserted on (i, j): that of both, else -1. Commutative.
-constexpr std::int8_t inserted_handedness(const Vertex& i, const Vertex& j) {
-    return i.handedness < j.handedness ? i.handedness : j.handedness;
+constexpr std::int8_t inserted_handedness(std::int8_t handedness_i, std::int8_t handedness_j) {
+    return handedness_i < handedness_j ? handedness_i : handedness_j;
 }
 
 /// Of unit vectors, as the host and normalise() make them: no component beyond 1.0.

@@ -122,15 +122,16 @@ constexpr bool tex_coord_test(const TexCoord& i, const TexCoord& j, const TexCoo
 
 /// Generation of a vertex inserted on (i, j): one more than the older of the two, at most 255 (which only a run with
 /// GT switched off can reach).
-constexpr std::uint8_t inserted_generation(const Vertex& i, const Vertex& j) {
-    const std::uint8_t oldest = i.generation > j.generation ? i.generation : j.generation;
+constexpr std::uint8_t inserted_generation(std::uint8_t generation_i, std::uint8_t generation_j) {
+    const std::uint8_t oldest = generation_i > generation_j ? generation_i : generation_j;
     return oldest == 255 ? oldest : static_cast<std::uint8_t>(oldest + 1);
 }
 
 /// GT (golden/ALGORITHM.md 4.5): the inserted vertex would not exceed the generation limit. Ends the recursion, and
 /// depends on the edge alone.
-constexpr bool generation_test(const Vertex& i, const Vertex& j, const TestParameters& parameters) {
-    return inserted_generation(i, j) <= parameters.generation_limit;
+constexpr bool generation_test(std::uint8_t generation_i, std::uint8_t generation_j,
+                               const TestParameters& parameters) {
+    return inserted_generation(generation_i, generation_j) <= parameters.generation_limit;
 }
 
 /// split(i, j) = (NT or SHT or HT) and VT and TCT and GT (paper 2.6, plus HT and GT), on TestBits.

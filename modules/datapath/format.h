@@ -38,8 +38,8 @@ struct Formats {
     bool highlight_tag = false;  ///< with a Highlight Test: the queue entry's split_by has a bit for it
 };
 
-/// Bits that a job may give each quantity: what the functions here are asserted to hold, and the ranges of the job's keys.
-/// A fraction has fewer bits than its format, a normal's at least 2 fewer.
+/// Bits that a job may give each quantity: what the functions here are asserted to hold, and the ranges of the job's
+/// keys. A fraction has fewer bits than its format, a normal's at least 2 fewer.
 struct FormatLimits {
     struct Range {
         int least, most;

@@ -37,9 +37,9 @@ constexpr const char* first_too_wide(const Widths& widths) {
     return nullptr;
 }
 
-/// Whether the model's integers hold every intermediate in all formats within FormatLimits. Asked of the greatest widths
-/// with the fewest and the most fraction bits: an intermediate grows with its operands' bits, and fraction bits are what
-/// shifts take away or leave.
+/// Whether the model's integers hold every intermediate in all formats within FormatLimits. Asked of the greatest
+/// widths with the fewest and the most fraction bits: an intermediate grows with its operands' bits, and fraction bits
+/// are what shifts take away or leave.
 template <class Widths>
 constexpr bool fits_every_format() {
     using Limits = FormatLimits;

@@ -26,9 +26,8 @@ struct EdgeTests {
     std::uint8_t tests = 0;      ///< TestBits
 };
 
-/// One pass of one triangle through the machine: what Get Triangle sends along both branches and Pass or Tessellate
-/// joins. It travels by reference; each unit writes only the fields its header names, so the branches never touch
-/// the same one. Edge k runs from vertex k to vertex (k + 1) mod 3.
+/// One pass of one triangle through the machine, as Pass or Tessellate joins it from the triangle and its parts. Edge k runs
+/// from vertex k to vertex (k + 1) mod 3.
 struct TrianglePass {
     Triangle triangle;
     std::uint8_t new_vertices = 0;  ///< bit k: vertex k has no P', P's, N' yet (a base triangle's first pass)
@@ -55,8 +54,8 @@ constexpr Vertex inserted_vertex(const TrianglePass& pass, int k) {
     vertex.normal = tested.normal;
     vertex.tangent = tested.tangent;
     vertex.texture = made.texture;
-    vertex.handedness = inserted_handedness(i, j);
-    vertex.generation = inserted_generation(i, j);
+    vertex.handedness = inserted_handedness(i.handedness, j.handedness);
+    vertex.generation = inserted_generation(i.generation, j.generation);
     vertex.displaced_known = true;
     vertex.displaced = made.displaced;
     vertex.displaced_normal = tested.displaced_normal;

@@ -16,9 +16,9 @@ struct ChildIndices {
 };
 
 /// The second diagonal must be shorter than the first by more than 2^-6 of it. Many diagonals are equally long in exact
-/// arithmetic (a square's, wherever the map is level), and rounding, which moves each of a length's six coordinates by up
-/// to (generation + 1) / 2 LSB of the position and the height times 3/4 LSB of the normal, must not choose between them.
-/// In the default job that is less than 2^-6 of a texel's side even at full height on a curved surface.
+/// arithmetic (a square's, wherever the map is level), and rounding, which moves each of a length's six coordinates by
+/// up to (generation + 1) / 2 LSB of the position and the height times 3/4 LSB of the normal, must not choose between
+/// them. In the default job that is less than 2^-6 of a texel's side even at full height on a curved surface.
 inline constexpr int diagonal_margin_shift = 6;
 
 struct DiagonalWidths : Intermediates {
@@ -77,9 +77,9 @@ constexpr ChildIndices triangulate(unsigned split, bool second_diagonal) {
     return result;
 }
 
-/// With `shorter`, the second if it is shorter by more than the margin, by Manhattan length of displaced positions, else
-/// the first: a subtraction and a compare, which round nothing. corner(k) gives the displaced position of index k as
-/// above.
+/// With `shorter`, the second if it is shorter by more than the margin, by Manhattan length of displaced positions,
+/// else the first: a subtraction and a compare, which round nothing. corner(k) gives the displaced position of index k
+/// as above.
 template <class DisplacedPosition>
 constexpr bool choose_second_diagonal(unsigned split, Triangulation choice, DisplacedPosition&& corner) {
     if (choice != Triangulation::shorter)

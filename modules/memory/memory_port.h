@@ -15,8 +15,8 @@ namespace tessera {
 
 /// A unit's port on a memory, for entries of one size: a table's, or records in off-chip memory.
 ///
-/// Functional mode: read(). DMI where the memory grants it and the unit may use it, else b_transport; the same values, the
-/// same added time and the same counts either way.
+/// Functional mode: read(). DMI where the memory grants it and the unit may use it, else b_transport; the same values,
+/// the same added time and the same counts either way.
 /// Timed mode: requests (memory_request.h). One on offer at a time, several under way, answered in order. The unit is
 /// called when a request that had to wait is taken and when an answer comes.
 /// Errors: responses other than OK, and breaches of the protocol, are SC_ERRORs that name the port.

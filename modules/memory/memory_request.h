@@ -8,8 +8,8 @@
 namespace tessera {
 
 /// A request to a memory: to read or write entries of one size at addresses of their own. The corners of a rectangle,
-/// which occupy a port one after another, are one request (a handshake for each would cost more host time than everything
-/// else together).
+/// which occupy a port one after another, are one request (a handshake for each would cost more host time than
+/// everything else together).
 struct MemoryRequest {
     tlm::tlm_command command = tlm::TLM_READ_COMMAND;
     unsigned count = 1;                                                   ///< entries, at least 1

@@ -14,8 +14,8 @@ namespace tessera {
 /// Address map: [layout.base, layout.base + layout.bytes()); entry (x, y) at layout.address(x, y), little endian.
 /// Read by units, written only by the host's debug transport before the run.
 /// Timing: banked_ports.h. b_transport, DMI: the latency, once a request.
-/// Utilisation: of the busiest bank's port slots those that were taken, or of the cycles those in which a request was held
-/// up, whichever is more: banks in conflict hold requests up with most of their ports idle.
+/// Utilisation: of the busiest bank's port slots those that were taken, or of the cycles those in which a request was
+/// held up, whichever is more: banks in conflict hold requests up with most of their ports idle.
 /// Errors: a write gives TLM_COMMAND_ERROR_RESPONSE, an address outside TLM_ADDRESS_ERROR_RESPONSE.
 class TableMemory : public MemoryServer {
   public:

@@ -6,13 +6,12 @@
 
 namespace tessera {
 
-/// Protocol of the streams between units: not memory-mapped, so a traits class of its own. The payload is the work
-/// item itself; the phases are TLM-2.0's; the producer initiates (StreamOutput), the consumer is the target
+/// Protocol of the streams between units: not memory-mapped, so a traits class of its own. The payload is the item
+/// itself (items.h); the phases are TLM-2.0's; the producer initiates (StreamOutput), the consumer is the target
 /// (StreamInput).
 ///
 /// b_transport (functional mode): the consumer has done its work, and all that follows from it, on return; `delay` is
-/// added to, never overwritten. The payload is the producer's; it may be written only in the fields that the
-/// consumer's header names.
+/// added to, never overwritten. The payload is the producer's, and is not written.
 ///
 /// nb_transport (timed mode), two phases: BEGIN_REQ offers one item; END_REQ, by return (TLM_UPDATED) or later on the
 /// backward path, says that the consumer has taken it. Withheld END_REQ is back-pressure. Exclusion: no second

@@ -1,11 +1,18 @@
 #pragma once
+#include <functional>
 #include <systemc>
 #include <tlm>
+#include <utility>
 
 #include "modules/clock/clock.h"
+#include "modules/design.h"
+#include "modules/stream/packed_item.h"
 #include "modules/stream/stream.h"
 
 namespace tessera {
+
+template <class Payload>
+class StreamInput;
 
 /// A unit's output (timed mode: one item on offer at a time). Checks the consumer's phases. BUSWIDTH means nothing on
 /// a stream; widths follow from the formats.
@@ -19,10 +26,38 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
         Socket::bind(static_cast<tlm::tlm_bw_transport_if<Stream<Payload>>&>(*this));
     }
 
+    /// Who binds this output to its input instead of bind(), and may put something in between: a unit, a fault.
+    using Interposer = std::function<void(StreamOutput& from, StreamInput<Payload>& to)>;
+    void interpose(Interposer interposer) { interposer_ = std::move(interposer); }
+
+    using Socket::bind;
+    void bind(StreamInput<Payload>& input) {
+        if (const Interposer interposer = std::exchange(interposer_, nullptr))
+            interposer(*this, input);
+        else
+            Socket::bind(input);
+    }
+
     /// Timed mode: `unit` is called when an item that had to wait is taken.
     void clocked_by(Clock& clock, Clocked& unit) {
         clock_ = &clock;
         unit_ = &unit;
+    }
+    /// The same for a unit of the machine, whose items may have to go through their packed form.
+    void clocked_by(const UnitContext& context, Clocked& unit) {
+        clocked_by(context.clock, unit);
+        if (context.design.packed_streams)
+            wires_ = {&context.registers.formats, tag_bits_in_use(context.design)};
+    }
+
+    /// Functional mode: hands an item over; the consumer has done all that follows from it on return.
+    void transport(Payload& payload, sc_core::sc_time& delay) {
+        if (wires_.formats == nullptr) {
+            (*this)->b_transport(payload, delay);
+            return;
+        }
+        Payload packed = through_wires(payload);
+        (*this)->b_transport(packed, delay);
     }
 
     /// Nothing on offer.
@@ -32,15 +67,18 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
     bool send(Payload& payload) {
         if (on_offer_ != nullptr)
             stream_protocol_error(this->name(), "BEGIN_REQ before END_REQ of the item before", clock_);
+        if (wires_.formats != nullptr)
+            packed_ = through_wires(payload);
+        Payload& sent = wires_.formats != nullptr ? packed_ : payload;
         tlm::tlm_phase phase = tlm::BEGIN_REQ;
         sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
-        const tlm::tlm_sync_enum status = (*this)->nb_transport_fw(payload, phase, delay);
+        const tlm::tlm_sync_enum status = (*this)->nb_transport_fw(sent, phase, delay);
         if (status == tlm::TLM_UPDATED && phase == tlm::END_REQ)
             return true;
         if (status != tlm::TLM_ACCEPTED)
             stream_protocol_error(this->name(), "BEGIN_REQ was answered by neither END_REQ nor TLM_ACCEPTED",
                                   clock_);
-        on_offer_ = &payload;
+        on_offer_ = &sent;
         return false;
     }
 
@@ -59,6 +97,23 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
     }
 
   private:
+    /// Null: items are handed over as they are.
+    struct Wires {
+        const datapath::Formats* formats = nullptr;
+        int tag_bits = 0;
+    };
+
+    Payload through_wires(const Payload& payload) const {
+        if constexpr (is_described<Payload>) {
+            PackedItem packed;
+            if (!pack_item(payload, *wires_.formats, wires_.tag_bits, packed))
+                stream_protocol_error(this->name(), "a value that its field cannot hold", clock_);
+            return unpack_item<Payload>(packed, *wires_.formats, wires_.tag_bits);
+        } else {
+            return payload;
+        }
+    }
+
     tlm::tlm_sync_enum nb_transport_bw(Payload& payload, tlm::tlm_phase& phase,
                                        sc_core::sc_time& delay) override {
         if (on_offer_ != &payload || phase != tlm::END_REQ)
@@ -73,6 +128,9 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
     Clock* clock_ = nullptr;
     Clocked* unit_ = nullptr;
     const Payload* on_offer_ = nullptr;
+    Interposer interposer_;
+    Wires wires_;
+    Payload packed_{};
     bool delivering_ = false;                               // deliver() has yet to say that its item is taken
     mutable const sc_core::sc_object* consumer_ = nullptr;  // looked up once: it is slow
 };

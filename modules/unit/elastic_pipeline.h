@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "modules/timing.h"
+#include "modules/design.h"
 #include "modules/unit/ring.h"
 
 namespace tessera {
@@ -25,8 +25,7 @@ class ElasticPipeline {
           interval_(timing.interval),
           servers_(servers),
           next_start_(servers, 0),
-          stages_(std::size_t{servers} *
-                  std::max(1u, (timing.latency + further_stages + timing.interval - 1) / timing.interval)) {}
+          stages_(register_stages(timing, servers, further_stages)) {}
 
     bool empty() const { return stages_.empty(); }
     bool full() const { return stages_.full(); }

@@ -2,36 +2,40 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <systemc>
-#include <type_traits>
 
+#include "modules/stream/parts.h"
 #include "modules/stream/stream_output.h"
-#include "modules/stream/work.h"
 
 namespace tessera {
 
-/// One item to one or several consumers, each taking it when it can: delivered when all have.
-template <class Payload>
+/// One item to one or several consumers, each of which gets what it needs of it and takes it when it can: delivered
+/// when all have.
+template <class Item>
 class Fork {
   public:
     static constexpr std::size_t most = 4;
 
-    /// only: of a Work, the parts that this output is for.
-    void add(StreamOutput<Payload>& output, Parts only = all_parts) {
-        if (count_ == most)
-            SC_REPORT_ERROR("tessera/fork", "more than four outputs");
-        to_[count_] = &output;
-        only_[count_++] = only;
+    /// The whole item; only for these parts.
+    void add(StreamOutput<Item>& output, Parts only = all_parts) {
+        add(std::make_unique<Whole>(output), only);
+    }
+
+    /// What `select` takes of it; only for these parts.
+    template <class Payload>
+    void add(StreamOutput<Payload>& output, Payload (*select)(const Item&), Parts only) {
+        add(std::make_unique<Selected<Payload>>(output, select), only);
     }
 
     /// Timed mode: delivers the item to those outputs it is for that have not taken it. True: all have.
-    bool deliver(Payload& payload) {
+    bool deliver(Item& item) {
         bool all = true;
         for (std::size_t k = 0; k < count_; ++k) {
             const unsigned bit = 1u << k;
-            if ((taken_ & bit) != 0 || !is_for(k, payload))
+            if ((taken_ & bit) != 0 || !is_for(k, item))
                 continue;
-            if (to_[k]->deliver(payload))
+            if (to_[k]->deliver(item))
                 taken_ |= bit;
             else
                 all = false;
@@ -41,19 +45,14 @@ class Fork {
         return all;
     }
 
-    /// Functional mode: all outputs from the same time on, each with its parts; `delay` is the last one's on return.
-    void b_transport(Payload& payload, sc_core::sc_time& delay) {
+    /// Functional mode: all outputs from the same time on; `delay` is the last one's on return.
+    void transport(Item& item, sc_core::sc_time& delay) {
         const sc_core::sc_time start = delay;
         for (std::size_t k = 0; k < count_; ++k) {
-            if (!is_for(k, payload))
+            if (!is_for(k, item))
                 continue;
             sc_core::sc_time its_delay = start;
-            if constexpr (std::is_same_v<Payload, Work>) {
-                Work its{payload.pass, static_cast<Parts>(payload.parts & only_[k])};
-                (*to_[k])->b_transport(its, its_delay);
-            } else {
-                (*to_[k])->b_transport(payload, its_delay);
-            }
+            to_[k]->transport(item, its_delay);
             delay = std::max(delay, its_delay);
         }
     }
@@ -61,22 +60,73 @@ class Fork {
     /// The first that has not taken what it is offered; null: none.
     const sc_core::sc_object* blocked_by() const {
         for (std::size_t k = 0; k < count_; ++k) {
-            if (!to_[k]->free())
-                return to_[k]->consumer();
+            if (const sc_core::sc_object* consumer = to_[k]->blocked_by())
+                return consumer;
         }
         return nullptr;
     }
 
   private:
-    /// An item without parts goes where all parts go.
-    bool is_for(std::size_t k, const Payload& payload) const {
-        if constexpr (std::is_same_v<Payload, Work>)
-            return only_[k] == all_parts || (only_[k] & payload.parts) != 0;
-        else
-            return true;
+    struct Branch {
+        virtual ~Branch() = default;
+        virtual bool deliver(Item& item) = 0;
+        virtual void transport(Item& item, sc_core::sc_time& delay) = 0;
+        virtual const sc_core::sc_object* blocked_by() const = 0;
+    };
+
+    class Whole final : public Branch {
+      public:
+        explicit Whole(StreamOutput<Item>& output) : output_(output) {}
+        bool deliver(Item& item) override { return output_.deliver(item); }
+        void transport(Item& item, sc_core::sc_time& delay) override { output_.transport(item, delay); }
+        const sc_core::sc_object* blocked_by() const override {
+            return output_.free() ? nullptr : output_.consumer();
+        }
+
+      private:
+        StreamOutput<Item>& output_;
+    };
+
+    template <class Payload>
+    class Selected final : public Branch {
+      public:
+        Selected(StreamOutput<Payload>& output, Payload (*select)(const Item&))
+            : output_(output), select_(select) {}
+        bool deliver(Item& item) override {
+            if (!delivering_)
+                selected_ = select_(item);
+            delivering_ = !output_.deliver(selected_);
+            return !delivering_;
+        }
+        void transport(Item& item, sc_core::sc_time& delay) override {
+            Payload selected = select_(item);
+            output_.transport(selected, delay);
+        }
+        const sc_core::sc_object* blocked_by() const override {
+            return output_.free() ? nullptr : output_.consumer();
+        }
+
+      private:
+        StreamOutput<Payload>& output_;
+        Payload (*select_)(const Item&);
+        Payload selected_{};
+        bool delivering_ = false;
+    };
+
+    void add(std::unique_ptr<Branch> branch, Parts only) {
+        if (count_ == most) {
+            SC_REPORT_ERROR("tessera/fork", "more than four outputs");
+            return;
+        }
+        to_[count_] = std::move(branch);
+        only_[count_++] = only;
     }
 
-    std::array<StreamOutput<Payload>*, most> to_{};
+    bool is_for(std::size_t k, const Item& item) const {
+        return only_[k] == all_parts || (only_[k] & parts_in(item)) != 0;
+    }
+
+    std::array<std::unique_ptr<Branch>, most> to_;
     std::array<Parts, most> only_{};
     std::size_t count_ = 0;
     unsigned taken_ = 0;  // of the item that is being delivered

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstddef>
 
-#include "modules/stream/work.h"
+#include "modules/stream/parts.h"
 #include "modules/unit/ring.h"
 
 namespace tessera {

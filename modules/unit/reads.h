@@ -5,8 +5,8 @@
 
 namespace tessera {
 
-/// The table entries that a unit's item needs: byte addresses, in requests that a memory serves one after another. To be
-/// filled in by the unit; empty: none.
+/// The table entries that a unit's item needs: byte addresses, in requests that a memory serves one after another. To
+/// be filled in by the unit; empty: none.
 class Reads {
   public:
     static constexpr unsigned most_requests = 3;

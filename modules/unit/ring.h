@@ -5,8 +5,8 @@
 
 namespace tessera {
 
-/// A queue of fixed capacity, oldest item first. Allocates only when constructed or grown. A popped item stays in its place until
-/// another is pushed there, so items may own storage that is reused.
+/// A queue of fixed capacity, oldest item first. Allocates only when constructed or grown. A popped item stays in its
+/// place until another is pushed there, so items may own storage that is reused.
 template <class Item>
 class Ring {
   public:

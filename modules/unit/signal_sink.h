@@ -4,8 +4,8 @@
 
 namespace tessera {
 
-/// Takes the signals that units show (modules/unit/signals.h) and their values. Implemented by the testbench's VcdWriter
-/// (testbench/trace/vcd_writer.h), which writes them to a file.
+/// Takes the signals that units show (modules/unit/signals.h) and their values. Implemented by the testbench's
+/// VcdWriter (testbench/trace/vcd_writer.h), which writes them to a file.
 class SignalSink {
   public:
     using Signal = std::uint32_t;

@@ -67,7 +67,7 @@ void Signals::value(const char* name, unsigned bits, std::uint64_t value) {
     if (declaring_)
         declare(name, bits);
     else
-        sink_.set(handles_[signal_++], value);
+        set(value);
 }
 
 bool Signals::changed(std::uint64_t value) {
@@ -83,37 +83,17 @@ void Signals::unit(const char* name, const sc_core::sc_object* object) {
           [&] { value(name, UnitNumbers::bits, declaring_ ? 0 : numbers_.of(object)); });
 }
 
-void Signals::texture(const char* u, const char* v, const datapath::TexCoord& t) {
-    value(u, 25, t.u);
-    value(v, 25, t.v);
+void Signals::set(std::uint64_t value) {
+    sink_.set(handles_[signal_++], value);
 }
 
-void Signals::position(const char* x, const char* y, const char* z, const datapath::Position& p) {
-    value(x, 32, static_cast<std::uint64_t>(p.x));
-    value(y, 32, static_cast<std::uint64_t>(p.y));
-    value(z, 32, static_cast<std::uint64_t>(p.z));
-}
-
-void Signals::direction(const char* x, const char* y, const char* z, const datapath::Direction& n) {
-    value(x, 18, static_cast<std::uint64_t>(n.x));
-    value(y, 18, static_cast<std::uint64_t>(n.y));
-    value(z, 18, static_cast<std::uint64_t>(n.z));
-}
-
-void Signals::screen(const char* x, const char* y, const datapath::ScreenPosition& s) {
-    value(x, 31, static_cast<std::uint64_t>(s.x));
-    value(y, 31, static_cast<std::uint64_t>(s.y));
-}
-
-void Signals::work(const Work& work) {
-    value("triangle", 32, pass_of(work).number);
-    value("part", part_bits, part_of(work));
-}
-
-void Signals::edge_textures(const Work& work) {
-    texture("t_i_u", "t_i_v", begin_of(work).texture);
-    texture("t_j_u", "t_j_v", end_of(work).texture);
-    texture("t_ij_u", "t_ij_v", pass_of(work).edges[work.index()].texture);
+std::string Signals::name_of(const datapath::Field& field) {
+    std::string name = field.name;
+    if (field.index >= 0)
+        name += "_" + std::to_string(field.index);
+    if (field.component[0] != '\0')
+        name += std::string("_") + field.component;
+    return name;
 }
 
 void Signals::pulse_if(const char* name, bool now) {

@@ -7,8 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "modules/datapath/vertex.h"
-#include "modules/stream/work.h"
+#include "modules/stream/items.h"
 #include "modules/unit/signal_sink.h"
 
 namespace tessera {
@@ -92,37 +91,40 @@ class Signals {
     void unit(const char* name, const sc_core::sc_object* object);
 
     /// Widths are those of the largest configuration, so that a save file fits all.
-    void texture(const char* u, const char* v, const datapath::TexCoord& t);
-    void position(const char* x, const char* y, const char* z, const datapath::Position& p);
-    void direction(const char* x, const char* y, const char* z, const datapath::Direction& n);
-    void screen(const char* x, const char* y, const datapath::ScreenPosition& s);
+    void position(const char* name, const datapath::Position& p) { fields().position(name, p, ""); }
+    void direction(const char* name, const datapath::Direction& n) { fields().direction(name, n, ""); }
+    void screen(const char* name, const datapath::ScreenPosition& s) { fields().screen(name, s, ""); }
 
-    /// Number of the triangle's pass, and which of its parts (waveforms/parts.txt).
-    void work(const Work& work);
+    /// An item's fields and annotations, in a scope of their own; null: in the unit's.
+    template <class Item>
+    void item(const char* scope, const Item& item) {
+        inner_scope_ = scope;
+        describe_item(*this, item, formats, 32);
+        inner_scope_ = nullptr;
+    }
 
-    /// t_i, t_j and, from Calculate New U on, t_ij.
-    void edge_textures(const Work& work);
-
-    static constexpr unsigned part_bits = 4;
-    static unsigned part_of(const Work& work) {
-        return work.parts == 0 ? 0 : static_cast<unsigned>(__builtin_ctz(work.parts));
+    /// For the description of an item's fields (modules/datapath/fields.h).
+    std::int64_t field(const datapath::Field& field, std::int64_t value) {
+        if (declaring_)
+            declare(name_of(field).c_str(), static_cast<unsigned>(field.most_bits));
+        else
+            set(static_cast<std::uint64_t>(value));
+        return value;
     }
-    static const Pass& pass_of(const Work& work) {
-        static const Pass none;
-        return work.pass == nullptr ? none : *work.pass;
-    }
-    /// The vertices an edge joins; of a vertex or normal, itself twice.
-    static const datapath::Vertex& begin_of(const Work& work) {
-        return pass_of(work).triangle.vertices[work.index()];
-    }
-    static const datapath::Vertex& end_of(const Work& work) {
-        return work.is_edge() ? pass_of(work).edge_end(static_cast<int>(work.index())) : begin_of(work);
+    std::uint32_t annotation(const char* name, std::uint32_t value) {
+        this->value(name, 32, value);
+        return value;
     }
 
   private:
     void pulse_if(const char* name, bool now);
     void pulse_or_level(const char* name, bool pulse, bool level);
     void declare(const char* name, unsigned bits);
+    void set(std::uint64_t value);
+    static std::string name_of(const datapath::Field& field);
+    datapath::Fields<Signals> fields() { return {*this, formats}; }
+
+    static constexpr datapath::Formats formats{};  // whose widths are not looked at
 
     SignalSink& sink_;
     UnitNumbers& numbers_;

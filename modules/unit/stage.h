@@ -6,7 +6,6 @@
 
 #include "modules/stream/stream_input.h"
 #include "modules/stream/stream_output.h"
-#include "modules/stream/work.h"
 #include "modules/unit/reads.h"
 #include "modules/unit/unit.h"
 
@@ -20,8 +19,8 @@ class MemoryPort;
 /// Timed mode: an item starts when the interval is over, a register stage is free and the memory has taken the requests
 /// of the item before. It is finished a latency after its start or, if it reads, after its last answer, and leaves in
 /// order. Register stages: ceil((latency + the memory's latency) / interval), so that neither holds anything up.
-/// Functional mode: reads and works on each part of an item in turn, adds the latency once, and hands the item on.
-template <class In, class Out = In>
+/// Functional mode: reads, works on the item, adds the latency, and hands the result on.
+template <class In, class Out>
 class Stage : public Unit {
   public:
     std::string holds() const override;
@@ -31,17 +30,22 @@ class Stage : public Unit {
 
   protected:
     /// servers: pipelines side by side that take turns. memory_latency: of the table it reads.
-    Stage(const sc_core::sc_module_name& name, Clock& clock, const UnitTiming& timing, unsigned servers = 1,
-          unsigned memory_latency = 0);
+    Stage(const sc_core::sc_module_name& name, const UnitContext& context, const UnitTiming& timing,
+          unsigned servers = 1, unsigned memory_latency = 0);
     ~Stage() override;
 
-    /// To be called in a derived unit's constructor: its input; each output, and the parts that it is for; the port it
-    /// reads through, if it does (most_requests: of one item).
-    void takes_from(StreamInput<In>& input, const StallParameters& stalls);
-    void delivers_to(StreamOutput<Out>& output, Parts only = all_parts);
+    /// To be called in a derived unit's constructor: its input; each output, what it gets of a result,
+    /// and the parts that it is for; the port it reads through, if it does (most_requests: of one item).
+    void takes_from(const UnitContext& context, StreamInput<In>& input);
+    void delivers_to(const UnitContext& context, StreamOutput<Out>& output, Parts only = all_parts);
+    template <class Payload>
+    void delivers_to(const UnitContext& context, StreamOutput<Payload>& output, Payload (*select)(const Out&),
+                     Parts only);
     void reads_through(MemoryPort& port, unsigned most_requests);
+    void may_wait() { may_wait_ = true; }
 
-    /// False: the item waits for what another input brings. Functional mode: that is an error.
+    /// Of a unit that calls may_wait() in its constructor. False: the item waits for what another, earlier one brings.
+    /// Functional mode: that is an error.
     virtual bool may_start(const In&) const { return true; }
     /// Who brings it; functional mode: when it came.
     virtual const sc_core::sc_object* lacks() const { return nullptr; }
@@ -52,9 +56,9 @@ class Stage : public Unit {
     /// The unit's work on an item, with what was read for it: returns what is passed on.
     virtual Out process(const In& item, const Entries& entries) = 0;
 
-    /// In traces: operands of an item that has started, and results of one that has been worked on.
+    /// In traces, beside the items' own fields: of one that has started, and of one that has been worked on.
     virtual void trace_started(Signals&, const In&) const {}
-    virtual void trace_processed(Signals&, const In&, const Out&) const = 0;
+    virtual void trace_processed(Signals&, const In&, const Out&) const {}
 
     void step() override;
 
@@ -64,15 +68,15 @@ class Stage : public Unit {
     struct Machinery;  // stage_steps.h
 
     void b_transport(In& item, sc_core::sc_time& delay);
-    Out read_and_process(const In& part, sc_core::sc_time& delay);
+    Out read_and_process(const In& item, sc_core::sc_time& delay);
     void start(std::uint64_t cycle);
     void take_answers(std::uint64_t cycle);
 
+    const sc_core::sc_time latency_;
+    bool may_wait_ = false;
     StreamInput<In>* input_ = nullptr;
     MemoryPort* port_ = nullptr;  // null: the unit reads nothing
     const std::unique_ptr<Machinery> machinery_;
 };
-
-extern template class Stage<Work>;
 
 }  // namespace tessera

@@ -15,17 +15,6 @@ namespace tessera {
 
 // How a Stage does what stage.h says. To be included where one is instantiated.
 
-/// Calls `each(part)` for each part of an item: what timed mode sends one after another and functional mode together.
-template <class Item, class Each>
-void for_each_part(const Item& whole, Each&& each) {
-    each(whole);
-}
-template <class Each>
-void for_each_part(const Work& whole, Each&& each) {
-    for (unsigned left = whole.parts; left != 0; left &= left - 1)
-        each(Work{whole.pass, static_cast<Parts>(left & -left)});
-}
-
 /// What a stage is made of.
 template <class In, class Out>
 struct Stage<In, Out>::Machinery {
@@ -72,26 +61,35 @@ struct Stage<In, Out>::Machinery {
 };
 
 template <class In, class Out>
-Stage<In, Out>::Stage(const sc_core::sc_module_name& name, Clock& clock, const UnitTiming& timing,
-                      unsigned servers, unsigned memory_latency)
-    : Unit(name, clock),
+Stage<In, Out>::Stage(const sc_core::sc_module_name& name, const UnitContext& context,
+                      const UnitTiming& timing, unsigned servers, unsigned memory_latency)
+    : Unit(name, context.clock),
       timing_(timing),
+      latency_(clock_.period() * timing.latency),
       machinery_(std::make_unique<Machinery>(timing, servers, memory_latency)) {}
 
 template <class In, class Out>
 Stage<In, Out>::~Stage() = default;
 
 template <class In, class Out>
-void Stage<In, Out>::takes_from(StreamInput<In>& input, const StallParameters& stalls) {
+void Stage<In, Out>::takes_from(const UnitContext& context, StreamInput<In>& input) {
     input_ = &input;
     input.template serve<&Stage::b_transport>(*this);
-    input.clocked_by(clock_, *this, timing_.buffer, stalls);
+    input.clocked_by(clock_, *this, timing_.buffer, context.timing().stalls);
 }
 
 template <class In, class Out>
-void Stage<In, Out>::delivers_to(StreamOutput<Out>& output, Parts only) {
+void Stage<In, Out>::delivers_to(const UnitContext& context, StreamOutput<Out>& output, Parts only) {
     machinery_->fork.add(output, only);
-    output.clocked_by(clock_, *this);
+    output.clocked_by(context, *this);
+}
+
+template <class In, class Out>
+template <class Payload>
+void Stage<In, Out>::delivers_to(const UnitContext& context, StreamOutput<Payload>& output,
+                                 Payload (*select)(const Out&), Parts only) {
+    machinery_->fork.add(output, select, only);
+    output.clocked_by(context, *this);
 }
 
 template <class In, class Out>
@@ -102,32 +100,28 @@ void Stage<In, Out>::reads_through(MemoryPort& port, unsigned most_requests) {
 
 template <class In, class Out>
 void Stage<In, Out>::b_transport(In& item, sc_core::sc_time& delay) {
-    Out result{};
-    for_each_part(item, [&](const In& part) {
-        if (!may_start(part))
+    if (may_wait_) {
+        if (!may_start(item))
             SC_REPORT_ERROR("tessera/stage",
                             (std::string(name()) + ": an item came before what it waits for").c_str());
-        delay = std::max(delay, may_start_after(part));
-        result = read_and_process(part, delay);
-    });
-    delay += clock_.period() * timing_.latency;
-    if constexpr (std::is_same_v<In, Out>)
-        machinery_->fork.b_transport(item, delay);
-    else
-        machinery_->fork.b_transport(result, delay);
+        delay = std::max(delay, may_start_after(item));
+    }
+    Out result = read_and_process(item, delay);
+    delay += latency_;
+    machinery_->fork.transport(result, delay);
 }
 
 template <class In, class Out>
-Out Stage<In, Out>::read_and_process(const In& part, sc_core::sc_time& delay) {
+Out Stage<In, Out>::read_and_process(const In& item, sc_core::sc_time& delay) {
     Entries entries;
     if (port_ != nullptr) {
         Reads needed;
-        reads(part, needed);
+        reads(item, needed);
         MemoryPort::Burst burst(*port_, delay);
         for (unsigned k = 0; k < needed.entries(); ++k)
             entries[k] = burst.read(needed.addresses()[k]);
     }
-    return process(part, entries);
+    return process(item, entries);
 }
 
 template <class In, class Out>
@@ -185,7 +179,7 @@ void Stage<In, Out>::step() {
     }
     bool lacking = false;
     while ((port_ == nullptr || m.ask(*port_)) && !input_->empty() && m.pipeline.may_start(cycle)) {
-        lacking = !may_start(input_->front());
+        lacking = may_wait_ && !may_start(input_->front());
         if (lacking)
             break;
         start(cycle);
@@ -218,20 +212,22 @@ std::string Stage<In, Out>::holds() const {
     return listed(text, input_->holds_back() ? "one at its door" : "");
 }
 
-/// Shows the item started last; of a unit that reads, the request made last, how many requests and reads there were, and the
-/// item whose last read came last.
+/// Shows, as `in`, the item started last and, as `out`, the result of the one worked on last; of a unit that reads,
+/// besides, the request made last, and how many requests and reads there were.
 template <class In, class Out>
 void Stage<In, Out>::show(Signals& signals) const {
     const Machinery& m = *machinery_;
+    const auto show_result = [&](const typename Machinery::Slot& slot) {
+        signals.item("out", slot.result);
+        trace_processed(signals, slot.item, slot.result);
+    };
     Unit::show(signals);
     signals.input(*input_);
     signals.group(signals.changed(activity_.items_in()) && !m.pipeline.empty(), [&] {
-        const typename Machinery::Slot& newest = m.pipeline.newest();
-        if constexpr (std::is_same_v<In, Work>)
-            signals.work(newest.item);
-        trace_started(signals, newest.item);
+        signals.item("in", m.pipeline.newest().item);
+        trace_started(signals, m.pipeline.newest().item);
         if (port_ == nullptr)
-            trace_processed(signals, newest.item, newest.result);
+            show_result(m.pipeline.newest());
     });
     if (port_ == nullptr)
         return;
@@ -242,24 +238,14 @@ void Stage<In, Out>::show(Signals& signals) const {
     signals.value("requests_under_way", 16, port_->requests_under_way());
     signals.group(signals.changed(port_->reads()) && port_->under_way(),
                   [&] { signals.value("address", 32, port_->last_address()); });
-    signals.group(signals.changed(activity_.items_out() + m.waiting) && m.waiting > 0, [&] {
-        const typename Machinery::Slot& processed =
-            m.waiting > 0 ? m.pipeline.at(m.waiting - 1) : m.pipeline.newest();
-        if constexpr (std::is_same_v<In, Work>) {
-            signals.value("answered_triangle", 32, Signals::pass_of(processed.item).number);
-            signals.value("answered_part", Signals::part_bits, Signals::part_of(processed.item));
-        }
-        trace_processed(signals, processed.item, processed.result);
-    });
+    signals.group(signals.changed(activity_.items_out() + m.waiting) && m.waiting > 0,
+                  [&] { show_result(m.waiting > 0 ? m.pipeline.at(m.waiting - 1) : m.pipeline.newest()); });
 }
 
-/// A triangle comes without its number.
 template <class In, class Out>
 Begun Stage<In, Out>::begun() const {
-    if constexpr (std::is_same_v<In, Work>)
-        return Begun::of(activity_.items_in(), machinery_->pipeline.newest().item);
-    else
-        return {activity_.items_in()};
+    const In& item = machinery_->pipeline.newest().item;
+    return {activity_.items_in(), origin_of(item), parts_in(item)};
 }
 
 }  // namespace tessera

@@ -5,7 +5,7 @@
 #include <systemc>
 
 #include "modules/clock/clock.h"
-#include "modules/timing.h"
+#include "modules/design.h"
 #include "modules/unit/activity.h"
 #include "modules/unit/begun.h"
 
@@ -23,14 +23,14 @@ class Unit : public Clocked, public sc_core::sc_module {
     /// For a deadlock's report: what is in the unit and at its door, in words; empty: nothing.
     virtual std::string holds() const = 0;
 
-    /// Cycles the unit's work needs at its initiation interval, or at a memory's ports: of all cycles, those in which it
-    /// could not have taken more.
+    /// Cycles the unit's work needs at its initiation interval, or at a memory's ports: of all cycles, those in which
+    /// it could not have taken more.
     virtual std::uint64_t occupied_cycles() const = 0;
 
     bool idle() const { return activity_.level() == 0; }
 
-    /// Declares the unit's signals, or shows their values at the end of a cycle (modules/unit/signals.h). Of every unit:
-    /// its state, who it is blocked by, waits for or lacks, and the items in it.
+    /// Declares the unit's signals, or shows their values at the end of a cycle (modules/unit/signals.h). Of every
+    /// unit: its state, who it is blocked by, waits for or lacks, and the items in it.
     virtual void show(Signals& signals) const;
 
     /// Valid in a cycle in which the unit has begun on an item, and while it holds any. Units that hold many triangles

@@ -1,29 +1,29 @@
 #pragma once
 #include <systemc>
 
+#include "modules/stream/items.h"
 #include "modules/unit/stage.h"
 
 namespace tessera {
 
 /// Calculate New P (paper figure 7): the midpoint of each edge's two positions.
 ///
-/// In:   edges of a pass; vertices and normals of its triangle pass unchanged. Out: new_vertex[k].position =
-///       (P_i + P_j) >> 1, likewise t and, not yet of unit length, N: Displace Vertex needs all three. (Decision: t_ij
-///       and the mean normal are formed here as well as in Tessellation Tests, so that the two branches need no stream
-///       between them; Pass or Tessellate checks that they agree.)
+/// In:   GeometryOperands. Out: BasePoint: of an edge (P_i + P_j) >> 1, likewise t and, not yet of unit length, N:
+///       Displace Vertex needs all three; vertices and normals unchanged. (Decision: t_ij and the mean normal are
+///       formed here as well as in Tessellation Tests, so that the two branches need no stream between them; Pass or
+///       Tessellate checks that they agree.)
 /// Arithmetic: add, arithmetic shift right by 1.
 /// Timing: one vertex, normal or edge per interval; latency 1, interval 1 by default.
 /// Waits for nothing but its input; held back by Displace Vertex.
-class CalculateNewP final : public Stage<Work> {
+class CalculateNewP : public Stage<GeometryOperands, BasePoint> {
   public:
-    StreamInput<Work> from_get_triangle{"from_get_triangle"};
-    StreamOutput<Work> to_displace_vertex{"to_displace_vertex"};
+    StreamInput<GeometryOperands> from_get_triangle{"from_get_triangle"};
+    StreamOutput<BasePoint> to_displace_vertex{"to_displace_vertex"};
 
-    CalculateNewP(const sc_core::sc_module_name& name, Clock& clock, const Timing& timing);
+    CalculateNewP(const sc_core::sc_module_name& name, const UnitContext& context);
 
-  private:
-    Work process(const Work& part, const Entries& entries) override;
-    void trace_processed(Signals& signals, const Work& part, const Work& result) const override;
+  protected:
+    BasePoint process(const GeometryOperands& part, const Entries& entries) override;
 };
 
 }  // namespace tessera

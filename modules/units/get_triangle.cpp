@@ -5,61 +5,106 @@
 #include "modules/unit/signals.h"
 
 namespace tessera {
+namespace {
 
-GetTriangle::GetTriangle(const sc_core::sc_module_name& name, Clock& clock, const Timing& timing,
-                         unsigned tests_units, PassPool& passes)
-    : Unit(name, clock),
-      to_tessellation_tests("to_tessellation_tests", tests_units),
-      timing_(timing.get_triangle),
-      passes_(passes) {
-    from_host.serve<&GetTriangle::b_transport_from_host>(*this);
-    from_triangle_queue.serve<&GetTriangle::b_transport_from_triangle_queue>(*this);
-    from_host.clocked_by(clock, *this, timing_.buffer, timing.stalls);
-    from_triangle_queue.clocked_by(clock, *this, timing_.buffer, timing.stalls);
-    const auto add = [&](StreamOutput<Work>& output, Parts takes) {
-        output.clocked_by(clock, *this);
-        branches_[branch_count_].output = &output;
-        branches_[branch_count_++].takes = takes;
-    };
-    add(to_calculate_new_p, all_parts);
-    for (unsigned k = 0; k < tests_units; ++k)
-        add(to_tessellation_tests[k], parts_for_tests(k, tests_units));
+EdgeEnd edge_end(const datapath::Vertex& vertex) {
+    return {vertex.texture,          vertex.normal, vertex.tangent,   vertex.handedness,
+            vertex.displaced_normal, vertex.screen, vertex.generation};
 }
 
-void GetTriangle::prepare(datapath::TrianglePass& pass) {
-    pass.new_vertices = 0;
-    pass.new_normals = 0;
-    pass.split = 0;
-    pass.tested = !pass.triangle.finished;
-    for (unsigned k = 0; k < 3; ++k) {
-        const datapath::Vertex& vertex = pass.triangle.vertices[k];
-        if (!vertex.displaced_known)
-            pass.new_vertices = static_cast<std::uint8_t>(pass.new_vertices | 1u << k);
-        else if (!vertex.screen_normal_known)
-            pass.new_normals = static_cast<std::uint8_t>(pass.new_normals | 1u << k);
+PartTag tag_of(const TakenTriangle& taken, Parts part) {
+    return {taken.tag, static_cast<std::uint8_t>(__builtin_ctz(part)), taken.origin};
+}
+
+void make(GeometryOperands& item, const TakenTriangle& taken, Parts part) {
+    item.tag = tag_of(taken, part);
+    const unsigned k = item.tag.index();
+    const datapath::Vertex& i = taken.triangle.vertices[k];
+    item.p_i = i.position;
+    item.n_i = item.tag.is_normal() ? i.displaced_normal : i.normal;
+    item.t_i = i.texture;
+    if (!item.tag.is_edge())
+        return;
+    const datapath::Vertex& j = taken.triangle.vertices[(k + 1) % 3];
+    item.p_j = j.position;
+    item.n_j = j.normal;
+    item.t_j = j.texture;
+}
+
+void make(TestOperands& item, const TakenTriangle& taken, Parts part) {
+    item.tag = tag_of(taken, part);
+    item.new_vertices = static_cast<std::uint8_t>(parts_of(taken.triangle) & vertex_parts);
+    const unsigned k = item.tag.index();
+    item.ends[0] = edge_end(taken.triangle.vertices[k]);
+    if (item.tag.is_edge())
+        item.ends[1] = edge_end(taken.triangle.vertices[(k + 1) % 3]);
+}
+
+/// Of a finished triangle nothing is tested again.
+Parts parts_to_test(const datapath::Triangle& triangle) {
+    return triangle.finished ? Parts{0} : parts_of(triangle);
+}
+
+}  // namespace
+
+GetTriangle::GetTriangle(const sc_core::sc_module_name& name, const UnitContext& context)
+    : Unit(name, context.clock),
+      to_tessellation_tests("to_tessellation_tests", context.design.tests_units),
+      timing_(context.timing().get_triangle),
+      tag_mask_(static_cast<Tag>((std::uint64_t{1} << tag_bits_in_use(context.design)) - 1)),
+      tests_units_(context.design.tests_units) {
+    const Timing& timing = context.timing();
+    from_host.serve<&GetTriangle::b_transport_from_host>(*this);
+    from_triangle_queue.serve<&GetTriangle::b_transport_from_triangle_queue>(*this);
+    queue_level.serve<&GetTriangle::b_transport_level>(*this);
+    from_host.clocked_by(context.clock, *this, timing_.buffer, timing.stalls);
+    from_triangle_queue.clocked_by(context.clock, *this, timing_.buffer, timing.stalls);
+    queue_level.clocked_by(context.clock, *this, 1, {});  // a wire: it does not stall
+    to_pass_or_tessellate.clocked_by(context, *this);
+    to_calculate_new_p.clocked_by(context, *this);
+    geometry_.output = &to_calculate_new_p;
+    geometry_.takes = all_parts;
+    for (unsigned k = 0; k < tests_units_; ++k) {
+        to_tessellation_tests[k].clocked_by(context, *this);
+        tests_[k].output = &to_tessellation_tests[k];
+        tests_[k].takes = parts_for_tests(k, context.design.tests_units);
     }
 }
 
-void GetTriangle::send_whole(const datapath::Triangle& triangle, sc_core::sc_time& delay) {
-    Pass pass;
-    pass.number = passes_.next_tag();
-    pass.triangle = triangle;
-    prepare(pass);
-    delay += clock_.period() * timing_.latency;
-    const sc_core::sc_time start = delay;
-    for (unsigned k = 0; k < branch_count_; ++k) {
-        if (k > 0 && !pass.tested)
-            break;
-        Work work{&pass, static_cast<Parts>(parts_of(pass) & branches_[k].takes)};
+TakenTriangle GetTriangle::taken(const datapath::Triangle& triangle) {
+    const std::uint32_t pass = passes_++;
+    return {pass & tag_mask_, {pass, triangle.base}, triangle};
+}
+
+/// Functional mode: the branch's parts, one after another.
+template <class Item>
+void GetTriangle::send_whole(Branch<Item>& branch, const TakenTriangle& taken, Parts parts,
+                             sc_core::sc_time start, sc_core::sc_time& delay) {
+    for (unsigned left = parts & branch.takes; left != 0; left &= left - 1) {
+        Item item;
+        make(item, taken, static_cast<Parts>(left & -left));
         sc_core::sc_time its_delay = start;
-        (*branches_[k].output)->b_transport(work, its_delay);
+        branch.output->transport(item, its_delay);
         delay = std::max(delay, its_delay);
     }
 }
 
+void GetTriangle::send_whole(const datapath::Triangle& triangle, sc_core::sc_time& delay) {
+    TakenTriangle whole = taken(triangle);
+    delay += clock_.period() * timing_.latency;
+    const sc_core::sc_time start = delay;
+    sc_core::sc_time its_delay = start;
+    to_pass_or_tessellate.transport(whole, its_delay);
+    send_whole(geometry_, whole, parts_of(triangle), start, delay);
+    for (std::size_t k = 0; k < tests_units_; ++k)
+        send_whole(tests_[k], whole, parts_to_test(triangle), start, delay);
+}
+
 void GetTriangle::b_transport_from_host(datapath::Triangle& triangle, sc_core::sc_time& delay) {
-    while (!queue_level->takes_host_triangles())
-        wait(queue_level->host_may_send());
+    while (!below_watermark_) {
+        host_waits_ = true;
+        wait(host_may_send_);
+    }
     ++host_triangles_;
     send_whole(triangle, delay);
 }
@@ -69,32 +114,50 @@ void GetTriangle::b_transport_from_triangle_queue(datapath::Triangle& triangle, 
     send_whole(triangle, delay);
 }
 
+/// A host that waits goes before the queue.
+void GetTriangle::b_transport_level(QueueLevel& level, sc_core::sc_time& delay) {
+    below_watermark_ = level.below_watermark;
+    if (!below_watermark_ || !host_waits_)
+        return;
+    host_waits_ = false;
+    host_may_send_.notify();
+    wait(delay);
+    delay = sc_core::SC_ZERO_TIME;
+}
+
+template <class Each>
+void GetTriangle::for_each_branch(Each&& each) {
+    each(geometry_);
+    for (std::size_t k = 0; k < tests_units_; ++k)
+        each(tests_[k]);
+}
+
 bool GetTriangle::begin(std::uint64_t cycle) {
     StreamInput<datapath::Triangle>* source = nullptr;
     if (!from_triangle_queue.empty()) {
         source = &from_triangle_queue;
         ++queue_triangles_;
-    } else if (!from_host.empty() && queue_level->takes_host_triangles()) {
+    } else if (!from_host.empty() && below_watermark_) {
         source = &from_host;
         ++host_triangles_;
     } else {
         return false;
     }
-    pass_ = &passes_.take();
-    pass_->triangle = source->front();
+    taken_ = taken(source->front());
+    sending_ = true;
     source->pop();
-    prepare(*pass_);
     activity_.item_in(cycle);
-    for (unsigned k = 0; k < branch_count_; ++k) {
-        Branch& branch = branches_[k];
-        branch.left = static_cast<Parts>(k == 0 || pass_->tested ? parts_of(*pass_) & branch.takes : 0);
-        branch.next = std::max(branch.next, cycle + timing_.latency);
-    }
+    to_pass_or_tessellate.send(taken_);
+    geometry_.left = parts_of(taken_.triangle);
+    for (std::size_t k = 0; k < tests_units_; ++k)
+        tests_[k].left = static_cast<Parts>(parts_to_test(taken_.triangle) & tests_[k].takes);
+    for_each_branch([&](auto& branch) { branch.next = std::max(branch.next, cycle + timing_.latency); });
     return true;
 }
 
 /// True: nothing left to send, and nothing on offer.
-bool GetTriangle::send_parts(Branch& branch, std::uint64_t cycle) {
+template <class Item>
+bool GetTriangle::send_parts(Branch<Item>& branch, std::uint64_t cycle) {
     if (!branch.output->free())
         return false;
     if (branch.left == 0)
@@ -105,48 +168,55 @@ bool GetTriangle::send_parts(Branch& branch, std::uint64_t cycle) {
     }
     const auto part = static_cast<Parts>(branch.left & -branch.left);
     branch.left = static_cast<Parts>(branch.left & ~part);
-    branch.offered = {pass_, part};
+    make(branch.offered, taken_, part);
     branch.next = cycle + timing_.interval;
-    if (&branch == branches_.data())
+    if (branch.takes == all_parts)
         ++parts_sent_;
-    const bool taken = branch.output->send(branch.offered);
+    const bool was_taken = branch.output->send(branch.offered);
     if (branch.left != 0)
         wake_at(branch.next);
-    return taken && branch.left == 0;
+    return was_taken && branch.left == 0;
+}
+
+const sc_core::sc_object* GetTriangle::blocked_by() const {
+    if (!to_calculate_new_p.free())
+        return to_calculate_new_p.consumer();
+    for (const StreamOutput<TestOperands>& output : to_tessellation_tests) {
+        if (!output.free())
+            return output.consumer();
+    }
+    return to_pass_or_tessellate.free() ? nullptr : to_pass_or_tessellate.consumer();
 }
 
 void GetTriangle::step() {
     const std::uint64_t cycle = now();
+    for (; !queue_level.empty(); queue_level.pop())
+        below_watermark_ = queue_level.front().below_watermark;
     for (;;) {
-        if (pass_ == nullptr && !begin(cycle))
+        if (!sending_ && !begin(cycle))
             break;
-        bool all = true;
-        for (unsigned k = 0; k < branch_count_; ++k)
-            all = send_parts(branches_[k], cycle) && all;
+        bool all = to_pass_or_tessellate.free();
+        for_each_branch([&](auto& branch) { all = send_parts(branch, cycle) && all; });
         if (!all)
             break;
-        pass_ = nullptr;
+        sending_ = false;
         activity_.item_out(cycle);
     }
-    const sc_core::sc_object* blocker = nullptr;
-    for (unsigned k = 0; k < branch_count_ && blocker == nullptr; ++k) {
-        if (!branches_[k].output->free())
-            blocker = branches_[k].output->consumer();
-    }
+    const sc_core::sc_object* blocker = blocked_by();
     if (blocker != nullptr)
         activity_.set(cycle, State::blocked, blocker);
     else
-        activity_.set(cycle, pass_ != nullptr ? State::busy : State::starved);
+        activity_.set(cycle, sending_ ? State::busy : State::starved);
 }
 
 std::string GetTriangle::holds() const {
     std::string text;
-    if (pass_ != nullptr)
-        text = "triangle " + std::to_string(pass_->number) + ", not all of it sent";
+    if (sending_)
+        text = "triangle " + std::to_string(taken_.origin.pass) + ", not all of it sent";
     if (!from_host.empty())
-        text = listed(text, queue_level->takes_host_triangles()
-                                ? "a host triangle"
-                                : "a host triangle it may not take: the queue is at its watermark");
+        text =
+            listed(text, below_watermark_ ? "a host triangle"
+                                          : "a host triangle it may not take: the queue is at its watermark");
     return listed(text, from_triangle_queue.empty() ? "" : "a triangle from the queue");
 }
 
@@ -154,20 +224,20 @@ void GetTriangle::show(Signals& signals) const {
     Unit::show(signals);
     signals.input(from_host, "from_host");
     signals.input(from_triangle_queue, "from_triangle_queue");
-    signals.group(signals.changed(activity_.items_in()) && pass_ != nullptr, [&] {
-        const Pass& pass = Signals::pass_of({pass_, 0});
-        signals.value("triangle", 32, pass.number);
-        signals.value("base", 32, pass.triangle.base);
-        signals.value("new_vertices", 3, pass.new_vertices);
-        signals.value("new_normals", 3, pass.new_normals);
-        signals.flag("tested", pass.tested);
+    signals.group(signals.changed(activity_.items_in()) && sending_, [&] {
+        const Parts parts = parts_of(taken_.triangle);
+        signals.value("triangle", 32, taken_.origin.pass);
+        signals.value("base", 32, taken_.origin.base);
+        signals.value("new_vertices", 3, parts & vertex_parts);
+        signals.value("new_normals", 3, (parts & normal_parts) >> first_normal_part);
+        signals.flag("tested", (parts & edge_parts) != 0);
     });
     signals.group(signals.changed(parts_sent_),
-                  [&] { signals.value("part", Signals::part_bits, Signals::part_of(branches_[0].offered)); });
+                  [&] { signals.value("part", part_bits, geometry_.offered.tag.part); });
     Parts tests_left = 0;
-    for (unsigned k = 1; k < branch_count_; ++k)
-        tests_left = static_cast<Parts>(tests_left | branches_[k].left);
-    signals.value("geometry_left", 9, branches_[0].left);
+    for (const Branch<TestOperands>& branch : tests_)
+        tests_left = static_cast<Parts>(tests_left | branch.left);
+    signals.value("geometry_left", 9, geometry_.left);
     signals.value("tests_left", 9, tests_left);
     signals.value("host_triangles", 32, host_triangles_);
     signals.value("queue_triangles", 32, queue_triangles_);

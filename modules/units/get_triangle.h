@@ -3,14 +3,10 @@
 #include <cstdint>
 #include <systemc>
 
-#include "modules/datapath/vertex.h"
+#include "modules/stream/items.h"
 #include "modules/stream/stream_input.h"
 #include "modules/stream/stream_output.h"
-#include "modules/stream/work.h"
-#include "modules/timing.h"
-#include "modules/unit/pass_pool.h"
 #include "modules/unit/unit.h"
-#include "modules/units/triangle_queue_level.h"
 
 namespace tessera {
 
@@ -22,22 +18,24 @@ namespace tessera {
 ///   re-tessellated         normals that have no N's yet, then three edges
 ///   finished, without N's  its normals only: no edge is tested again
 ///
-/// In:   triangles. Out: to Calculate New P all parts, to Tessellation Tests vertices and edges; with three Tessellation
-///       Tests units edge k and its two vertices to unit k.
-/// Timing: one part per interval (1) on each output, the first a latency (1) after the triangle was taken. Capacity: one
-///       triangle; the next is taken when all parts of the last have been.
+/// In:   triangles; the queue's level. Out: to Calculate New P all parts, to Tessellation Tests vertices and edges;
+///       with three Tessellation Tests units edge k and its two vertices to unit k. To Pass or Tessellate the triangle
+///       itself, for what its parts do not carry.
+/// Timing: one part per interval (1) on each output, the first a latency (1) after the triangle was taken. Capacity:
+///       one triangle; the next is taken when all parts of the last have been.
 /// Waits for the Triangle Queue or the host; takes a host triangle only while the queue is below its watermark and has
-/// nothing to send. Held back by Calculate New P and Tessellation Tests.
+/// nothing to send. Held back by Calculate New P, Tessellation Tests and Pass or Tessellate.
 class GetTriangle : public Unit {
   public:
     StreamInput<datapath::Triangle> from_host{"from_host"};
     StreamInput<datapath::Triangle> from_triangle_queue{"from_triangle_queue"};
-    StreamOutput<Work> to_calculate_new_p{"to_calculate_new_p"};
-    sc_core::sc_vector<StreamOutput<Work>> to_tessellation_tests;  ///< one per Tessellation Tests unit
-    sc_core::sc_port<TriangleQueueLevel> queue_level{"queue_level"};
+    StreamInput<QueueLevel> queue_level{"queue_level"};
+    StreamOutput<GeometryOperands> to_calculate_new_p{"to_calculate_new_p"};
+    sc_core::sc_vector<StreamOutput<TestOperands>>
+        to_tessellation_tests;  ///< one per Tessellation Tests unit
+    StreamOutput<TakenTriangle> to_pass_or_tessellate{"to_pass_or_tessellate"};
 
-    GetTriangle(const sc_core::sc_module_name& name, Clock& clock, const Timing& timing, unsigned tests_units,
-                PassPool& passes);
+    GetTriangle(const sc_core::sc_module_name& name, const UnitContext& context);
 
     std::uint64_t host_triangles() const { return host_triangles_; }
     std::uint64_t queue_triangles() const { return queue_triangles_; }
@@ -49,36 +47,51 @@ class GetTriangle : public Unit {
         return one_at_a_time_cycles(timing_, activity_.items_in(), parts_sent_);
     }
     void show(Signals& signals) const override;
-    Begun begun() const override { return Begun::of(activity_.items_in(), {pass_, 0}); }
-
-    /// Sets what has to be sent on: the unit's whole decision.
-    static void prepare(datapath::TrianglePass& pass);
+    Begun begun() const override { return {activity_.items_in(), taken_.origin}; }
 
   private:
-    /// One output's share of the pass: what is left to send, and what is on offer.
+    /// One output's share of the triangle: what is left to send, and what is on offer.
+    template <class Item>
     struct Branch {
-        StreamOutput<Work>* output = nullptr;
+        StreamOutput<Item>* output = nullptr;
         Parts takes = 0;  // of a triangle
         Parts left = 0;
-        Work offered;
+        Item offered;
         std::uint64_t next = 0;
     };
+    static constexpr std::size_t most_tests_units = 3;
 
     void b_transport_from_host(datapath::Triangle& triangle, sc_core::sc_time& delay);
     void b_transport_from_triangle_queue(datapath::Triangle& triangle, sc_core::sc_time& delay);
+    void b_transport_level(QueueLevel& level, sc_core::sc_time& delay);
     void send_whole(const datapath::Triangle& triangle, sc_core::sc_time& delay);
+    template <class Item>
+    void send_whole(Branch<Item>& branch, const TakenTriangle& taken, Parts parts, sc_core::sc_time start,
+                    sc_core::sc_time& delay);
+    TakenTriangle taken(const datapath::Triangle& triangle);
     void step() override;
     bool begin(std::uint64_t cycle);
-    bool send_parts(Branch& branch, std::uint64_t cycle);
+    template <class Item>
+    bool send_parts(Branch<Item>& branch, std::uint64_t cycle);
+    template <class Each>
+    void for_each_branch(Each&& each);
+    const sc_core::sc_object* blocked_by() const;
 
     UnitTiming timing_;
-    PassPool& passes_;
-    Pass* pass_ = nullptr;  // timed mode: what is being sent
-    std::array<Branch, 4> branches_;
-    unsigned branch_count_ = 0;
+    Tag tag_mask_;
+    std::uint32_t passes_ = 0;
+    TakenTriangle taken_;  // timed mode: whose parts are being sent
+    bool sending_ = false;
+    Branch<GeometryOperands> geometry_;
+    std::array<Branch<TestOperands>, most_tests_units> tests_;
+    std::size_t tests_units_;
+    bool below_watermark_ = true;  // the Triangle Queue
     std::uint64_t host_triangles_ = 0;
     std::uint64_t queue_triangles_ = 0;
     std::uint64_t parts_sent_ = 0;
+
+    sc_core::sc_event host_may_send_{"host_may_send"};  // functional mode
+    bool host_waits_ = false;
 };
 
 }  // namespace tessera

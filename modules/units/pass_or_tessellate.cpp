@@ -9,102 +9,144 @@
 
 namespace tessera {
 
-PassOrTessellate::PassOrTessellate(const sc_core::sc_module_name& name, Clock& clock,
-                                   const datapath::Registers& registers, const Timing& timing,
-                                   unsigned tests_units, PassPool& passes)
-    : Unit(name, clock),
-      from_tessellation_tests("from_tessellation_tests", tests_units),
-      registers_(registers),
-      timing_(timing.pass_or_tessellate),
-      passes_(passes),
-      incomplete_(timing.pass_or_tessellate.buffer),
-      pipeline_(timing.pass_or_tessellate) {
+PassOrTessellate::PassOrTessellate(const sc_core::sc_module_name& name, const UnitContext& context)
+    : Unit(name, context.clock),
+      from_tessellation_tests("from_tessellation_tests", context.design.tests_units),
+      registers_(context.registers),
+      timing_(context.timing().pass_or_tessellate),
+      incomplete_(timing_.buffer),
+      pipeline_(timing_) {
+    const StallParameters& stalls = context.timing().stalls;
+    from_get_triangle.serve<&PassOrTessellate::b_transport_from_get_triangle>(*this);
+    from_get_triangle.clocked_by(clock_, *this, triangles_ahead_of_parts(context.design), stalls);
     from_transform.serve<&PassOrTessellate::b_transport_from_transform>(*this);
-    from_transform.clocked_by(clock, *this, 1, timing.stalls);
-    for (StreamInput<Work>& input : from_tessellation_tests) {
+    from_transform.clocked_by(clock_, *this, 1, stalls);
+    for (StreamInput<TestedEdge>& input : from_tessellation_tests) {
         input.serve<&PassOrTessellate::b_transport_from_tests>(*this);
-        input.clocked_by(clock, *this, timing_.buffer * 3 / tests_units, timing.stalls);
+        input.clocked_by(clock_, *this, timing_.buffer * 3 / context.design.tests_units, stalls);
     }
-    to_tessellation.clocked_by(clock, *this);
-    to_lighting.clocked_by(clock, *this);
+    to_tessellation.clocked_by(context, *this);
+    to_lighting.clocked_by(context, *this);
 }
 
 void PassOrTessellate::end_of_elaboration() {
     transform_ = module_behind(from_transform.get_base_port().get_interface());
-    for (StreamInput<Work>& input : from_tessellation_tests)
+    for (StreamInput<TestedEdge>& input : from_tessellation_tests)
         tests_.push_back(module_behind(input.get_base_port().get_interface()));
 }
 
-/// The place of a part's triangle, opened for it if it has none.
-PassOrTessellate::Incomplete& PassOrTessellate::place_of(const Work& part) {
-    Incomplete* place = incomplete_.find(part.tag());
-    if (place == nullptr) {
-        place = &incomplete_.open(part.tag());
-        place->pass = part.pass;
-        place->geometry_left = parts_of(*part.pass);
-        place->tests_left = static_cast<Parts>(parts_of(*part.pass) & edge_parts);
+void PassOrTessellate::open(const TakenTriangle& taken) {
+    Incomplete& place = incomplete_.open(taken.tag);
+    const Parts parts = parts_of(taken.triangle);
+    datapath::TrianglePass& pass = place.triangle.pass;
+    place.triangle.origin = taken.origin;
+    pass.triangle = taken.triangle;
+    pass.new_vertices = static_cast<std::uint8_t>(parts & vertex_parts);
+    pass.new_normals = static_cast<std::uint8_t>((parts & normal_parts) >> first_normal_part);
+    pass.tested = (parts & edge_parts) != 0;
+    place.geometry_left = parts;
+    place.tests_left = static_cast<Parts>(parts & edge_parts);
+}
+
+void PassOrTessellate::take(Incomplete& place, const ScreenPoint& part) {
+    if ((place.geometry_left & part.tag.bit()) == 0)
+        SC_REPORT_ERROR("tessera/pass_or_tessellate", "a part of a triangle came twice");
+    place.geometry_left = static_cast<Parts>(place.geometry_left & ~part.tag.bit());
+    datapath::TrianglePass& pass = place.triangle.pass;
+    const unsigned k = part.tag.index();
+    datapath::Vertex& vertex = pass.triangle.vertices[k];
+    if (part.tag.is_edge()) {
+        pass.new_vertex[k] = {part.p, part.n, part.t, part.displaced, part.screen};
+    } else if (part.tag.is_normal()) {
+        vertex.screen_normal = part.n;
+    } else {
+        vertex.displaced = part.displaced;
+        vertex.screen = part.screen;
     }
+}
+
+void PassOrTessellate::take(Incomplete& place, const TestedEdge& edge) {
+    if ((place.tests_left & edge.tag.bit()) == 0)
+        SC_REPORT_ERROR("tessera/pass_or_tessellate", "a part of a triangle came twice");
+    place.tests_left = static_cast<Parts>(place.tests_left & ~edge.tag.bit());
+    datapath::TrianglePass& pass = place.triangle.pass;
+    const unsigned k = edge.tag.index();
+    pass.edges[k] = edge.found;
+    if ((pass.new_vertices >> k & 1) != 0)
+        pass.triangle.vertices[k].displaced_normal = edge.displaced_n_i;
+}
+
+void PassOrTessellate::b_transport_from_get_triangle(TakenTriangle& taken, sc_core::sc_time&) {
+    open(taken);
+}
+
+void PassOrTessellate::b_transport_from_transform(ScreenPoint& part, sc_core::sc_time& delay) {
+    Incomplete& place = place_of(part.tag);
+    take(place, part);
+    finish_if_complete(place, part.tag, delay);
+}
+
+void PassOrTessellate::b_transport_from_tests(TestedEdge& edge, sc_core::sc_time& delay) {
+    Incomplete& place = place_of(edge.tag);
+    take(place, edge);
+    finish_if_complete(place, edge.tag, delay);
+}
+
+PassOrTessellate::Incomplete& PassOrTessellate::place_of(const PartTag& tag) {
+    Incomplete* place = incomplete_.find(tag.triangle);
+    if (place == nullptr)
+        SC_REPORT_ERROR("tessera/pass_or_tessellate", "a part came of a triangle that did not come itself");
     return *place;
 }
 
-void PassOrTessellate::take(Parts& left, const Work& part) const {
-    if ((left & part.parts) != part.parts)
-        SC_REPORT_ERROR("tessera/pass_or_tessellate", "a part of a triangle came twice");
-    left = static_cast<Parts>(left & ~part.parts);
-}
-
-void PassOrTessellate::b_transport_from_transform(Work& work, sc_core::sc_time& delay) {
-    Incomplete& triangle = place_of(work);
-    take(triangle.geometry_left, work);
-    finish_if_complete(triangle, work, delay);
-}
-
-void PassOrTessellate::b_transport_from_tests(Work& work, sc_core::sc_time& delay) {
-    Incomplete* triangle = incomplete_.find(work.tag());
-    if (triangle == nullptr)
-        SC_REPORT_ERROR("tessera/pass_or_tessellate", "the two branches brought different triangles");
-    take(triangle->tests_left, work);
-    finish_if_complete(*triangle, work, delay);
-}
-
-void PassOrTessellate::finish_if_complete(Incomplete& triangle, const Work& part, sc_core::sc_time& delay) {
-    triangle.latest = std::max(triangle.latest, delay);
-    if (!triangle.complete())
+void PassOrTessellate::finish_if_complete(Incomplete& place, const PartTag& tag, sc_core::sc_time& delay) {
+    place.latest = std::max(place.latest, delay);
+    if (!place.complete())
         return;
-    delay = triangle.latest + clock_.period() * timing_.latency;
-    incomplete_.close(part.tag());
-    Work whole{part.pass, parts_of(*part.pass)};
-    switch (join(*part.pass)) {
-        case Way::tessellation:
-            to_tessellation->b_transport(whole, delay);
-            break;
-        case Way::lighting:
-            to_lighting->b_transport(part.pass->triangle, delay);
-            break;
-        case Way::dropped:
-            break;
-    }
+    delay = place.latest + clock_.period() * timing_.latency;
+    Decided whole;
+    whole.triangle = place.triangle;
+    incomplete_.close(tag.triangle);
+    decide(whole);
+    if (whole.way == Way::tessellation)
+        to_tessellation.transport(whole.triangle, delay);
+    else if (whole.way == Way::lighting)
+        to_lighting.transport(whole.emitted, delay);
+}
+
+/// Null: all places are taken, or the triangle itself is still to come.
+PassOrTessellate::Incomplete* PassOrTessellate::open_place(const PartTag& tag, std::uint64_t cycle) {
+    if (incomplete_.size() == timing_.buffer || from_get_triangle.empty())
+        return nullptr;
+    const TakenTriangle& next = from_get_triangle.front();
+    if (next.tag != tag.triangle)
+        SC_REPORT_ERROR("tessera/pass_or_tessellate", "a part came of a triangle that did not come itself");
+    open(next);
+    from_get_triangle.pop();
+    activity_.item_in(cycle);
+    most_incomplete_ = std::max(most_incomplete_, incomplete_.size());
+    return incomplete_.find(tag.triangle);
 }
 
 bool PassOrTessellate::take_parts(std::uint64_t cycle) {
     bool taken = false;
+    most_ahead_of_parts_ = std::max(most_ahead_of_parts_, from_get_triangle.size());
     for (; !from_transform.empty(); from_transform.pop()) {
-        const Work& part = from_transform.front();
-        if (incomplete_.find(part.tag()) == nullptr) {
-            if (incomplete_.size() == timing_.buffer)
-                break;
-            activity_.item_in(cycle);
-        }
-        take(place_of(part).geometry_left, part);
-        most_incomplete_ = std::max(most_incomplete_, incomplete_.size());
+        const ScreenPoint& part = from_transform.front();
+        Incomplete* place = incomplete_.find(part.tag.triangle);
+        if (place == nullptr)
+            place = open_place(part.tag, cycle);
+        if (place == nullptr)
+            break;
+        take(*place, part);
         taken = true;
     }
-    for (StreamInput<Work>& input : from_tessellation_tests) {
+    for (StreamInput<TestedEdge>& input : from_tessellation_tests) {
         for (; !input.empty(); input.pop()) {
-            Incomplete* triangle = incomplete_.find(input.front().tag());
-            if (triangle == nullptr)
+            Incomplete* place = incomplete_.find(input.front().tag.triangle);
+            if (place == nullptr)
                 break;
-            take(triangle->tests_left, input.front());
+            take(*place, input.front());
             taken = true;
         }
     }
@@ -114,15 +156,12 @@ bool PassOrTessellate::take_parts(std::uint64_t cycle) {
 bool PassOrTessellate::deliver(Decided& next) {
     switch (next.way) {
         case Way::tessellation:
-            return to_tessellation.deliver(next.work);
+            return to_tessellation.deliver(next.triangle);
         case Way::lighting:
-            if (!to_lighting.deliver(next.work.pass->triangle))
-                return false;
-            break;
+            return to_lighting.deliver(next.emitted);
         case Way::dropped:
             break;
     }
-    passes_.give_back(*next.work.pass);
     return true;
 }
 
@@ -136,11 +175,10 @@ void PassOrTessellate::step() {
     while (changed) {
         changed = take_parts(cycle);
         while (first_is_complete() && pipeline_.may_start(cycle)) {
-            Pass& pass = *incomplete_.oldest().state.pass;
-            incomplete_.close_oldest();
             Decided& next = pipeline_.start(cycle);
-            next.work = {&pass, parts_of(pass)};
-            next.way = join(pass);
+            next.triangle = incomplete_.oldest().state.triangle;
+            incomplete_.close_oldest();
+            decide(next);
             clock_.progress();
             changed = true;
         }
@@ -161,7 +199,7 @@ void PassOrTessellate::step() {
 /// The branch of which something lacks while all of the other's is there; null: neither is late.
 const sc_core::sc_object* PassOrTessellate::lacks() const {
     if (incomplete_.empty()) {
-        for (const StreamInput<Work>& input : from_tessellation_tests) {
+        for (const StreamInput<TestedEdge>& input : from_tessellation_tests) {
             if (!input.empty())
                 return transform_;
         }
@@ -169,7 +207,9 @@ const sc_core::sc_object* PassOrTessellate::lacks() const {
     }
     const Incomplete& first = incomplete_.oldest().state;
     if (first.geometry_left == 0)
-        return tests_[tests_.size() == 1 ? 0 : Work{nullptr, first.tests_left}.index()];
+        return tests_[tests_.size() == 1
+                          ? 0
+                          : static_cast<std::size_t>(__builtin_ctz(first.tests_left)) - first_edge_part];
     return first.tests_left == 0 ? transform_ : nullptr;
 }
 
@@ -179,7 +219,7 @@ std::string PassOrTessellate::holds() const {
     if (!incomplete_.empty()) {
         const Incomplete& first = incomplete_.oldest().state;
         add(count_of(incomplete_.size(), "triangle") + " to be joined, the first (" +
-            std::to_string(incomplete_.oldest().tag) + ") " +
+            std::to_string(first.triangle.origin.pass) + ") " +
             (first_is_complete()        ? "complete"
              : first.geometry_left == 0 ? "lacks its parts from Tessellation Tests"
              : first.tests_left == 0    ? "lacks its parts from Transform"
@@ -187,13 +227,28 @@ std::string PassOrTessellate::holds() const {
     }
     add(count_of(pipeline_.size(), "decided triangle"));
     std::size_t edges = 0;
-    for (const StreamInput<Work>& input : from_tessellation_tests)
+    for (const StreamInput<TestedEdge>& input : from_tessellation_tests)
         edges += input.size();
     add(count_of(edges, "tested edge") + (edges > 0 ? " that came before its triangle's place" : ""));
     return text;
 }
 
-PassOrTessellate::Way PassOrTessellate::join(Pass& pass) {
+void PassOrTessellate::decide(Decided& whole) {
+    whole.way = join(whole.triangle.pass);
+    if (whole.way == Way::lighting)
+        whole.emitted = emitted(whole.triangle);
+}
+
+TriangleToLight PassOrTessellate::emitted(const DecidedTriangle& whole) {
+    TriangleToLight triangle{whole.origin, {}};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const datapath::Vertex& vertex = whole.pass.triangle.vertices[k];
+        triangle.corners[k] = {vertex.screen, vertex.screen_normal, vertex.texture};
+    }
+    return triangle;
+}
+
+PassOrTessellate::Way PassOrTessellate::join(datapath::TrianglePass& pass) {
     datapath::Triangle& triangle = pass.triangle;
     for (unsigned k = 0; k < 3; ++k) {
         datapath::Vertex& vertex = triangle.vertices[k];
@@ -267,16 +322,16 @@ PassOrTessellate::Way PassOrTessellate::finish(datapath::Triangle& triangle) {
 void PassOrTessellate::show(Signals& signals) const {
     Unit::show(signals);
     signals.input(from_transform, "from_transform");
-    for (const StreamInput<Work>& input : from_tessellation_tests)
+    for (const StreamInput<TestedEdge>& input : from_tessellation_tests)
         signals.input(input, input.basename());
     signals.value("incomplete", 16, incomplete_.size());
     const std::uint64_t decided_so_far = counts_.passes + counts_.normal_passes;
     signals.pulse("decided", decided_so_far);
     signals.group(signals.changed(decided_so_far) && !pipeline_.empty(), [&] {
         const Decided& last = pipeline_.newest();
-        const Pass& pass = Signals::pass_of(last.work);
-        signals.value("triangle", 32, pass.number);
-        signals.value("base", 32, pass.triangle.base);
+        const datapath::TrianglePass& pass = last.triangle.pass;
+        signals.value("triangle", 32, last.triangle.origin.pass);
+        signals.value("base", 32, last.triangle.origin.base);
         signals.value("tests_0", 5, pass.edges[0].tests);
         signals.value("tests_1", 5, pass.edges[1].tests);
         signals.value("tests_2", 5, pass.edges[2].tests);

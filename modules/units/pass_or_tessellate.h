@@ -1,18 +1,14 @@
 #pragma once
-#include <array>
 #include <cstdint>
 #include <systemc>
 #include <tlm>
 #include <vector>
 
-#include "modules/datapath/parameters.h"
 #include "modules/datapath/triangle_pass.h"
+#include "modules/stream/items.h"
 #include "modules/stream/stream_input.h"
 #include "modules/stream/stream_output.h"
-#include "modules/stream/work.h"
-#include "modules/timing.h"
 #include "modules/unit/elastic_pipeline.h"
-#include "modules/unit/pass_pool.h"
 #include "modules/unit/per_triangle.h"
 #include "modules/unit/unit.h"
 
@@ -21,21 +17,24 @@ namespace tessera {
 /// Pass or Tessellate (paper figures 7 and 8, 3.1.5): joins Transform and Tessellation Tests, decides per edge, and
 /// culls finished triangles that face away.
 ///
-/// In:   the parts of each pass from both branches; the last one to come completes it.
-/// Out:  to Tessellation, a pass with split != 0, or one that is finished but lacks N's of a vertex (it goes round
+/// In:   each triangle from Get Triangle, and its parts from both branches; the last one to come completes it.
+/// Out:  to Tessellation, a triangle with split != 0, or one that is finished but lacks N's of a vertex (it goes round
 ///       once more for its normals); to Lighting, a finished triangle.
 /// Arithmetic: logic; for culling two products of screen bits + 1 and a compare.
 /// Check: both branches' t_ij must agree, or the branches have lost step: an SC_ERROR.
 /// Timing: one triangle per interval; latency 1, interval 1 by default, from the arrival of its last part. Capacity:
-///       `buffer` triangles (8) that are not complete. Transform, which brings every pass, opens a place for it; what
-///       Tessellation Tests brings before that waits at its own input, as many edges as there are places.
+///       `buffer` triangles (8) that are not complete. A triangle waits behind the input from Get Triangle until its
+///       first part comes from Transform, which opens a place for it; there is room for all that can be ahead of their
+///       parts (triangles_ahead_of_parts). What Tessellation Tests brings before that waits at its own input, as many
+///       edges as there are places.
 /// Waits for both branches; held back by Tessellation and Lighting.
 class PassOrTessellate : public Unit {
   public:
-    StreamInput<Work> from_transform{"from_transform"};
-    sc_core::sc_vector<StreamInput<Work>> from_tessellation_tests;  ///< one per Tessellation Tests unit
-    StreamOutput<Work> to_tessellation{"to_tessellation"};
-    StreamOutput<datapath::Triangle> to_lighting{"to_lighting"};
+    StreamInput<TakenTriangle> from_get_triangle{"from_get_triangle"};
+    StreamInput<ScreenPoint> from_transform{"from_transform"};
+    sc_core::sc_vector<StreamInput<TestedEdge>> from_tessellation_tests;  ///< one per Tessellation Tests unit
+    StreamOutput<DecidedTriangle> to_tessellation{"to_tessellation"};
+    StreamOutput<TriangleToLight> to_lighting{"to_lighting"};
 
     /// Every pass whose edges have been decided, complete: for the scoreboard.
     tlm::tlm_analysis_port<datapath::TrianglePass> decided{"decided"};
@@ -62,34 +61,36 @@ class PassOrTessellate : public Unit {
         std::uint64_t culled = 0;
     };
 
-    PassOrTessellate(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
-                     const Timing& timing, unsigned tests_units, PassPool& passes);
+    PassOrTessellate(const sc_core::sc_module_name& name, const UnitContext& context);
 
     const Counts& counts() const { return counts_; }
     /// No triangle waits for a branch.
     bool joined() const { return incomplete_.empty(); }
     /// Most triangles that waited for a branch at a time.
     std::size_t most_incomplete() const { return most_incomplete_; }
+    /// Most triangles that waited for their first part.
+    std::size_t most_ahead_of_parts() const { return most_ahead_of_parts_; }
 
     std::string holds() const override;
     std::uint64_t occupied_cycles() const override { return activity_.items_out() * timing_.interval; }
     void show(Signals& signals) const override;
     /// The triangle decided last.
     Begun begun() const override {
-        return Begun::of(counts_.passes + counts_.normal_passes, {pipeline_.newest().work.pass, 0});
+        return {counts_.passes + counts_.normal_passes, pipeline_.newest().triangle.origin};
     }
 
   private:
     enum class Way : std::uint8_t { tessellation, lighting, dropped };
     struct Decided {
-        Work work;
+        DecidedTriangle triangle;
+        TriangleToLight emitted;
         Way way = Way::dropped;
     };
 
     /// A triangle that is not complete: the parts that still have to come from Transform and from Tessellation Tests;
     /// functional mode: when the last one came.
     struct Incomplete {
-        Pass* pass = nullptr;
+        DecidedTriangle triangle;
         Parts geometry_left = 0;
         Parts tests_left = 0;
         sc_core::sc_time latest;
@@ -97,28 +98,34 @@ class PassOrTessellate : public Unit {
         bool complete() const { return geometry_left == 0 && tests_left == 0; }
     };
 
-    void b_transport_from_transform(Work& work, sc_core::sc_time& delay);
-    void b_transport_from_tests(Work& work, sc_core::sc_time& delay);
-    void finish_if_complete(Incomplete& triangle, const Work& part, sc_core::sc_time& delay);
+    void b_transport_from_get_triangle(TakenTriangle& taken, sc_core::sc_time& delay);
+    void b_transport_from_transform(ScreenPoint& part, sc_core::sc_time& delay);
+    void b_transport_from_tests(TestedEdge& edge, sc_core::sc_time& delay);
+    Incomplete& place_of(const PartTag& tag);
+    void finish_if_complete(Incomplete& place, const PartTag& tag, sc_core::sc_time& delay);
     void step() override;
     bool take_parts(std::uint64_t cycle);
-    Incomplete& place_of(const Work& part);
-    void take(Parts& left, const Work& part) const;
+    Incomplete* open_place(const PartTag& tag, std::uint64_t cycle);
+    void open(const TakenTriangle& taken);
+    static void take(Incomplete& place, const ScreenPoint& part);
+    static void take(Incomplete& place, const TestedEdge& edge);
     bool deliver(Decided& next);
     bool first_is_complete() const { return !incomplete_.empty() && incomplete_.oldest().state.complete(); }
     const sc_core::sc_object* lacks() const;
     void end_of_elaboration() override;
 
-    /// Completes the pass and says where it goes.
-    Way join(Pass& pass);
+    /// Completes the triangle and says where it goes.
+    void decide(Decided& whole);
+    Way join(datapath::TrianglePass& pass);
     void decide_edges(datapath::TrianglePass& pass);
     Way finish(datapath::Triangle& triangle);
+    static TriangleToLight emitted(const DecidedTriangle& whole);
 
     const datapath::Registers& registers_;
     UnitTiming timing_;
-    PassPool& passes_;
     PerTriangle<Incomplete> incomplete_;
     std::size_t most_incomplete_ = 0;
+    std::size_t most_ahead_of_parts_ = 0;
     ElasticPipeline<Decided> pipeline_;
     const sc_core::sc_object* transform_ = nullptr;
     std::vector<const sc_core::sc_object*> tests_;  // one per Tessellation Tests unit

@@ -7,19 +7,18 @@
 
 namespace tessera {
 
-Tessellation::Tessellation(const sc_core::sc_module_name& name, Clock& clock,
-                           const datapath::Registers& registers, const Timing& timing, PassPool& passes)
-    : Unit(name, clock), registers_(registers), timing_(timing.tessellation), passes_(passes) {
+Tessellation::Tessellation(const sc_core::sc_module_name& name, const UnitContext& context)
+    : Unit(name, context.clock), registers_(context.registers), timing_(context.timing().tessellation) {
     from_pass_or_tessellate.serve<&Tessellation::b_transport>(*this);
-    from_pass_or_tessellate.clocked_by(clock, *this, timing_.buffer, timing.stalls);
-    to_triangle_queue.clocked_by(clock, *this);
+    from_pass_or_tessellate.clocked_by(clock_, *this, timing_.buffer, context.timing().stalls);
+    to_triangle_queue.clocked_by(context, *this);
 }
 
-void Tessellation::b_transport(Work& work, sc_core::sc_time& delay) {
+void Tessellation::b_transport(DecidedTriangle& decided, sc_core::sc_time& delay) {
     delay += clock_.period() * timing_.latency;
     const int children =
-        tessellate(*work.pass, registers_.triangulation, registers_.formats, saturations_,
-                   [&](datapath::Triangle& child) { to_triangle_queue->b_transport(child, delay); });
+        tessellate(decided.pass, registers_.triangulation, registers_.formats, saturations_,
+                   [&](datapath::Triangle& child) { to_triangle_queue.transport(child, delay); });
     ++made_into_[static_cast<std::size_t>(children)];
 }
 
@@ -38,15 +37,14 @@ void Tessellation::step() {
         }
         if (from_pass_or_tessellate.empty())
             break;
-        Pass& pass = *from_pass_or_tessellate.front().pass;
-        tessellate(pass, registers_.triangulation, registers_.formats, saturations_,
+        const DecidedTriangle& decided = from_pass_or_tessellate.front();
+        tessellate(decided.pass, registers_.triangulation, registers_.formats, saturations_,
                    [&](const datapath::Triangle& child) { children_[made_++] = child; });
         ++made_into_[made_];
-        number_ = pass.number;
+        origin_ = decided.origin;
         activity_.item_in(cycle);
         next_ = std::max(next_, cycle + timing_.latency);
         from_pass_or_tessellate.pop();
-        passes_.give_back(pass);
     }
     if (!to_triangle_queue.free())
         activity_.set(cycle, State::blocked, to_triangle_queue.consumer());

@@ -3,12 +3,9 @@
 #include <cstdint>
 #include <systemc>
 
-#include "modules/datapath/parameters.h"
+#include "modules/stream/items.h"
 #include "modules/stream/stream_input.h"
 #include "modules/stream/stream_output.h"
-#include "modules/stream/work.h"
-#include "modules/timing.h"
-#include "modules/unit/pass_pool.h"
 #include "modules/unit/unit.h"
 
 namespace tessera {
@@ -16,20 +13,19 @@ namespace tessera {
 /// Tessellation (paper figures 6 and 7): builds the two, three or four children of a triangle from its vertices and
 /// the new ones. Winding order is kept.
 ///
-/// In:   a pass with split set, both branches complete. Out: its children, one after another; for a finished triangle
-///       on its way to fetch normals, the triangle itself.
+/// In:   DecidedTriangle. Out: its children, one after another; for a finished triangle on its way to fetch normals,
+///       the triangle itself.
 /// Arithmetic: wiring; with the `shorter` diagonal two Manhattan lengths (6 subtractions, 4 adds) and a compare. The
 ///       generations of new vertices saturate (counted), which only the Generation Test switched off lets happen.
-/// Timing: one child per interval, the first a latency after the pass was taken; latency 1, interval 1 by default.
-///       Capacity: one pass; the next is taken when its last child has been.
+/// Timing: one child per interval, the first a latency after the triangle was taken; latency 1, interval 1 by default.
+///       Capacity: one triangle; the next is taken when its last child has been.
 /// Waits for nothing but its input; held back by the Triangle Queue.
 class Tessellation : public Unit {
   public:
-    StreamInput<Work> from_pass_or_tessellate{"from_pass_or_tessellate"};
+    StreamInput<DecidedTriangle> from_pass_or_tessellate{"from_pass_or_tessellate"};
     StreamOutput<datapath::Triangle> to_triangle_queue{"to_triangle_queue"};
 
-    Tessellation(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
-                 const Timing& timing, PassPool& passes);
+    Tessellation(const sc_core::sc_module_name& name, const UnitContext& context);
 
     /// Triangles made into 2, 3, 4 children; index 1: passed unchanged.
     const std::array<std::uint64_t, 5>& made_into() const { return made_into_; }
@@ -44,19 +40,18 @@ class Tessellation : public Unit {
         return one_at_a_time_cycles(timing_, activity_.items_in(), children());
     }
     void show(Signals& signals) const override;
-    Begun begun() const override { return {activity_.items_in(), number_, children_[0].base}; }
+    Begun begun() const override { return {activity_.items_in(), origin_}; }
 
   private:
-    void b_transport(Work& work, sc_core::sc_time& delay);
+    void b_transport(DecidedTriangle& decided, sc_core::sc_time& delay);
     void step() override;
 
     const datapath::Registers& registers_;
     UnitTiming timing_;
-    PassPool& passes_;
     std::array<datapath::Triangle, 4> children_;
-    std::uint32_t number_ = 0;  // of the pass that is being worked on
-    unsigned made_ = 0;         // children of the pass that is being worked on
-    unsigned sent_ = 0;         // of these, sent
+    Origin origin_;      // of the triangle that is being worked on
+    unsigned made_ = 0;  // its children
+    unsigned sent_ = 0;  // of these, sent
     std::uint64_t next_ = 0;
     std::array<std::uint64_t, 5> made_into_{};
     datapath::Saturations saturations_;

@@ -12,25 +12,24 @@ namespace {
 constexpr unsigned triangles_between_waits = 1024;
 }  // namespace
 
-TriangleQueue::TriangleQueue(const sc_core::sc_module_name& name, Clock& clock,
-                             const datapath::Registers& registers, const QueueDesign& design,
-                             const Timing& timing)
-    : Unit(name, clock),
+TriangleQueue::TriangleQueue(const sc_core::sc_module_name& name, const UnitContext& context)
+    : Unit(name, context.clock),
       off_chip_memory(
           "off_chip_memory",
-          datapath::packed_triangle_bytes(registers.formats) + datapath::packed_triangle_tag_bytes, false),
-      registers_(registers),
-      design_(design),
-      timing_(timing.triangle_queue),
-      record_bytes_(datapath::packed_triangle_bytes(registers.formats) + datapath::packed_triangle_tag_bytes),
-      store_(design.order),
-      leaving_(timing.triangle_queue) {
+          datapath::packed_triangle_bytes(context.registers.formats) + datapath::packed_triangle_tag_bytes,
+          false),
+      registers_(context.registers),
+      design_(context.design.queue),
+      timing_(context.timing().triangle_queue),
+      record_bytes_(off_chip_memory.entry_bytes()),
+      store_(design_.order),
+      leaving_(timing_) {
     design_.watermark = std::max<std::size_t>(design_.watermark, 1);
     from_tessellation.serve<&TriangleQueue::b_transport>(*this);
-    from_tessellation.clocked_by(clock, *this, timing_.buffer, timing.stalls);
-    to_get_triangle.clocked_by(clock, *this);
-    off_chip_memory.clocked_by(clock, *this, timing.off_chip_memory.buffer + 4, 1);
-    level.bind(*this);
+    from_tessellation.clocked_by(clock_, *this, timing_.buffer, context.timing().stalls);
+    to_get_triangle.clocked_by(context, *this);
+    level.clocked_by(context, *this);
+    off_chip_memory.clocked_by(clock_, *this, context.timing().off_chip_memory.buffer + 4, 1);
     SC_HAS_PROCESS(TriangleQueue);
     SC_THREAD(send_waiting);
 }
@@ -40,8 +39,18 @@ void TriangleQueue::b_transport(datapath::Triangle& triangle, sc_core::sc_time& 
     ++taken_;
     high_water_mark_ = std::max(high_water_mark_, store_.size());
     delay += clock_.period() * timing_.latency;
+    tell_level(delay);
     if (!sending_)
         arrival_.notify(sc_core::SC_ZERO_TIME);
+}
+
+/// Functional mode.
+void TriangleQueue::tell_level(sc_core::sc_time& delay) {
+    if (told_.below_watermark == below_watermark())
+        return;
+    told_.below_watermark = below_watermark();
+    QueueLevel told = told_;
+    level.transport(told, delay);
 }
 
 void TriangleQueue::send_waiting() {
@@ -56,18 +65,12 @@ void TriangleQueue::send_waiting() {
                 delay = sc_core::SC_ZERO_TIME;
             }
             datapath::Triangle triangle = store_.pop();
-            to_get_triangle->b_transport(triangle, delay);
-            if (host_waits_ && takes_host_triangles()) {
-                host_waits_ = false;
-                host_may_send_.notify();
-                wait(delay);
-                delay = sc_core::SC_ZERO_TIME;
-            }
+            to_get_triangle.transport(triangle, delay);
+            tell_level(delay);
         }
         sending_ = false;
-        host_waits_ = false;
+        emptied_.notify(sc_core::SC_ZERO_TIME);
         wait(delay);
-        host_may_send_.notify();
     }
 }
 
@@ -98,7 +101,7 @@ bool TriangleQueue::put(const datapath::Triangle& triangle) {
     switch (design_.overflow) {
         case QueueOverflow::error:
             overflowed_ = true;
-            sc_core::sc_stop();
+            clock_.halt();
             return false;
         case QueueOverflow::stall:
             return false;
@@ -107,7 +110,7 @@ bool TriangleQueue::put(const datapath::Triangle& triangle) {
     }
     if (off_chip_ == design_.off_chip_triangles) {
         off_chip_memory_full_ = true;
-        sc_core::sc_stop();
+        clock_.halt();
         return false;
     }
     if (!off_chip_memory.may_request())
@@ -175,6 +178,10 @@ void TriangleQueue::step() {
         if (changed)
             level_changed(cycle);
     }
+    if (told_.below_watermark != below_watermark() && level.free()) {
+        told_.below_watermark = below_watermark();
+        level.send(told_);
+    }
     if (!to_get_triangle.free())
         activity_.set(cycle, State::blocked, to_get_triangle.consumer());
     else if (!leaving_.empty() || !store_.empty())
@@ -211,7 +218,7 @@ void TriangleQueue::show(Signals& signals) const {
     signals.value("on_chip", 32, store_.size());
     signals.value("off_chip", 32, off_chip_);
     signals.value("coming_back", 16, refills_);
-    signals.flag("takes_host_triangles", takes_host_triangles());
+    signals.flag("takes_host_triangles", below_watermark());
     signals.group(signals.changed(activity_.items_out() + leaving_.size()), [&] {
         const datapath::Triangle& triangle = leaving_.newest();
         signals.value("base", 32, triangle.base);

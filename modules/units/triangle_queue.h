@@ -3,37 +3,21 @@
 #include <cstdint>
 #include <systemc>
 
-#include "modules/datapath/parameters.h"
 #include "modules/memory/memory_port.h"
+#include "modules/stream/items.h"
 #include "modules/stream/stream_input.h"
 #include "modules/stream/stream_output.h"
-#include "modules/timing.h"
 #include "modules/unit/elastic_pipeline.h"
 #include "modules/unit/level_history.h"
 #include "modules/unit/unit.h"
-#include "modules/units/triangle_queue_level.h"
 #include "modules/units/triangle_store.h"
 
 namespace tessera {
 
-/// What a full queue does (timed mode).
-enum class QueueOverflow {
-    spill,  ///< to off-chip memory
-    stall,  ///< holds Tessellation back: a deadlock when the whole pipeline is full
-    error,  ///< ends the run
-};
-
-struct QueueDesign {
-    TriangleOrder order = TriangleOrder::fifo;
-    std::size_t watermark = 1;  ///< at least 1
-    std::size_t capacity = 0;   ///< triangles on chip; 0: unbounded
-    QueueOverflow overflow = QueueOverflow::spill;
-    std::uint64_t off_chip_triangles = std::uint64_t{1} << 20;  ///< places in off-chip memory
-};
-
 /// Triangle Queue (paper figure 7): waiting triangles, first in first out (the paper's) or last in first out.
 ///
-/// In:   triangles from Tessellation. Out: triangles to Get Triangle.
+/// In:   triangles from Tessellation. Out: triangles to Get Triangle, and whether fewer than the watermark wait,
+///       whenever that changes.
 /// Capacity: `capacity` triangles on chip, unbounded by default and in functional mode; the high-water mark says what a
 ///       design needs. Beyond it a triangle goes to off-chip memory: first in first out, the newest, behind those that
 ///       are there; last in first out, the oldest on chip. They come back when there is room on chip (first in first
@@ -41,23 +25,20 @@ struct QueueDesign {
 ///       forth).
 /// Timing: one triangle in and one out per interval; latency 1, interval 1 by default, from store to output.
 /// Waits for Tessellation, and for off-chip memory; held back by Get Triangle, and when full by off-chip memory.
-class TriangleQueue : public Unit, public TriangleQueueLevel {
+class TriangleQueue : public Unit {
   public:
     StreamInput<datapath::Triangle> from_tessellation{"from_tessellation"};
     StreamOutput<datapath::Triangle> to_get_triangle{"to_get_triangle"};
     MemoryPort off_chip_memory;
-    sc_core::sc_export<TriangleQueueLevel> level{"level"};
+    StreamOutput<QueueLevel> level{"level"};
 
-    TriangleQueue(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
-                  const QueueDesign& design, const Timing& timing);
+    TriangleQueue(const sc_core::sc_module_name& name, const UnitContext& context);
 
-    bool takes_host_triangles() const override { return waiting() < design_.watermark; }
-    const sc_core::sc_event& host_may_send() override {
-        host_waits_ = true;
-        return host_may_send_;
-    }
+    bool below_watermark() const { return waiting() < design_.watermark; }
 
     bool drained() const { return waiting() == 0 && !sending_; }
+    /// Functional mode: notified when the last triangle that waited has gone through the machine.
+    const sc_core::sc_event& emptied() const { return emptied_; }
     /// Everywhere: on chip, off chip, and on its way.
     std::size_t waiting() const {
         return store_.size() + static_cast<std::size_t>(off_chip_) + refills_ + leaving_.size();
@@ -82,6 +63,7 @@ class TriangleQueue : public Unit, public TriangleQueueLevel {
   private:
     void b_transport(datapath::Triangle& triangle, sc_core::sc_time& delay);
     void send_waiting();
+    void tell_level(sc_core::sc_time& delay);
 
     void step() override;
     void take_back();
@@ -111,9 +93,9 @@ class TriangleQueue : public Unit, public TriangleQueueLevel {
     LevelHistory history_;
 
     sc_core::sc_event arrival_{"arrival"};
-    sc_core::sc_event host_may_send_{"host_may_send"};
+    sc_core::sc_event emptied_{"emptied"};
     bool sending_ = false;
-    bool host_waits_ = false;
+    QueueLevel told_;
     std::uint64_t taken_ = 0;
     std::size_t high_water_mark_ = 0;
     std::size_t on_chip_high_water_mark_ = 0;

@@ -3,10 +3,9 @@
 #include <vector>
 
 #include "modules/datapath/vertex.h"
+#include "modules/design.h"
 
 namespace tessera {
-
-enum class TriangleOrder { fifo, lifo };
 
 /// The Triangle Queue's memory: a ring that doubles when it is full, so that no triangle is allocated for once a run
 /// has reached its high-water mark.

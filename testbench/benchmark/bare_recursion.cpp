@@ -104,7 +104,7 @@ void BareRecursion::evaluate_edge(TrianglePass& pass, int k) {
     made.displaced =
         displace(made.position, edge.normal, code_at(made.texture), r.displacement, r.formats, saturations_);
     made.screen = transform(made.displaced, r.transform, r.formats, saturations_);
-    edge.displaced_normal = bump(edge.normal, edge.tangent, inserted_handedness(i, j),
+    edge.displaced_normal = bump(edge.normal, edge.tangent, inserted_handedness(i.handedness, j.handedness),
                                  map_normal_at(made.texture), r.formats, saturations_);
 
     unsigned tests = 0;
@@ -121,7 +121,7 @@ void BareRecursion::evaluate_edge(TrianglePass& pass, int k) {
         tests |= view_bit;
     if (!r.tests.tex_coord_test || tex_coord_test(i.texture, j.texture, made.texture, r.formats))
         tests |= tex_coord_bit;
-    if (!r.tests.generation_test || generation_test(i, j, r.tests))
+    if (!r.tests.generation_test || generation_test(i.generation, j.generation, r.tests))
         tests |= generation_bit;
     edge.tests = static_cast<std::uint8_t>(tests);
 }

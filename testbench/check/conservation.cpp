@@ -99,7 +99,7 @@ void add_timed(Equations& list, const Simulation& simulation, std::uint64_t vert
              tests([](const auto& t) { return t.view_test.from_transform.taken(); }),
              vertices * p.tessellation_tests.size());
     std::uint64_t joined = 0;
-    for (const StreamInput<Work>& input : p.pass_or_tessellate.from_tessellation_tests)
+    for (const StreamInput<TestedEdge>& input : p.pass_or_tessellate.from_tessellation_tests)
         joined += input.taken();
     list.add("edges taken from collect_tests = edges", joined, edges);
     list.add("edges in collect_tests = edges", tests([](const auto& t) { return items(t.collect_tests); }),

@@ -62,9 +62,9 @@ FaultRun run_with_fault(Simulation& simulation) {
     return run;
 }
 
-ReadResult read_result(const CheckedWiring& wiring) {
+ReadResult read_result(const CheckedUnits& units) {
     ReadResult result;
-    for (const auto& check : wiring.read_checks()) {
+    for (const auto& check : units.read_checks()) {
         const ReadResult& one = check->result();
         result.entries += one.entries;
         result.wrong += one.wrong;
@@ -74,13 +74,13 @@ ReadResult read_result(const CheckedWiring& wiring) {
     return result;
 }
 
-std::vector<Caught> who_noticed(const CheckedWiring& wiring, const FaultRun& run,
+std::vector<Caught> who_noticed(const CheckedUnits& units, const FaultRun& run,
                                 const ConformanceResult* conformance, const WorkResult* work,
                                 const InvariantResult* invariants) {
     std::vector<Caught> noticed;
     if (run.stopped)
         noticed.push_back(*run.stopped);
-    const ReadResult reads = read_result(wiring);
+    const ReadResult reads = read_result(units);
     if (!reads.passed())
         noticed.push_back({"read check", reads.first_wrong});
     if (conformance != nullptr && conformance->mismatches > 0)
@@ -94,10 +94,10 @@ std::vector<Caught> who_noticed(const CheckedWiring& wiring, const FaultRun& run
     return noticed;
 }
 
-FaultReport judge_fault(const Job::Fault& fault, const CheckedWiring& wiring, const FaultRun& run, bool timed,
+FaultReport judge_fault(const Job::Fault& fault, const CheckedUnits& units, const FaultRun& run, bool timed,
                         const ConformanceResult* conformance, const WorkResult* work,
                         const InvariantResult* invariants) {
-    const FaultTrigger& trigger = wiring.trigger();
+    const FaultTrigger& trigger = units.trigger();
     if (!trigger.injected())
         throw InputError(
             fmt::format("fault.transaction = {} was never reached: {} saw {} transactions{}; lower it, or "
@@ -118,7 +118,7 @@ FaultReport judge_fault(const Job::Fault& fault, const CheckedWiring& wiring, co
                         "with; lower it, or choose another place",
                         name_of(fault.kind), fault.place, fault.transaction));
 
-    return {injected_text(fault, trigger, timed), who_noticed(wiring, run, conformance, work, invariants)};
+    return {injected_text(fault, trigger, timed), who_noticed(units, run, conformance, work, invariants)};
 }
 
 }  // namespace tessera

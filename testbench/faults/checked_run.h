@@ -7,7 +7,7 @@
 #include "testbench/check/scoreboard.h"
 #include "testbench/check/work_check.h"
 #include "testbench/common/error.h"
-#include "testbench/faults/checked_wiring.h"
+#include "testbench/faults/checked_units.h"
 #include "testbench/faults/fault_report.h"
 #include "testbench/host/simulation.h"
 
@@ -25,17 +25,17 @@ struct FaultRun {
 FaultRun run_with_fault(Simulation& simulation);
 
 /// Over all read checks.
-ReadResult read_result(const CheckedWiring& wiring);
+ReadResult read_result(const CheckedUnits& units);
 
 /// Who noticed something, in this order: who stopped the run, read check, scoreboard, work conservation,
 /// invariants. The last two only of a run that drained; those not asked for are null.
-std::vector<Caught> who_noticed(const CheckedWiring& wiring, const FaultRun& run,
+std::vector<Caught> who_noticed(const CheckedUnits& units, const FaultRun& run,
                                 const ConformanceResult* conformance, const WorkResult* work,
                                 const InvariantResult* invariants);
 
 /// The same of the fault. Throws InputError if the fault's transaction never came, has no such bit, or was to change
 /// places with one that never came.
-FaultReport judge_fault(const Job::Fault& fault, const CheckedWiring& wiring, const FaultRun& run, bool timed,
+FaultReport judge_fault(const Job::Fault& fault, const CheckedUnits& units, const FaultRun& run, bool timed,
                         const ConformanceResult* conformance, const WorkResult* work,
                         const InvariantResult* invariants);
 

@@ -15,7 +15,7 @@ namespace tessera {
 /// Stands between a stream's output and its input and breaks one transaction; passes all others on as they are, payload
 /// and phases untouched, in both transports.
 ///
-///   bit_flip               the consumer gets a copy with a bit flipped (what a Work refers to is flipped in place)
+///   bit_flip               the consumer gets a copy with a bit flipped
 ///   dropped                END_REQ to the producer, nothing to the consumer
 ///   doubled                the consumer gets it twice, by the rules; the producer waits for both
 ///   reordered              the next one goes first; the last of a run has none (judge_fault)
@@ -72,8 +72,8 @@ class StreamFault : public sc_core::sc_module {
 
     /// `trigger` must outlive it. consumer: whose lack of room is seen.
     StreamFault(const sc_core::sc_module_name& name, FaultTrigger& trigger, const datapath::Formats& formats,
-                const StreamInput<Payload>& consumer)
-        : sc_module(name), trigger_(trigger), formats_(formats), consumer_(consumer) {}
+                int tag_bits, const StreamInput<Payload>& consumer)
+        : sc_module(name), trigger_(trigger), formats_(formats), tag_bits_(tag_bits), consumer_(consumer) {}
 
   private:
     friend class Entrance;
@@ -90,7 +90,7 @@ class StreamFault : public sc_core::sc_module {
         copies_ = {payload};
         switch (trigger_.kind()) {
             case FaultKind::bit_flip:
-                if (!flip_bit(copies_.front(), formats_, trigger_.bit()))
+                if (!flip_bit(copies_.front(), formats_, tag_bits_, trigger_.bit()))
                     trigger_.has_no_such_bit();
                 break;
             case FaultKind::doubled:
@@ -194,6 +194,7 @@ class StreamFault : public sc_core::sc_module {
 
     FaultTrigger& trigger_;
     datapath::Formats formats_;
+    int tag_bits_;
     const StreamInput<Payload>& consumer_;
     std::deque<Payload> copies_;  // what the consumer has yet to take instead of the producer's
     Payload* offered_ = nullptr;  // the producer's, which waits for them

@@ -10,21 +10,21 @@
 namespace tessera {
 
 Simulation::Simulation(const Setup& its_setup, std::uint64_t triangle_limit,
-                       std::uint64_t cycles_without_progress, Wiring* wiring)
+                       std::uint64_t cycles_without_progress, UnitFactory* units)
     : setup(its_setup),
-      pipeline("tessera", setup.registers, setup.design, wiring),
+      pipeline("tessera", setup.registers, setup.design, units),
       host("host", setup, pipeline.clock),
       rasteriser("rasteriser", pipeline.clock, setup.design.timing.stalls),
       monitor("mesh_monitor", setup.registers.back_face_culling, triangle_limit) {
-    Wiring straight;
-    Wiring& wires = wiring == nullptr ? straight : *wiring;
-    wires.join(host.to_get_triangle, pipeline.get_triangle.from_host);
+    if (units != nullptr)
+        units->made(host);
+    host.to_get_triangle.bind(pipeline.get_triangle.from_host);
     host.displacement_map.bind(pipeline.displacement_map.host);
     host.normal_map.bind(pipeline.normal_map.host);
     host.summed_height_table.bind(pipeline.summed_height_table.host);
-    wires.join(pipeline.lighting.to_rasteriser, rasteriser.from_lighting);
+    pipeline.lighting.to_rasteriser.bind(rasteriser.from_lighting);
     pipeline.pass_or_tessellate.finished.bind(monitor);
-    pipeline.clock.stop_without_progress_for(cycles_without_progress);
+    pipeline.clock.halt_without_progress_for(cycles_without_progress);
 }
 
 namespace {

@@ -12,9 +12,9 @@ namespace tessera {
 struct Simulation {
     /// `setup` must outlive the simulation. triangle_limit: see MeshMonitor. cycles_without_progress: timed mode, how
     /// long no triangle may be decided; 0: for ever.
-    /// wiring: see Pipeline; also joins the machine to host and rasteriser.
+    /// units: see Pipeline; null: the machine's own.
     Simulation(const Setup& setup, std::uint64_t triangle_limit, std::uint64_t cycles_without_progress = 0,
-               Wiring* wiring = nullptr);
+               UnitFactory* units = nullptr);
 
     /// Runs until nothing is left to do. Empty: everything drained. Else a deadlock or livelock: what
     /// happened, and what each unit holds and waits for, one line each. Throws ResourceError when the mesh

@@ -134,21 +134,21 @@ struct CheckedFaultRun {
     static const T* if_there(const std::optional<T>& part) {
         return part ? &*part : nullptr;
     }
-    std::vector<Caught> noticed(const CheckedWiring& wiring) const {
-        return who_noticed(wiring, run, if_there(checks.conformance), if_there(checks.work),
+    std::vector<Caught> noticed(const CheckedUnits& units) const {
+        return who_noticed(units, run, if_there(checks.conformance), if_there(checks.work),
                            if_there(checks.invariants));
     }
 };
 
 CheckedFaultRun check_fault_run(const Job& job, const Setup& setup, Simulation& simulation,
-                                const CheckedWiring& wiring, const Scoreboard* scoreboard,
+                                const CheckedUnits& units, const Scoreboard* scoreboard,
                                 const WorkCheck* work) {
     CheckedFaultRun result;
     result.run = run_with_fault(simulation);
     Checks& checks = result.checks;
     checks.allowed_flips = job.check.allowed_flips;
     checks.remarks = setup.remarks;
-    checks.reads = read_result(wiring);
+    checks.reads = read_result(units);
     if (scoreboard != nullptr)
         checks.conformance = scoreboard->result();
     if (work != nullptr && !result.run.stopped)
@@ -159,17 +159,17 @@ CheckedFaultRun check_fault_run(const Job& job, const Setup& setup, Simulation& 
 }
 
 /// A run with a fault leaves its conformance report and its job, and no mesh that anyone could take for a result.
-Ending run_faulty(const Job& job, const Setup& setup, Simulation& simulation, CheckedWiring& wiring,
+Ending run_faulty(const Job& job, const Setup& setup, Simulation& simulation, CheckedUnits& units,
                   const Scoreboard* scoreboard, const WorkCheck* work, Progress& progress) {
     progress.show("running without the fault", 0);
     require_sound_without_fault([&] {
-        wiring.disarm();
-        return check_fault_run(job, setup, simulation, wiring, scoreboard, work).noticed(wiring);
+        units.disarm();
+        return check_fault_run(job, setup, simulation, units, scoreboard, work).noticed(units);
     });
     progress.show("running with the fault", 0.5);
-    auto [run, checks] = check_fault_run(job, setup, simulation, wiring, scoreboard, work);
+    auto [run, checks] = check_fault_run(job, setup, simulation, units, scoreboard, work);
     checks.fault = judge_fault(
-        job.fault, wiring, run, job.mode == Mode::timed, CheckedFaultRun::if_there(checks.conformance),
+        job.fault, units, run, job.mode == Mode::timed, CheckedFaultRun::if_there(checks.conformance),
         CheckedFaultRun::if_there(checks.work), CheckedFaultRun::if_there(checks.invariants));
     const std::filesystem::path folder = job.output.folder;
     OutputFolder output(folder);
@@ -205,14 +205,14 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
     const Setup& setup = loaded.setup;
     const Job& job = inputs.resolved.job;
 
-    std::optional<CheckedWiring> wiring;
-    if (CheckedWiring::wanted(job))
-        wiring.emplace(job, setup.registers.formats);
+    std::optional<CheckedUnits> checked_units;
+    if (CheckedUnits::wanted(job))
+        checked_units.emplace(job, setup.registers.formats, tag_bits_in_use(setup.design));
     Simulation simulation(setup, static_cast<std::uint64_t>(job.limits.triangles),
                           static_cast<std::uint64_t>(job.limits.cycles_without_progress),
-                          wiring ? &*wiring : nullptr);
-    if (wiring)
-        wiring->require_placed();
+                          checked_units ? &*checked_units : nullptr);
+    if (checked_units)
+        checked_units->require_placed();
     std::optional<GoldenInputs> golden;
     std::unique_ptr<Scoreboard> scoreboard;
     if (job.check.golden) {
@@ -228,7 +228,7 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
         simulation.rasteriser.taken.bind(*work);
     }
     if (job.fault.kind != FaultKind::none)
-        return run_faulty(job, setup, simulation, *wiring, scoreboard.get(), work.get(), progress);
+        return run_faulty(job, setup, simulation, *checked_units, scoreboard.get(), work.get(), progress);
     TexelBorders borders(setup.registers.formats);
     simulation.pipeline.pass_or_tessellate.decided.bind(borders);
     simulation.monitor.on_progress([&](std::size_t triangles) {
@@ -272,8 +272,8 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
         checks.conformance = scoreboard->result();
     if (work)
         checks.work = work_result(*work, simulation);
-    if (wiring)
-        checks.reads = read_result(*wiring);
+    if (checked_units)
+        checks.reads = read_result(*checked_units);
     checks.texel_borders =
         texel_borders_warning(borders.count(), job, setup.registers.map.width, setup.registers.map.height);
     std::optional<GoldenJob> golden_job;

@@ -125,7 +125,9 @@ class Machine {
         edge.texture = midpoint(i.texture, j.texture);
         edge.normal = normalise(midpoint(i.normal, j.normal), formats, saturations);
         edge.tangent = normalise(midpoint(i.tangent, j.tangent), formats, saturations);
-        edge.displaced_normal = bumped(edge.normal, edge.tangent, inserted_handedness(i, j), edge.texture);
+        edge.displaced_normal =
+            bumped(edge.normal, edge.tangent, datapath::inserted_handedness(i.handedness, j.handedness),
+                   edge.texture);
     }
 
     /// And the tests of an edge whose vertex is known.
@@ -148,7 +150,9 @@ class Machine {
             bit(!parameters.view_test || view_test(i.screen, j.screen, parameters), datapath::view_bit) |
             bit(!parameters.tex_coord_test || tex_coord_test(i.texture, j.texture, edge.texture, formats),
                 datapath::tex_coord_bit) |
-            bit(!parameters.generation_test || generation_test(i, j, parameters), datapath::generation_bit));
+            bit(!parameters.generation_test ||
+                    datapath::generation_test(i.generation, j.generation, parameters),
+                datapath::generation_bit));
         if (datapath::split_decision(edge.tests))
             pass.split = static_cast<std::uint8_t>(pass.split | 1 << k);
     }

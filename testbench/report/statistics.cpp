@@ -70,6 +70,21 @@ Collector format_figures(const Setup& setup) {
     return c;
 }
 
+/// Wires of each stream: one item, its tag included, annotations not.
+Collector stream_figures(const Setup& setup) {
+    const int tag = tag_bits(setup.design);
+    Collector c("streams");
+    c.add("tag", tag, "bit", "names a triangle between Get Triangle and Pass or Tessellate");
+    for_each_item_type([&](auto* item) {
+        using Item = std::remove_const_t<std::remove_pointer_t<decltype(item)>>;
+        std::string name = DescriptionOf<Item>::Type::name;
+        std::replace(name.begin(), name.end(), ' ', '_');
+        c.add(name.c_str(), item_bits<Item>(setup.registers.formats, tag), "bit",
+              "one item of that stream: modules/stream/README.md");
+    });
+    return c;
+}
+
 Collector memory_figures(const char* name, const datapath::TableLayout& table, std::uint64_t reads,
                          double edges) {
     Collector c(name);
@@ -191,6 +206,7 @@ std::vector<Figure> collect_statistics(const Setup& setup, const Simulation& sim
             "edges tested per finished triangle");
     take(std::move(run));
     take(format_figures(setup));
+    take(stream_figures(setup));
     take(useful_work_figures(p, setup.base_triangles.size(), mesh));
     take(host_figures(setup, counts.finished, mesh.vertices));
 

@@ -53,8 +53,8 @@ void run_figures(const Simulation& simulation, std::vector<Figure>& figures) {
              ratio(p.get_triangle.host_triangles(),
                    p.get_triangle.host_triangles() + p.get_triangle.queue_triangles()),
              "", "base triangles in all triangles that Get Triangle took");
-    run.count("most_passes_under_way", p.passes.most_under_way(), "pass",
-              "triangles in the pipeline at a time");
+    run.count("most_triangles_ahead_of_parts", p.pass_or_tessellate.most_ahead_of_parts(), "triangle",
+              "that waited in Pass or Tessellate for their first part");
     run.text(
         "bottleneck", bottleneck.binding ? bottleneck.first.names() : "none",
         "the units or memories of the highest utilisation, if that is at least 85 %; none: latency binds");

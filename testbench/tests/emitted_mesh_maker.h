@@ -41,7 +41,7 @@ struct MeshMaker {
         v.position = datapath::midpoint(i.position, j.position);
         v.normal = datapath::midpoint(i.normal, j.normal);
         v.texture = datapath::midpoint(i.texture, j.texture);
-        v.generation = datapath::inserted_generation(i, j);
+        v.generation = datapath::inserted_generation(i.generation, j.generation);
         displace(v);
         return v;
     }

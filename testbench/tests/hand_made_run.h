@@ -51,34 +51,44 @@ class HandMadeRun {
         setup.base_triangles.clear();
         return setup;
     }
-    static Pass known_pass() {
-        Pass pass;
-        for (datapath::Vertex& vertex : pass.triangle.vertices)
-            vertex.displaced_known = vertex.screen_normal_known = true;
-        return pass;
+    /// A triangle of which all is known but, if it is to fetch them, its normals in screen space.
+    static TakenTriangle known_triangle(bool with_normals) {
+        TakenTriangle taken;
+        for (datapath::Vertex& vertex : taken.triangle.vertices) {
+            vertex.displaced_known = true;
+            vertex.screen_normal_known = with_normals;
+        }
+        return taken;
+    }
+    void bring_parts(TakenTriangle taken) {
+        sc_core::sc_time delay;
+        simulation.pipeline.get_triangle.to_pass_or_tessellate.transport(taken, delay);
+        for (std::uint8_t part = 0; part < 9; ++part) {
+            DisplacedPoint point;
+            point.tag.part = part;
+            if ((parts_of(taken.triangle) & point.tag.bit()) != 0)
+                simulation.pipeline.displace_vertex.to_transform.transport(point, delay);
+        }
     }
     void decide(std::initializer_list<unsigned> tests) {
-        Pass pass = known_pass();
-        pass.tested = true;
-        std::size_t edge = 0;
-        for (const unsigned bits : tests)
-            pass.edges[edge++].tests = static_cast<std::uint8_t>(bits);
-        Work work{&pass, edge_parts};
-        sc_core::sc_time delay;
-        simulation.pipeline.displace_vertex.to_transform->b_transport(work, delay);
-        simulation.pipeline.tessellation_tests[0].collect_tests.to_pass_or_tessellate->b_transport(work,
-                                                                                                   delay);
+        bring_parts(known_triangle(true));
+        std::uint8_t part = first_edge_part;
+        for (const unsigned bits : tests) {
+            TestedEdge edge;
+            edge.tag.part = part++;
+            edge.found.tests = static_cast<std::uint8_t>(bits);
+            sc_core::sc_time delay;
+            simulation.pipeline.tessellation_tests[0].collect_tests.to_pass_or_tessellate.transport(edge,
+                                                                                                    delay);
+        }
     }
     void fetch_normals(bool turned_away) {
-        Pass pass = known_pass();
-        pass.triangle.finished = true;
-        pass.new_normals = 7;
-        pass.triangle.vertices[0].screen = {0, 0, 1, true};
-        pass.triangle.vertices[turned_away ? 2 : 1].screen = {1, 0, 1, true};
-        pass.triangle.vertices[turned_away ? 1 : 2].screen = {0, 1, 1, true};
-        Work work{&pass, normal_parts};
-        sc_core::sc_time delay;
-        simulation.pipeline.displace_vertex.to_transform->b_transport(work, delay);
+        TakenTriangle taken = known_triangle(false);
+        taken.triangle.finished = true;
+        taken.triangle.vertices[0].screen = {0, 0, 1, true};
+        taken.triangle.vertices[turned_away ? 2 : 1].screen = {1, 0, 1, true};
+        taken.triangle.vertices[turned_away ? 1 : 2].screen = {0, 1, 1, true};
+        bring_parts(taken);
     }
 };
 

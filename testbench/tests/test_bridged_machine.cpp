@@ -33,9 +33,9 @@ std::unique_ptr<sc_core::sc_module> bound(BaseProtocolBridge& bridge, const std:
     return memory;
 }
 
-class BridgedWiring : public Wiring {
+class BridgedUnits : public UnitFactory {
   public:
-    BridgedWiring(const Timing& timing, Maker make) : timing_(timing), make_(std::move(make)) {}
+    BridgedUnits(const Timing& timing, Maker make) : timing_(timing), make_(std::move(make)) {}
 
     void join(MemoryPort& port, TableMemory& memory) override { join_any(port, memory, 1); }
     void join(MemoryPort& port, OffChipMemory& memory) override {
@@ -63,22 +63,22 @@ class BridgedWiring : public Wiring {
 
 /// The machine on such memories; the host fills them.
 struct BridgedMachine {
-    BridgedWiring wiring;
+    BridgedUnits units;
     Pipeline pipeline;
     Host host;
     Rasteriser rasteriser;
     MeshMonitor monitor;
 
     BridgedMachine(const Setup& setup, Maker make)
-        : wiring(setup.design.timing, std::move(make)),
-          pipeline("bridged", setup.registers, setup.design, &wiring),
+        : units(setup.design.timing, std::move(make)),
+          pipeline("bridged", setup.registers, setup.design, &units),
           host("bridged_host", setup, pipeline.clock),
           rasteriser("bridged_rasteriser", pipeline.clock, setup.design.timing.stalls),
           monitor("bridged_monitor", setup.registers.back_face_culling, 1'000'000) {
         host.to_get_triangle.bind(pipeline.get_triangle.from_host);
-        host.displacement_map.bind(wiring.bridge("displacement_map").host);
-        host.normal_map.bind(wiring.bridge("normal_map").host);
-        host.summed_height_table.bind(wiring.bridge("summed_height_table").host);
+        host.displacement_map.bind(units.bridge("displacement_map").host);
+        host.normal_map.bind(units.bridge("normal_map").host);
+        host.summed_height_table.bind(units.bridge("summed_height_table").host);
         pipeline.lighting.to_rasteriser.bind(rasteriser.from_lighting);
         pipeline.pass_or_tessellate.finished.bind(monitor);
     }

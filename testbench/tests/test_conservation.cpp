@@ -100,13 +100,20 @@ Equations two_triangles_timed() {
     return all;
 }
 
-/// A pass whose ends have all they need, so that any unit may be given it.
-Pass finished_pass() {
-    Pass pass;
-    pass.triangle.finished = true;
-    for (datapath::Vertex& vertex : pass.triangle.vertices)
+/// A triangle of which all is known: its edges are all that is left of it.
+TakenTriangle known_triangle() {
+    TakenTriangle taken;
+    for (datapath::Vertex& vertex : taken.triangle.vertices)
         vertex.displaced_known = vertex.screen_normal_known = true;
-    return pass;
+    return taken;
+}
+
+/// Part `part` of a triangle that no other has.
+template <class Item>
+Item part_of_it(unsigned part) {
+    Item item;
+    item.tag = {1000, static_cast<std::uint8_t>(part), {}};
+    return item;
 }
 
 template <class Payload, class Output>
@@ -203,15 +210,17 @@ TEST_CASE("conservation: an item too many on a stream") {
     Simulation simulation(setup, 1000);
     run_timed(simulation);
     Pipeline& p = simulation.pipeline;
-    Pass pass = finished_pass();
-    Work work{&pass, 0};
+    auto point = part_of_it<ScreenPoint>(first_edge_part);
+    auto corner = part_of_it<ScreenCorner>(0);
+    auto edge = part_of_it<TestedEdge>(first_edge_part);
+    TakenTriangle taken = known_triangle();
     expect_change("transform to pass_or_tessellate", simulation,
-                  [&] { offer(p.transform.to_pass_or_tessellate, work); },
+                  [&] { offer(p.transform.to_pass_or_tessellate, point); },
                   {{"parts taken from transform = sent by get_triangle", {1, 0}}});
-    expect_change("transform to view_test", simulation, [&] { offer(p.transform.to_view_test[0], work); },
+    expect_change("transform to view_test", simulation, [&] { offer(p.transform.to_view_test[0], corner); },
                   {{"vertices taken by view_test = vertices, once a unit", {1, 0}}});
     expect_change("collect_tests to pass_or_tessellate", simulation,
-                  [&] { offer(p.tessellation_tests[0].collect_tests.to_pass_or_tessellate, work); },
+                  [&] { offer(p.tessellation_tests[0].collect_tests.to_pass_or_tessellate, edge); },
                   {{"edges taken from collect_tests = edges", {1, 0}}});
     LitTriangle lit;
     expect_change("lighting to the rasteriser", simulation, [&] { give(p.lighting.to_rasteriser, lit); },
@@ -220,7 +229,7 @@ TEST_CASE("conservation: an item too many on a stream") {
                   [&] { simulation.monitor.mesh.triangles.emplace_back(); },
                   {{"finished = emitted", {0, 1}}});
     expect_change("tessellation to triangle_queue", simulation,
-                  [&] { give(p.tessellation.to_triangle_queue, pass.triangle); },
+                  [&] { give(p.tessellation.to_triangle_queue, taken.triangle); },
                   {{"children of tessellation = taken by triangle_queue", {0, 1}},
                    {"taken by triangle_queue = by get_triangle from it", {1, 0}},
                    {"triangles in triangle_queue = taken by it", {0, 1}}});
@@ -269,9 +278,11 @@ TEST_CASE("conservation: a vertex transformed, and triangles decided, too many")
     run_timed(simulation);
     Pipeline& p = simulation.pipeline;
 
-    Pass pass = finished_pass();
-    expect_change("the host sends a triangle that has all it needs", simulation,
-                  [&] { give(simulation.host.to_get_triangle, pass.triangle); },
+    TakenTriangle taken = known_triangle();
+    taken.triangle.finished = true;
+    taken.triangle.vertices[0].screen_normal_known = false;
+    expect_change("the host sends a triangle that lacks a normal", simulation,
+                  [&] { give(simulation.host.to_get_triangle, taken.triangle); },
                   {{"triangles taken by get_triangle = decided", {1, 1}},
                    {"triangles taken by get_triangle from the host = base triangles", {1, 0}},
                    {"triangles cut by tessellation + finished = decided", {1, 1}},
@@ -282,6 +293,7 @@ TEST_CASE("conservation: a vertex transformed, and triangles decided, too many")
                    {"reads of displace_vertex = vertices and edges", {0, 3}},
                    {"reads of normal_test = vertices and edges", {0, 3}},
                    {"positions of transform = vertices and edges", {0, 3}},
+                   {"positions and normals of transform = parts", {1, 0}},
                    {"triangles in get_triangle = decided", {0, 1}},
                    {"triangles in pass_or_tessellate = decided", {0, 1}},
                    {"triangles in lighting = finished - culled", {0, 1}},
@@ -292,18 +304,29 @@ TEST_CASE("conservation: a vertex transformed, and triangles decided, too many")
                    {"requests to normal_map = vertices and edges", {0, 3}}});
 
     // one of its branches: Pass or Tessellate waits for the other
-    pass.tested = true;
-    pass.new_vertices = 1;
-    pass.new_normals = 2;
-    Work whole{&pass, parts_of(pass)};
+    taken = known_triangle();
+    taken.tag = 1000;
+    taken.triangle.vertices[0].displaced_known = false;
+    taken.triangle.vertices[1].screen_normal_known = false;
     expect_change("transform works on a vertex, a normal and three edges", simulation,
-                  [&] { give(p.displace_vertex.to_transform, whole); },
+                  [&] {
+                      give(p.get_triangle.to_pass_or_tessellate, taken);
+                      for (const unsigned part : {0u, 4u, 6u, 7u, 8u}) {
+                          auto point = part_of_it<DisplacedPoint>(part);
+                          give(p.displace_vertex.to_transform, point);
+                      }
+                  },
                   {{"positions of transform = vertices and edges", {4, 0}},
                    {"positions and normals of transform = parts", {5, 0}}});
-    Work edges{&pass, edge_parts};
-    pass.edges[0].tests = datapath::normal_bit | datapath::gating_tests;
     expect_change("its other branch: one edge splits", simulation,
-                  [&] { give(p.tessellation_tests[0].collect_tests.to_pass_or_tessellate, edges); },
+                  [&] {
+                      for (const unsigned part : {6u, 7u, 8u}) {
+                          auto edge = part_of_it<TestedEdge>(part);
+                          if (part == 6)
+                              edge.found.tests = datapath::normal_bit | datapath::gating_tests;
+                          give(p.tessellation_tests[0].collect_tests.to_pass_or_tessellate, edge);
+                      }
+                  },
                   {{"triangles taken by get_triangle = decided", {0, 1}},
                    {"children of tessellation = taken by triangle_queue", {2, 2}},
                    {"taken by triangle_queue = by get_triangle from it", {2, 0}},
@@ -326,10 +349,10 @@ TEST_CASE("conservation: a vertex transformed, and triangles decided, too many")
                    {"requests to normal_map = vertices and edges", {0, 3}},
                    {"requests to summed_height_table = three an edge, if it tests", {0, 9}}});
 
-    Pass untested = finished_pass();
-    Work work{&untested, 0};
+    DecidedTriangle untested;
+    untested.pass.triangle.finished = true;
     expect_change("a finished triangle that goes round for normals", simulation,
-                  [&] { give(p.pass_or_tessellate.to_tessellation, work); },
+                  [&] { give(p.pass_or_tessellate.to_tessellation, untested); },
                   {{"children of tessellation = taken by triangle_queue", {1, 1}},
                    {"taken by triangle_queue = by get_triangle from it", {1, 0}},
                    {"triangles cut by tessellation + finished = decided", {1, 0}},

@@ -157,7 +157,7 @@ TEST_CASE("handedness of an inserted vertex: both ends' own, else -1, commutativ
             Vertex i, j;
             i.handedness = a;
             j.handedness = b;
-            CHECK(int{inserted_handedness(i, j)} == (a == 1 && b == 1 ? 1 : -1));
+            CHECK(int{inserted_handedness(i.handedness, j.handedness)} == (a == 1 && b == 1 ? 1 : -1));
         }
     }
 }

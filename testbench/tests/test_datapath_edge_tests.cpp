@@ -176,12 +176,12 @@ TEST_CASE("Generation Test: one more than the older end, up to the limit") {
             i.generation = static_cast<std::uint8_t>(gi);
             j.generation = static_cast<std::uint8_t>(gj);
             const int inserted = std::min(255, std::max(gi, gj) + 1);
-            if (inserted_generation(i, j) != inserted)
+            if (inserted_generation(i.generation, j.generation) != inserted)
                 FAIL(gi << ", " << gj);
             for (int limit = 0; limit <= 15; ++limit) {
                 TestParameters parameters;
                 parameters.generation_limit = static_cast<std::uint32_t>(limit);
-                if (generation_test(i, j, parameters) != (inserted <= limit))
+                if (generation_test(i.generation, j.generation, parameters) != (inserted <= limit))
                     FAIL(gi << ", " << gj << " limit " << limit);
             }
         }

@@ -50,7 +50,7 @@ std::vector<Formats> many_formats() {
 }
 
 /// One field, in the order and width in which the header describes it.
-struct Field {
+struct ExpectedField {
     std::string name;
     int bits;
     std::int64_t lowest, highest;  ///< what it may hold
@@ -72,7 +72,7 @@ std::vector<std::int64_t> misfits_of(std::int64_t lowest, std::int64_t highest) 
 }
 
 template <class Number>
-Field number(std::string name, int bits, std::function<Number&(Triangle&)> where) {
+ExpectedField number(std::string name, int bits, std::function<Number&(Triangle&)> where) {
     const std::int64_t values = std::int64_t{1} << bits;
     const bool has_sign = std::numeric_limits<Number>::is_signed;
     const std::int64_t lowest = has_sign ? -values / 2 : 0, highest = lowest + values - 1;
@@ -92,7 +92,7 @@ Field number(std::string name, int bits, std::function<Number&(Triangle&)> where
 }
 
 template <class Vector>
-void add_vector(std::vector<Field>& fields, const std::string& name, int bits, std::size_t vertex,
+void add_vector(std::vector<ExpectedField>& fields, const std::string& name, int bits, std::size_t vertex,
                 Vector Vertex::*member) {
     const auto component = [&](const char* letter, std::int32_t Vector::*coordinate) {
         fields.push_back(number<std::int32_t>(
@@ -105,8 +105,8 @@ void add_vector(std::vector<Field>& fields, const std::string& name, int bits, s
     component(".z", &Vector::z);
 }
 
-std::vector<Field> fields_of(const Formats& formats) {
-    std::vector<Field> fields;
+std::vector<ExpectedField> fields_of(const Formats& formats) {
+    std::vector<ExpectedField> fields;
     for (std::size_t k = 0; k < 3; ++k) {
         const std::string vertex = "vertex " + std::to_string(k) + " ";
         const int position = formats.position.bits, normal = formats.normal.bits;
@@ -155,7 +155,7 @@ std::vector<Field> fields_of(const Formats& formats) {
     fields.push_back(
         number<std::uint8_t>("split by", 2, [](Triangle& t) -> std::uint8_t& { return t.split_by; }));
     // codes of 3 bits stand for 4, 8, 16: a quarter of the value
-    Field stopped_by{
+    ExpectedField stopped_by{
         "stopped by",
         3,
         0,
@@ -169,9 +169,9 @@ std::vector<Field> fields_of(const Formats& formats) {
 }
 
 /// The reference: '0' and '1' in order, the lowest bit first, by halving.
-std::string bits_of(const Triangle& triangle, const std::vector<Field>& fields) {
+std::string bits_of(const Triangle& triangle, const std::vector<ExpectedField>& fields) {
     std::string text;
-    for (const Field& field : fields) {
+    for (const ExpectedField& field : fields) {
         std::int64_t value = field.get(triangle);
         for (int k = 0; k < field.bits; ++k) {
             const bool odd = value % 2 != 0;
@@ -212,17 +212,17 @@ struct Packed {
 };
 
 /// Names of the fields in which two triangles differ, each followed by a semicolon.
-std::string difference(const Triangle& a, const Triangle& b, const std::vector<Field>& fields) {
+std::string difference(const Triangle& a, const Triangle& b, const std::vector<ExpectedField>& fields) {
     std::string names = a.base == b.base ? "" : "base;";
-    for (const Field& field : fields)
+    for (const ExpectedField& field : fields)
         if (field.get(a) != field.get(b))
             names += field.name + ";";
     return names;
 }
 
-Triangle random_triangle(Random& random, const std::vector<Field>& fields) {
+Triangle random_triangle(Random& random, const std::vector<ExpectedField>& fields) {
     Triangle triangle;
-    for (const Field& field : fields)
+    for (const ExpectedField& field : fields)
         field.set(triangle, random.coin() ? random.integer(field.lowest, field.highest)
                                           : std::clamp(random.any_size(field.highest + 1), field.lowest,
                                                        field.highest));
@@ -231,7 +231,8 @@ Triangle random_triangle(Random& random, const std::vector<Field>& fields) {
 }
 
 /// Packed as the reference says, nothing else written, and back again.
-void check_round_trip(const Triangle& triangle, const Formats& formats, const std::vector<Field>& fields) {
+void check_round_trip(const Triangle& triangle, const Formats& formats,
+                      const std::vector<ExpectedField>& fields) {
     Packed packed(formats);
     if (!pack_triangle(triangle, formats, packed.bytes()))
         FAIL("said not to fit");
@@ -269,7 +270,7 @@ TEST_CASE("pack triangle: the declared width of the queue's entry, in whole byte
     static_assert(survives_at_compile_time());
     for (const Formats& formats : many_formats()) {
         std::size_t bits = 0;
-        for (const Field& field : fields_of(formats))
+        for (const ExpectedField& field : fields_of(formats))
             bits += static_cast<std::size_t>(field.bits);
         CHECK(bits == stream_widths(formats).triangle);
         CHECK(packed_triangle_bytes(formats) * 8 >= bits);
@@ -308,7 +309,7 @@ TEST_CASE("pack triangle: places by hand in the default formats") {
 TEST_CASE("pack triangle: random triangles, against bits written one by one") {
     Random random(1);
     for (const Formats& formats : many_formats()) {
-        const std::vector<Field> fields = fields_of(formats);
+        const std::vector<ExpectedField> fields = fields_of(formats);
         for (int k = 0; k < 60; ++k)
             check_round_trip(random_triangle(random, fields), formats, fields);
     }
@@ -316,14 +317,14 @@ TEST_CASE("pack triangle: random triangles, against bits written one by one") {
 
 TEST_CASE("pack triangle: the ends of every field, alone and among the ends of all others") {
     for (const Formats& formats : many_formats()) {
-        const std::vector<Field> fields = fields_of(formats);
+        const std::vector<ExpectedField> fields = fields_of(formats);
         for (const int rest : {0, 1, 2}) {
             Triangle triangle;
-            for (const Field& field : fields)
+            for (const ExpectedField& field : fields)
                 field.set(triangle, rest == 0 ? 0 : rest == 1 ? field.lowest : field.highest);
             triangle.base = rest == 2 ? 0xffffffffU : 0;
             check_round_trip(triangle, formats, fields);
-            for (const Field& field : fields)
+            for (const ExpectedField& field : fields)
                 for (const std::int64_t value : {field.lowest, field.highest}) {
                     Triangle changed = triangle;
                     field.set(changed, value);
@@ -336,7 +337,7 @@ TEST_CASE("pack triangle: the ends of every field, alone and among the ends of a
 TEST_CASE("pack triangle: every bit up to the width is one field's, none beyond is any's") {
     Random random(2);
     for (const Formats& formats : many_formats()) {
-        const std::vector<Field> fields = fields_of(formats);
+        const std::vector<ExpectedField> fields = fields_of(formats);
         const Triangle triangle = random_triangle(random, fields);
         Packed packed(formats);
         REQUIRE(pack_triangle(triangle, formats, packed.bytes()));
@@ -349,7 +350,7 @@ TEST_CASE("pack triangle: every bit up to the width is one field's, none beyond 
                 FAIL("bit " << bit << " changes '" << names << "', not '" << expected << "'");
             ++bit;
         };
-        for (const Field& field : fields)
+        for (const ExpectedField& field : fields)
             for (int k = 0; k < field.bits; ++k)
                 check_flip(field.name + ";");
         REQUIRE(bit == stream_widths(formats).triangle);
@@ -364,9 +365,9 @@ TEST_CASE("pack triangle: a value that does not fit is reported and spoils no ot
     Random random(3);
     std::size_t reported = 0;
     for (const Formats& formats : many_formats()) {
-        const std::vector<Field> fields = fields_of(formats);
+        const std::vector<ExpectedField> fields = fields_of(formats);
         const Triangle good = random_triangle(random, fields);
-        for (const Field& field : fields)
+        for (const ExpectedField& field : fields)
             for (const std::int64_t value : field.misfits) {
                 Triangle bad = good;
                 field.set(bad, value);

@@ -208,8 +208,10 @@ TEST_CASE("reversal: handedness and generation of an inserted vertex, every pair
             j.handedness = b < 256 ? std::int8_t{1} : std::int8_t{-1};
             i.generation = static_cast<std::uint8_t>(a & 255);
             j.generation = static_cast<std::uint8_t>(b & 255);
-            if (inserted_handedness(i, j) != inserted_handedness(j, i) ||
-                inserted_generation(i, j) != inserted_generation(j, i))
+            if (inserted_handedness(i.handedness, j.handedness) !=
+                    inserted_handedness(j.handedness, i.handedness) ||
+                inserted_generation(i.generation, j.generation) !=
+                    inserted_generation(j.generation, i.generation))
                 FAIL(a << ", " << b);
         }
 }

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -61,18 +62,18 @@ Job small_job(Mode mode) {
 Outcome run_here(const Job& job) {
     const Setup setup = setup_of(job);
     const GoldenInputs golden(setup);
-    std::optional<CheckedWiring> wiring;
-    if (CheckedWiring::wanted(job))
-        wiring.emplace(job, setup.registers.formats);
-    Simulation simulation(setup, 5000, 5000, wiring ? &*wiring : nullptr);
+    std::optional<CheckedUnits> units;
+    if (CheckedUnits::wanted(job))
+        units.emplace(job, setup.registers.formats, tag_bits_in_use(setup.design));
+    Simulation simulation(setup, 5000, 5000, units ? &*units : nullptr);
     Scoreboard scoreboard(setup.registers, golden);
     WorkCheck work(setup.registers, setup.base_triangles);
     simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
     simulation.pipeline.pass_or_tessellate.decided.bind(work);
     simulation.pipeline.pass_or_tessellate.finished.bind(work);
     simulation.rasteriser.taken.bind(work);
-    if (wiring)
-        wiring->require_placed();
+    if (units)
+        units->require_placed();
     const FaultRun run = run_with_fault(simulation);
     const ConformanceResult conformance = scoreboard.result();
     std::optional<WorkResult> works;
@@ -85,12 +86,12 @@ Outcome run_here(const Job& job) {
     outcome.mesh = mesh_hash(simulation.monitor.mesh);
     if (job.fault.kind == FaultKind::none) {
         const bool fine = !run.stopped && works->passed() && invariants->passed() &&
-                          conformance.mismatches == 0 && (!wiring || read_result(*wiring).passed());
+                          conformance.mismatches == 0 && (!units || read_result(*units).passed());
         outcome.text = run.text + (works ? works->first_violation : "");
         outcome.catchers = fine ? "" : "?";
         return outcome;
     }
-    const FaultReport report = judge_fault(job.fault, *wiring, run, job.mode == Mode::timed, &conformance,
+    const FaultReport report = judge_fault(job.fault, *units, run, job.mode == Mode::timed, &conformance,
                                            works ? &*works : nullptr, invariants ? &*invariants : nullptr);
     outcome.text = report.injected;
     for (const Caught& caught : report.caught) {
@@ -143,49 +144,85 @@ Job with_fault(Mode mode, FaultKind kind, const std::string& place, int transact
     return job;
 }
 
+/// Where a field of an item begins.
+struct FieldFinder {
+    std::string name, component;
+    int bits = 0;
+    int found = -1;
+
+    std::int64_t field(const datapath::Field& field, std::int64_t value) {
+        if (found < 0 && field.index <= 0 && field.name == name && field.component == component)
+            found = bits;
+        bits += field.bits;
+        return value;
+    }
+    std::uint32_t annotation(const char*, std::uint32_t value) const { return value; }
+};
+
+template <class Item>
+int bit_of(const char* name, const char* component, Mode mode) {
+    const Setup setup = setup_of(small_job(mode));
+    FieldFinder finder{name, component};
+    const Item item{};
+    describe_item(finder, item, setup.registers.formats, tag_bits_in_use(setup.design));
+    REQUIRE(finder.found >= 0);
+    return finder.found;
+}
+
 /// A wire, and a bit that matters of what it carries.
 struct Place {
     const char* name;
-    int bit;
-    int transaction;          ///< that both modes have
-    int functional_bit = -1;  ///< where a Work of all parts has its vertices' bits elsewhere
+    int transaction;  ///< that both modes have
+    std::function<int(Mode)> bit;
+    bool has_two = false;  ///< transactions: the second has none to change places with
+
+    Place(const char* its_name, int its_transaction, int its_bit, bool two = false)
+        : name(its_name),
+          transaction(its_transaction),
+          bit([its_bit](Mode) { return its_bit; }),
+          has_two(two) {}
+    template <class Item>
+    Place(const char* its_name, int its_transaction, const Item*, const char* field, const char* component,
+          int bit_of_field = 0)
+        : name(its_name),
+          transaction(its_transaction),
+          bit([=](Mode mode) { return bit_of<Item>(field, component, mode) + bit_of_field; }) {}
 };
 
-// Offsets: flip_bit.h. A triangle's bit 0 is P.x's lowest.
-constexpr int edge_position = 9;
-constexpr int edge_displaced = 203;
-constexpr int edge_screen = 299;
-constexpr int tests_texture = 380;
-constexpr int test_bits = 574;
-constexpr Place streams[] = {
-    {"host.to_get_triangle", 0, 1},
-    {"get_triangle.to_calculate_new_p", 6, 3},
-    {"get_triangle.to_tessellation_tests_0", 6, 3},
-    {"calculate_new_p.to_displace_vertex", edge_position, 5},
-    {"displace_vertex.to_transform", edge_displaced, 5},
-    {"transform.to_pass_or_tessellate", edge_screen, 5},
-    {"transform.to_view_test_0", 9 + 393, 1, edge_screen},
-    {"tessellation_tests_0.calculate_new_u.to_tex_coord_test", tests_texture, 5},
-    {"tessellation_tests_0.calculate_new_u.to_summed_height_test", tests_texture, 5},
-    {"tessellation_tests_0.calculate_new_u.to_normal_test", tests_texture, 5},
-    {"tessellation_tests_0.calculate_new_u.to_view_test", tests_texture, 5},
-    {"tessellation_tests_0.tex_coord_test.output", test_bits + 3, 5},
-    {"tessellation_tests_0.summed_height_test.output", test_bits + 1, 5},
-    {"tessellation_tests_0.normal_test.output", test_bits, 5},
-    {"tessellation_tests_0.view_test.output", test_bits + 2, 5},
-    {"tessellation_tests_0.collect_tests.to_pass_or_tessellate", test_bits, 5},
-    {"pass_or_tessellate.to_tessellation", edge_position, 3},
-    {"pass_or_tessellate.to_lighting", 393, 3},
-    {"tessellation.to_triangle_queue", 0, 5},
-    {"triangle_queue.to_get_triangle", 0, 5},
-    {"lighting.to_rasteriser", 0, 3},
+template <class Item>
+constexpr const Item* of = nullptr;
+
+const std::vector<Place> streams = {
+    {"host.to_get_triangle", 1, 0},
+    {"get_triangle.to_calculate_new_p", 3, of<GeometryOperands>, "part", ""},
+    {"get_triangle.to_tessellation_tests_0", 3, of<TestOperands>, "part", ""},
+    {"get_triangle.to_pass_or_tessellate", 2, of<TakenTriangle>, "p", "x"},
+    {"calculate_new_p.to_displace_vertex", 5, of<BasePoint>, "p", "x"},
+    {"displace_vertex.to_transform", 5, of<DisplacedPoint>, "displaced", "x"},
+    {"transform.to_pass_or_tessellate", 5, of<ScreenPoint>, "screen", "x"},
+    {"transform.to_view_test_0", 1, of<ScreenCorner>, "tag", ""},
+    {"tessellation_tests_0.calculate_new_u.to_tex_coord_test", 5, of<TexCoordOperands>, "t_ij", "u"},
+    {"tessellation_tests_0.calculate_new_u.to_summed_height_test", 5, of<HeightOperands>, "tag", ""},
+    {"tessellation_tests_0.calculate_new_u.to_normal_test", 5, of<NormalOperands>, "n_i", "x", 12},
+    {"tessellation_tests_0.calculate_new_u.to_view_test", 5, of<ViewOperands>, "part", ""},
+    {"tessellation_tests_0.tex_coord_test.output", 5, of<TexCoordResult>, "tex_coord", ""},
+    {"tessellation_tests_0.summed_height_test.output", 5, of<HeightResult>, "summed_height", ""},
+    {"tessellation_tests_0.normal_test.output", 5, of<NormalResult>, "normal", ""},
+    {"tessellation_tests_0.view_test.output", 5, of<ViewResult>, "view", ""},
+    {"tessellation_tests_0.collect_tests.to_pass_or_tessellate", 5, of<TestedEdge>, "tests", ""},
+    {"pass_or_tessellate.to_tessellation", 3, of<DecidedTriangle>, "p", "x"},
+    {"pass_or_tessellate.to_lighting", 3, of<TriangleToLight>, "screen", "x"},
+    {"tessellation.to_triangle_queue", 5, 0},
+    {"triangle_queue.to_get_triangle", 5, 0},
+    {"triangle_queue.level", 2, 0, true},
+    {"lighting.to_rasteriser", 3, 0},
 };
 constexpr const char* summed_height_table = "tessellation_tests_0.summed_height_test.summed_height_table";
-constexpr Place memories[] = {
-    {"displace_vertex.displacement_map", 3, 5},
-    {"tessellation_tests_0.normal_test.normal_map", 3, 5},
-    {summed_height_table, 0, 5},
-    {"triangle_queue.off_chip_memory", 0, 5},
+const std::vector<Place> memories = {
+    {"displace_vertex.displacement_map", 5, 3},
+    {"tessellation_tests_0.normal_test.normal_map", 5, 3},
+    {summed_height_table, 5, 0},
+    {"triangle_queue.off_chip_memory", 5, 0},
 };
 constexpr FaultKind stream_kinds[] = {FaultKind::bit_flip,
                                       FaultKind::dropped,
@@ -241,10 +278,9 @@ std::string table(Mode mode, const Places& places, const Kinds& kinds, bool memo
                 continue;
             const bool held_back = kind == FaultKind::back_pressure_ignored ||
                                    kind == FaultKind::request_before_end || kind == FaultKind::response_early;
-            const int bit =
-                mode == Mode::functional && place.functional_bit >= 0 ? place.functional_bit : place.bit;
-            const Outcome outcome =
-                run(with_fault(mode, kind, place.name, held_back ? 1 : place.transaction, bit));
+            const bool first = held_back || (kind == FaultKind::reordered && place.has_two);
+            const int transaction = first ? 1 : place.transaction;
+            const Outcome outcome = run(with_fault(mode, kind, place.name, transaction, place.bit(mode)));
             INFO(name_of(kind) << " at " << place.name << ", " << name_of(mode) << ": " << outcome.text);
             if (held_back &&
                 outcome.text.find("saw 0 transactions that were held back") != std::string::npos) {

@@ -20,6 +20,7 @@ datapath::Registers registers_of(bool highlight_test) {
     registers.normal_map = {4096, 4, 1, datapath::entry_bytes(3 * registers.formats.normal.bits)};
     registers.tests.normal_threshold = 9000;
     registers.tests.highlight_test = highlight_test;
+    registers.formats.highlight_tag = highlight_test;
     registers.tests.half_vector = {9830, 0, 13107};  // (0.6, 0, 0.8)
     registers.tests.highlight_cosine = 255'000'000;  // 0.95
     registers.tests.highlight_normal_threshold = 2000;
@@ -30,35 +31,45 @@ constexpr datapath::Direction up{0, 0, 1 << 14};
 constexpr datapath::Direction at_half{9830, 0, 13107};
 constexpr datapath::Direction tilted{3000, 0, 16107};  // 3000 from up, 0.90 from H: outside
 
-/// The unit, its memory full of normals straight up, and a pass of three edges whose midpoints so have N' = up:
+/// The unit, its memory full of normals straight up, and three edges whose midpoints so have N' = up:
 /// (at_half, up): both tests; (up, tilted): neither, it lies outside; (tilted, at_half): both.
 struct Bench {
     datapath::Registers registers;
+    Design design;
     Clock clock{"clock", sc_core::sc_time(10, sc_core::SC_PS)};
     NormalMap memory;
-    Sink<Work> sink{"sink", clock};
+    Sink<NormalResult> sink{"sink", clock};
     NormalTest unit;
-    Driver<Work> driver{"driver", clock};
-    Pass pass;
+    Driver<NormalOperands> driver{"driver", clock};
+    std::vector<NormalOperands> edges;
 
     Bench(bool highlight_test, const Timing& timing)
         : registers(registers_of(highlight_test)),
+          design(with(timing)),
           memory("memory", clock, registers.normal_map, timing.normal_map, timing.stalls),
-          unit("unit", clock, registers, timing, true) {
+          unit("unit", {clock, registers, design}) {
         clock.attach(memory);
         clock.attach(unit);
         unit.normal_map.bind(memory);
         unit.output.bind(sink.in);
         driver.out.bind(unit.input);
         const std::vector<datapath::Direction> ends{at_half, up, tilted};
-        for (std::size_t k = 0; k < 3; ++k) {
-            datapath::Vertex& v = pass.triangle.vertices[k];
-            v.normal = up;
-            v.tangent = {1 << 14, 0, 0};
-            v.displaced_normal = ends[k];
-            pass.edges[k].texture = {static_cast<std::uint32_t>(k) << 12, 0};
+        for (unsigned k = 0; k < 3; ++k) {
+            NormalOperands edge;
+            edge.tag.part = static_cast<std::uint8_t>(first_edge_part + k);
+            edge.n_i = edge.n_j = up;
+            edge.tangent_i = edge.tangent_j = {1 << 14, 0, 0};
+            edge.displaced_n_i = ends[k];
+            edge.displaced_n_j = ends[(k + 1) % 3];
+            edge.t = {k << 12, 0};
+            edges.push_back(edge);
         }
-        pass.tested = true;
+    }
+
+    static Design with(const Timing& timing) {
+        Design design;
+        design.timing = timing;
+        return design;
     }
 
     void fill_memory() {
@@ -78,8 +89,7 @@ struct Bench {
 
     /// Timed: one edge after another, and the cycles in which they come out.
     std::vector<std::uint64_t> run_timed() {
-        for (unsigned k = 0; k < 3; ++k)
-            driver.items.push_back({&pass, static_cast<Parts>(1u << (first_edge_part + k))});
+        driver.items = edges;
         sc_core::sc_start(sc_core::SC_ZERO_TIME);
         fill_memory();
         sc_core::sc_start();
@@ -87,7 +97,13 @@ struct Bench {
         return sink.cycles;
     }
 
-    std::vector<int> tests() const { return {pass.edges[0].tests, pass.edges[1].tests, pass.edges[2].tests}; }
+    std::vector<int> tests() const {
+        std::vector<int> bits;
+        for (const NormalResult& result : sink.items)
+            bits.push_back((result.normal ? datapath::normal_bit : 0) |
+                           (result.highlight ? datapath::highlight_bit : 0));
+        return bits;
+    }
 };
 
 const std::vector<int> without_highlight{datapath::normal_bit, 0, datapath::normal_bit};
@@ -120,11 +136,11 @@ TEST_CASE("Normal Test unit with a Highlight Test, blocking transport: the same 
     bench.registers.tests.normal_threshold = 16384;  // so that the Highlight Test is alone
     sc_core::sc_start(sc_core::SC_ZERO_TIME);
     bench.fill_memory();
-    Work work{&bench.pass, edge_parts};
-    sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
-    bench.driver.out->b_transport(work, delay);
+    for (NormalOperands& edge : bench.edges) {
+        sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
+        bench.driver.out.transport(edge, delay);
+        // a read of a cycle, and 9 and 1
+        CHECK(bench.sink.delays.back() == 11 * bench.clock.period());
+    }
     CHECK(bench.tests() == std::vector<int>{datapath::highlight_bit, 0, datapath::highlight_bit});
-    REQUIRE(bench.sink.delays.size() == 1);
-    // three reads of a cycle, the unit once: 9 and 1
-    CHECK(bench.sink.delays.front() == 13 * bench.clock.period());
 }

@@ -148,6 +148,13 @@ TEST_CASE("statistics: two triangles split once, by hand") {
                            {"bandwidth_saving", whole / base},
                            {"frames_to_pay_for_tables", tables / (whole - base)}});
     f.require("formats", {{"queue_entry", widths.triangle}, {"lighting_vertex", widths.emitted_vertex}});
+    const datapath::Formats& formats = setup.registers.formats;
+    f.require("streams", {{"tag", 6},
+                          {"triangle", widths.triangle},
+                          {"triangle_to_light", 3 * widths.emitted_vertex},
+                          {"view_result", 6 + 4 + 1},
+                          {"base_point", 6 + 4 + 3 * formats.position.bits + 3 * formats.normal.bits +
+                                             2 * formats.texture.bits}});
 }
 
 TEST_CASE("statistics: each counter of the machine in its own figure") {
@@ -214,7 +221,7 @@ TEST_CASE("statistics: one triangle's cycles, unit by unit, by hand") {
                              {"cycles_per_pass", 86},
                              {"cycles_per_edge", 86.0 / 3},
                              {"base_triangle_share", 0.5},
-                             {"most_passes_under_way", 1},
+                             {"most_triangles_ahead_of_parts", 1},
                              {"bottleneck_bound", 86.0 / 36}});
     CHECK(f.words.at("timing.bottleneck") == "none");
     CHECK_THAT(f.words.at("timing.bottleneck_in_words"), Contains("bound by latency"));

@@ -125,39 +125,49 @@ TEST_CASE("fork: says who holds it up, and has four outputs at most") {
     CHECK(bench.fork.deliver(item));
 }
 
-TEST_CASE("fork: an output gets the parts that it is for, in both modes") {
+TEST_CASE("fork: an output gets the parts that it is for, and of them what it needs, in both modes") {
     struct Bench : sc_core::sc_module {
-        StreamOutput<Work> all{"all"}, edges{"edges"}, vertices{"vertices"};
-        Fork<Work> fork;
+        StreamOutput<ScreenPoint> all{"all"}, edges{"edges"};
+        StreamOutput<ScreenCorner> vertices{"vertices"};
+        Fork<ScreenPoint> fork;
         explicit Bench(const sc_core::sc_module_name& name) : sc_module(name) {
             fork.add(all);
             fork.add(edges, edge_parts);
-            fork.add(vertices, vertex_parts);
+            const auto corner = +[](const ScreenPoint& point) {
+                return ScreenCorner{point.tag, point.screen};
+            };
+            fork.add(vertices, corner, vertex_parts);
         }
     } bench("bench");
     Clock clock("clock", sc_core::sc_time(10, sc_core::SC_PS));
-    Sink<Work> all("all", clock), edges("edges", clock), vertices("vertices", clock);
+    Sink<ScreenPoint> all("all", clock), edges("edges", clock);
+    Sink<ScreenCorner> vertices("vertices", clock);
     bench.all.bind(all.in);
     bench.edges.bind(edges.in);
     bench.vertices.bind(vertices.in);
-    const auto parts_in = [](const Sink<Work>& sink) {
-        std::vector<unsigned> parts;
-        for (const Work& item : sink.items)
-            parts.push_back(item.parts);
+    const auto parts_of_items = [](const auto& sink) {
+        std::vector<int> parts;
+        for (const auto& item : sink.items)
+            parts.push_back(item.tag.part);
         return parts;
     };
-    Work edge{nullptr, 0200}, normal{nullptr, 0020};
     sc_core::sc_start(sc_core::SC_ZERO_TIME);
-    CHECK(bench.fork.deliver(edge));
-    sc_core::sc_start(sc_core::sc_time(10, sc_core::SC_PS));
-    CHECK(bench.fork.deliver(normal));
-    sc_core::sc_start(sc_core::sc_time(10, sc_core::SC_PS));
-    Work whole{nullptr, 0725};
+    ScreenPoint point;
+    point.screen.x = 5;
+    for (const int part : {7, 4, 2}) {
+        point.tag.part = static_cast<std::uint8_t>(part);
+        CHECK(bench.fork.deliver(point));
+        sc_core::sc_start(sc_core::sc_time(10, sc_core::SC_PS));
+    }
     sc_core::sc_time delay;
-    bench.fork.b_transport(whole, delay);
-    CHECK(parts_in(all) == std::vector<unsigned>{0200, 0020, 0725});
-    CHECK(parts_in(edges) == std::vector<unsigned>{0200, 0700});
-    CHECK(parts_in(vertices) == std::vector<unsigned>{0005});
+    for (const int part : {6, 3, 0}) {
+        point.tag.part = static_cast<std::uint8_t>(part);
+        bench.fork.transport(point, delay);
+    }
+    CHECK(parts_of_items(all) == std::vector<int>{7, 4, 2, 6, 3, 0});
+    CHECK(parts_of_items(edges) == std::vector<int>{7, 6});
+    CHECK(parts_of_items(vertices) == std::vector<int>{2, 0});
+    CHECK(vertices.items.front().screen.x == 5);
 }
 
 TEST_CASE("per triangle: found by tag, closed in any order, and it grows") {

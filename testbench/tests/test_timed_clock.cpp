@@ -182,7 +182,7 @@ TEST_CASE("clock: a busy cycle below the bound is none") {
 TEST_CASE("clock: without progress for a bound it stops the simulation, with progress it does not") {
     Three t;
     // progress in cycle 100, none later; b is woken in every cycle and would go on for ever
-    t.clock.stop_without_progress_for(50);
+    t.clock.halt_without_progress_for(50);
     t.b.on_step = [&] {
         if (t.clock.cycle() == 40 || t.clock.cycle() == 80 || t.clock.cycle() == 100)
             t.clock.progress();
@@ -196,7 +196,7 @@ TEST_CASE("clock: without progress for a bound it stops the simulation, with pro
 
 TEST_CASE("clock: running out of things to do is no lack of progress") {
     Three t;
-    t.clock.stop_without_progress_for(50);
+    t.clock.halt_without_progress_for(50);
     t.clock.wake_at(t.a, 50);
     sc_core::sc_start();
     CHECK_FALSE(t.clock.stalled());

@@ -56,7 +56,7 @@ TEST_CASE("a full queue that stalls is a deadlock, told unit by unit") {
     CHECK_THAT(line_of(report, "get_triangle"), Contains("not all of it sent"));
     CHECK(simulation.pipeline.triangle_queue.on_chip_high_water_mark() == 8);
     require_cycles_add_up(simulation);
-    CHECK(simulation.pipeline.passes.under_way() > 0);
+    CHECK(simulation.pipeline.passes_under_way() > 0);
     // who is idle says nothing
     CHECK(line_of(report, "lighting").empty());
     CHECK(line_of(report, "off_chip_memory").empty());

@@ -14,8 +14,7 @@ using namespace tessera::testing;
 namespace {
 
 /// A timed run against the bare recursion on the same setup.
-void expect_bare_mesh(const Job& job) {
-    const Setup setup = setup_of(job);
+void expect_bare_mesh(const Setup& setup) {
     Simulation simulation(setup, 1'000'000, 100'000);
     run_timed(simulation);
     BareRecursion bare(setup);
@@ -23,6 +22,10 @@ void expect_bare_mesh(const Job& job) {
     CHECK(bare.run(mesh) == simulation.pipeline.edges_tested());
     CHECK(mesh.triangles.size() > 2 * setup.base_triangles.size());
     CHECK((keys(mesh) == keys(simulation.monitor.mesh)));  // not to be printed
+}
+
+void expect_bare_mesh(const Job& job) {
+    expect_bare_mesh(setup_of(job));
 }
 
 /// About a thousand triangles of every size, and base triangles that do not split.
@@ -95,6 +98,15 @@ TEST_CASE("timed mesh: half donut through the scoreboard, every decision as the 
     CHECK(result.passed(0.5));
     CHECK(result.edges == simulation.pipeline.edges_tested());
     CHECK(result.edges > 50'000);
+}
+
+TEST_CASE("timed mesh: every item through its packed form, three tests units, a Highlight Test") {
+    Job job = small_job();
+    job.hardware.tests_units = 3;
+    job.tests.highlight = true;
+    Setup setup = setup_of(job);
+    setup.design.packed_streams = true;
+    expect_bare_mesh(setup);
 }
 
 TEST_CASE("timed mesh: last in first out") {

@@ -20,28 +20,39 @@ constexpr unsigned triangles = 600;
 
 /// A queue of a few places between a driver that pauses and a sink that stalls.
 struct Bench {
+    Design all;
     Sink<datapath::Triangle> sink;
+    Sink<QueueLevel> level;
     OffChipMemory memory;
     TriangleQueue queue;
     Driver<datapath::Triangle> driver;
 
     Bench(const std::string& name, Clock& clock, const datapath::Registers& registers,
           const QueueDesign& design, std::uint64_t seed, const StallParameters& sink_stalls)
-        : sink(("sink_" + name).c_str(), clock, sink_stalls),
+        : all(with(design)),
+          sink(("sink_" + name).c_str(), clock, sink_stalls),
+          level(("level_" + name).c_str(), clock),
           memory(("memory_" + name).c_str(), clock, OffChipTiming{}, {}, std::uint64_t{1} << 20,
                  datapath::packed_triangle_tag_bytes),
-          queue(("queue_" + name).c_str(), clock, registers, design, Timing{}),
+          queue(("queue_" + name).c_str(), {clock, registers, all}),
           driver(("driver_" + name).c_str(), clock, {seed + 1, 250, 120}) {
         clock.attach(memory);
         clock.attach(queue);
         driver.out.bind(queue.from_tessellation);
         queue.to_get_triangle.bind(sink.in);
+        queue.level.bind(level.in);
         queue.off_chip_memory.bind(memory);
         for (unsigned k = 0; k < triangles; ++k) {
             datapath::Triangle triangle;
             triangle.base = k;
             driver.items.push_back(triangle);
         }
+    }
+
+    static Design with(const QueueDesign& queue) {
+        Design design;
+        design.queue = queue;
+        return design;
     }
 
     std::vector<std::uint32_t> came() const {
@@ -133,6 +144,7 @@ TEST_CASE("triangle queue: the host may send while fewer triangles wait than the
         const TriangleQueue& queue = benches[waiting]->queue;
         INFO(queue.name());
         REQUIRE(queue.waiting() == waiting);
-        CHECK(queue.takes_host_triangles() == (waiting < 3));
+        CHECK(queue.below_watermark() == (waiting < 3));
+        CHECK(benches[waiting]->level.items.size() == (waiting < 3 ? 0 : 1));  // told when it changes
     }
 }

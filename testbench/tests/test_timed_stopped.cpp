@@ -65,6 +65,44 @@ void set_every_unit(Timing& timing, const UnitTiming& its) {
         *unit = its;
 }
 
+/// What there is to see whenever Pipeline::drained() is notified, of base triangles that become 16 each.
+struct DrainedWatch : sc_core::sc_module {
+    explicit DrainedWatch(Simulation& simulation) : sc_module("watch"), simulation_(simulation) {
+        SC_HAS_PROCESS(DrainedWatch);
+        SC_METHOD(note);
+        dont_initialize();
+        sensitive << simulation.pipeline.drained();
+    }
+    unsigned notified = 0;
+    bool always_empty = true;       ///< all that the host had sent was lit
+    std::uint64_t sent_before = 0;  ///< base triangles of earlier frames
+    std::uint64_t lit = 0;          ///< at the last notification
+
+  private:
+    void note() {
+        ++notified;
+        lit = simulation_.rasteriser.triangles();
+        always_empty = always_empty && simulation_.pipeline.idle() &&
+                       lit == 16 * (sent_before + simulation_.host.sent());
+    }
+    Simulation& simulation_;
+};
+
+/// Two frames of 8 base triangles. Returns the notifications.
+unsigned expect_drained_when_empty(const Job& job) {
+    const Setup setup = setup_of(job);
+    Simulation simulation(setup, 1'000'000);
+    DrainedWatch watch(simulation);
+    REQUIRE(simulation.run().empty());
+    CHECK(watch.lit == 8 * 16);
+    watch.sent_before = 8;
+    simulation.host.send_again();
+    REQUIRE(simulation.run().empty());
+    CHECK(watch.lit == 2 * 8 * 16);
+    CHECK(watch.always_empty);
+    return watch.notified;
+}
+
 }  // namespace
 
 TEST_CASE("stopped anywhere: the paper's design, items stalled at random") {
@@ -117,4 +155,26 @@ TEST_CASE("stopped anywhere: a queue without bound that takes a triangle every f
     const Texts texts = texts_of_every_cycle(setup);
     CHECK(any_contains(texts, "triangle_queue", "of them on the way out"));
     CHECK(any_contains(texts, "triangle_queue", "no place for the next"));
+}
+
+TEST_CASE("drained: timed, notified once a frame, when all has gone out") {
+    CHECK(expect_drained_when_empty(full_split_job(2, 2)) == 2);
+}
+
+// The host may wait between two base triangles, and the machine be empty.
+TEST_CASE("drained: functional, notified when all that came in has gone out") {
+    Job job = full_split_job(2, 2);
+    job.mode = Mode::functional;
+    CHECK(expect_drained_when_empty(job) >= 2);
+}
+
+TEST_CASE("drained: a machine in a deadlock is not") {
+    Job job = timed_job();
+    job.hardware.queue_capacity = 8;
+    job.hardware.queue_overflow = Overflow::stall;
+    const Setup setup = setup_of(job);
+    Simulation simulation(setup, 1'000'000);
+    DrainedWatch watch(simulation);
+    CHECK_THAT(simulation.run(), Catch::StartsWith("deadlock: "));
+    CHECK(watch.notified == 0);
 }

@@ -274,13 +274,13 @@ TEST_CASE("waveforms show what each test compares, and with what") {
             for (const char* const end : {"n_i_", "n_j_"})
                 largest = std::max(largest, distance(middle, at("normal_test", std::string(end) + axis)));
         }
-        if (at("normal_test", "answered_part") < 6) {
+        if (at("normal_test", "out.part") < 6) {
             CHECK(change.second == 0);
             continue;
         }
         CHECK(change.second == largest);
         const bool differs = change.second > signal("normal_test", "threshold").at(time);
-        CHECK(differs == (at("normal_test", "normal") == 1));
+        CHECK(differs == (at("normal_test", "out.normal") == 1));
         normal.insert(differs);
     }
     for (const auto& change : signal("summed_height_test", "difference").changes) {
@@ -289,7 +289,7 @@ TEST_CASE("waveforms show what each test compares, and with what") {
         CHECK(change.second == distance(2 * at(test, "sum_ij"), at(test, "sum_i") + at(test, "sum_j")));
         const std::uint64_t limit = signal(test, "limit").at(time);
         const bool differs = change.second > limit;
-        CHECK(differs == (at(test, "summed_height") == 1));
+        CHECK(differs == (at(test, "out.summed_height") == 1));
         summed_height.insert(differs);
         // The rectangle shown is the item's that was started last; its area has changed the limit if it is one's.
         CHECK((limit == signal(test, "threshold").at(time) || unit == "area"));
@@ -300,16 +300,16 @@ TEST_CASE("waveforms show what each test compares, and with what") {
         CHECK(change.second == distance(at("view_test", "screen_i_x"), at("view_test", "screen_j_x")) +
                                    distance(at("view_test", "screen_i_y"), at("view_test", "screen_j_y")));
         const bool is_long = change.second > signal("view_test", "threshold").at(time);
-        CHECK(is_long == (at("view_test", "view") == 1));
+        CHECK(is_long == (at("view_test", "out.view") == 1));
         view.insert(is_long);
     }
     for (const auto& change : signal("tex_coord_test", "generation_ij").changes) {
         time = change.first;
         CHECK(change.second ==
-              1 + static_cast<std::uint64_t>(
-                      std::max(at("tex_coord_test", "generation_i"), at("tex_coord_test", "generation_j"))));
+              1 + static_cast<std::uint64_t>(std::max(at("tex_coord_test", "in.generation_i"),
+                                                      at("tex_coord_test", "in.generation_j"))));
         const bool allowed = change.second <= signal("tex_coord_test", "generation_limit").at(time);
-        CHECK(allowed == (at("tex_coord_test", "generation") == 1));
+        CHECK(allowed == (at("tex_coord_test", "out.generation") == 1));
         generation.insert(allowed);
     }
     CHECK(normal.size() == 2);

@@ -144,9 +144,8 @@ TEST_CASE("filters name every number as the code does") {
         for (unsigned part = 0; part < 9; ++part) {
             if ((mask >> part & 1u) == 0)
                 continue;
-            const Work work{nullptr, static_cast<Parts>(1u << part)};
-            CHECK(Signals::part_of(work) == part);
-            CHECK(parts.at(part) == name + std::to_string(work.index()));
+            const PartTag tag{0, static_cast<std::uint8_t>(part), {}};
+            CHECK(parts.at(part) == name + std::to_string(tag.index()));
         }
     };
     check_parts(vertex_parts, "vertex ");

@@ -97,7 +97,7 @@ inline void require_timed_identities(const Simulation& simulation) {
     CHECK(p.idle());
     CHECK(p.clock.idle());
     CHECK_FALSE(p.clock.stalled());
-    CHECK(p.passes.under_way() == 0);
+    CHECK(p.passes_under_way() == 0);
     CHECK(p.triangle_queue.waiting() == 0);
     CHECK(p.triangle_queue.on_chip_high_water_mark() <= p.triangle_queue.high_water_mark());
     const std::size_t capacity = simulation.setup.design.queue.capacity;

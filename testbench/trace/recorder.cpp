@@ -22,11 +22,11 @@ const char* state_name(State state) {
 
 namespace {
 
-/// Of one part; "" of none.
-const char* part_name(Parts part) {
+/// Of one part; "" of a whole triangle.
+const char* part_name(Parts parts) {
     constexpr std::array<const char*, 9> names = {"vertex 0", "vertex 1", "vertex 2", "normal 0", "normal 1",
                                                   "normal 2", "edge 0",   "edge 1",   "edge 2"};
-    return part == 0 ? "" : names.at(static_cast<std::size_t>(__builtin_ctz(part)));
+    return parts == all_parts ? "" : names.at(static_cast<std::size_t>(__builtin_ctz(parts)));
 }
 
 }  // namespace
@@ -66,11 +66,11 @@ void Recorder::Track::stretch(State state, const sc_core::sc_object* by, std::ui
                               std::uint64_t end) {
     TimelineWriter::Item its_item;
     if (named)
-        its_item = {item->triangle, item->base, part_name(item->part)};
+        its_item = {item->triangle.pass, item->triangle.base, part_name(item->parts)};
     timeline.interval(number, state_name(state), by == nullptr ? "" : by->basename(), begin, end,
                       named ? &its_item : nullptr);
     if (step)
-        timeline.flow(number, *step, item->triangle, begin);
+        timeline.flow(number, *step, item->triangle.pass, begin);
     step.reset();
     named = named && !unit.idle();
     if (end > last)
@@ -79,15 +79,12 @@ void Recorder::Track::stretch(State state, const sc_core::sc_object* by, std::ui
 
 /// What was begun on before the window and is still there.
 void Recorder::enter_window() {
-    const PassOrTessellate::Counts& counts = pipeline_.pass_or_tessellate.counts();
-    culled_ = counts.culled;
-    sent_to_lighting_ = counts.finished - counts.culled;
-    to_lighting_.resize(sent_to_lighting_ - pipeline_.lighting.activity().items_in());
+    culled_ = pipeline_.pass_or_tessellate.counts().culled;
     for (Track& track : tracks_) {
         track.unit.activity().observe(&track);
         const Begun begun = track.unit.begun();
         track.count = begun.count;
-        track.named = begun.count > 0 && !track.unit.idle() && &track.unit != &pipeline_.lighting;
+        track.named = begun.count > 0 && !track.unit.idle();
         if (track.named)
             track.item = begun;
     }
@@ -101,13 +98,13 @@ void Recorder::name_items(std::uint64_t cycle, std::uint64_t called) {
         if (begun.count == track.count)
             continue;
         track.unit.activity().split(cycle);
-        const std::uint64_t many = begun.count - std::exchange(track.count, begun.count);
+        track.count = begun.count;
         const std::optional<Begun> before = std::exchange(track.item, begun);
-        const FlowStep step =
-            &track.unit == &pipeline_.lighting ? begin_to_light(track, many) : step_at(track);
-        track.named = track.item.has_value();
-        const bool followed = track.named && first_flow_ && track.item->triangle >= *first_flow_;
-        if (followed && (!before || before->triangle != track.item->triangle))
+        const FlowStep step = step_at(track);
+        track.named = true;
+        const std::uint32_t triangle = begun.triangle.pass;
+        const bool followed = first_flow_ && triangle >= *first_flow_;
+        if (followed && (!before || before->triangle.pass != triangle))
             track.step = step;
     }
 }
@@ -116,27 +113,15 @@ void Recorder::name_items(std::uint64_t cycle, std::uint64_t called) {
 TimelineWriter::FlowStep Recorder::step_at(const Track& track) {
     if (&track.unit == &pipeline_.get_triangle) {
         if (!first_flow_)
-            first_flow_ = track.item->triangle;
+            first_flow_ = track.item->triangle.pass;
         return FlowStep::begin;
     }
-    if (&track.unit == &pipeline_.tessellation)
+    if (&track.unit == &pipeline_.tessellation || &track.unit == &pipeline_.lighting)
         return FlowStep::end;
     if (&track.unit != &pipeline_.pass_or_tessellate)
         return FlowStep::pass;
-    const PassOrTessellate::Counts& counts = pipeline_.pass_or_tessellate.counts();
-    const std::uint64_t sent_to_lighting = counts.finished - counts.culled;
-    if (std::exchange(sent_to_lighting_, sent_to_lighting) != sent_to_lighting)
-        to_lighting_.push_back(track.item);
-    return std::exchange(culled_, counts.culled) != counts.culled ? FlowStep::end : FlowStep::pass;
-}
-
-/// Lighting, which gets triangles without their numbers, has begun on so many more.
-TimelineWriter::FlowStep Recorder::begin_to_light(Track& lighting, std::uint64_t many) {
-    for (; many > 0; --many) {
-        lighting.item = to_lighting_.front();
-        to_lighting_.pop_front();
-    }
-    return FlowStep::end;
+    const std::uint64_t culled = pipeline_.pass_or_tessellate.counts().culled;
+    return std::exchange(culled_, culled) != culled ? FlowStep::end : FlowStep::pass;
 }
 
 void Recorder::show_all() {
@@ -145,7 +130,7 @@ void Recorder::show_all() {
         traced.unit->show(traced.signals);
         traced.signals.set_running();
     }
-    vcd_->set(passes_signal_, pipeline_.passes.under_way());
+    vcd_->set(passes_signal_, pipeline_.passes_under_way());
 }
 
 void Recorder::show_queue_level(std::uint64_t cycle) {
@@ -170,7 +155,7 @@ void Recorder::show_called(std::uint64_t called) {
             traced.unit->show(traced.signals);
         }
     }
-    vcd_->set(passes_signal_, pipeline_.passes.under_way());
+    vcd_->set(passes_signal_, pipeline_.passes_under_way());
 }
 
 void Recorder::begin(std::uint64_t cycle) {

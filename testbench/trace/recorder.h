@@ -73,7 +73,6 @@ class Recorder : public CycleObserver {
     void enter_window();
     void name_items(std::uint64_t cycle, std::uint64_t called);
     FlowStep step_at(const Track& track);
-    FlowStep begin_to_light(Track& lighting, std::uint64_t many);
 
     Pipeline& pipeline_;
     VcdWriter* vcd_;
@@ -85,8 +84,6 @@ class Recorder : public CycleObserver {
     VcdWriter::Signal passes_signal_ = 0;
     std::vector<TracedUnit> traced_;
     std::deque<Track> tracks_;
-    std::deque<std::optional<Begun>> to_lighting_;  // decided and not begun on there; null: before the window
-    std::uint64_t sent_to_lighting_ = 0;
     std::uint64_t culled_ = 0;
     std::optional<std::uint32_t> first_flow_;  // triangles before it were under way when the window began
     std::size_t shown_level_ = 0;

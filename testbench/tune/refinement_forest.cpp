@@ -90,7 +90,7 @@ RefinementForest::Edge RefinementForest::make_edge(const Vertex& i, const Vertex
     edge.area = size.width * size.height;
     edge.view = pixels(i.screen, j.screen);
     edge.open = datapath::tex_coord_test(i.texture, j.texture, middle, r.formats);
-    edge.generation = datapath::inserted_generation(i, j);
+    edge.generation = datapath::inserted_generation(i.generation, j.generation);
     edge.middle = static_cast<std::uint32_t>(vertices_.size());
     vertices_.push_back(datapath::inserted_vertex(pass, 0));
     return edge;

@@ -1,31 +1,46 @@
 #include "modules/units/tessellation_tests/calculate_new_u.h"
 
 #include "modules/datapath/midpoint.h"
-#include "modules/unit/signals.h"
+#include "modules/unit/stage_steps.h"
 
 namespace tessera {
+namespace {
 
-CalculateNewU::CalculateNewU(const sc_core::sc_module_name& name, Clock& clock, const Timing& timing)
-    : Stage(name, clock, timing.calculate_new_u) {
-    takes_from(input, timing.stalls);
-    delivers_to(to_normal_test);
-    delivers_to(to_tex_coord_test, edge_parts);
-    delivers_to(to_summed_height_test, edge_parts);
-    delivers_to(to_view_test, edge_parts);
+NormalOperands for_normal_test(const EdgeToTest& edge) {
+    const EdgeEnd& i = edge.ends[0];
+    const EdgeEnd& j = edge.ends[1];
+    return {edge.tag,  edge.new_vertices, edge.t_ij,    i.n,           j.n,          i.tangent,
+            j.tangent, i.handedness,      j.handedness, i.displaced_n, j.displaced_n};
 }
 
-Work CalculateNewU::process(const Work& part, const Entries&) {
-    if (part.is_edge()) {
-        const int k = static_cast<int>(part.index());
-        datapath::EdgeTests& edge = part.pass->edges[part.index()];
-        edge.tests = 0;
-        edge.texture = midpoint(part.pass->edge_begin(k).texture, part.pass->edge_end(k).texture);
-    }
-    return part;
+TexCoordOperands for_tex_coord_test(const EdgeToTest& edge) {
+    const EdgeEnd& i = edge.ends[0];
+    const EdgeEnd& j = edge.ends[1];
+    return {edge.tag, i.t, j.t, edge.t_ij, i.generation, j.generation};
 }
 
-void CalculateNewU::trace_processed(Signals& signals, const Work& work, const Work&) const {
-    signals.edge_textures(work);
+HeightOperands for_summed_height_test(const EdgeToTest& edge) {
+    return {edge.tag, edge.ends[0].t, edge.ends[1].t, edge.t_ij};
+}
+
+ViewOperands for_view_test(const EdgeToTest& edge) {
+    return {edge.tag, edge.new_vertices, edge.ends[0].screen, edge.ends[1].screen};
+}
+
+}  // namespace
+
+CalculateNewU::CalculateNewU(const sc_core::sc_module_name& name, const UnitContext& context)
+    : Stage(name, context, context.timing().calculate_new_u) {
+    takes_from(context, input);
+    delivers_to(context, to_normal_test, for_normal_test, all_parts);
+    delivers_to(context, to_tex_coord_test, for_tex_coord_test, edge_parts);
+    delivers_to(context, to_summed_height_test, for_summed_height_test, edge_parts);
+    delivers_to(context, to_view_test, for_view_test, edge_parts);
+}
+
+EdgeToTest CalculateNewU::process(const TestOperands& part, const Entries&) {
+    const datapath::TexCoord& t_i = part.ends[0].t;
+    return {part, part.tag.is_edge() ? midpoint(t_i, part.ends[1].t) : t_i};
 }
 
 }  // namespace tessera

@@ -6,26 +6,73 @@
 #include "modules/unit/signals.h"
 
 namespace tessera {
+namespace {
 
-CollectTests::CollectTests(const sc_core::sc_module_name& name, Clock& clock,
-                           const datapath::Registers& registers, const Timing& timing)
-    : Unit(name, clock), registers_(registers) {
-    for (StreamInput<Work>* input : inputs()) {
-        input->serve<&CollectTests::b_transport>(*this);
-        input->clocked_by(clock, *this, timing.results_buffer, timing.stalls);
-        input->waits_for_all(empty_inputs_);
-    }
-    to_pass_or_tessellate.clocked_by(clock, *this);
+void set(std::uint8_t& tests, bool decided, datapath::TestBits bit) {
+    if (decided)
+        tests = static_cast<std::uint8_t>(tests | bit);
 }
 
-void CollectTests::b_transport(Work& work, sc_core::sc_time& delay) {
-    Decided& decided = decided_.find_or_open(work.tag());
+void add(TestedEdge& edge, const NormalResult& result) {
+    edge.found.normal = result.n;
+    edge.found.tangent = result.tangent;
+    edge.found.displaced_normal = result.displaced_n;
+    edge.displaced_n_i = result.displaced_n_i;
+    set(edge.found.tests, result.normal, datapath::normal_bit);
+    set(edge.found.tests, result.highlight, datapath::highlight_bit);
+}
+void add(TestedEdge& edge, const TexCoordResult& result) {
+    edge.found.texture = result.t_ij;
+    set(edge.found.tests, result.tex_coord, datapath::tex_coord_bit);
+    set(edge.found.tests, result.generation, datapath::generation_bit);
+}
+void add(TestedEdge& edge, const HeightResult& result) {
+    set(edge.found.tests, result.summed_height, datapath::summed_height_bit);
+}
+void add(TestedEdge& edge, const ViewResult& result) {
+    set(edge.found.tests, result.view, datapath::view_bit);
+}
+
+}  // namespace
+
+CollectTests::CollectTests(const sc_core::sc_module_name& name, const UnitContext& context)
+    : Unit(name, context.clock), registers_(context.registers) {
+    add_input(context, from_normal_test);
+    add_input(context, from_tex_coord_test);
+    add_input(context, from_summed_height_test);
+    add_input(context, from_view_test);
+    to_pass_or_tessellate.clocked_by(context, *this);
+}
+
+template <class Result>
+void CollectTests::add_input(const UnitContext& context, StreamInput<Result>& input) {
+    input.template serve<&CollectTests::b_transport<Result>>(*this);
+    input.clocked_by(context.clock, *this, context.timing().results_buffer, context.timing().stalls);
+    input.waits_for_all(empty_inputs_);
+}
+
+template <class Result>
+void CollectTests::b_transport(Result& result, sc_core::sc_time& delay) {
+    Decided& decided = decided_.find_or_open(result.tag.triangle);
+    decided.edge.tag = result.tag;
+    add(decided.edge, result);
     decided.latest = std::max(decided.latest, delay);
     if (++decided.tests < 4)
         return;
     delay = decided.latest;
-    decided_.close(work.tag());
-    to_pass_or_tessellate->b_transport(work, delay);
+    TestedEdge edge = decided.edge;
+    decided_.close(result.tag.triangle);
+    to_pass_or_tessellate.transport(edge, delay);
+}
+
+/// Adds what a test has decided of the edge that leaves.
+template <class Result>
+void CollectTests::take(StreamInput<Result>& input) {
+    const PartTag& tag = input.front().tag;
+    if (tag.triangle != leaving_.tag.triangle || tag.part != leaving_.tag.part)
+        SC_REPORT_ERROR("tessera/collect_tests", "the tests decided different edges");
+    add(leaving_, input.front());
+    input.pop();
 }
 
 void CollectTests::step() {
@@ -39,12 +86,12 @@ void CollectTests::step() {
         }
         if (empty_inputs_ > 0)
             break;
-        leaving_ = from_view_test.front();
-        for (StreamInput<Work>* input : inputs()) {
-            if (input->front().pass != leaving_.pass || input->front().parts != leaving_.parts)
-                SC_REPORT_ERROR("tessera/collect_tests", "the tests decided different edges");
-            input->pop();
-        }
+        leaving_ = {};
+        leaving_.tag = from_view_test.front().tag;
+        take(from_normal_test);
+        take(from_tex_coord_test);
+        take(from_summed_height_test);
+        take(from_view_test);
         leaves_ = true;
         activity_.item_in(cycle);
     }
@@ -55,7 +102,7 @@ void CollectTests::step() {
 }
 
 std::string CollectTests::holds() const {
-    const auto count = [](const StreamInput<Work>& input, const char* test) {
+    const auto count = [](const auto& input, const char* test) {
         return input.empty() ? std::string{} : std::to_string(input.size()) + " from " + test + ", ";
     };
     std::string text = count(from_normal_test, "normal_test") + count(from_tex_coord_test, "tex_coord_test") +
@@ -74,8 +121,8 @@ void CollectTests::show(Signals& signals) const {
     signals.input(from_summed_height_test, "from_summed_height_test");
     signals.input(from_view_test, "from_view_test");
     signals.group(signals.changed(activity_.items_in()) && (leaves_ || signals.running()), [&] {
-        const unsigned tests = Signals::pass_of(leaving_).edges[leaving_.index()].tests;
-        signals.work(leaving_);
+        const unsigned tests = leaving_.found.tests;
+        signals.item("out", leaving_);
         signals.flag("normal", (tests & datapath::normal_bit) != 0);
         signals.flag("summed_height", (tests & datapath::summed_height_bit) != 0);
         signals.flag("view", (tests & datapath::view_bit) != 0);

@@ -1,28 +1,21 @@
 #include "modules/units/tessellation_tests/tex_coord_test.h"
 
 #include "modules/datapath/edge_tests.h"
-#include "modules/unit/signals.h"
+#include "modules/unit/stage_steps.h"
 
 namespace tessera {
 
-TexCoordTest::TexCoordTest(const sc_core::sc_module_name& name, Clock& clock,
-                           const datapath::Registers& registers, const Timing& timing)
-    : Stage(name, clock, timing.tex_coord_test), registers_(registers) {
-    takes_from(input, timing.stalls);
-    delivers_to(output);
+TexCoordTest::TexCoordTest(const sc_core::sc_module_name& name, const UnitContext& context)
+    : Stage(name, context, context.timing().tex_coord_test), registers_(context.registers) {
+    takes_from(context, input);
+    delivers_to(context, output);
 }
 
-Work TexCoordTest::process(const Work& part, const Entries&) {
+TexCoordResult TexCoordTest::process(const TexCoordOperands& edge, const Entries&) {
     const datapath::TestParameters& tests = registers_.tests;
-    const int k = static_cast<int>(part.index());
-    const datapath::Vertex& i = part.pass->edge_begin(k);
-    const datapath::Vertex& j = part.pass->edge_end(k);
-    datapath::EdgeTests& edge = part.pass->edges[part.index()];
-    if (!tests.tex_coord_test || tex_coord_test(i.texture, j.texture, edge.texture, registers_.formats))
-        edge.tests |= datapath::tex_coord_bit;
-    if (!tests.generation_test || generation_test(i, j, tests))
-        edge.tests |= datapath::generation_bit;
-    return part;
+    return {edge.tag, edge.t_ij,
+            !tests.tex_coord_test || tex_coord_test(edge.t_i, edge.t_j, edge.t_ij, registers_.formats),
+            !tests.generation_test || datapath::generation_test(edge.generation_i, edge.generation_j, tests)};
 }
 
 void TexCoordTest::show(Signals& signals) const {
@@ -30,14 +23,9 @@ void TexCoordTest::show(Signals& signals) const {
     signals.value("generation_limit", 32, registers_.tests.generation_limit);
 }
 
-void TexCoordTest::trace_processed(Signals& signals, const Work& work, const Work&) const {
-    const unsigned tests = Signals::pass_of(work).edges[work.index()].tests;
-    signals.edge_textures(work);
-    signals.value("generation_i", 8, Signals::begin_of(work).generation);
-    signals.value("generation_j", 8, Signals::end_of(work).generation);
-    signals.value("generation_ij", 8, inserted_generation(Signals::begin_of(work), Signals::end_of(work)));
-    signals.flag("tex_coord", (tests & datapath::tex_coord_bit) != 0);
-    signals.flag("generation", (tests & datapath::generation_bit) != 0);
+void TexCoordTest::trace_processed(Signals& signals, const TexCoordOperands& edge,
+                                   const TexCoordResult&) const {
+    signals.value("generation_ij", 8, datapath::inserted_generation(edge.generation_i, edge.generation_j));
 }
 
 }  // namespace tessera

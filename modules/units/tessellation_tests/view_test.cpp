@@ -3,19 +3,19 @@
 #include <algorithm>
 
 #include "modules/datapath/edge_tests.h"
-#include "modules/unit/signals.h"
+#include "modules/unit/stage_steps.h"
 
 namespace tessera {
 
-ViewTest::ViewTest(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
-                   const Timing& timing, Parts takes)
-    : Stage(name, clock, timing.view_test),
-      registers_(registers),
+ViewTest::ViewTest(const sc_core::sc_module_name& name, const UnitContext& context, Parts takes)
+    : Stage(name, context, context.timing().view_test),
+      registers_(context.registers),
       last_edge_(last_of(takes)),
-      corners_(std::size_t{timing.pass_or_tessellate.buffer} + 2) {
-    takes_from(input, timing.stalls);
-    delivers_to(output);
-    from_transform.clocked_by(clock, *this, 1, timing.stalls);
+      corners_(std::size_t{context.timing().pass_or_tessellate.buffer} + 2) {
+    takes_from(context, input);
+    delivers_to(context, output);
+    may_wait();
+    from_transform.clocked_by(context.clock, *this, 1, context.timing().stalls);
     from_transform.serve<&ViewTest::take_corner>(*this);
 }
 
@@ -23,9 +23,10 @@ void ViewTest::end_of_elaboration() {
     transform_ = module_behind(from_transform.get_base_port().get_interface());
 }
 
-void ViewTest::take_corner(Work& corner, sc_core::sc_time& when) {
-    Corners& corners = corners_.find_or_open(corner.tag());
-    corners.on_screen |= corner.parts;
+void ViewTest::take_corner(ScreenCorner& corner, sc_core::sc_time& when) {
+    Corners& corners = corners_.find_or_open(corner.tag.triangle);
+    corners.come |= corner.tag.bit();
+    corners.screen[corner.tag.index()] = corner.screen;
     corners.since = std::max(corners.since, when);
 }
 
@@ -36,25 +37,31 @@ void ViewTest::step() {
     Stage::step();
 }
 
-bool ViewTest::may_start(const Work& edge) const {
-    if (edge.pass->new_vertices == 0)
+bool ViewTest::may_start(const ViewOperands& edge) const {
+    if (edge.new_vertices == 0)
         return true;
-    const Corners* corners = corners_.find(edge.tag());
-    return corners != nullptr && corners->on_screen == edge.pass->new_vertices;
+    const Corners* corners = corners_.find(edge.tag.triangle);
+    return corners != nullptr && corners->come == edge.new_vertices;
 }
 
-sc_core::sc_time ViewTest::may_start_after(const Work& edge) const {
-    return edge.pass->new_vertices == 0 ? sc_core::SC_ZERO_TIME : corners_.find(edge.tag())->since;
+sc_core::sc_time ViewTest::may_start_after(const ViewOperands& edge) const {
+    return edge.new_vertices == 0 ? sc_core::SC_ZERO_TIME : corners_.find(edge.tag.triangle)->since;
 }
 
-Work ViewTest::process(const Work& part, const Entries&) {
-    const int k = static_cast<int>(part.index());
-    if (!registers_.tests.view_test ||
-        view_test(part.pass->edge_begin(k).screen, part.pass->edge_end(k).screen, registers_.tests))
-        part.pass->edges[part.index()].tests |= datapath::view_bit;
-    if (part.pass->new_vertices != 0 && part.parts == last_edge_)
-        corners_.close(part.tag());
-    return part;
+ViewResult ViewTest::process(const ViewOperands& edge, const Entries&) {
+    ends_ = {edge.screen_i, edge.screen_j};
+    if (edge.new_vertices != 0) {
+        const Corners& corners = *corners_.find(edge.tag.triangle);
+        const unsigned i = edge.tag.index();
+        const unsigned j = (i + 1) % 3;
+        if ((corners.come >> i & 1u) != 0)
+            ends_.i = corners.screen[i];
+        if ((corners.come >> j & 1u) != 0)
+            ends_.j = corners.screen[j];
+        if (edge.tag.bit() == last_edge_)
+            corners_.close(edge.tag.triangle);
+    }
+    return {edge.tag, !registers_.tests.view_test || view_test(ends_.i, ends_.j, registers_.tests)};
 }
 
 void ViewTest::show(Signals& signals) const {
@@ -64,14 +71,10 @@ void ViewTest::show(Signals& signals) const {
 }
 
 /// An edge that has no length on the screen, for an end is not in front of the near plane, shows 0.
-void ViewTest::trace_processed(Signals& signals, const Work& work, const Work&) const {
-    const datapath::ScreenPosition& i = Signals::begin_of(work).screen;
-    const datapath::ScreenPosition& j = Signals::end_of(work).screen;
-    signals.screen("screen_i_x", "screen_i_y", i);
-    signals.screen("screen_j_x", "screen_j_y", j);
-    signals.value("length", 33, i.in_front && j.in_front ? screen_length(i, j) : 0);
-    const unsigned tests = Signals::pass_of(work).edges[work.index()].tests;
-    signals.flag("view", (tests & datapath::view_bit) != 0);
+void ViewTest::trace_processed(Signals& signals, const ViewOperands&, const ViewResult&) const {
+    signals.screen("screen_i", ends_.i);
+    signals.screen("screen_j", ends_.j);
+    signals.value("length", 33, ends_.i.in_front && ends_.j.in_front ? screen_length(ends_.i, ends_.j) : 0);
 }
 
 }  // namespace tessera

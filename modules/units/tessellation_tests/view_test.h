@@ -1,7 +1,8 @@
 #pragma once
+#include <array>
 #include <systemc>
 
-#include "modules/datapath/parameters.h"
+#include "modules/stream/items.h"
 #include "modules/unit/per_triangle.h"
 #include "modules/unit/stage.h"
 
@@ -9,45 +10,49 @@ namespace tessera {
 
 /// View Test (paper figure 8, 2.4, 3.1.1): is the edge long enough on the screen to be worth splitting?
 ///
-/// In:   edges, with P's of both ends. Out: view_bit of edges[k].tests. An edge with one end on or behind the near plane
-///       counts as long, with both as invisible.
+/// In:   ViewOperands; of a base triangle the three ScreenCorners besides. Out: ViewResult. An edge with one end on or
+///       behind the near plane counts as long, with both as invisible.
 /// Arithmetic: two subtractions, absolute values, add, compare.
 /// Timing: one edge per interval; latency 1, interval 1 by default.
-/// State: for each base triangle under way between Transform and Pass or Tessellate its tag and which of its corners are on
-///        the screen: as many places as Pass or Tessellate has, and two for what waits at its input.
+/// State: for each base triangle under way between Transform and Pass or Tessellate its tag and the corners that have
+///        come: as many places as Pass or Tessellate has, and two for what waits at its input.
 /// Waits for Calculate New U, and for a base triangle's edge until Transform has sent the screen positions of its
 /// vertices, which it takes at any time. Held back by the collection of the tests.
-class ViewTest final : public Stage<Work> {
+class ViewTest : public Stage<ViewOperands, ViewResult> {
   public:
-    StreamInput<Work> input{"input"};
-    StreamInput<Work> from_transform{"from_transform"};
-    StreamOutput<Work> output{"output"};
+    StreamInput<ViewOperands> input{"input"};
+    StreamInput<ScreenCorner> from_transform{"from_transform"};
+    StreamOutput<ViewResult> output{"output"};
 
     /// takes: the vertices and edges of a triangle that come to the unit (parts_for_tests).
-    ViewTest(const sc_core::sc_module_name& name, Clock& clock, const datapath::Registers& registers,
-             const Timing& timing, Parts takes);
+    ViewTest(const sc_core::sc_module_name& name, const UnitContext& context, Parts takes);
 
     void show(Signals& signals) const override;
 
-  private:
-    /// Which of a base triangle's corners are on the screen; functional mode: since when.
+  protected:
+    /// Of a base triangle: which corners have come, and where they are; functional mode: since when.
     struct Corners {
-        Parts on_screen = 0;
+        Parts come = 0;
+        std::array<datapath::ScreenPosition, 3> screen;
         sc_core::sc_time since;
     };
+    struct Ends {
+        datapath::ScreenPosition i, j;
+    };
 
-    void take_corner(Work& corner, sc_core::sc_time& when);
+    void take_corner(ScreenCorner& corner, sc_core::sc_time& when);
     void step() override;
-    bool may_start(const Work& edge) const override;
-    sc_core::sc_time may_start_after(const Work& edge) const override;
+    bool may_start(const ViewOperands& edge) const override;
+    sc_core::sc_time may_start_after(const ViewOperands& edge) const override;
     const sc_core::sc_object* lacks() const override { return transform_; }
-    Work process(const Work& edge, const Entries& entries) override;
-    void trace_processed(Signals& signals, const Work& edge, const Work& result) const override;
+    ViewResult process(const ViewOperands& edge, const Entries& entries) override;
+    void trace_processed(Signals& signals, const ViewOperands& edge, const ViewResult& result) const override;
     void end_of_elaboration() override;
 
     const datapath::Registers& registers_;
     Parts last_edge_;  // that comes of a triangle
     PerTriangle<Corners> corners_;
+    Ends ends_;  // of the edge decided last
     const sc_core::sc_object* transform_ = nullptr;
 };
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "modules/wiring.h"
+#include "modules/unit_factory.h"
 #include "testbench/check/read_check.h"
 #include "testbench/faults/fault_trigger.h"
 
@@ -11,17 +11,15 @@ namespace tessera {
 
 /// Puts the fault that a job asks for, and the read checks, between the units while the machine is built. To be made
 /// before the simulation, in one scope with it: what stands between the units is part of the machine.
-class CheckedWiring : public Wiring {
+class CheckedUnits : public UnitFactory {
   public:
-    CheckedWiring(const Job& job, const datapath::Formats& formats);
-    ~CheckedWiring() override;
+    CheckedUnits(const Job& job, const datapath::Formats& formats, int tag_bits);
+    ~CheckedUnits() override;
 
     /// Neither a fault nor read checks are asked for: the machine is to be wired straight.
     static bool wanted(const Job& job) { return job.fault.kind != FaultKind::none || job.check.reads; }
 
-    void join(StreamOutput<datapath::Triangle>& from, StreamInput<datapath::Triangle>& to) override;
-    void join(StreamOutput<Work>& from, StreamInput<Work>& to) override;
-    void join(StreamOutput<LitTriangle>& from, StreamInput<LitTriangle>& to) override;
+    void made(sc_core::sc_module& module) override;
     void join(MemoryPort& port, TableMemory& memory) override;
     void join(MemoryPort& port, OffChipMemory& memory) override;
 
@@ -37,12 +35,13 @@ class CheckedWiring : public Wiring {
 
   private:
     template <class Payload>
-    void join_stream(StreamOutput<Payload>& from, StreamInput<Payload>& to);
+    void interpose(StreamOutput<Payload>& output);
     bool is_place(const std::string& name, bool applies);
     void join_memory(MemoryPort& port, MemoryServer& memory, bool check_reads);
 
     Job::Fault fault_;
     datapath::Formats formats_;
+    int tag_bits_;
     bool timed_;
     bool check_reads_;
     FaultTrigger trigger_;

@@ -1,4 +1,4 @@
-#include "testbench/faults/checked_wiring.h"
+#include "testbench/faults/checked_units.h"
 
 #include <fmt/format.h>
 
@@ -41,16 +41,17 @@ bool strikes_memories(FaultKind kind) {
            kind != FaultKind::back_pressure_ignored;
 }
 
-CheckedWiring::CheckedWiring(const Job& job, const datapath::Formats& formats)
+CheckedUnits::CheckedUnits(const Job& job, const datapath::Formats& formats, int tag_bits)
     : fault_(job.fault),
       formats_(formats),
+      tag_bits_(tag_bits),
       timed_(job.mode == Mode::timed),
       check_reads_(job.check.reads || job.fault.kind != FaultKind::none),
       trigger_(job.fault, job.timing.cycle_picoseconds) {}
 
-CheckedWiring::~CheckedWiring() = default;
+CheckedUnits::~CheckedUnits() = default;
 
-bool CheckedWiring::is_place(const std::string& name, bool applies) {
+bool CheckedUnits::is_place(const std::string& name, bool applies) {
     if (!applies)
         return false;
     places_.push_back(name);
@@ -61,28 +62,28 @@ bool CheckedWiring::is_place(const std::string& name, bool applies) {
 }
 
 template <class Payload>
-void CheckedWiring::join_stream(StreamOutput<Payload>& from, StreamInput<Payload>& to) {
-    if (!is_place(place_name(from.name()), strikes_streams(fault_.kind))) {
-        from.bind(to);
+void CheckedUnits::interpose(StreamOutput<Payload>& output) {
+    if (!is_place(place_name(output.name()), strikes_streams(fault_.kind)))
         return;
+    output.interpose([this](StreamOutput<Payload>& from, StreamInput<Payload>& to) {
+        auto fault = std::make_unique<StreamFault<Payload>>("fault", trigger_, formats_, tag_bits_, to);
+        from.bind(fault->in);
+        fault->out.bind(to);
+        faults_.push_back(std::move(fault));
+    });
+}
+
+void CheckedUnits::made(sc_core::sc_module& module) {
+    for (sc_core::sc_object* child : module.get_child_objects()) {
+        for_each_item_type([&](auto* item) {
+            using Item = std::remove_const_t<std::remove_pointer_t<decltype(item)>>;
+            if (auto* output = dynamic_cast<StreamOutput<Item>*>(child))
+                interpose(*output);
+        });
     }
-    auto fault = std::make_unique<StreamFault<Payload>>("fault", trigger_, formats_, to);
-    from.bind(fault->in);
-    fault->out.bind(to);
-    faults_.push_back(std::move(fault));
 }
 
-void CheckedWiring::join(StreamOutput<datapath::Triangle>& from, StreamInput<datapath::Triangle>& to) {
-    join_stream(from, to);
-}
-void CheckedWiring::join(StreamOutput<Work>& from, StreamInput<Work>& to) {
-    join_stream(from, to);
-}
-void CheckedWiring::join(StreamOutput<LitTriangle>& from, StreamInput<LitTriangle>& to) {
-    join_stream(from, to);
-}
-
-void CheckedWiring::join_memory(MemoryPort& port, MemoryServer& memory, bool check_reads) {
+void CheckedUnits::join_memory(MemoryPort& port, MemoryServer& memory, bool check_reads) {
     const std::string name = place_name(port.socket.name());
     ReadCheck* check = nullptr;
     if (check_reads && check_reads_) {
@@ -106,15 +107,15 @@ void CheckedWiring::join_memory(MemoryPort& port, MemoryServer& memory, bool che
     }
 }
 
-void CheckedWiring::join(MemoryPort& port, TableMemory& memory) {
+void CheckedUnits::join(MemoryPort& port, TableMemory& memory) {
     join_memory(port, memory, true);
 }
 // What comes back of a triangle is the work check's to judge.
-void CheckedWiring::join(MemoryPort& port, OffChipMemory& memory) {
+void CheckedUnits::join(MemoryPort& port, OffChipMemory& memory) {
     join_memory(port, memory, false);
 }
 
-void CheckedWiring::require_placed() const {
+void CheckedUnits::require_placed() const {
     if (lacks_cycles_)
         throw InputError(
             fmt::format("`fault.kind` = \"{}\" at a memory, `fault.place` = \"{}\", breaks the handshake, "

@@ -1,0 +1,195 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "modules/datapath/format.h"
+#include "modules/datapath/vertex.h"
+
+namespace tessera::datapath {
+
+/// One field of an item: a wire or a bundle of wires.
+struct Field {
+    const char* name;       ///< of the value, as in "displaced"
+    const char* component;  ///< "x" of a vector; else ""
+    int index;              ///< of three alike: 0 to 2; else -1
+    int bits;               ///< in the job's formats
+    int most_bits;          ///< in the widest formats: what a waveform declares
+    bool is_signed;
+    const char* meaning;
+};
+
+/// Describes an item to a codec: each of its fields once, the lowest bit first. The codec's
+///
+///     std::int64_t field(const Field&, std::int64_t value)
+///
+/// returns the value that the item goes on with: the same, or what it has read. Of a constant item the result is
+/// dropped. So one list of an item's fields serves to pack and to unpack it, to add up its width, and to show it in a
+/// waveform.
+///
+/// `annotation` names what no hardware has: it has no width. For it the codec has
+///
+///     std::uint32_t annotation(const char* name, std::uint32_t value)
+template <class Codec>
+class Fields {
+  public:
+    constexpr Fields(Codec& codec, const Formats& formats, int tag_bits = 32)
+        : codec_(codec), formats_(formats), tag_bits_(tag_bits) {}
+
+    /// The fields that follow are those of vertex, or edge, `index`; -1: of the item itself.
+    constexpr void of(int index) { index_ = index; }
+
+    template <class P>
+    constexpr void position(const char* name, P& p, const char* meaning) {
+        vector(name, p, formats_.position.bits, FormatLimits::position_bits.most, meaning);
+    }
+    template <class D>
+    constexpr void direction(const char* name, D& n, const char* meaning) {
+        vector(name, n, formats_.normal.bits, FormatLimits::normal_bits.most, meaning);
+    }
+    template <class T>
+    constexpr void texture(const char* name, T& t, const char* meaning) {
+        constexpr int most = FormatLimits::texture_integer.most + FormatLimits::texture_fraction.most + 1;
+        pass(named(name, "u", formats_.texture.bits, most, false, meaning), t.u);
+        pass(named(name, "v", formats_.texture.bits, most, false, meaning), t.v);
+    }
+    template <class S>
+    constexpr void screen(const char* name, S& s, const char* meaning) {
+        pass(named(name, "x", formats_.screen.bits, FormatLimits::screen_bits.most, true, meaning), s.x);
+        pass(named(name, "y", formats_.screen.bits, FormatLimits::screen_bits.most, true, meaning), s.y);
+        pass(named(name, "w", formats_.view_distance.bits, FormatLimits::position_bits.most, true, meaning),
+             s.w);
+        pass(named(name, "in_front", 1, 1, false, meaning), s.in_front);
+    }
+    template <class N>
+    constexpr void generation(const char* name, N& value, const char* meaning) {
+        pass(named(name, "", formats_.generation_bits, 8, false, meaning), value);
+    }
+    template <class N>
+    constexpr void number(const char* name, N& value, int bits, const char* meaning) {
+        pass(named(name, "", bits, bits, false, meaning), value);
+    }
+    template <class B>
+    constexpr void flag(const char* name, B& value, const char* meaning) {
+        pass(named(name, "", 1, 1, false, meaning), value);
+    }
+    /// HT: only where it is built.
+    template <class B>
+    constexpr void highlight(const char* name, B& value, const char* meaning) {
+        if (formats_.highlight_tag)
+            flag(name, value, meaning);
+    }
+    /// 1 or -1; the bit is set for -1.
+    template <class H>
+    constexpr void handedness(const char* name, H& value, const char* meaning) {
+        const std::int64_t bit = codec_.field(named(name, "", 1, 1, false, meaning), value == 1    ? 0
+                                                                                     : value == -1 ? 1
+                                                                                                   : 2);
+        if constexpr (!std::is_const_v<H>)
+            value = bit == 0 ? std::int8_t{1} : std::int8_t{-1};
+    }
+    /// NT and SHT; where a Highlight Test is built, HT as the bit above.
+    template <class N>
+    constexpr void requesting(const char* name, N& tests, const char* meaning) {
+        constexpr std::uint8_t two = normal_bit | summed_height_bit;
+        const int bits = formats_.highlight_tag ? 3 : 2;
+        const std::int64_t read = codec_.field(
+            named(name, "", bits, 3, false, meaning),
+            (tests & two) | (tests & highlight_bit) / highlight_bit * 4 | (tests & ~requesting_tests) << 3);
+        if constexpr (!std::is_const_v<N>)
+            tests = static_cast<N>((read & two) | (read >> 2 & 1) * highlight_bit);
+    }
+    /// VT, TCT, GT.
+    template <class N>
+    constexpr void gating(const char* name, N& tests, const char* meaning) {
+        const std::int64_t read = codec_.field(named(name, "", 3, 3, false, meaning), spread(tests));
+        if constexpr (!std::is_const_v<N>)
+            tests = static_cast<N>(read << 2);
+    }
+    /// All of them; HT only where it is built.
+    template <class N>
+    constexpr void tests(const char* name, N& tests, const char* meaning) {
+        pass(named(name, "", formats_.highlight_tag ? 6 : 5, 6, false, meaning), tests);
+    }
+    template <class N>
+    constexpr void tag(const char* name, N& value, const char* meaning) {
+        pass(named(name, "", tag_bits_, 32, false, meaning), value);
+    }
+    template <class N>
+    constexpr void annotation(const char* name, N& value) {
+        const std::uint32_t read = codec_.annotation(name, value);
+        if constexpr (!std::is_const_v<N>)
+            value = read;
+    }
+
+  private:
+    template <class V>
+    constexpr void vector(const char* name, V& v, int bits, int most, const char* meaning) {
+        pass(named(name, "x", bits, most, true, meaning), v.x);
+        pass(named(name, "y", bits, most, true, meaning), v.y);
+        pass(named(name, "z", bits, most, true, meaning), v.z);
+    }
+    constexpr Field named(const char* name, const char* component, int bits, int most_bits, bool is_signed,
+                          const char* meaning) const {
+        return {name, component, index_, bits, most_bits, is_signed, meaning};
+    }
+    template <class N>
+    constexpr void pass(const Field& field, N& value) {
+        const std::int64_t read = codec_.field(field, static_cast<std::int64_t>(value));
+        if constexpr (!std::is_const_v<N>)
+            value = static_cast<N>(read);
+    }
+    /// A bit that is not among VT, TCT, GT goes beyond the field, so that a writer tells.
+    static constexpr std::int64_t spread(std::uint8_t tests) {
+        return (tests & gating_tests) >> 2 | ((tests & ~gating_tests) != 0 ? 8 : 0);
+    }
+
+    Codec& codec_;
+    const Formats& formats_;
+    int tag_bits_;
+    int index_ = -1;
+};
+
+/// All a vertex carries, as in the Triangle Queue.
+template <class Codec, class AnyVertex>
+constexpr void describe_vertex(Fields<Codec>& fields, AnyVertex& vertex) {
+    fields.position("p", vertex.position, "P");
+    fields.direction("n", vertex.normal, "N");
+    fields.direction("tangent", vertex.tangent, "T");
+    fields.handedness("handedness", vertex.handedness, "bitangent = handedness (N x T)");
+    fields.texture("t", vertex.texture, "t");
+    fields.generation("generation", vertex.generation, "generation");
+    fields.flag("displaced_known", vertex.displaced_known, "P', P's, N' are known");
+    fields.flag("screen_normal_known", vertex.screen_normal_known, "N's is known");
+    fields.position("displaced", vertex.displaced, "P'");
+    fields.direction("displaced_n", vertex.displaced_normal, "N'");
+    fields.screen("screen", vertex.screen, "P's");
+    fields.direction("screen_n", vertex.screen_normal, "N's");
+}
+
+/// A Triangle Queue entry.
+template <class Codec, class AnyTriangle>
+constexpr void describe_triangle(Fields<Codec>& fields, AnyTriangle& triangle) {
+    for (int k = 0; k < 3; ++k) {
+        fields.of(k);
+        describe_vertex(fields, triangle.vertices[static_cast<std::size_t>(k)]);
+    }
+    fields.of(-1);
+    fields.requesting("split_by", triangle.split_by, "tests that split its parent");
+    fields.gating("stopped_by", triangle.stopped_by, "tests that kept an edge whole");
+    fields.flag("finished", triangle.finished, "no edge splits");
+    fields.annotation("base", triangle.base);
+}
+
+/// Adds up the widths of an item's fields.
+struct WidthCounter {
+    std::uint32_t bits = 0;
+
+    constexpr std::int64_t field(const Field& field, std::int64_t value) {
+        bits += static_cast<std::uint32_t>(field.bits);
+        return value;
+    }
+    constexpr std::uint32_t annotation(const char*, std::uint32_t value) const { return value; }
+};
+
+}  // namespace tessera::datapath

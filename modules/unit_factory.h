@@ -1,0 +1,88 @@
+#pragma once
+#include <memory>
+
+#include "modules/design.h"
+#include "modules/memory/memory_port.h"
+#include "modules/memory/off_chip_memory.h"
+#include "modules/memory/table_memory.h"
+#include "modules/units/calculate_new_p.h"
+#include "modules/units/displace_vertex.h"
+#include "modules/units/get_triangle.h"
+#include "modules/units/lighting.h"
+#include "modules/units/pass_or_tessellate.h"
+#include "modules/units/tessellation.h"
+#include "modules/units/tessellation_tests/calculate_new_u.h"
+#include "modules/units/tessellation_tests/collect_tests.h"
+#include "modules/units/tessellation_tests/normal_test.h"
+#include "modules/units/tessellation_tests/summed_height_test.h"
+#include "modules/units/tessellation_tests/tex_coord_test.h"
+#include "modules/units/tessellation_tests/view_test.h"
+#include "modules/units/transform.h"
+#include "modules/units/triangle_queue.h"
+
+namespace tessera {
+
+/// Makes a machine's units. Override a function to put a variant in a unit's place: a class derived from the unit,
+/// which has its sockets (modules/README.md, "How to replace a unit"). A variant may also be the same unit in another
+/// context: a context with stalls holds back what comes to that unit alone. Asked while the machine is built; costs a
+/// run nothing.
+class UnitFactory {
+  public:
+    UnitFactory() = default;
+    virtual ~UnitFactory() = default;
+    UnitFactory(const UnitFactory&) = delete;
+    UnitFactory& operator=(const UnitFactory&) = delete;
+
+    using Name = const sc_core::sc_module_name&;
+    virtual std::unique_ptr<GetTriangle> get_triangle(Name name, const UnitContext& context) {
+        return std::make_unique<GetTriangle>(name, context);
+    }
+    virtual std::unique_ptr<CalculateNewP> calculate_new_p(Name name, const UnitContext& context) {
+        return std::make_unique<CalculateNewP>(name, context);
+    }
+    virtual std::unique_ptr<DisplaceVertex> displace_vertex(Name name, const UnitContext& context) {
+        return std::make_unique<DisplaceVertex>(name, context);
+    }
+    virtual std::unique_ptr<Transform> transform(Name name, const UnitContext& context) {
+        return std::make_unique<Transform>(name, context);
+    }
+    virtual std::unique_ptr<CalculateNewU> calculate_new_u(Name name, const UnitContext& context) {
+        return std::make_unique<CalculateNewU>(name, context);
+    }
+    virtual std::unique_ptr<TexCoordTest> tex_coord_test(Name name, const UnitContext& context) {
+        return std::make_unique<TexCoordTest>(name, context);
+    }
+    virtual std::unique_ptr<SummedHeightTest> summed_height_test(Name name, const UnitContext& context) {
+        return std::make_unique<SummedHeightTest>(name, context);
+    }
+    virtual std::unique_ptr<NormalTest> normal_test(Name name, const UnitContext& context, Parts takes) {
+        return std::make_unique<NormalTest>(name, context, takes);
+    }
+    virtual std::unique_ptr<ViewTest> view_test(Name name, const UnitContext& context, Parts takes) {
+        return std::make_unique<ViewTest>(name, context, takes);
+    }
+    virtual std::unique_ptr<CollectTests> collect_tests(Name name, const UnitContext& context) {
+        return std::make_unique<CollectTests>(name, context);
+    }
+    virtual std::unique_ptr<PassOrTessellate> pass_or_tessellate(Name name, const UnitContext& context) {
+        return std::make_unique<PassOrTessellate>(name, context);
+    }
+    virtual std::unique_ptr<Tessellation> tessellation(Name name, const UnitContext& context) {
+        return std::make_unique<Tessellation>(name, context);
+    }
+    virtual std::unique_ptr<TriangleQueue> triangle_queue(Name name, const UnitContext& context) {
+        return std::make_unique<TriangleQueue>(name, context);
+    }
+    virtual std::unique_ptr<Lighting> lighting(Name name, const UnitContext& context) {
+        return std::make_unique<Lighting>(name, context);
+    }
+
+    /// Called with each module that has outputs, before they are bound: for who wants to interpose (StreamOutput).
+    virtual void made(sc_core::sc_module& /*module*/) {}
+
+    /// Joins a unit's port to its memory.
+    virtual void join(MemoryPort& port, TableMemory& memory) { port.bind(memory); }
+    virtual void join(MemoryPort& port, OffChipMemory& memory) { port.bind(memory); }
+};
+
+}  // namespace tessera
