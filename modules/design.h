@@ -68,9 +68,10 @@ constexpr unsigned triangles_ahead_of_parts(const Design& design) {
            register_stages(t.transform, design.transform_pipelines) + 1;
 }
 
-/// Wires of a triangle's tag: enough to tell apart all that Get Triangle has begun and Pass or Tessellate not decided.
+/// Wires of a triangle's tag: enough to tell apart all that Get Triangle has begun and Pass or Tessellate not decided:
+/// those that wait there, one that Get Triangle still offers, and those whose parts have begun to come.
 constexpr int tag_bits(const Design& design) {
-    const unsigned triangles = triangles_ahead_of_parts(design) + design.timing.pass_or_tessellate.buffer;
+    const unsigned triangles = triangles_ahead_of_parts(design) + 1 + design.timing.pass_or_tessellate.buffer;
     int bits = 1;
     while (bits < 32 && std::uint64_t{1} << bits < triangles)
         ++bits;

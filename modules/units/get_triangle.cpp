@@ -79,7 +79,7 @@ TakenTriangle GetTriangle::taken(const datapath::Triangle& triangle) {
 /// Functional mode: the branch's parts, one after another.
 template <class Item>
 void GetTriangle::send_whole(Branch<Item>& branch, const TakenTriangle& taken, Parts parts,
-                             sc_core::sc_time start, sc_core::sc_time& delay) {
+                             const sc_core::sc_time& start, sc_core::sc_time& delay) {
     for (unsigned left = parts & branch.takes; left != 0; left &= left - 1) {
         Item item;
         make(item, taken, static_cast<Parts>(left & -left));

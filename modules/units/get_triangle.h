@@ -66,8 +66,8 @@ class GetTriangle : public Unit {
     void b_transport_level(QueueLevel& level, sc_core::sc_time& delay);
     void send_whole(const datapath::Triangle& triangle, sc_core::sc_time& delay);
     template <class Item>
-    void send_whole(Branch<Item>& branch, const TakenTriangle& taken, Parts parts, sc_core::sc_time start,
-                    sc_core::sc_time& delay);
+    void send_whole(Branch<Item>& branch, const TakenTriangle& taken, Parts parts,
+                    const sc_core::sc_time& start, sc_core::sc_time& delay);
     TakenTriangle taken(const datapath::Triangle& triangle);
     void step() override;
     bool begin(std::uint64_t cycle);

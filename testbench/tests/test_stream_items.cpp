@@ -245,10 +245,10 @@ TEST_CASE("an output sends its items through their packed form where the design 
 TEST_CASE("a tag tells apart all triangles between Get Triangle and Pass or Tessellate") {
     Design design;
     CHECK(triangles_ahead_of_parts(design) == 1 + (1 + 1) + (1 + 7) + (1 + 20) + 1);
-    CHECK(tag_bits(design) == 6);  // 33 and 8 triangles
-    design.timing.pass_or_tessellate.buffer = 31;
+    CHECK(tag_bits(design) == 6);  // 33, one on offer, and 8
+    design.timing.pass_or_tessellate.buffer = 30;
     CHECK(tag_bits(design) == 6);
-    design.timing.pass_or_tessellate.buffer = 32;
+    design.timing.pass_or_tessellate.buffer = 31;
     CHECK(tag_bits(design) == 7);
     design.transform_pipelines = 2;
     CHECK(triangles_ahead_of_parts(design) == 33 + 20);
