@@ -12,9 +12,10 @@ namespace tessera {
 /// what a unit sees that is described in another language.
 struct PackedItem {
     static constexpr std::size_t most_bytes = 416;
+    static constexpr std::size_t most_annotations = 3;  // of a triangle with its origin
 
     std::array<unsigned char, most_bytes> bytes{};
-    std::array<std::uint32_t, 2> annotations{};
+    std::array<std::uint32_t, most_annotations> annotations{};
 };
 
 namespace packed {
@@ -23,7 +24,7 @@ class Writer : public datapath::FieldWriter {
   public:
     explicit Writer(PackedItem& packed) : FieldWriter(packed.bytes.data()), packed_(packed) {}
     std::uint32_t annotation(const char*, std::uint32_t value) {
-        return packed_.annotations[annotations_++] = value;
+        return packed_.annotations.at(annotations_++) = value;
     }
 
   private:
@@ -34,7 +35,7 @@ class Writer : public datapath::FieldWriter {
 class Reader : public datapath::FieldReader {
   public:
     explicit Reader(const PackedItem& packed) : FieldReader(packed.bytes.data()), packed_(packed) {}
-    std::uint32_t annotation(const char*, std::uint32_t) { return packed_.annotations[annotations_++]; }
+    std::uint32_t annotation(const char*, std::uint32_t) { return packed_.annotations.at(annotations_++); }
 
   private:
     const PackedItem& packed_;
