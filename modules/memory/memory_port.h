@@ -71,7 +71,7 @@ class MemoryPort {
 
     /// Timed mode. most_under_way: requests that may be unanswered at a time; most_entries: of one of them.
     void clocked_by(Clock& clock, Clocked& unit, std::size_t most_under_way,
-                    unsigned most_entries = datapath::RectangleReads::most);
+                    unsigned most_entries = datapath::most_rectangle_entries);
 
     /// A request may be offered.
     bool may_request() const { return !on_offer_ && !slots_.full(); }
@@ -82,7 +82,7 @@ class MemoryPort {
     /// Of the newest request, if any: the address of its first entry.
     std::uint64_t last_address() const { return slots_.empty() ? 0 : slots_.back().request.address[0]; }
 
-    /// Asks for `count` entries, 1 to RectangleReads::most.
+    /// Asks for `count` entries, 1 to most_rectangle_entries.
     void request(const std::uint64_t* addresses, unsigned count);
     void request(std::uint64_t address) { request(&address, 1); }
     /// The entry that write() will send; to be filled in just before.

@@ -12,9 +12,9 @@ namespace tessera {
 /// everything else together).
 struct MemoryRequest {
     tlm::tlm_command command = tlm::TLM_READ_COMMAND;
-    unsigned count = 1;                                                   ///< entries, at least 1
-    unsigned entry_bytes = 0;                                             ///< of each, at least 1
-    std::array<std::uint64_t, datapath::RectangleReads::most> address{};  ///< of each, in bytes
+    unsigned count = 1;                                                     ///< entries, at least 1
+    unsigned entry_bytes = 0;                                               ///< of each, at least 1
+    std::array<std::uint64_t, datapath::most_rectangle_entries> address{};  ///< of each, in bytes
     unsigned char* data = nullptr;  ///< the entries, one after another, each little endian
     tlm::tlm_response_status response = tlm::TLM_INCOMPLETE_RESPONSE;
     bool dmi_allowed = false;  ///< set by a memory whose entries may be read through DMI

@@ -1,5 +1,4 @@
 #pragma once
-#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -13,13 +12,17 @@ class Reads {
     static constexpr unsigned most_entries = 27;
 
     /// One more request, for one entry.
-    void add(std::uint64_t address) { add(&address, 1); }
-    /// One more request, for 1 to 9 entries together (a gather).
-    void add(const std::uint64_t* addresses, unsigned count) {
-        std::copy_n(addresses, count, address_.begin() + entries_);
-        count_[requests_++] = count;
-        entries_ += count;
+    void add(std::uint64_t address) {
+        add_request();
+        add_entry(address);
     }
+    /// One more request, for the 1 to 9 entries that are added next (a gather).
+    void add_request() { count_[requests_++] = 0; }
+    void add_entry(std::uint64_t address) {
+        address_[entries_++] = address;
+        ++count_[requests_ - 1];
+    }
+    void clear() { requests_ = entries_ = 0; }
 
     unsigned requests() const { return requests_; }
     unsigned entries() const { return entries_; }

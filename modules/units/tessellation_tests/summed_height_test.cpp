@@ -26,10 +26,10 @@ void SummedHeightTest::reads(const HeightOperands& edge, Reads& reads) const {
         return;
     const datapath::RectangleSize its_size = size(edge);
     for (const datapath::TexCoord& centre : {edge.t_i, edge.t_j, edge.t_ij}) {
-        const datapath::RectangleReads its =
-            rectangle_reads(centred_rectangle(centre, its_size, registers_.map, registers_.formats),
-                            registers_.map, registers_.summed_height_table);
-        reads.add(its.address.data(), its.count);
+        reads.add_request();
+        rectangle_entries(centred_rectangle(centre, its_size, registers_.map, registers_.formats),
+                          registers_.map, registers_.summed_height_table,
+                          [&](std::uint64_t address, bool) { reads.add_entry(address); });
     }
 }
 
