@@ -58,11 +58,11 @@ void TableMemory::show(Signals& signals) const {
     signals.pulse("served", slots_taken());
     signals.value("requests", 32, activity_.items_in());
     signals.value("reads", 32, transactions_);
-    signals.group(signals.changed(slots_taken()) && signals.running(), [&] {
+    if (signals.when(signals.changed("slots_taken", slots_taken()) && signals.running())) {
         signals.value("address", 32, last_.address);
         signals.value("entries", 4, last_.entries);
         signals.value("data", 64, last_.data);
-    });
+    }
     signals.flag("held_up", held_up());
     show_waiting(signals);
 }

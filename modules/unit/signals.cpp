@@ -1,6 +1,8 @@
 #include "modules/unit/signals.h"
 
 #include <algorithm>
+#include <cstring>
+#include <stdexcept>
 #include <utility>
 
 namespace tessera {
@@ -63,60 +65,57 @@ unsigned UnitNumbers::of(const sc_core::sc_object* object) {
     return number;
 }
 
-void Signals::value(const char* name, unsigned bits, std::uint64_t value) {
-    if (declaring_)
-        declare(name, bits);
-    else
-        set(value);
+bool Signals::Name::operator==(const Name& other) const {
+    const auto same = [](const char* a, const char* b) { return a == b || std::strcmp(a, b) == 0; };
+    return index == other.index && same(name, other.name) && same(component, other.component) &&
+           same(scope, other.scope);
 }
 
-bool Signals::changed(std::uint64_t value) {
+void Signals::declare(const Name& name, unsigned bits) {
+    const std::string scope = name.scope[0] == '\0' ? scope_ : scope_ + "." + name.scope;
+    std::string text = name.name;
+    if (name.index >= 0)
+        text += "_" + std::to_string(name.index);
+    if (name.component[0] != '\0')
+        text += std::string("_") + name.component;
+    declared_.push_back({name, sink_.add(scope, text, bits)});
+}
+
+Signals::Declared& Signals::find(const Name& name) {
+    for (std::size_t tries = 0; tries < declared_.size(); ++tries) {
+        Declared& declared = declared_[next_];
+        next_ = next_ + 1 == declared_.size() ? 0 : next_ + 1;
+        if (declared.name == name)
+            return declared;
+    }
+    const std::string message = scope_ + ": shows " + name.name + ", which it has not declared";
+    SC_REPORT_ERROR("tessera/trace", message.c_str());
+    throw std::logic_error(message);  // where SC_ERROR was told not to throw
+}
+
+bool Signals::changed(const char* name, std::uint64_t value) {
+    const Name counter{inner_scope_, name, "count", -1};
     if (declaring_) {
-        remembered_.push_back(0);
+        declared_.push_back({counter});
         return false;
     }
-    return std::exchange(remembered_[memory_++], value) != value;
+    return std::exchange(find(counter).remembered, value) != value;
 }
 
 void Signals::unit(const char* name, const sc_core::sc_object* object) {
-    group(changed(reinterpret_cast<std::uintptr_t>(object)),
-          [&] { value(name, UnitNumbers::bits, declaring_ ? 0 : numbers_.of(object)); });
+    if (when(changed(name, reinterpret_cast<std::uintptr_t>(object))))
+        value(name, UnitNumbers::bits, declaring_ ? 0 : numbers_.of(object));
 }
 
-void Signals::set(std::uint64_t value) {
-    sink_.set(handles_[signal_++], value);
-}
-
-std::string Signals::name_of(const datapath::Field& field) {
-    std::string name = field.name;
-    if (field.index >= 0)
-        name += "_" + std::to_string(field.index);
-    if (field.component[0] != '\0')
-        name += std::string("_") + field.component;
-    return name;
-}
-
-void Signals::pulse_if(const char* name, bool now) {
-    if (declaring_)
-        declare(name, 1);
-    else if (now)
-        sink_.pulse(handles_[signal_++]);
-    else
-        sink_.set(handles_[signal_++], 0);
-}
-
+/// No pulse before the traced cycles.
 void Signals::pulse_or_level(const char* name, bool pulse, bool level) {
+    const Name signal{inner_scope_, name, "", -1};
     if (declaring_)
-        declare(name, 1);
-    else if (pulse && !level)
-        sink_.pulse(handles_[signal_++]);
+        declare(signal, 1);
+    else if (pulse && running_ && !level)
+        sink_.pulse(find(signal).signal);
     else
-        sink_.set(handles_[signal_++], level ? 1 : 0);
-}
-
-void Signals::declare(const char* name, unsigned bits) {
-    const std::string scope = inner_scope_ == nullptr ? scope_ : scope_ + "." + inner_scope_;
-    handles_.push_back(sink_.add(scope, name, bits));
+        sink_.set(find(signal).signal, level ? 1 : 0);
 }
 
 }  // namespace tessera

@@ -32,8 +32,8 @@ class UnitNumbers {
 };
 
 /// One unit's signals in a waveform file. Unit::show is called once to declare them, then at the end of each traced
-/// cycle in which the unit was called, to show their values. So trace makes the same calls, in the same order, each
-/// time: what depends on the unit's state is a value or a group, never an `if` around a call.
+/// cycle in which the unit was called, to show their values. A signal is found by its name and scope, and keeps its
+/// value where a call is left out; one that was not declared is an SC_ERROR.
 ///
 /// Signals stand in the unit's own scope unless a scope within it is given.
 class Signals {
@@ -44,47 +44,40 @@ class Signals {
     /// Begins a call of Unit::show.
     void begin(bool declaring) {
         declaring_ = declaring;
-        signal_ = memory_ = group_ = 0;
+        next_ = 0;
     }
     /// False: what is shown is how the cycles before the traced ones left it, and nothing pulses.
     void set_running() { running_ = true; }
     bool running() const { return running_; }
 
-    void value(const char* name, unsigned bits, std::uint64_t value);
+    void value(const char* name, unsigned bits, std::uint64_t value) {
+        if (declaring_)
+            declare({inner_scope_, name, "", -1}, bits);
+        else
+            sink_.set(find({inner_scope_, name, "", -1}).signal, value);
+    }
     void flag(const char* name, bool value) { this->value(name, 1, value ? 1 : 0); }
     /// One cycle long when `count` has changed since the last call.
-    void pulse(const char* name, std::uint64_t count) { pulse_if(name, changed(count) && running_); }
+    void pulse(const char* name, std::uint64_t count) { pulse_or_level(name, changed(name, count), false); }
 
-    /// Whether `value` differs from what it was at the last call, 0 before the first: that something new has come.
-    bool changed(std::uint64_t value);
+    /// Whether `value` differs from what it was at the last call with this name, 0 before the first: that something
+    /// new has come.
+    bool changed(const char* name, std::uint64_t value);
+    /// Of signals that hold their values unless `known`: whether to show them now. They are declared in any case.
+    bool when(bool known) const { return declaring_ || known; }
 
-    /// `show` shows signals that hold their values unless `known`. It is called to declare them as well.
-    template <class Show>
-    void group(bool known, Show&& show) {
-        if (declaring_) {
-            const std::size_t before = handles_.size();
-            show();
-            group_sizes_.push_back(handles_.size() - before);
-        } else if (known) {
-            ++group_;
-            show();
-        } else {
-            signal_ += group_sizes_[group_++];
-        }
-    }
-
-    /// A stream's input: valid, something is offered; ready, something is taken; stalled, something stands at the door
-    /// when the cycle ends; waiting, items in the buffer. Several transfers in one cycle show as one.
+    /// A stream's input: valid, something is offered; ready, something is taken; stalled, something waits when the
+    /// cycle ends; waiting, items in the buffer. Several transfers in one cycle show as one.
     template <class Input>
-    void input(const Input& input, const char* scope = nullptr) {
+    void input(const Input& input, const char* scope = "") {
         inner_scope_ = scope;
-        const bool taken = changed(input.taken()) && running_;
+        const bool taken = changed("taken", input.taken());
         const bool held = input.holds_back();
         pulse_or_level("valid", taken, held);
-        pulse_if("ready", taken);
+        pulse_or_level("ready", taken, false);
         flag("stalled", held);
         value("waiting", 16, input.size());
-        inner_scope_ = nullptr;
+        inner_scope_ = "";
     }
 
     /// A number for another unit, by name in waveforms/units.txt.
@@ -95,20 +88,21 @@ class Signals {
     void direction(const char* name, const datapath::Direction& n) { fields().direction(name, n, ""); }
     void screen(const char* name, const datapath::ScreenPosition& s) { fields().screen(name, s, ""); }
 
-    /// An item's fields and annotations, in a scope of their own; null: in the unit's.
+    /// An item's fields and annotations, in a scope of their own.
     template <class Item>
     void item(const char* scope, const Item& item) {
         inner_scope_ = scope;
         describe_item(*this, item, formats, 32);
-        inner_scope_ = nullptr;
+        inner_scope_ = "";
     }
 
     /// For the description of an item's fields (modules/datapath/fields.h).
     std::int64_t field(const datapath::Field& field, std::int64_t value) {
+        const Name name{inner_scope_, field.name, field.component, field.index};
         if (declaring_)
-            declare(name_of(field).c_str(), static_cast<unsigned>(field.most_bits));
+            declare(name, static_cast<unsigned>(field.most_bits));
         else
-            set(static_cast<std::uint64_t>(value));
+            sink_.set(find(name).signal, static_cast<std::uint64_t>(value));
         return value;
     }
     std::uint32_t annotation(const char* name, std::uint32_t value) {
@@ -117,11 +111,23 @@ class Signals {
     }
 
   private:
-    void pulse_if(const char* name, bool now);
+    struct Name {
+        const char* scope;  // within the unit's; or ""
+        const char* name;
+        const char* component;  // of a vector; or ""
+        int index;              // of three alike; or -1
+
+        bool operator==(const Name& other) const;
+    };
+    struct Declared {
+        Name name;
+        SignalSink::Signal signal = 0;
+        std::uint64_t remembered = 0;
+    };
+
     void pulse_or_level(const char* name, bool pulse, bool level);
-    void declare(const char* name, unsigned bits);
-    void set(std::uint64_t value);
-    static std::string name_of(const datapath::Field& field);
+    void declare(const Name& name, unsigned bits);
+    Declared& find(const Name& name);
     datapath::Fields<Signals> fields() { return {*this, formats}; }
 
     static constexpr datapath::Formats formats{};  // whose widths are not looked at
@@ -129,15 +135,12 @@ class Signals {
     SignalSink& sink_;
     UnitNumbers& numbers_;
     std::string scope_;
-    const char* inner_scope_ = nullptr;
+    const char* inner_scope_ = "";
     bool declaring_ = true;
     bool running_ = false;
-    std::vector<SignalSink::Signal> handles_;
-    std::vector<std::uint64_t> remembered_;
-    std::vector<std::size_t> group_sizes_;
-    std::size_t signal_ = 0;
-    std::size_t memory_ = 0;
-    std::size_t group_ = 0;
+    std::vector<Declared> declared_;
+    std::size_t next_ =
+        0;  // of these: where the search begins, for calls mostly come in the order of declaration
 };
 
 }  // namespace tessera

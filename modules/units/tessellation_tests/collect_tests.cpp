@@ -120,7 +120,7 @@ void CollectTests::show(Signals& signals) const {
     signals.input(from_tex_coord_test, "from_tex_coord_test");
     signals.input(from_summed_height_test, "from_summed_height_test");
     signals.input(from_view_test, "from_view_test");
-    signals.group(signals.changed(activity_.items_in()) && (leaves_ || signals.running()), [&] {
+    if (signals.when(signals.changed("collected", activity_.items_in()) && (leaves_ || signals.running()))) {
         const unsigned tests = leaving_.found.tests;
         signals.item("out", leaving_);
         signals.flag("normal", (tests & datapath::normal_bit) != 0);
@@ -131,7 +131,7 @@ void CollectTests::show(Signals& signals) const {
         if (registers_.tests.highlight_test)
             signals.flag("highlight", (tests & datapath::highlight_bit) != 0);
         signals.flag("split", datapath::split_decision(static_cast<std::uint8_t>(tests)));
-    });
+    }
     signals.pulse("edge", activity_.items_in());
 }
 
