@@ -410,31 +410,23 @@ struct DescriptionOf<datapath::Triangle> {
     using Type = QueuedTriangle;
 };
 
-/// Calls `each(static_cast<const Item*>(nullptr))` for the item of every stream.
-template <class Each>
-void for_each_item_type(Each&& each) {
-    each(static_cast<const datapath::Triangle*>(nullptr));
-    each(static_cast<const QueueLevel*>(nullptr));
-    each(static_cast<const TakenTriangle*>(nullptr));
-    each(static_cast<const GeometryOperands*>(nullptr));
-    each(static_cast<const BasePoint*>(nullptr));
-    each(static_cast<const DisplacedPoint*>(nullptr));
-    each(static_cast<const ScreenPoint*>(nullptr));
-    each(static_cast<const ScreenCorner*>(nullptr));
-    each(static_cast<const TestOperands*>(nullptr));
-    each(static_cast<const TexCoordOperands*>(nullptr));
-    each(static_cast<const HeightOperands*>(nullptr));
-    each(static_cast<const NormalOperands*>(nullptr));
-    each(static_cast<const ViewOperands*>(nullptr));
-    each(static_cast<const TexCoordResult*>(nullptr));
-    each(static_cast<const HeightResult*>(nullptr));
-    each(static_cast<const NormalResult*>(nullptr));
-    each(static_cast<const ViewResult*>(nullptr));
-    each(static_cast<const TestedEdge*>(nullptr));
-    each(static_cast<const DecidedTriangle*>(nullptr));
-    each(static_cast<const TriangleToLight*>(nullptr));
-    each(static_cast<const LitTriangle*>(nullptr));
-}
+template <class ItemOfStream>
+struct ItemType {
+    using Item = ItemOfStream;
+};
+template <class... Items>
+struct ItemTypes {
+    template <class Each>
+    static void for_each(Each&& each) {
+        (each(ItemType<Items>{}), ...);
+    }
+};
+/// The item of every stream: `StreamItems::for_each([](auto type) { using Item = typename decltype(type)::Item; ... })`.
+using StreamItems =
+    ItemTypes<datapath::Triangle, QueueLevel, TakenTriangle, GeometryOperands, BasePoint, DisplacedPoint,
+              ScreenPoint, ScreenCorner, TestOperands, TexCoordOperands, HeightOperands, NormalOperands,
+              ViewOperands, TexCoordResult, HeightResult, NormalResult, ViewResult, TestedEdge,
+              DecidedTriangle, TriangleToLight, LitTriangle>;
 
 /// Whether a stream's payload describes its fields.
 template <class Item, class = void>

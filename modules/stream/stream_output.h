@@ -135,4 +135,15 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
     mutable const sc_core::sc_object* consumer_ = nullptr;  // looked up once: it is slow
 };
 
+/// Calls `each` with every output of a module.
+template <class Each>
+void for_each_output(const sc_core::sc_module& module, Each&& each) {
+    for (sc_core::sc_object* child : module.get_child_objects()) {
+        StreamItems::for_each([&](auto type) {
+            if (auto* output = dynamic_cast<StreamOutput<typename decltype(type)::Item>*>(child))
+                each(*output);
+        });
+    }
+}
+
 }  // namespace tessera

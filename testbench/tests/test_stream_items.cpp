@@ -17,9 +17,6 @@ using namespace tessera;
 
 namespace {
 
-template <class Pointer>
-using ItemOf = std::remove_const_t<std::remove_pointer_t<Pointer>>;
-
 /// Sets each field to any value that its bits hold: often an end of their range.
 struct Filler {
     Random& random;
@@ -152,8 +149,8 @@ TEST_CASE("every stream's item goes through its packed form and back, in any for
     Random random(11);
     for (const datapath::Formats& formats : {datapath::Formats{}, narrow_formats(), widest_formats()}) {
         for (const int tag : {1, 6, 32}) {
-            for_each_item_type(
-                [&](auto* item) { check_round_trips<ItemOf<decltype(item)>>(formats, tag, random); });
+            StreamItems::for_each(
+                [&](auto type) { check_round_trips<typename decltype(type)::Item>(formats, tag, random); });
         }
     }
 }
@@ -266,7 +263,7 @@ TEST_CASE("the streams' README lists every item with its fields") {
     const std::size_t begin = document.find(heading);
     REQUIRE(begin != std::string::npos);
     std::string found;
-    for_each_item_type([&](auto* item) { found += table_of<ItemOf<decltype(item)>>(); });
+    StreamItems::for_each([&](auto type) { found += table_of<typename decltype(type)::Item>(); });
     found.pop_back();
     if (std::getenv("TESSERA_WRITE_STREAMS") != nullptr) {
         std::ofstream(path) << document.substr(0, begin) + heading + found;
