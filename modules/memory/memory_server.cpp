@@ -18,8 +18,8 @@ MemoryServer::MemoryServer(const sc_core::sc_module_name& name, Clock& clock, un
 std::string MemoryServer::holds() const {
     return listed(count_of(queue_.size() + answers_.size(), "request"),
                   waiting_ == 0   ? ""
-                  : waiting_ == 1 ? "one at its door"
-                                  : std::to_string(waiting_) + " at its doors");
+                  : waiting_ == 1 ? "one waiting at the input"
+                                  : std::to_string(waiting_) + " waiting at the inputs");
 }
 
 tlm::tlm_sync_enum MemoryServer::nb_transport_fw(int id, MemoryRequest& request, tlm::tlm_phase& phase,

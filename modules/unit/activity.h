@@ -12,7 +12,7 @@ namespace tessera {
 ///   blocked             a finished item waits for its consumer to take it
 ///   busy                none is blocked, and an item is being worked on that has all it needs
 ///   waiting for memory  none of the above, and an item's table entries have been asked for and have not come
-///   starved             nothing to work on, or what is there lacks its other half (the screen positions the View Test
+///   starved             nothing to work on, or its other half is missing (the screen positions the View Test
 ///                       waits for, the other branch in Pass or Tessellate)
 enum class State : std::uint8_t { starved, busy, waiting_for_memory, blocked };
 constexpr std::size_t states = 4;
@@ -20,7 +20,7 @@ constexpr std::size_t states = 4;
 /// Told of every stretch of cycles a unit spent in one state, when it ends.
 class ActivityObserver {
   public:
-    /// [begin, end); by: who blocks, is waited for or lacks; may be null.
+    /// [begin, end); by: who blocks or is waited for; may be null.
     virtual void stretch(State state, const sc_core::sc_object* by, std::uint64_t begin,
                          std::uint64_t end) = 0;
     virtual ~ActivityObserver() = default;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <systemc>
+#include <type_traits>
 
 #include "modules/stream/parts.h"
 #include "modules/stream/stream_output.h"
@@ -18,14 +19,17 @@ class Fork {
     static constexpr std::size_t most = 4;
 
     /// The whole item; only for these parts.
-    void add(StreamOutput<Item>& output, Parts only = all_parts) {
-        add(std::make_unique<Whole>(output), only);
-    }
+    void add(StreamOutput<Item>& output, Parts only = all_parts) { add<Item>(output, nullptr, only); }
 
     /// What `select` takes of it; only for these parts.
     template <class Payload>
     void add(StreamOutput<Payload>& output, Payload (*select)(const Item&), Parts only) {
-        add(std::make_unique<Selected<Payload>>(output, select), only);
+        if (count_ == most) {
+            SC_REPORT_ERROR("tessera/fork", "more than four outputs");
+            return;
+        }
+        to_[count_] = std::make_unique<To<Payload>>(output, select);
+        only_[count_++] = only;
     }
 
     /// Timed mode: delivers the item to those outputs it is for that have not taken it. True: all have.
@@ -74,33 +78,28 @@ class Fork {
         virtual const sc_core::sc_object* blocked_by() const = 0;
     };
 
-    class Whole final : public Branch {
-      public:
-        explicit Whole(StreamOutput<Item>& output) : output_(output) {}
-        bool deliver(Item& item) override { return output_.deliver(item); }
-        void transport(Item& item, sc_core::sc_time& delay) override { output_.transport(item, delay); }
-        const sc_core::sc_object* blocked_by() const override {
-            return output_.free() ? nullptr : output_.consumer();
-        }
-
-      private:
-        StreamOutput<Item>& output_;
-    };
-
     template <class Payload>
-    class Selected final : public Branch {
+    class To final : public Branch {
       public:
-        Selected(StreamOutput<Payload>& output, Payload (*select)(const Item&))
+        To(StreamOutput<Payload>& output, Payload (*select)(const Item&))
             : output_(output), select_(select) {}
+
         bool deliver(Item& item) override {
-            if (!delivering_)
-                selected_ = select_(item);
-            delivering_ = !output_.deliver(selected_);
-            return !delivering_;
+            if constexpr (std::is_same_v<Payload, Item>) {
+                return output_.deliver(item);
+            } else {
+                if (output_.free())
+                    selected_ = select_(item);
+                return output_.deliver(selected_);
+            }
         }
         void transport(Item& item, sc_core::sc_time& delay) override {
-            Payload selected = select_(item);
-            output_.transport(selected, delay);
+            if constexpr (std::is_same_v<Payload, Item>) {
+                output_.transport(item, delay);
+            } else {
+                Payload selected = select_(item);
+                output_.transport(selected, delay);
+            }
         }
         const sc_core::sc_object* blocked_by() const override {
             return output_.free() ? nullptr : output_.consumer();
@@ -110,17 +109,7 @@ class Fork {
         StreamOutput<Payload>& output_;
         Payload (*select_)(const Item&);
         Payload selected_{};
-        bool delivering_ = false;
     };
-
-    void add(std::unique_ptr<Branch> branch, Parts only) {
-        if (count_ == most) {
-            SC_REPORT_ERROR("tessera/fork", "more than four outputs");
-            return;
-        }
-        to_[count_] = std::move(branch);
-        only_[count_++] = only;
-    }
 
     bool is_for(std::size_t k, const Item& item) const {
         return only_[k] == all_parts || (only_[k] & parts_in(item)) != 0;

@@ -11,11 +11,6 @@ namespace tessera {
 template <class State>
 class PerTriangle {
   public:
-    struct Entry {
-        Tag tag = 0;
-        State state{};
-    };
-
     explicit PerTriangle(std::size_t places) : entries_(places) {}
 
     bool empty() const { return entries_.empty(); }
@@ -32,18 +27,23 @@ class PerTriangle {
     }
     const State* find(Tag tag) const { return const_cast<PerTriangle*>(this)->find(tag); }
 
+    /// A place for this triangle, as another left it: to be filled in.
     State& open(Tag tag) {
         if (full())
             entries_.grow();
-        return (entries_.push() = {tag, State{}}).state;
+        Entry& entry = entries_.push();
+        entry.tag = tag;
+        return entry.state;
     }
+    /// A new place is a new State.
     State& find_or_open(Tag tag) {
         State* found = find(tag);
-        return found != nullptr ? *found : open(tag);
+        return found != nullptr ? *found : open(tag) = State{};
     }
 
     /// Not when empty.
-    const Entry& oldest() const { return entries_.front(); }
+    State& oldest() { return entries_.front().state; }
+    const State& oldest() const { return entries_.front().state; }
     void close_oldest() { entries_.pop(); }
     /// Nothing, if it keeps nothing of this triangle.
     void close(Tag tag) {
@@ -58,6 +58,11 @@ class PerTriangle {
     }
 
   private:
+    struct Entry {
+        Tag tag = 0;
+        State state{};
+    };
+
     Ring<Entry> entries_;
 };
 

@@ -48,7 +48,7 @@ class Stage : public Unit {
     /// Functional mode: that is an error.
     virtual bool may_start(const In&) const { return true; }
     /// Who brings it; functional mode: when it came.
-    virtual const sc_core::sc_object* lacks() const { return nullptr; }
+    virtual const sc_core::sc_object* awaited_unit() const { return nullptr; }
     virtual sc_core::sc_time may_start_after(const In&) const { return sc_core::SC_ZERO_TIME; }
 
     /// The entries an item needs.

@@ -132,7 +132,7 @@ void Stage<In, Out>::start(std::uint64_t cycle) {
     slot.requests = slot.answered = 0;
     activity_.item_in(cycle);
     if (port_ != nullptr) {
-        m.reads = Reads{};
+        m.reads.clear();
         m.asked = m.asked_entries = 0;
         reads(slot.item, m.reads);
         slot.requests = static_cast<std::uint8_t>(m.reads.requests());
@@ -193,7 +193,7 @@ void Stage<In, Out>::step() {
     else if (!m.pipeline.empty() || (!lacking && !input_->empty()))
         activity_.set(cycle, State::busy);
     else
-        activity_.set(cycle, State::starved, lacking ? lacks() : nullptr);
+        activity_.set(cycle, State::starved, lacking ? awaited_unit() : nullptr);
     wake_at(m.pipeline.next_finished(cycle));
     if (!input_->empty())
         wake_at(m.pipeline.next_start(cycle));
@@ -209,7 +209,7 @@ std::string Stage<In, Out>::holds() const {
     std::string text = count_of(machinery_->pipeline.size() + input_->size(), "item");
     if (port_ != nullptr && port_->on_offer())
         text = listed(text, "a request its memory does not take");
-    return listed(text, input_->holds_back() ? "one at its door" : "");
+    return listed(text, input_->holds_back() ? "one waiting at the input" : "");
 }
 
 /// Shows, as `in`, the item started last and, as `out`, the result of the one worked on last; of a unit that reads,
@@ -223,12 +223,12 @@ void Stage<In, Out>::show(Signals& signals) const {
     };
     Unit::show(signals);
     signals.input(*input_);
-    signals.group(signals.changed(activity_.items_in()) && !m.pipeline.empty(), [&] {
+    if (signals.when(signals.changed("started", activity_.items_in()) && !m.pipeline.empty())) {
         signals.item("in", m.pipeline.newest().item);
         trace_started(signals, m.pipeline.newest().item);
         if (port_ == nullptr)
             show_result(m.pipeline.newest());
-    });
+    }
     if (port_ == nullptr)
         return;
     signals.pulse("request", port_->requests());
@@ -236,10 +236,10 @@ void Stage<In, Out>::show(Signals& signals) const {
     signals.value("reads", 32, port_->reads());
     signals.flag("request_held", port_->on_offer());
     signals.value("requests_under_way", 16, port_->requests_under_way());
-    signals.group(signals.changed(port_->reads()) && port_->under_way(),
-                  [&] { signals.value("address", 32, port_->last_address()); });
-    signals.group(signals.changed(activity_.items_out() + m.waiting) && m.waiting > 0,
-                  [&] { show_result(m.waiting > 0 ? m.pipeline.at(m.waiting - 1) : m.pipeline.newest()); });
+    if (signals.when(signals.changed("asked", port_->reads()) && port_->under_way()))
+        signals.value("address", 32, port_->last_address());
+    if (signals.when(signals.changed("processed", activity_.items_out() + m.waiting) && m.waiting > 0))
+        show_result(m.waiting > 0 ? m.pipeline.at(m.waiting - 1) : m.pipeline.newest());
 }
 
 template <class In, class Out>

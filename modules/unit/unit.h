@@ -20,7 +20,7 @@ class Unit : public Clocked, public sc_core::sc_module {
     const Activity& activity() const { return activity_; }
     Activity& activity() { return activity_; }
 
-    /// For a deadlock's report: what is in the unit and at its door, in words; empty: nothing.
+    /// For a deadlock's report: what is in the unit and waits at its inputs, in words; empty: nothing.
     virtual std::string holds() const = 0;
 
     /// Cycles the unit's work needs at its initiation interval, or at a memory's ports: of all cycles, those in which
@@ -30,7 +30,7 @@ class Unit : public Clocked, public sc_core::sc_module {
     bool idle() const { return activity_.level() == 0; }
 
     /// Declares the unit's signals, or shows their values at the end of a cycle (modules/unit/signals.h). Of every
-    /// unit: its state, who it is blocked by, waits for or lacks, and the items in it.
+    /// unit: its state, who blocks it or is waited for, and the items in it.
     virtual void show(Signals& signals) const;
 
     /// Valid in a cycle in which the unit has begun on an item, and while it holds any. Units that hold many triangles

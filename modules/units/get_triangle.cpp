@@ -51,6 +51,7 @@ GetTriangle::GetTriangle(const sc_core::sc_module_name& name, const UnitContext&
     : Unit(name, context.clock),
       to_tessellation_tests("to_tessellation_tests", context.design.tests_units),
       timing_(context.timing().get_triangle),
+      latency_(clock_.period() * timing_.latency),
       tag_mask_(static_cast<Tag>((std::uint64_t{1} << tag_bits_in_use(context.design)) - 1)),
       tests_units_(context.design.tests_units) {
     const Timing& timing = context.timing();
@@ -71,9 +72,11 @@ GetTriangle::GetTriangle(const sc_core::sc_module_name& name, const UnitContext&
     }
 }
 
-TakenTriangle GetTriangle::taken(const datapath::Triangle& triangle) {
+void GetTriangle::take(const datapath::Triangle& triangle, TakenTriangle& taken) {
     const std::uint32_t pass = passes_++;
-    return {pass & tag_mask_, {pass, triangle.base}, triangle};
+    taken.tag = pass & tag_mask_;
+    taken.origin = {pass, triangle.base};
+    taken.triangle = triangle;
 }
 
 /// Functional mode: the branch's parts, one after another.
@@ -90,8 +93,9 @@ void GetTriangle::send_whole(Branch<Item>& branch, const TakenTriangle& taken, P
 }
 
 void GetTriangle::send_whole(const datapath::Triangle& triangle, sc_core::sc_time& delay) {
-    TakenTriangle whole = taken(triangle);
-    delay += clock_.period() * timing_.latency;
+    TakenTriangle whole;
+    take(triangle, whole);
+    delay += latency_;
     const sc_core::sc_time start = delay;
     sc_core::sc_time its_delay = start;
     to_pass_or_tessellate.transport(whole, its_delay);
@@ -143,7 +147,7 @@ bool GetTriangle::begin(std::uint64_t cycle) {
     } else {
         return false;
     }
-    taken_ = taken(source->front());
+    take(source->front(), taken_);
     sending_ = true;
     source->pop();
     activity_.item_in(cycle);
@@ -224,16 +228,16 @@ void GetTriangle::show(Signals& signals) const {
     Unit::show(signals);
     signals.input(from_host, "from_host");
     signals.input(from_triangle_queue, "from_triangle_queue");
-    signals.group(signals.changed(activity_.items_in()) && sending_, [&] {
+    if (signals.when(signals.changed("begun", activity_.items_in()) && sending_)) {
         const Parts parts = parts_of(taken_.triangle);
         signals.value("triangle", 32, taken_.origin.pass);
         signals.value("base", 32, taken_.origin.base);
         signals.value("new_vertices", 3, parts & vertex_parts);
         signals.value("new_normals", 3, (parts & normal_parts) >> first_normal_part);
         signals.flag("tested", (parts & edge_parts) != 0);
-    });
-    signals.group(signals.changed(parts_sent_),
-                  [&] { signals.value("part", part_bits, geometry_.offered.tag.part); });
+    }
+    if (signals.when(signals.changed("parts_sent", parts_sent_)))
+        signals.value("part", part_bits, geometry_.offered.tag.part);
     Parts tests_left = 0;
     for (const Branch<TestOperands>& branch : tests_)
         tests_left = static_cast<Parts>(tests_left | branch.left);

@@ -68,7 +68,7 @@ class GetTriangle : public Unit {
     template <class Item>
     void send_whole(Branch<Item>& branch, const TakenTriangle& taken, Parts parts,
                     const sc_core::sc_time& start, sc_core::sc_time& delay);
-    TakenTriangle taken(const datapath::Triangle& triangle);
+    void take(const datapath::Triangle& triangle, TakenTriangle& taken);
     void step() override;
     bool begin(std::uint64_t cycle);
     template <class Item>
@@ -78,6 +78,7 @@ class GetTriangle : public Unit {
     const sc_core::sc_object* blocked_by() const;
 
     UnitTiming timing_;
+    sc_core::sc_time latency_;
     Tag tag_mask_;
     std::uint32_t passes_ = 0;
     TakenTriangle taken_;  // timed mode: whose parts are being sent

@@ -8,14 +8,17 @@
 namespace tessera {
 
 Tessellation::Tessellation(const sc_core::sc_module_name& name, const UnitContext& context)
-    : Unit(name, context.clock), registers_(context.registers), timing_(context.timing().tessellation) {
+    : Unit(name, context.clock),
+      registers_(context.registers),
+      timing_(context.timing().tessellation),
+      latency_(clock_.period() * timing_.latency) {
     from_pass_or_tessellate.serve<&Tessellation::b_transport>(*this);
     from_pass_or_tessellate.clocked_by(clock_, *this, timing_.buffer, context.timing().stalls);
     to_triangle_queue.clocked_by(context, *this);
 }
 
 void Tessellation::b_transport(DecidedTriangle& decided, sc_core::sc_time& delay) {
-    delay += clock_.period() * timing_.latency;
+    delay += latency_;
     const int children =
         tessellate(decided.pass, registers_.triangulation, registers_.formats, saturations_,
                    [&](datapath::Triangle& child) { to_triangle_queue.transport(child, delay); });
@@ -65,8 +68,8 @@ std::string Tessellation::holds() const {
 void Tessellation::show(Signals& signals) const {
     Unit::show(signals);
     signals.input(from_pass_or_tessellate);
-    signals.group(signals.changed(activity_.items_in()),
-                  [&] { signals.value("base", 32, children_[0].base); });
+    if (signals.when(signals.changed("begun", activity_.items_in())))
+        signals.value("base", 32, children_[0].base);
     signals.value("children", 3, made_);
     signals.value("children_left", 3, made_ - sent_);
 }

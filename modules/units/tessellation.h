@@ -48,6 +48,7 @@ class Tessellation : public Unit {
 
     const datapath::Registers& registers_;
     UnitTiming timing_;
+    sc_core::sc_time latency_;
     std::array<datapath::Triangle, 4> children_;
     Origin origin_;      // of the triangle that is being worked on
     unsigned made_ = 0;  // its children

@@ -21,6 +21,7 @@ TriangleQueue::TriangleQueue(const sc_core::sc_module_name& name, const UnitCont
       registers_(context.registers),
       design_(context.design.queue),
       timing_(context.timing().triangle_queue),
+      latency_(clock_.period() * timing_.latency),
       record_bytes_(off_chip_memory.entry_bytes()),
       store_(design_.order),
       leaving_(timing_) {
@@ -38,7 +39,7 @@ void TriangleQueue::b_transport(datapath::Triangle& triangle, sc_core::sc_time& 
     store_.push(triangle);
     ++taken_;
     high_water_mark_ = std::max(high_water_mark_, store_.size());
-    delay += clock_.period() * timing_.latency;
+    delay += latency_;
     tell_level(delay);
     if (!sending_)
         arrival_.notify(sc_core::SC_ZERO_TIME);
@@ -219,11 +220,10 @@ void TriangleQueue::show(Signals& signals) const {
     signals.value("off_chip", 32, off_chip_);
     signals.value("coming_back", 16, refills_);
     signals.flag("takes_host_triangles", below_watermark());
-    signals.group(signals.changed(activity_.items_out() + leaving_.size()), [&] {
-        const datapath::Triangle& triangle = leaving_.newest();
-        signals.value("base", 32, triangle.base);
-        signals.flag("finished", triangle.finished);
-    });
+    if (signals.when(signals.changed("left_store", activity_.items_out() + leaving_.size()))) {
+        signals.value("base", 32, leaving_.newest().base);
+        signals.flag("finished", leaving_.newest().finished);
+    }
     signals.pulse("spill", spilled_);
     signals.pulse("refill", refilled_);
     signals.flag("request_held", off_chip_memory.on_offer());

@@ -79,6 +79,7 @@ class TriangleQueue : public Unit {
     const datapath::Registers& registers_;
     QueueDesign design_;
     UnitTiming timing_;
+    sc_core::sc_time latency_;
     std::size_t record_bytes_;
     TriangleStore store_;
     ElasticPipeline<datapath::Triangle> leaving_;

@@ -67,6 +67,21 @@ TEST_CASE("ring: a capacity of one") {
     }
 }
 
+TEST_CASE("ring: at both ends") {
+    Ring<int> ring(3);
+    ring.push(1);
+    ring.push_front() = 0;  // before the first place
+    ring.push(2);
+    for (int k = 0; k < 3; ++k)
+        CHECK(ring.at(static_cast<std::size_t>(k)) == k);
+    ring.pop_back();
+    ring.push(3);
+    ring.pop();
+    CHECK(ring.front() == 1);
+    CHECK(ring.at(1) == 3);
+    CHECK(ring.size() == 2);
+}
+
 TEST_CASE("ring: a capacity of none is full and empty") {
     const Ring<int> ring;
     CHECK(ring.empty());

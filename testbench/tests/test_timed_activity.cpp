@@ -182,12 +182,12 @@ TEST_CASE("per triangle: found by tag, closed in any order, and it grows") {
     kept.close(8);
     kept.close(8);  // has gone
     CHECK(kept.size() == 2);
-    CHECK(kept.oldest().tag == 7);
+    CHECK(kept.oldest() == 70);
     CHECK(*kept.find(9) == 90);
     kept.close_oldest();
-    CHECK(kept.oldest().tag == 9);
+    CHECK(kept.oldest() == 90);
     CHECK(kept.find(7) == nullptr);
-    CHECK(kept.open(7) == 0);  // anew
+    CHECK(kept.find_or_open(7) == 0);  // anew
 }
 
 TEST_CASE("unit numbers: the units of a machine, anything else is other, nothing is nobody") {

@@ -148,7 +148,7 @@ TEST_CASE("the bound on progress does not end a run that just keeps it") {
 
 namespace {
 
-/// Takes one triangle to its door, and never lets it in.
+/// Leaves one triangle waiting at its input for ever.
 struct Wall : sc_core::sc_module, Clocked {
     StreamInput<LitTriangle> in{"in"};
     Wall(const sc_core::sc_module_name& name, Clock& clock) : sc_module(name) {

@@ -215,7 +215,7 @@ TEST_CASE("memory: requests wait while every bank is taken") {
 }
 
 TEST_CASE("memory: an idle bank does not let requests past one that is taken") {
-    // all in bank 0 of two: one a cycle, as with one bank, and the buffer (1) holds the rest at the door
+    // all in bank 0 of two: one a cycle, as with one bank, and the buffer (1) leaves the rest waiting at the inputs
     Bench bench(timing(1, 2, 1), 1, {}, 2);
     for (std::uint32_t k = 0; k < 10; ++k)
         bench.reader().reads.push_back({2 * k, 2 * k + 4, 2 * k + 8});
@@ -227,7 +227,7 @@ TEST_CASE("memory: an idle bank does not let requests past one that is taken") {
 
 TEST_CASE("memory: three readers take turns, none starves") {
     // One port, 30 reads each. In cycle 10 the reader called first takes the free port, then the buffer, and is the
-    // first at the doors: its data come in 11, 12, 13. From then on all three wait at their doors and each has every
+    // first to wait: its data come in 11, 12, 13. From then on all three wait at their inputs and each has every
     // third cycle, until the first reader has had its 30, in 94; the other two share the rest.
     Bench bench(timing(1, 1, 1), 3);
     for (const auto& reader : bench.readers)
@@ -247,8 +247,8 @@ TEST_CASE("memory: what it holds, in words") {
     for (const auto& reader : bench.readers)
         reader->reads = single_reads(30);
     sc_core::sc_start(sc_time(20 * 10, SC_PS));
-    // one being read, one in the buffer, one of each reader at its door
-    CHECK(bench.memory.holds() == "2 requests, 3 at its doors");
+    // one being read, one in the buffer, one of each reader at an input
+    CHECK(bench.memory.holds() == "2 requests, 3 waiting at the inputs");
     sc_core::sc_start();
     CHECK(bench.memory.holds().empty());
 }

@@ -202,7 +202,7 @@ TEST_CASE("table memory: breaches of an initiator are errors that name the memor
         CHECK_THAT(error_of([&] { bench.initiator.send(first, phase); }),
                    Contains("memory.socket") && Contains("other than BEGIN_REQ"));
     CHECK(bench.initiator.send(first, tlm::BEGIN_REQ) == tlm::TLM_UPDATED);    // in the buffer
-    CHECK(bench.initiator.send(second, tlm::BEGIN_REQ) == tlm::TLM_ACCEPTED);  // at the door
+    CHECK(bench.initiator.send(second, tlm::BEGIN_REQ) == tlm::TLM_ACCEPTED);  // waits
     CHECK_THAT(error_of([&] { bench.initiator.send(third, tlm::BEGIN_REQ); }),
                Contains("memory.socket") && Contains("BEGIN_REQ before END_REQ"));
     bench.initiator.reply = tlm::TLM_ACCEPTED;  // wants to end the response itself

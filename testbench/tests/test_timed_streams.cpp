@@ -105,7 +105,7 @@ TEST_CASE("stream input: the delay of nb_transport_fw is added before the item i
     sc_core::sc_start(sc_time(100, SC_PS));  // cycle 10
     int item = 7;
     tlm::tlm_phase phase = tlm::BEGIN_REQ;
-    // 21 ps from cycle 10 on: there in cycle 13, cycles rounded up; until then the door is closed, room or not
+    // 21 ps from cycle 10 on: there in cycle 13, cycles rounded up; until then it waits, room or not
     CHECK(producer.offer(item, phase, sc_time(21, SC_PS)) == tlm::TLM_ACCEPTED);
     CHECK(holder.in.empty());
     holder.clock.wake(holder.owner);
@@ -253,7 +253,7 @@ TEST_CASE("stream: every breach of a producer is an error that names the consume
     tlm::tlm_phase phase = tlm::BEGIN_REQ;
     producer.offer(item, phase, SC_ZERO_TIME);  // taken
     phase = tlm::BEGIN_REQ;
-    producer.offer(item, phase, SC_ZERO_TIME);  // at the door
+    producer.offer(item, phase, SC_ZERO_TIME);  // waits
     phase = tlm::BEGIN_REQ;
     CHECK_THAT(error_of([&] { producer.offer(item, phase, SC_ZERO_TIME); }),
                Contains("holder.in") && Contains("BEGIN_REQ before END_REQ"));

@@ -37,7 +37,7 @@ Recorder::Recorder(Pipeline& pipeline, VcdWriter* vcd, TimelineWriter* timeline,
       vcd_(vcd),
       timeline_(timeline),
       window_(window),
-      // An item held back at random calls its unit only when its time has come, but stands at the door at once.
+      // An item held back at random calls its unit only when its time has come, but waits at its input at once.
       show_every_unit_(pipeline.random_stalls()) {
     if (vcd_ != nullptr) {
         cycle_signal_ = vcd_->add(pipeline.clock.name(), "cycle", 48);

@@ -44,7 +44,7 @@ class ViewTest : public Stage<ViewOperands, ViewResult> {
     void step() override;
     bool may_start(const ViewOperands& edge) const override;
     sc_core::sc_time may_start_after(const ViewOperands& edge) const override;
-    const sc_core::sc_object* lacks() const override { return transform_; }
+    const sc_core::sc_object* awaited_unit() const override { return transform_; }
     ViewResult process(const ViewOperands& edge, const Entries& entries) override;
     void trace_processed(Signals& signals, const ViewOperands& edge, const ViewResult& result) const override;
     void end_of_elaboration() override;
