@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "modules/unit/signals.h"
+#include "modules/stage/signals.h"
 
 namespace tessera {
 namespace {
@@ -55,9 +55,9 @@ GetTriangle::GetTriangle(const sc_core::sc_module_name& name, const UnitContext&
       tag_mask_(static_cast<Tag>((std::uint64_t{1} << tag_bits_in_use(context.design)) - 1)),
       tests_units_(context.design.tests_units) {
     const Timing& timing = context.timing();
-    from_host.serve<&GetTriangle::b_transport_from_host>(*this);
-    from_triangle_queue.serve<&GetTriangle::b_transport_from_triangle_queue>(*this);
-    queue_level.serve<&GetTriangle::b_transport_level>(*this);
+    from_host.register_b_transport<&GetTriangle::b_transport_from_host>(*this);
+    from_triangle_queue.register_b_transport<&GetTriangle::b_transport_from_triangle_queue>(*this);
+    queue_level.register_b_transport<&GetTriangle::b_transport_level>(*this);
     from_host.clocked_by(context.clock, *this, timing_.buffer, timing.stalls);
     from_triangle_queue.clocked_by(context.clock, *this, timing_.buffer, timing.stalls);
     queue_level.clocked_by(context.clock, *this, 1, {});  // a wire: it does not stall
@@ -213,7 +213,7 @@ void GetTriangle::step() {
         activity_.set(cycle, sending_ ? State::busy : State::starved);
 }
 
-std::string GetTriangle::holds() const {
+std::string GetTriangle::describe_contents() const {
     std::string text;
     if (sending_)
         text = "triangle " + std::to_string(taken_.origin.pass) + ", not all of it sent";
@@ -224,8 +224,8 @@ std::string GetTriangle::holds() const {
     return listed(text, from_triangle_queue.empty() ? "" : "a triangle from the queue");
 }
 
-void GetTriangle::show(Signals& signals) const {
-    Unit::show(signals);
+void GetTriangle::trace_signals(Signals& signals) const {
+    Unit::trace_signals(signals);
     signals.input(from_host, "from_host");
     signals.input(from_triangle_queue, "from_triangle_queue");
     if (signals.when(signals.changed("begun", activity_.items_in()) && sending_)) {

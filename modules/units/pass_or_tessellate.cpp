@@ -5,7 +5,7 @@
 
 #include "modules/datapath/cull.h"
 #include "modules/datapath/edge_tests.h"
-#include "modules/unit/signals.h"
+#include "modules/stage/signals.h"
 
 namespace tessera {
 
@@ -18,12 +18,12 @@ PassOrTessellate::PassOrTessellate(const sc_core::sc_module_name& name, const Un
       incomplete_(timing_.buffer),
       pipeline_(timing_) {
     const StallParameters& stalls = context.timing().stalls;
-    from_get_triangle.serve<&PassOrTessellate::b_transport_from_get_triangle>(*this);
+    from_get_triangle.register_b_transport<&PassOrTessellate::b_transport_from_get_triangle>(*this);
     from_get_triangle.clocked_by(clock_, *this, triangles_ahead_of_parts(context.design), stalls);
-    from_transform.serve<&PassOrTessellate::b_transport_from_transform>(*this);
+    from_transform.register_b_transport<&PassOrTessellate::b_transport_from_transform>(*this);
     from_transform.clocked_by(clock_, *this, 1, stalls);
     for (StreamInput<TestedEdge>& input : from_tessellation_tests) {
-        input.serve<&PassOrTessellate::b_transport_from_tests>(*this);
+        input.register_b_transport<&PassOrTessellate::b_transport_from_tests>(*this);
         input.clocked_by(clock_, *this, timing_.buffer * 3 / context.design.tests_units, stalls);
     }
     to_tessellation.clocked_by(context, *this);
@@ -226,7 +226,7 @@ const sc_core::sc_object* PassOrTessellate::late_branch() const {
     return first.tests_left == 0 ? transform_ : nullptr;
 }
 
-std::string PassOrTessellate::holds() const {
+std::string PassOrTessellate::describe_contents() const {
     std::string text;
     const auto add = [&](const std::string& what) { text = listed(text, what, "; "); };
     if (!incomplete_.empty()) {
@@ -333,8 +333,8 @@ PassOrTessellate::Way PassOrTessellate::finish(datapath::Triangle& triangle) {
 }
 
 /// Shows the triangle decided last; of one that only fetched normals, tests and split as it brought them.
-void PassOrTessellate::show(Signals& signals) const {
-    Unit::show(signals);
+void PassOrTessellate::trace_signals(Signals& signals) const {
+    Unit::trace_signals(signals);
     signals.input(from_transform, "from_transform");
     for (const StreamInput<TestedEdge>& input : from_tessellation_tests)
         signals.input(input, input.basename());

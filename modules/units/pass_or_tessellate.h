@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "modules/datapath/triangle_pass.h"
-#include "modules/stream/items.h"
-#include "modules/stream/stream_input.h"
-#include "modules/stream/stream_output.h"
-#include "modules/unit/elastic_pipeline.h"
-#include "modules/unit/per_triangle.h"
-#include "modules/unit/unit.h"
+#include "modules/sockets/items.h"
+#include "modules/sockets/stream_input.h"
+#include "modules/sockets/stream_output.h"
+#include "modules/stage/per_triangle.h"
+#include "modules/stage/unit.h"
+#include "modules/timing/elastic_pipeline.h"
 
 namespace tessera {
 
@@ -72,9 +72,9 @@ class PassOrTessellate : public Unit {
     /// Most triangles that waited for their first part.
     std::size_t most_ahead_of_parts() const { return most_ahead_of_parts_; }
 
-    std::string holds() const override;
+    std::string describe_contents() const override;
     std::uint64_t occupied_cycles() const override { return activity_.items_out() * timing_.interval; }
-    void show(Signals& signals) const override;
+    void trace_signals(Signals& signals) const override;
     /// The triangle decided last.
     Begun begun() const override { return {counts_.passes + counts_.normal_passes, last_.origin}; }
 

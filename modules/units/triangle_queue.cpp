@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "modules/datapath/pack_triangle.h"
-#include "modules/unit/signals.h"
+#include "modules/stage/signals.h"
 
 namespace tessera {
 
@@ -26,7 +26,7 @@ TriangleQueue::TriangleQueue(const sc_core::sc_module_name& name, const UnitCont
       store_(design_.order),
       leaving_(timing_) {
     design_.watermark = std::max<std::size_t>(design_.watermark, 1);
-    from_tessellation.serve<&TriangleQueue::b_transport>(*this);
+    from_tessellation.register_b_transport<&TriangleQueue::b_transport>(*this);
     from_tessellation.clocked_by(clock_, *this, timing_.buffer, context.timing().stalls);
     to_get_triangle.clocked_by(context, *this);
     level.clocked_by(context, *this);
@@ -198,7 +198,7 @@ void TriangleQueue::step() {
         wake_at(next_in_);
 }
 
-std::string TriangleQueue::holds() const {
+std::string TriangleQueue::describe_contents() const {
     std::string text = count_of(waiting(), "triangle");
     if (off_chip_ > 0)
         text += ", " + std::to_string(off_chip_) + " of them off chip";
@@ -212,8 +212,8 @@ std::string TriangleQueue::holds() const {
 }
 
 /// Shows the levels, what goes off chip and comes back, and the triangle that was read from the store last.
-void TriangleQueue::show(Signals& signals) const {
-    Unit::show(signals);
+void TriangleQueue::trace_signals(Signals& signals) const {
+    Unit::trace_signals(signals);
     signals.input(from_tessellation);
     signals.value("level", 32, waiting());
     signals.value("on_chip", 32, store_.size());

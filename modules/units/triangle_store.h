@@ -2,8 +2,8 @@
 #include <cstddef>
 
 #include "modules/datapath/vertex.h"
-#include "modules/design.h"
-#include "modules/unit/ring.h"
+#include "modules/timing/design.h"
+#include "modules/timing/ring.h"
 
 namespace tessera {
 

@@ -80,7 +80,7 @@ Collector stream_figures(const Setup& setup) {
         std::string name = DescriptionOf<Item>::Type::name;
         std::replace(name.begin(), name.end(), ' ', '_');
         c.add(name.c_str(), item_bits<Item>(setup.registers.formats, tag), "bit",
-              "one item of that stream: modules/stream/README.md");
+              "one item of that stream: modules/sockets/README.md");
     });
     return c;
 }

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "modules/unit/stage_steps.h"
+#include "modules/stage/stage_steps.h"
 #include "testbench/tests/named_machine.h"
 #include "testbench/tests/timed_checks.h"
 #include "testbench/tests/timed_modules.h"
@@ -69,7 +69,7 @@ void expect_mesh(const NamedMachine& machine, const Setup& setup) {
 }  // namespace
 
 TEST_CASE("pass-through alone: each item as it came, three cycles later, one a cycle") {
-    Clock clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
+    CycleScheduler clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
     const datapath::Registers registers{};
     Design design;
     design.transport = Transport::non_blocking;

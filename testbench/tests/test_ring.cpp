@@ -2,8 +2,8 @@
 #include <memory>
 #include <vector>
 
-#include "modules/unit/pending_item.h"
-#include "modules/unit/ring.h"
+#include "modules/timing/pending_item.h"
+#include "modules/timing/ring.h"
 
 // The ring that buffers are made of, and the item that waits before a full one.
 

@@ -32,7 +32,7 @@ Texts texts_of_every_cycle(const Setup& setup) {
         sc_core::sc_start(pipeline.clock.period());
         bool all_empty = true;
         for (const Unit* unit : pipeline.units()) {
-            std::string text = unit->holds();
+            std::string text = unit->describe_contents();
             INFO("cycle " << pipeline.clock.last_cycle() << ": " << unit->name() << ": \"" << text << '"');
             REQUIRE((text.empty() || is_well_formed(text)));
             if (!unit->idle())
