@@ -21,7 +21,7 @@ class Storage {
     void read(std::uint64_t address, unsigned char* to, std::size_t length) const {
         const std::uint64_t first = address - base_;
         if (first + length <= bytes_.size()) {
-            std::memcpy(to, &bytes_[first], length);
+            copy(to, &bytes_[first], length);
             return;
         }
         const std::size_t written = first < bytes_.size() ? bytes_.size() - first : 0;
@@ -42,6 +42,23 @@ class Storage {
     }
 
   private:
+    /// A table's entry without a call of memcpy: of 2, 4 or 6 bytes by default.
+    static void copy(unsigned char* to, const unsigned char* from, std::size_t length) {
+        switch (length) {
+            case 2:
+                std::memcpy(to, from, 2);
+                break;
+            case 4:
+                std::memcpy(to, from, 4);
+                break;
+            case 6:
+                std::memcpy(to, from, 6);
+                break;
+            default:
+                std::memcpy(to, from, length);
+        }
+    }
+
     std::uint64_t base_;
     std::uint64_t size_;
     std::vector<unsigned char> bytes_;

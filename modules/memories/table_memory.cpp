@@ -1,7 +1,6 @@
 #include "modules/memories/table_memory.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "modules/stage/signals.h"
 
@@ -29,8 +28,9 @@ std::uint64_t TableMemory::ready(const MemoryRequest& request) const {
 
 std::uint64_t TableMemory::serve(MemoryRequest& request, std::uint64_t cycle) {
     read(request);
-    last_ = {request.address[0], request.count, 0};
-    std::memcpy(&last_.data, request.data, std::min<std::size_t>(request.entry_bytes, sizeof last_.data));
+    last_address_ = request.address[0];
+    last_entries_ = request.count;
+    last_entry_bytes_ = request.entry_bytes;
     return ports_.serve(request.address.data(), request.count, cycle);
 }
 
@@ -59,9 +59,13 @@ void TableMemory::trace_signals(Signals& signals) const {
     signals.value("requests", 32, activity_.items_in());
     signals.value("reads", 32, transactions_);
     if (signals.when(signals.changed("slots_taken", slots_taken()) && signals.running())) {
-        signals.value("address", 32, last_.address);
-        signals.value("entries", 4, last_.entries);
-        signals.value("data", 64, last_.data);
+        std::uint64_t data = 0;
+        const std::size_t bytes = std::min<std::size_t>(last_entry_bytes_, sizeof data);
+        if (storage_.covers(last_address_, bytes))
+            storage_.read(last_address_, reinterpret_cast<unsigned char*>(&data), bytes);
+        signals.value("address", 32, last_address_);
+        signals.value("entries", 4, last_entries_);
+        signals.value("data", 64, data);
     }
     signals.flag("held_up", held_up());
     show_waiting(signals);

@@ -44,11 +44,9 @@ class TableMemory : public MemoryServer {
     Storage storage_;
     BankedPorts ports_;
     std::uint64_t transactions_ = 0;
-    struct {
-        std::uint64_t address = 0;
-        std::uint64_t entries = 0;
-        std::uint64_t data = 0;  // of the first entry
-    } last_;                     // of the request served last
+    std::uint64_t last_address_ = 0;  // of the request served last
+    unsigned last_entries_ = 0;
+    unsigned last_entry_bytes_ = 0;
 };
 
 /// The displacement map: one unsigned code per texel. Read by Displace Vertex.

@@ -95,9 +95,17 @@ class MemoryPort {
     /// Entry k of that answer, zero-extended.
     std::uint64_t entry(unsigned k) const {
         std::uint64_t value = 0;
-        // Eight bytes are there: the slot has as many after its last entry.
-        std::memcpy(&value, &slots_.front().data[std::size_t{k} * entry_bytes_], sizeof value);
-        return value & mask_;
+        copy_entries(k, 1, &value);
+        return value;
+    }
+    /// `count` of them from `first` on.
+    void copy_entries(unsigned first, unsigned count, std::uint64_t* to) const {
+        const unsigned char* from = answer() + std::size_t{first} * entry_bytes_;
+        for (unsigned k = 0; k < count; ++k, from += entry_bytes_) {
+            std::uint64_t value = 0;
+            std::memcpy(&value, from, sizeof value);  // the slot has eight bytes after its last entry
+            to[k] = value & mask_;
+        }
     }
     /// The bytes of that answer.
     const unsigned char* answer() const { return slots_.front().data.data(); }

@@ -80,7 +80,7 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
             return;
         }
         Payload& payload = pending_.take();
-        waiting_ = false;
+        set_waiting(false);
         push(payload);
         tlm::tlm_phase phase = tlm::END_REQ;
         sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
@@ -106,7 +106,7 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
             return tlm::TLM_UPDATED;
         }
         pending_.hold(payload, clock_->cycle() + wait);
-        waiting_ = true;
+        set_waiting(true);
         if (!buffer_.full())
             clock_->wake_at(*unit_, pending_.due_cycle());
         else

@@ -17,23 +17,22 @@ class Reads {
         add_entry(address);
     }
     /// One more request, for the 1 to 9 entries that are added next (a gather).
-    void add_request() { count_[requests_++] = 0; }
-    void add_entry(std::uint64_t address) {
-        address_[entries_++] = address;
-        ++count_[requests_ - 1];
-    }
+    void add_request() { first_[requests_++] = entries_; }
+    void add_entry(std::uint64_t address) { address_[entries_++] = address; }
     void clear() { requests_ = entries_ = 0; }
 
     unsigned requests() const { return requests_; }
     unsigned entries() const { return entries_; }
     /// Entries of a request; of all, their addresses in order.
-    unsigned count(unsigned request) const { return count_[request]; }
+    unsigned count(unsigned request) const {
+        return (request + 1 < requests_ ? first_[request + 1] : entries_) - first_[request];
+    }
     const std::uint64_t* addresses() const { return address_.data(); }
 
   private:
     unsigned requests_ = 0;
     unsigned entries_ = 0;
-    std::array<unsigned, most_requests> count_;
+    std::array<unsigned, most_requests> first_;  // entry of each request
     std::array<std::uint64_t, most_entries> address_;
 };
 

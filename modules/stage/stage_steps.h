@@ -152,10 +152,10 @@ void Stage<In, Out>::take_answers(std::uint64_t cycle) {
     while (port_->answered()) {
         m.skip_processed();
         typename Machinery::Slot& slot = m.pipeline.at(m.waiting);
-        for (unsigned k = 0; k < slot.count[slot.answered]; ++k)
-            m.entries[m.come++] = port_->entry(k);
+        const unsigned count = slot.count[slot.answered++];
+        port_->copy_entries(0, count, &m.entries[m.come]);
+        m.come += count;
         port_->pop_answer();
-        ++slot.answered;
         if (slot.processed()) {
             m.come = 0;
             slot.result = process(slot.item, m.entries);

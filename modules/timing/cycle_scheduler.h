@@ -9,7 +9,9 @@ namespace tessera {
 
 class CycleScheduler;
 
-/// An input of something clocked, at which an item may have to wait: the clock admits it.
+class CycleProcess;
+
+/// An input of a process, at which an item may have to wait: the scheduler admits it.
 class CycleInput {
   public:
     virtual ~CycleInput() = default;
@@ -21,11 +23,14 @@ class CycleInput {
 
     /// Called before each step of its owner while an item waits.
     virtual void admit() = 0;
-    bool waiting_ = false;  ///< an item waits
+    /// Whether an item waits: to be called when that changes.
+    inline void set_waiting(bool waiting);
 
   private:
     friend class CycleProcess;
+    CycleProcess* owner_ = nullptr;
     CycleInput* next_ = nullptr;  // of the same owner
+    bool waiting_ = false;
 };
 
 /// What the clock calls: a unit, a memory, a driver.
@@ -36,7 +41,10 @@ class CycleProcess {
     virtual void step() = 0;
 
     /// `input` must live as long as its owner is stepped. To be called once for each input.
-    void add_input(CycleInput& input) { input.next_ = std::exchange(first_input_, &input); }
+    void add_input(CycleInput& input) {
+        input.owner_ = this;
+        input.next_ = std::exchange(first_input_, &input);
+    }
 
     CycleProcess() = default;
     virtual ~CycleProcess() = default;
@@ -44,18 +52,29 @@ class CycleProcess {
     CycleProcess& operator=(const CycleProcess&) = delete;
 
   private:
+    friend class CycleInput;
     friend class CycleScheduler;
     void admit_and_step() {
+        if (waiting_inputs_ > 0)
+            admit();
+        step();
+    }
+    void admit() {
         for (CycleInput* input = first_input_; input != nullptr; input = input->next_) {
             if (input->waiting_)
                 input->admit();
         }
-        step();
     }
 
     CycleInput* first_input_ = nullptr;
+    unsigned waiting_inputs_ = 0;
     std::uint64_t bit_ = 0;  // its place among the attached
 };
+
+void CycleInput::set_waiting(bool waiting) {
+    owner_->waiting_inputs_ += waiting ? 1 : -1u;
+    waiting_ = waiting;
+}
 
 /// Told of the cycles in which something was called: tracing.
 class CycleObserver {

@@ -72,11 +72,9 @@ GetTriangle::GetTriangle(const sc_core::sc_module_name& name, const UnitContext&
     }
 }
 
-void GetTriangle::take(const datapath::Triangle& triangle, TakenTriangle& taken) {
+TakenTriangle GetTriangle::taken(const datapath::Triangle& triangle) {
     const std::uint32_t pass = passes_++;
-    taken.tag = pass & tag_mask_;
-    taken.origin = {pass, triangle.base};
-    taken.triangle = triangle;
+    return {pass & tag_mask_, {pass, triangle.base}, triangle};
 }
 
 /// Functional mode: the branch's parts, one after another.
@@ -93,8 +91,7 @@ void GetTriangle::send_whole(Branch<Item>& branch, const TakenTriangle& taken, P
 }
 
 void GetTriangle::send_whole(const datapath::Triangle& triangle, sc_core::sc_time& delay) {
-    TakenTriangle whole;
-    take(triangle, whole);
+    TakenTriangle whole = taken(triangle);
     delay += latency_;
     const sc_core::sc_time start = delay;
     sc_core::sc_time its_delay = start;
@@ -147,7 +144,7 @@ bool GetTriangle::begin(std::uint64_t cycle) {
     } else {
         return false;
     }
-    take(source->front(), taken_);
+    taken_ = taken(source->front());
     sending_ = true;
     source->pop();
     activity_.item_in(cycle);

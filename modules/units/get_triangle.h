@@ -68,7 +68,7 @@ class GetTriangle : public Unit {
     template <class Item>
     void send_whole(Branch<Item>& branch, const TakenTriangle& taken, Parts parts,
                     const sc_core::sc_time& start, sc_core::sc_time& delay);
-    void take(const datapath::Triangle& triangle, TakenTriangle& taken);
+    TakenTriangle taken(const datapath::Triangle& triangle);
     void step() override;
     bool begin(std::uint64_t cycle);
     template <class Item>
