@@ -2,7 +2,7 @@
 from section import Claim, Experiment, Section, Table, MEASURED
 from .tests_units import QUIET
 
-CAPACITIES = (0, 4, 16, 64, 256, 1024, 4096, 16384)  # triangles on chip; 0 is without bound
+CAPACITIES = (0, 4, 16, 64, 256, 1024)  # triangles on chip; 0 is without bound
 ONE_PASS = {"mesh.columns": 1, "mesh.rows": 1, "tests.generation_limit": 1, "hardware.queue_order": "lifo"}
 TRANSFORM_LATENCIES = (1, 10, 20, 30, 40, 50, 60, 80)
 DISPLACE_LATENCIES = (1, 3, 6, 12, 24)
