@@ -125,7 +125,7 @@ bool Pipeline::idle() const {
     if (transport_ == Transport::blocking)
         return triangle_queue.drained() && pass_or_tessellate.joined();
     return std::all_of(units_.begin(), units_.end(),
-                       [](const Unit* unit) { return unit->idle() && unit->holds().empty(); });
+                       [](const Unit* unit) { return unit->idle() && unit->describe_contents().empty(); });
 }
 
 std::uint64_t Pipeline::passes_under_way() const {

@@ -4,12 +4,12 @@
 #include <systemc>
 #include <vector>
 
-#include "modules/clock/clock.h"
-#include "modules/design.h"
-#include "modules/memory/off_chip_memory.h"
-#include "modules/memory/table_memory.h"
+#include "modules/memories/off_chip_memory.h"
+#include "modules/memories/table_memory.h"
+#include "modules/timing/cycle_scheduler.h"
+#include "modules/timing/design.h"
 #include "modules/unit_factory.h"
-#include "modules/units/tessellation_tests/tessellation_tests.h"
+#include "modules/units/edge_tests/tessellation_tests.h"
 
 namespace tessera {
 
@@ -36,7 +36,7 @@ class Pipeline : public sc_core::sc_module {
     };
 
   public:
-    Clock clock;
+    CycleScheduler clock;
 
   private:
     const Units made_;

@@ -71,74 +71,48 @@ constexpr Rectangle centred_rectangle(const TexCoord& t, const RectangleSize& si
     return r;
 }
 
-/// The table entries that make a rectangle's sum: byte addresses, and which are subtracted (bit k: entry k).
-struct RectangleReads {
-    static constexpr unsigned most = 9;
-    unsigned count = 0;
-    std::uint32_t subtracted = 0;
-    std::array<std::uint64_t, most> address{};
+/// Entries that a rectangle's sum takes at most: repeated across both borders.
+constexpr unsigned most_rectangle_entries = 9;
 
-    constexpr void add(std::uint64_t at, bool subtract) {
-        address[count] = at;
-        subtracted |= static_cast<std::uint32_t>(subtract) << count;
-        ++count;
-    }
-};
-
-/// S(r) = SAT(tr) - SAT(tl) - SAT(br) + SAT(bl) modulo 2^bits (paper equation 2), as reads; rectangle_sum adds them.
+/// S(r) = SAT(tr) - SAT(tl) - SAT(br) + SAT(bl) modulo 2^bits (paper equation 2): calls entry(address, subtracted) with
+/// the byte address of each table entry, in the order in which they are read.
 ///
 /// The table has (width + 1) x (height + 1) entries; entry (x, y) is the sum of texels [0, x) x [0, y) modulo
 /// 2^bits, so row 0 and column 0 are zero. Subtraction wraps correctly as long as S(r) itself fits.
 /// Past the map (repeat) the table reads periodically: SAT(x + W, y) = SAT(x, y) + SAT(W, y), one more read and
 /// one more add per corner and axis: four reads, or up to nine when r wraps.
-constexpr RectangleReads rectangle_reads(const Rectangle& r, const MapGeometry& map,
-                                         const TableLayout& table) {
-    RectangleReads reads;
-    if (r.last_column <= map.width && r.last_row <= map.height) {
-        reads.count = 4;
-        reads.subtracted = 6;
-        reads.address[0] = table.address(r.last_column, r.last_row);
-        reads.address[1] = table.address(r.first_column, r.last_row);
-        reads.address[2] = table.address(r.last_column, r.first_row);
-        reads.address[3] = table.address(r.first_column, r.first_row);
-        return reads;
-    }
-    const auto row_entry = [&](std::uint32_t x, std::uint32_t y, bool subtract) {
+template <class Entry>
+constexpr void rectangle_entries(const Rectangle& r, const MapGeometry& map, const TableLayout& table,
+                                 Entry&& entry) {
+    const auto in_row = [&](std::uint32_t x, std::uint32_t y, bool subtracted) {
         if (x > map.width) {
-            reads.add(table.address(map.width, y), subtract);
+            entry(table.address(map.width, y), subtracted);
             x -= map.width;
         }
-        reads.add(table.address(x, y), subtract);
+        entry(table.address(x, y), subtracted);
     };
-    const auto entry = [&](std::uint32_t x, std::uint32_t y, bool subtract) {
+    const auto corner = [&](std::uint32_t x, std::uint32_t y, bool subtracted) {
         if (y > map.height) {
-            row_entry(x, map.height, subtract);
+            in_row(x, map.height, subtracted);
             y -= map.height;
         }
-        row_entry(x, y, subtract);
+        in_row(x, y, subtracted);
     };
-    entry(r.last_column, r.last_row, false);
-    entry(r.first_column, r.last_row, true);
-    entry(r.last_column, r.first_row, true);
-    entry(r.first_column, r.first_row, false);
-    return reads;
+    corner(r.last_column, r.last_row, false);
+    corner(r.first_column, r.last_row, true);
+    corner(r.last_column, r.first_row, true);
+    corner(r.first_column, r.first_row, false);
 }
 
-/// S(r) of the entries that were read, `entry(k)` for address k.
-template <class Entry>
-constexpr std::uint64_t rectangle_sum(const RectangleReads& reads, const Formats& formats, Entry&& entry) {
-    std::uint64_t sum = 0;
-    for (unsigned k = 0; k < reads.count; ++k)
-        sum += (reads.subtracted >> k & 1u) != 0 ? 0 - entry(k) : entry(k);
-    return sum & static_cast<std::uint64_t>(formats.summed_height.highest);
-}
-
-/// The same in one go: `read(address)` gives the entry at a byte address.
+/// S(r): `read(address)` gives the entry at a byte address.
 template <class Read>
 constexpr std::uint64_t rectangle_sum(const Rectangle& r, const MapGeometry& map, const TableLayout& table,
                                       const Formats& formats, Read&& read) {
-    const RectangleReads reads = rectangle_reads(r, map, table);
-    return rectangle_sum(reads, formats, [&](unsigned k) { return read(reads.address[k]); });
+    std::uint64_t sum = 0;
+    rectangle_entries(r, map, table, [&](std::uint64_t address, bool subtracted) {
+        sum += subtracted ? 0 - read(address) : read(address);
+    });
+    return sum & static_cast<std::uint64_t>(formats.summed_height.highest);
 }
 
 }  // namespace tessera::datapath

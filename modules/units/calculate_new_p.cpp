@@ -1,7 +1,7 @@
 #include "modules/units/calculate_new_p.h"
 
 #include "modules/datapath/midpoint.h"
-#include "modules/unit/stage_steps.h"
+#include "modules/stage/stage_steps.h"
 
 namespace tessera {
 

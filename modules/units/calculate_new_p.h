@@ -1,8 +1,8 @@
 #pragma once
 #include <systemc>
 
-#include "modules/stream/items.h"
-#include "modules/unit/stage.h"
+#include "modules/sockets/items.h"
+#include "modules/stage/stage.h"
 
 namespace tessera {
 

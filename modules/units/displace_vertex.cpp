@@ -3,7 +3,7 @@
 #include "modules/datapath/displace.h"
 #include "modules/datapath/map_address.h"
 #include "modules/datapath/normalise.h"
-#include "modules/unit/stage_steps.h"
+#include "modules/stage/stage_steps.h"
 
 namespace tessera {
 

@@ -1,9 +1,9 @@
 #pragma once
 #include <systemc>
 
-#include "modules/memory/memory_port.h"
-#include "modules/stream/items.h"
-#include "modules/unit/stage.h"
+#include "modules/sockets/items.h"
+#include "modules/sockets/memory_port.h"
+#include "modules/stage/stage.h"
 
 namespace tessera {
 

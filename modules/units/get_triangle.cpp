@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "modules/unit/signals.h"
+#include "modules/stage/signals.h"
 
 namespace tessera {
 namespace {
@@ -51,12 +51,13 @@ GetTriangle::GetTriangle(const sc_core::sc_module_name& name, const UnitContext&
     : Unit(name, context.clock),
       to_tessellation_tests("to_tessellation_tests", context.design.tests_units),
       timing_(context.timing().get_triangle),
+      latency_(clock_.period() * timing_.latency),
       tag_mask_(static_cast<Tag>((std::uint64_t{1} << tag_bits_in_use(context.design)) - 1)),
       tests_units_(context.design.tests_units) {
     const Timing& timing = context.timing();
-    from_host.serve<&GetTriangle::b_transport_from_host>(*this);
-    from_triangle_queue.serve<&GetTriangle::b_transport_from_triangle_queue>(*this);
-    queue_level.serve<&GetTriangle::b_transport_level>(*this);
+    from_host.register_b_transport<&GetTriangle::b_transport_from_host>(*this);
+    from_triangle_queue.register_b_transport<&GetTriangle::b_transport_from_triangle_queue>(*this);
+    queue_level.register_b_transport<&GetTriangle::b_transport_level>(*this);
     from_host.clocked_by(context.clock, *this, timing_.buffer, timing.stalls);
     from_triangle_queue.clocked_by(context.clock, *this, timing_.buffer, timing.stalls);
     queue_level.clocked_by(context.clock, *this, 1, {});  // a wire: it does not stall
@@ -71,9 +72,11 @@ GetTriangle::GetTriangle(const sc_core::sc_module_name& name, const UnitContext&
     }
 }
 
-TakenTriangle GetTriangle::taken(const datapath::Triangle& triangle) {
+void GetTriangle::take(const datapath::Triangle& triangle, TakenTriangle& taken) {
     const std::uint32_t pass = passes_++;
-    return {pass & tag_mask_, {pass, triangle.base}, triangle};
+    taken.tag = pass & tag_mask_;
+    taken.origin = {pass, triangle.base};
+    taken.triangle = triangle;
 }
 
 /// Functional mode: the branch's parts, one after another.
@@ -90,8 +93,9 @@ void GetTriangle::send_whole(Branch<Item>& branch, const TakenTriangle& taken, P
 }
 
 void GetTriangle::send_whole(const datapath::Triangle& triangle, sc_core::sc_time& delay) {
-    TakenTriangle whole = taken(triangle);
-    delay += clock_.period() * timing_.latency;
+    TakenTriangle whole;
+    take(triangle, whole);
+    delay += latency_;
     const sc_core::sc_time start = delay;
     sc_core::sc_time its_delay = start;
     to_pass_or_tessellate.transport(whole, its_delay);
@@ -143,7 +147,7 @@ bool GetTriangle::begin(std::uint64_t cycle) {
     } else {
         return false;
     }
-    taken_ = taken(source->front());
+    take(source->front(), taken_);
     sending_ = true;
     source->pop();
     activity_.item_in(cycle);
@@ -209,7 +213,7 @@ void GetTriangle::step() {
         activity_.set(cycle, sending_ ? State::busy : State::starved);
 }
 
-std::string GetTriangle::holds() const {
+std::string GetTriangle::describe_contents() const {
     std::string text;
     if (sending_)
         text = "triangle " + std::to_string(taken_.origin.pass) + ", not all of it sent";
@@ -220,20 +224,20 @@ std::string GetTriangle::holds() const {
     return listed(text, from_triangle_queue.empty() ? "" : "a triangle from the queue");
 }
 
-void GetTriangle::show(Signals& signals) const {
-    Unit::show(signals);
+void GetTriangle::trace_signals(Signals& signals) const {
+    Unit::trace_signals(signals);
     signals.input(from_host, "from_host");
     signals.input(from_triangle_queue, "from_triangle_queue");
-    signals.group(signals.changed(activity_.items_in()) && sending_, [&] {
+    if (signals.when(signals.changed("begun", activity_.items_in()) && sending_)) {
         const Parts parts = parts_of(taken_.triangle);
         signals.value("triangle", 32, taken_.origin.pass);
         signals.value("base", 32, taken_.origin.base);
         signals.value("new_vertices", 3, parts & vertex_parts);
         signals.value("new_normals", 3, (parts & normal_parts) >> first_normal_part);
         signals.flag("tested", (parts & edge_parts) != 0);
-    });
-    signals.group(signals.changed(parts_sent_),
-                  [&] { signals.value("part", part_bits, geometry_.offered.tag.part); });
+    }
+    if (signals.when(signals.changed("parts_sent", parts_sent_)))
+        signals.value("part", part_bits, geometry_.offered.tag.part);
     Parts tests_left = 0;
     for (const Branch<TestOperands>& branch : tests_)
         tests_left = static_cast<Parts>(tests_left | branch.left);

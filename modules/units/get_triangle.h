@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <systemc>
 
-#include "modules/stream/items.h"
-#include "modules/stream/stream_input.h"
-#include "modules/stream/stream_output.h"
-#include "modules/unit/unit.h"
+#include "modules/sockets/items.h"
+#include "modules/sockets/stream_input.h"
+#include "modules/sockets/stream_output.h"
+#include "modules/stage/unit.h"
 
 namespace tessera {
 
@@ -42,11 +42,11 @@ class GetTriangle : public Unit {
     /// Vertices, normals and edges sent to Calculate New P.
     std::uint64_t parts_sent() const { return parts_sent_; }
 
-    std::string holds() const override;
+    std::string describe_contents() const override;
     std::uint64_t occupied_cycles() const override {
         return one_at_a_time_cycles(timing_, activity_.items_in(), parts_sent_);
     }
-    void show(Signals& signals) const override;
+    void trace_signals(Signals& signals) const override;
     Begun begun() const override { return {activity_.items_in(), taken_.origin}; }
 
   private:
@@ -68,7 +68,7 @@ class GetTriangle : public Unit {
     template <class Item>
     void send_whole(Branch<Item>& branch, const TakenTriangle& taken, Parts parts,
                     const sc_core::sc_time& start, sc_core::sc_time& delay);
-    TakenTriangle taken(const datapath::Triangle& triangle);
+    void take(const datapath::Triangle& triangle, TakenTriangle& taken);
     void step() override;
     bool begin(std::uint64_t cycle);
     template <class Item>
@@ -78,6 +78,7 @@ class GetTriangle : public Unit {
     const sc_core::sc_object* blocked_by() const;
 
     UnitTiming timing_;
+    sc_core::sc_time latency_;
     Tag tag_mask_;
     std::uint32_t passes_ = 0;
     TakenTriangle taken_;  // timed mode: whose parts are being sent

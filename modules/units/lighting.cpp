@@ -1,7 +1,7 @@
 #include "modules/units/lighting.h"
 
 #include "modules/datapath/light.h"
-#include "modules/unit/stage_steps.h"
+#include "modules/stage/stage_steps.h"
 
 namespace tessera {
 

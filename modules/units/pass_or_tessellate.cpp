@@ -5,7 +5,7 @@
 
 #include "modules/datapath/cull.h"
 #include "modules/datapath/edge_tests.h"
-#include "modules/unit/signals.h"
+#include "modules/stage/signals.h"
 
 namespace tessera {
 
@@ -14,15 +14,16 @@ PassOrTessellate::PassOrTessellate(const sc_core::sc_module_name& name, const Un
       from_tessellation_tests("from_tessellation_tests", context.design.tests_units),
       registers_(context.registers),
       timing_(context.timing().pass_or_tessellate),
+      latency_(clock_.period() * timing_.latency),
       incomplete_(timing_.buffer),
       pipeline_(timing_) {
     const StallParameters& stalls = context.timing().stalls;
-    from_get_triangle.serve<&PassOrTessellate::b_transport_from_get_triangle>(*this);
+    from_get_triangle.register_b_transport<&PassOrTessellate::b_transport_from_get_triangle>(*this);
     from_get_triangle.clocked_by(clock_, *this, triangles_ahead_of_parts(context.design), stalls);
-    from_transform.serve<&PassOrTessellate::b_transport_from_transform>(*this);
+    from_transform.register_b_transport<&PassOrTessellate::b_transport_from_transform>(*this);
     from_transform.clocked_by(clock_, *this, 1, stalls);
     for (StreamInput<TestedEdge>& input : from_tessellation_tests) {
-        input.serve<&PassOrTessellate::b_transport_from_tests>(*this);
+        input.register_b_transport<&PassOrTessellate::b_transport_from_tests>(*this);
         input.clocked_by(clock_, *this, timing_.buffer * 3 / context.design.tests_units, stalls);
     }
     to_tessellation.clocked_by(context, *this);
@@ -44,8 +45,12 @@ void PassOrTessellate::open(const TakenTriangle& taken) {
     pass.new_vertices = static_cast<std::uint8_t>(parts & vertex_parts);
     pass.new_normals = static_cast<std::uint8_t>((parts & normal_parts) >> first_normal_part);
     pass.tested = (parts & edge_parts) != 0;
+    pass.split = 0;
+    for (datapath::EdgeTests& edge : pass.edges)
+        edge.tests = 0;
     place.geometry_left = parts;
     place.tests_left = static_cast<Parts>(parts & edge_parts);
+    place.latest = sc_core::SC_ZERO_TIME;
 }
 
 void PassOrTessellate::take(Incomplete& place, const ScreenPoint& part) {
@@ -103,15 +108,19 @@ void PassOrTessellate::finish_if_complete(Incomplete& place, const PartTag& tag,
     place.latest = std::max(place.latest, delay);
     if (!place.complete())
         return;
-    delay = place.latest + clock_.period() * timing_.latency;
-    Decided whole;
-    whole.triangle = place.triangle;
+    delay = place.latest + latency_;
+    // The place is given up first: other triangles may come before transport returns.
+    const Way way = decide(place.triangle);
+    if (way == Way::tessellation) {
+        DecidedTriangle triangle = place.triangle;
+        incomplete_.close(tag.triangle);
+        to_tessellation.transport(triangle, delay);
+        return;
+    }
+    TriangleToLight triangle = to_light(place.triangle);
     incomplete_.close(tag.triangle);
-    decide(whole);
-    if (whole.way == Way::tessellation)
-        to_tessellation.transport(whole.triangle, delay);
-    else if (whole.way == Way::lighting)
-        to_lighting.transport(whole.emitted, delay);
+    if (way == Way::lighting)
+        to_lighting.transport(triangle, delay);
 }
 
 /// Null: all places are taken, or the triangle itself is still to come.
@@ -156,9 +165,9 @@ bool PassOrTessellate::take_parts(std::uint64_t cycle) {
 bool PassOrTessellate::deliver(Decided& next) {
     switch (next.way) {
         case Way::tessellation:
-            return to_tessellation.deliver(next.triangle);
+            return to_tessellation.deliver(next.to_tessellation);
         case Way::lighting:
-            return to_lighting.deliver(next.emitted);
+            return to_lighting.deliver(next.to_lighting);
         case Way::dropped:
             break;
     }
@@ -176,9 +185,13 @@ void PassOrTessellate::step() {
         changed = take_parts(cycle);
         while (first_is_complete() && pipeline_.may_start(cycle)) {
             Decided& next = pipeline_.start(cycle);
-            next.triangle = incomplete_.oldest().state.triangle;
+            DecidedTriangle& triangle = incomplete_.oldest().triangle;
+            next.way = decide(triangle);
+            if (next.way == Way::tessellation)
+                next.to_tessellation = triangle;
+            else if (next.way == Way::lighting)
+                next.to_lighting = to_light(triangle);
             incomplete_.close_oldest();
-            decide(next);
             clock_.progress();
             changed = true;
         }
@@ -190,14 +203,14 @@ void PassOrTessellate::step() {
     else if (!pipeline_.empty() || first_is_complete())
         activity_.set(cycle, State::busy);
     else
-        activity_.set(cycle, State::starved, lacks());
+        activity_.set(cycle, State::starved, late_branch());
     wake_at(pipeline_.next_finished(cycle));
     if (!incomplete_.empty())
         wake_at(pipeline_.next_start(cycle));
 }
 
-/// The branch of which something lacks while all of the other's is there; null: neither is late.
-const sc_core::sc_object* PassOrTessellate::lacks() const {
+/// The branch that alone delays the oldest triangle; null if both, or neither, still owe parts.
+const sc_core::sc_object* PassOrTessellate::late_branch() const {
     if (incomplete_.empty()) {
         for (const StreamInput<TestedEdge>& input : from_tessellation_tests) {
             if (!input.empty())
@@ -205,7 +218,7 @@ const sc_core::sc_object* PassOrTessellate::lacks() const {
         }
         return nullptr;
     }
-    const Incomplete& first = incomplete_.oldest().state;
+    const Incomplete& first = incomplete_.oldest();
     if (first.geometry_left == 0)
         return tests_[tests_.size() == 1
                           ? 0
@@ -213,17 +226,17 @@ const sc_core::sc_object* PassOrTessellate::lacks() const {
     return first.tests_left == 0 ? transform_ : nullptr;
 }
 
-std::string PassOrTessellate::holds() const {
+std::string PassOrTessellate::describe_contents() const {
     std::string text;
     const auto add = [&](const std::string& what) { text = listed(text, what, "; "); };
     if (!incomplete_.empty()) {
-        const Incomplete& first = incomplete_.oldest().state;
+        const Incomplete& first = incomplete_.oldest();
         add(count_of(incomplete_.size(), "triangle") + " to be joined, the first (" +
             std::to_string(first.triangle.origin.pass) + ") " +
             (first_is_complete()        ? "complete"
-             : first.geometry_left == 0 ? "lacks its parts from Tessellation Tests"
-             : first.tests_left == 0    ? "lacks its parts from Transform"
-                                        : "lacks its parts from both branches"));
+             : first.geometry_left == 0 ? "waiting for Tessellation Tests"
+             : first.tests_left == 0    ? "waiting for Transform"
+                                        : "waiting for both branches"));
     }
     add(count_of(pipeline_.size(), "decided triangle"));
     std::size_t edges = 0;
@@ -233,13 +246,14 @@ std::string PassOrTessellate::holds() const {
     return text;
 }
 
-void PassOrTessellate::decide(Decided& whole) {
-    whole.way = join(whole.triangle.pass);
-    if (whole.way == Way::lighting)
-        whole.emitted = emitted(whole.triangle);
+PassOrTessellate::Way PassOrTessellate::decide(DecidedTriangle& whole) {
+    const auto& [first, second, third] = whole.pass.edges;
+    const Way way = join(whole.pass);
+    last_ = {whole.origin, {first.tests, second.tests, third.tests}, whole.pass.split, way};
+    return way;
 }
 
-TriangleToLight PassOrTessellate::emitted(const DecidedTriangle& whole) {
+TriangleToLight PassOrTessellate::to_light(const DecidedTriangle& whole) {
     TriangleToLight triangle{whole.origin, {}};
     for (std::size_t k = 0; k < 3; ++k) {
         const datapath::Vertex& vertex = whole.pass.triangle.vertices[k];
@@ -319,31 +333,29 @@ PassOrTessellate::Way PassOrTessellate::finish(datapath::Triangle& triangle) {
 }
 
 /// Shows the triangle decided last; of one that only fetched normals, tests and split as it brought them.
-void PassOrTessellate::show(Signals& signals) const {
-    Unit::show(signals);
+void PassOrTessellate::trace_signals(Signals& signals) const {
+    Unit::trace_signals(signals);
     signals.input(from_transform, "from_transform");
     for (const StreamInput<TestedEdge>& input : from_tessellation_tests)
         signals.input(input, input.basename());
     signals.value("incomplete", 16, incomplete_.size());
     const std::uint64_t decided_so_far = counts_.passes + counts_.normal_passes;
     signals.pulse("decided", decided_so_far);
-    signals.group(signals.changed(decided_so_far) && !pipeline_.empty(), [&] {
-        const Decided& last = pipeline_.newest();
-        const datapath::TrianglePass& pass = last.triangle.pass;
-        signals.value("triangle", 32, last.triangle.origin.pass);
-        signals.value("base", 32, last.triangle.origin.base);
-        signals.value("tests_0", 5, pass.edges[0].tests);
-        signals.value("tests_1", 5, pass.edges[1].tests);
-        signals.value("tests_2", 5, pass.edges[2].tests);
+    if (signals.when(signals.changed("shown", decided_so_far) && !pipeline_.empty())) {
+        signals.value("triangle", 32, last_.origin.pass);
+        signals.value("base", 32, last_.origin.base);
+        signals.value("tests_0", 5, last_.tests[0]);
+        signals.value("tests_1", 5, last_.tests[1]);
+        signals.value("tests_2", 5, last_.tests[2]);
         if (registers_.tests.highlight_test) {
             unsigned highlight = 0;
             for (unsigned k = 0; k < 3; ++k)
-                highlight |= (pass.edges[k].tests & datapath::highlight_bit) != 0 ? 1u << k : 0u;
+                highlight |= (last_.tests[k] & datapath::highlight_bit) != 0 ? 1u << k : 0u;
             signals.value("highlight", 3, highlight);
         }
-        signals.value("split", 3, pass.split);
-        signals.value("way", 2, static_cast<std::uint64_t>(last.way));
-    });
+        signals.value("split", 3, last_.split);
+        signals.value("way", 2, static_cast<std::uint64_t>(last_.way));
+    }
     signals.value("finished", 32, counts_.finished);
 }
 

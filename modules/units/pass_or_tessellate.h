@@ -1,16 +1,17 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <systemc>
 #include <tlm>
 #include <vector>
 
 #include "modules/datapath/triangle_pass.h"
-#include "modules/stream/items.h"
-#include "modules/stream/stream_input.h"
-#include "modules/stream/stream_output.h"
-#include "modules/unit/elastic_pipeline.h"
-#include "modules/unit/per_triangle.h"
-#include "modules/unit/unit.h"
+#include "modules/sockets/items.h"
+#include "modules/sockets/stream_input.h"
+#include "modules/sockets/stream_output.h"
+#include "modules/stage/per_triangle.h"
+#include "modules/stage/unit.h"
+#include "modules/timing/elastic_pipeline.h"
 
 namespace tessera {
 
@@ -71,19 +72,25 @@ class PassOrTessellate : public Unit {
     /// Most triangles that waited for their first part.
     std::size_t most_ahead_of_parts() const { return most_ahead_of_parts_; }
 
-    std::string holds() const override;
+    std::string describe_contents() const override;
     std::uint64_t occupied_cycles() const override { return activity_.items_out() * timing_.interval; }
-    void show(Signals& signals) const override;
+    void trace_signals(Signals& signals) const override;
     /// The triangle decided last.
-    Begun begun() const override {
-        return {counts_.passes + counts_.normal_passes, pipeline_.newest().triangle.origin};
-    }
+    Begun begun() const override { return {counts_.passes + counts_.normal_passes, last_.origin}; }
 
   private:
     enum class Way : std::uint8_t { tessellation, lighting, dropped };
+    /// On its way out; of the two triangles the one that goes that way.
     struct Decided {
-        DecidedTriangle triangle;
-        TriangleToLight emitted;
+        Way way = Way::dropped;
+        DecidedTriangle to_tessellation;
+        TriangleToLight to_lighting;
+    };
+    /// What waveforms show of a decided triangle.
+    struct Shown {
+        Origin origin;
+        std::array<std::uint8_t, 3> tests{};
+        std::uint8_t split = 0;
         Way way = Way::dropped;
     };
 
@@ -110,23 +117,25 @@ class PassOrTessellate : public Unit {
     static void take(Incomplete& place, const ScreenPoint& part);
     static void take(Incomplete& place, const TestedEdge& edge);
     bool deliver(Decided& next);
-    bool first_is_complete() const { return !incomplete_.empty() && incomplete_.oldest().state.complete(); }
-    const sc_core::sc_object* lacks() const;
+    bool first_is_complete() const { return !incomplete_.empty() && incomplete_.oldest().complete(); }
+    const sc_core::sc_object* late_branch() const;
     void end_of_elaboration() override;
 
     /// Completes the triangle and says where it goes.
-    void decide(Decided& whole);
+    Way decide(DecidedTriangle& whole);
     Way join(datapath::TrianglePass& pass);
     void decide_edges(datapath::TrianglePass& pass);
     Way finish(datapath::Triangle& triangle);
-    static TriangleToLight emitted(const DecidedTriangle& whole);
+    static TriangleToLight to_light(const DecidedTriangle& whole);
 
     const datapath::Registers& registers_;
     UnitTiming timing_;
+    sc_core::sc_time latency_;
     PerTriangle<Incomplete> incomplete_;
     std::size_t most_incomplete_ = 0;
     std::size_t most_ahead_of_parts_ = 0;
     ElasticPipeline<Decided> pipeline_;
+    Shown last_;
     const sc_core::sc_object* transform_ = nullptr;
     std::vector<const sc_core::sc_object*> tests_;  // one per Tessellation Tests unit
     Counts counts_;

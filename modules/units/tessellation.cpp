@@ -3,19 +3,22 @@
 #include <algorithm>
 
 #include "modules/datapath/tessellate.h"
-#include "modules/unit/signals.h"
+#include "modules/stage/signals.h"
 
 namespace tessera {
 
 Tessellation::Tessellation(const sc_core::sc_module_name& name, const UnitContext& context)
-    : Unit(name, context.clock), registers_(context.registers), timing_(context.timing().tessellation) {
-    from_pass_or_tessellate.serve<&Tessellation::b_transport>(*this);
+    : Unit(name, context.clock),
+      registers_(context.registers),
+      timing_(context.timing().tessellation),
+      latency_(clock_.period() * timing_.latency) {
+    from_pass_or_tessellate.register_b_transport<&Tessellation::b_transport>(*this);
     from_pass_or_tessellate.clocked_by(clock_, *this, timing_.buffer, context.timing().stalls);
     to_triangle_queue.clocked_by(context, *this);
 }
 
 void Tessellation::b_transport(DecidedTriangle& decided, sc_core::sc_time& delay) {
-    delay += clock_.period() * timing_.latency;
+    delay += latency_;
     const int children =
         tessellate(decided.pass, registers_.triangulation, registers_.formats, saturations_,
                    [&](datapath::Triangle& child) { to_triangle_queue.transport(child, delay); });
@@ -54,7 +57,7 @@ void Tessellation::step() {
         wake_at(next_);
 }
 
-std::string Tessellation::holds() const {
+std::string Tessellation::describe_contents() const {
     std::string text;
     if (made_ > 0)
         text = std::to_string(made_ - sent_ + (to_triangle_queue.free() ? 0u : 1u)) + " of " +
@@ -62,11 +65,11 @@ std::string Tessellation::holds() const {
     return listed(text, from_pass_or_tessellate.empty() ? "" : "a triangle that waits");
 }
 
-void Tessellation::show(Signals& signals) const {
-    Unit::show(signals);
+void Tessellation::trace_signals(Signals& signals) const {
+    Unit::trace_signals(signals);
     signals.input(from_pass_or_tessellate);
-    signals.group(signals.changed(activity_.items_in()),
-                  [&] { signals.value("base", 32, children_[0].base); });
+    if (signals.when(signals.changed("begun", activity_.items_in())))
+        signals.value("base", 32, children_[0].base);
     signals.value("children", 3, made_);
     signals.value("children_left", 3, made_ - sent_);
 }

@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <systemc>
 
-#include "modules/stream/items.h"
-#include "modules/stream/stream_input.h"
-#include "modules/stream/stream_output.h"
-#include "modules/unit/unit.h"
+#include "modules/sockets/items.h"
+#include "modules/sockets/stream_input.h"
+#include "modules/sockets/stream_output.h"
+#include "modules/stage/unit.h"
 
 namespace tessera {
 
@@ -35,11 +35,11 @@ class Tessellation : public Unit {
 
     const datapath::Saturations& saturations() const { return saturations_; }
 
-    std::string holds() const override;
+    std::string describe_contents() const override;
     std::uint64_t occupied_cycles() const override {
         return one_at_a_time_cycles(timing_, activity_.items_in(), children());
     }
-    void show(Signals& signals) const override;
+    void trace_signals(Signals& signals) const override;
     Begun begun() const override { return {activity_.items_in(), origin_}; }
 
   private:
@@ -48,6 +48,7 @@ class Tessellation : public Unit {
 
     const datapath::Registers& registers_;
     UnitTiming timing_;
+    sc_core::sc_time latency_;
     std::array<datapath::Triangle, 4> children_;
     Origin origin_;      // of the triangle that is being worked on
     unsigned made_ = 0;  // its children

@@ -1,7 +1,7 @@
 #include "modules/units/transform.h"
 
 #include "modules/datapath/transform.h"
-#include "modules/unit/stage_steps.h"
+#include "modules/stage/stage_steps.h"
 
 namespace tessera {
 

@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <systemc>
 
-#include "modules/stream/items.h"
-#include "modules/unit/stage.h"
+#include "modules/sockets/items.h"
+#include "modules/stage/stage.h"
 
 namespace tessera {
 

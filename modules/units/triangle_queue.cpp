@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "modules/datapath/pack_triangle.h"
-#include "modules/unit/signals.h"
+#include "modules/stage/signals.h"
 
 namespace tessera {
 
@@ -21,11 +21,12 @@ TriangleQueue::TriangleQueue(const sc_core::sc_module_name& name, const UnitCont
       registers_(context.registers),
       design_(context.design.queue),
       timing_(context.timing().triangle_queue),
+      latency_(clock_.period() * timing_.latency),
       record_bytes_(off_chip_memory.entry_bytes()),
       store_(design_.order),
       leaving_(timing_) {
     design_.watermark = std::max<std::size_t>(design_.watermark, 1);
-    from_tessellation.serve<&TriangleQueue::b_transport>(*this);
+    from_tessellation.register_b_transport<&TriangleQueue::b_transport>(*this);
     from_tessellation.clocked_by(clock_, *this, timing_.buffer, context.timing().stalls);
     to_get_triangle.clocked_by(context, *this);
     level.clocked_by(context, *this);
@@ -38,7 +39,7 @@ void TriangleQueue::b_transport(datapath::Triangle& triangle, sc_core::sc_time& 
     store_.push(triangle);
     ++taken_;
     high_water_mark_ = std::max(high_water_mark_, store_.size());
-    delay += clock_.period() * timing_.latency;
+    delay += latency_;
     tell_level(delay);
     if (!sending_)
         arrival_.notify(sc_core::SC_ZERO_TIME);
@@ -197,7 +198,7 @@ void TriangleQueue::step() {
         wake_at(next_in_);
 }
 
-std::string TriangleQueue::holds() const {
+std::string TriangleQueue::describe_contents() const {
     std::string text = count_of(waiting(), "triangle");
     if (off_chip_ > 0)
         text += ", " + std::to_string(off_chip_) + " of them off chip";
@@ -211,19 +212,18 @@ std::string TriangleQueue::holds() const {
 }
 
 /// Shows the levels, what goes off chip and comes back, and the triangle that was read from the store last.
-void TriangleQueue::show(Signals& signals) const {
-    Unit::show(signals);
+void TriangleQueue::trace_signals(Signals& signals) const {
+    Unit::trace_signals(signals);
     signals.input(from_tessellation);
     signals.value("level", 32, waiting());
     signals.value("on_chip", 32, store_.size());
     signals.value("off_chip", 32, off_chip_);
     signals.value("coming_back", 16, refills_);
     signals.flag("takes_host_triangles", below_watermark());
-    signals.group(signals.changed(activity_.items_out() + leaving_.size()), [&] {
-        const datapath::Triangle& triangle = leaving_.newest();
-        signals.value("base", 32, triangle.base);
-        signals.flag("finished", triangle.finished);
-    });
+    if (signals.when(signals.changed("left_store", activity_.items_out() + leaving_.size()))) {
+        signals.value("base", 32, leaving_.newest().base);
+        signals.flag("finished", leaving_.newest().finished);
+    }
     signals.pulse("spill", spilled_);
     signals.pulse("refill", refilled_);
     signals.flag("request_held", off_chip_memory.on_offer());

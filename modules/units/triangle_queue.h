@@ -3,13 +3,13 @@
 #include <cstdint>
 #include <systemc>
 
-#include "modules/memory/memory_port.h"
-#include "modules/stream/items.h"
-#include "modules/stream/stream_input.h"
-#include "modules/stream/stream_output.h"
-#include "modules/unit/elastic_pipeline.h"
-#include "modules/unit/level_history.h"
-#include "modules/unit/unit.h"
+#include "modules/sockets/items.h"
+#include "modules/sockets/memory_port.h"
+#include "modules/sockets/stream_input.h"
+#include "modules/sockets/stream_output.h"
+#include "modules/stage/unit.h"
+#include "modules/timing/elastic_pipeline.h"
+#include "modules/timing/level_history.h"
 #include "modules/units/triangle_store.h"
 
 namespace tessera {
@@ -56,9 +56,9 @@ class TriangleQueue : public Unit {
     /// A triangle was to be spilled when all places in off-chip memory were taken.
     bool off_chip_memory_full() const { return off_chip_memory_full_; }
 
-    std::string holds() const override;
+    std::string describe_contents() const override;
     std::uint64_t occupied_cycles() const override { return taken_ * timing_.interval; }
-    void show(Signals& signals) const override;
+    void trace_signals(Signals& signals) const override;
 
   private:
     void b_transport(datapath::Triangle& triangle, sc_core::sc_time& delay);
@@ -79,6 +79,7 @@ class TriangleQueue : public Unit {
     const datapath::Registers& registers_;
     QueueDesign design_;
     UnitTiming timing_;
+    sc_core::sc_time latency_;
     std::size_t record_bytes_;
     TriangleStore store_;
     ElasticPipeline<datapath::Triangle> leaving_;

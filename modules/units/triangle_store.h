@@ -1,9 +1,9 @@
 #pragma once
 #include <cstddef>
-#include <vector>
 
 #include "modules/datapath/vertex.h"
-#include "modules/design.h"
+#include "modules/timing/design.h"
+#include "modules/timing/ring.h"
 
 namespace tessera {
 
@@ -13,54 +13,38 @@ class TriangleStore {
   public:
     explicit TriangleStore(TriangleOrder order) : order_(order), ring_(1024) {}
 
-    bool empty() const { return size_ == 0; }
-    std::size_t size() const { return size_; }
+    bool empty() const { return ring_.empty(); }
+    std::size_t size() const { return ring_.size(); }
 
     void push(const datapath::Triangle& triangle) {
-        if (size_ == ring_.size())
-            grow();
-        ring_[(first_ + size_) & (ring_.size() - 1)] = triangle;
-        ++size_;
+        if (ring_.full())
+            ring_.grow();
+        ring_.push(triangle);
     }
-
-    /// The next triangle in order; the store must not be empty. The reference holds until the next push.
+    /// The next triangle in order. Not when empty. The reference holds until the next push.
     const datapath::Triangle& pop() {
-        --size_;
-        if (order_ == TriangleOrder::lifo)
-            return ring_[(first_ + size_) & (ring_.size() - 1)];
-        const std::size_t place = first_;
-        first_ = (first_ + 1) & (ring_.size() - 1);
-        return ring_[place];
+        if (order_ == TriangleOrder::fifo)
+            return pop_oldest();
+        const datapath::Triangle& newest = ring_.at(ring_.size() - 1);
+        ring_.pop_back();
+        return newest;
     }
 
     /// Beside the order: the other end of what is stored, for spilling.
     void push_oldest(const datapath::Triangle& triangle) {
-        if (size_ == ring_.size())
-            grow();
-        first_ = (first_ - 1) & (ring_.size() - 1);
-        ring_[first_] = triangle;
-        ++size_;
+        if (ring_.full())
+            ring_.grow();
+        ring_.push_front() = triangle;
     }
     const datapath::Triangle& pop_oldest() {
-        const std::size_t place = first_;
-        first_ = (first_ + 1) & (ring_.size() - 1);
-        --size_;
-        return ring_[place];
+        const datapath::Triangle& oldest = ring_.front();
+        ring_.pop();
+        return oldest;
     }
 
   private:
-    void grow() {
-        std::vector<datapath::Triangle> larger(2 * ring_.size());
-        for (std::size_t k = 0; k < size_; ++k)
-            larger[k] = ring_[(first_ + k) & (ring_.size() - 1)];
-        ring_.swap(larger);
-        first_ = 0;
-    }
-
     TriangleOrder order_;
-    std::vector<datapath::Triangle> ring_;  // a power of two
-    std::size_t first_ = 0;
-    std::size_t size_ = 0;
+    Ring<datapath::Triangle> ring_;
 };
 
 }  // namespace tessera

@@ -7,7 +7,7 @@
 #include <tlm>
 #include <vector>
 
-#include "modules/memory/memory_request.h"
+#include "modules/sockets/memory_request.h"
 
 namespace tessera {
 

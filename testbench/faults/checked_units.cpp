@@ -74,13 +74,7 @@ void CheckedUnits::interpose(StreamOutput<Payload>& output) {
 }
 
 void CheckedUnits::made(sc_core::sc_module& module) {
-    for (sc_core::sc_object* child : module.get_child_objects()) {
-        for_each_item_type([&](auto* item) {
-            using Item = std::remove_const_t<std::remove_pointer_t<decltype(item)>>;
-            if (auto* output = dynamic_cast<StreamOutput<Item>*>(child))
-                interpose(*output);
-        });
-    }
+    for_each_output(module, [&](auto& output) { interpose(output); });
 }
 
 void CheckedUnits::join_memory(MemoryPort& port, MemoryServer& memory, bool check_reads) {

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "modules/stream/items.h"
+#include "modules/sockets/items.h"
 
 namespace tessera {
 
@@ -32,7 +32,7 @@ class BitFlipper {
     bool flipped_ = false;
 };
 
-/// Bit 0 is the lowest of the item's first field (modules/stream/README.md). False: the item has fewer bits.
+/// Bit 0 is the lowest of the item's first field (modules/sockets/README.md). False: the item has fewer bits.
 template <class Item>
 bool flip_bit(Item& item, const datapath::Formats& formats, int tag_bits, std::uint64_t bit) {
     BitFlipper flipper(bit);

@@ -5,7 +5,7 @@
 #include <systemc>
 #include <tlm>
 
-#include "modules/memory/memory_request.h"
+#include "modules/sockets/memory_request.h"
 #include "testbench/faults/fault_trigger.h"
 
 namespace tessera {

@@ -6,7 +6,7 @@
 #include <tlm>
 
 #include "modules/datapath/format.h"
-#include "modules/stream/stream_input.h"
+#include "modules/sockets/stream_input.h"
 #include "testbench/faults/fault_trigger.h"
 #include "testbench/faults/flip_bit.h"
 

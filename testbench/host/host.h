@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <systemc>
 
-#include "modules/clock/clock.h"
-#include "modules/stream/stream_output.h"
+#include "modules/sockets/stream_output.h"
+#include "modules/timing/cycle_scheduler.h"
 #include "testbench/host/setup.h"
 
 namespace tessera {
@@ -13,7 +13,7 @@ namespace tessera {
 /// then sends the base triangles, one after another, to Get Triangle.
 /// Held back by Get Triangle while the Triangle Queue is at its watermark. In timed mode it offers the next triangle in
 /// the cycle in which the last was taken: the bus is not what is looked at.
-class Host : public sc_core::sc_module, public Clocked {
+class Host : public sc_core::sc_module, public CycleProcess {
   public:
     StreamOutput<datapath::Triangle> to_get_triangle{"to_get_triangle"};
     tlm_utils::simple_initiator_socket<Host> displacement_map{"displacement_map"};
@@ -21,7 +21,7 @@ class Host : public sc_core::sc_module, public Clocked {
     tlm_utils::simple_initiator_socket<Host> summed_height_table{"summed_height_table"};
 
     /// `setup` must outlive the host.
-    Host(const sc_core::sc_module_name& name, const Setup& setup, Clock& clock);
+    Host(const sc_core::sc_module_name& name, const Setup& setup, CycleScheduler& clock);
 
     /// Sends the base triangles once more when the simulation goes on: another frame of the same job.
     void send_again();
@@ -39,7 +39,7 @@ class Host : public sc_core::sc_module, public Clocked {
     void fill_summed_height_table();
 
     const Setup& setup_;
-    Clock& clock_;
+    CycleScheduler& clock_;
     datapath::Triangle offered_;
     sc_core::sc_event again_{"again"};
     std::uint64_t sent_ = 0;

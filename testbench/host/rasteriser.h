@@ -3,23 +3,23 @@
 #include <systemc>
 #include <tlm>
 
-#include "modules/clock/clock.h"
-#include "modules/stream/stream_input.h"
+#include "modules/sockets/stream_input.h"
+#include "modules/timing/cycle_scheduler.h"
 #include "modules/units/lighting.h"
 
 namespace tessera {
 
 /// Where the machine ends (paper figure 7): takes every lit triangle and counts it. Never holds back.
-class Rasteriser : public sc_core::sc_module, public Clocked {
+class Rasteriser : public sc_core::sc_module, public CycleProcess {
   public:
     StreamInput<LitTriangle> from_lighting{"from_lighting"};
     /// Every triangle taken: for the work check.
     tlm::tlm_analysis_port<LitTriangle> taken{"taken"};
 
-    Rasteriser(const sc_core::sc_module_name& name, Clock& clock, const StallParameters& stalls)
+    Rasteriser(const sc_core::sc_module_name& name, CycleScheduler& clock, const StallParameters& stalls)
         : sc_module(name) {
         clock.attach(*this);
-        from_lighting.serve<&Rasteriser::b_transport>(*this);
+        from_lighting.register_b_transport<&Rasteriser::b_transport>(*this);
         from_lighting.clocked_by(clock, *this, 1, stalls);
     }
 

@@ -85,7 +85,7 @@ bool Simulation::drained() const {
 
 std::string Simulation::stuck() const {
     const bool timed = setup.design.transport == Transport::non_blocking;
-    const Clock& clock = pipeline.clock;
+    const CycleScheduler& clock = pipeline.clock;
     std::string text =
         clock.stalled()
             ? fmt::format(
@@ -99,7 +99,7 @@ std::string Simulation::stuck() const {
                         host.idle() ? "" : ", waits for get_triangle");
     text += fmt::format("  finished: {} triangles\n", counts.finished);
     for (const Unit* unit : pipeline.units()) {
-        std::string line = unit->holds();
+        std::string line = unit->describe_contents();
         const Activity& activity = unit->activity();
         const sc_core::sc_object* by = activity.by();
         if (by != nullptr)

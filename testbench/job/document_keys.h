@@ -3,7 +3,7 @@
 
 namespace tessera {
 
-/// The reference of all job keys: one aligned Markdown table per table of a job file.
+/// The reference of all job keys: one Markdown table per table of a job file.
 std::string document_keys();
 
 }  // namespace tessera

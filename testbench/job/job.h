@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-#include "modules/timing.h"
+#include "modules/timing/timing.h"
 
 namespace tessera {
 
@@ -151,7 +151,7 @@ struct Job {
         double ambient = 0.2;
     } hardware;
 
-    Timing timing;  // timed mode: every unit's and memory's, see modules/timing.h
+    Timing timing;  // timed mode: every unit's and memory's, see modules/timing/timing.h
 
     struct Check {
         bool golden = true;      // scoreboard: every edge against the golden model

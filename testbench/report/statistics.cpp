@@ -75,12 +75,12 @@ Collector stream_figures(const Setup& setup) {
     const int tag = tag_bits(setup.design);
     Collector c("streams");
     c.add("tag", tag, "bit", "names a triangle between Get Triangle and Pass or Tessellate");
-    for_each_item_type([&](auto* item) {
-        using Item = std::remove_const_t<std::remove_pointer_t<decltype(item)>>;
+    StreamItems::for_each([&](auto type) {
+        using Item = typename decltype(type)::Item;
         std::string name = DescriptionOf<Item>::Type::name;
         std::replace(name.begin(), name.end(), ' ', '_');
         c.add(name.c_str(), item_bits<Item>(setup.registers.formats, tag), "bit",
-              "one item of that stream: modules/stream/README.md");
+              "one item of that stream: modules/sockets/README.md");
     });
     return c;
 }

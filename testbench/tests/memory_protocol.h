@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "modules/memory/memory_request.h"
+#include "modules/sockets/memory_request.h"
 
 /// The other side of a memory's socket, or of a port on one: an initiator and a target whose phases are the test's.
 namespace tessera::testing {

@@ -42,7 +42,7 @@ class Wires {
 };
 
 /// Displace Vertex as another language would have it: wires in, wires out, an address and a code, one call a clock edge. It
-/// knows the tables of modules/stream/README.md and the registers, but no item, no stream and no SystemC. The arithmetic is the
+/// knows the tables of modules/sockets/README.md and the registers, but no item, no stream and no SystemC. The arithmetic is the
 /// datapath's.
 class RtlDisplaceVertex {
   public:
@@ -83,7 +83,7 @@ class RtlDisplaceVertex {
         return out;
     }
 
-    // Clocked.
+    // CycleProcess.
 
     void clock_edge() {
         taken_ = false;

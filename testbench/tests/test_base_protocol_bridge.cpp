@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "modules/memory/base_protocol_bridge.h"
-#include "modules/memory/memory_port.h"
+#include "modules/memories/base_protocol_bridge.h"
+#include "modules/sockets/memory_port.h"
 #include "testbench/tests/base_protocol_memories.h"
 #include "testbench/tests/timed_modules.h"
 
@@ -34,7 +34,7 @@ struct Reader : sc_core::sc_module {
     Cycles offered, answered;
     std::vector<std::uint64_t> values;
 
-    Reader(const sc_core::sc_module_name& name, Clock& clock)
+    Reader(const sc_core::sc_module_name& name, CycleScheduler& clock)
         : sc_module(name), clock_(clock), caller_(clock) {
         port.clocked_by(clock, caller_, 8);
         caller_.on_step = [this] { step(); };
@@ -56,7 +56,7 @@ struct Reader : sc_core::sc_module {
         }
     }
 
-    Clock& clock_;
+    CycleScheduler& clock_;
     Caller caller_;
 };
 
@@ -66,7 +66,7 @@ std::uint64_t own_address(std::uint64_t address) {
 
 /// A reader and a bridge before a memory of the base protocol.
 struct Bench {
-    Clock clock;
+    CycleScheduler clock;
     BaseProtocolBridge bridge;
     Reader reader;
 
@@ -84,7 +84,7 @@ struct Bench {
             for (const std::uint64_t address : addresses)
                 expected.push_back(own_address(address));
         CHECK(reader.values == expected);
-        CHECK(bridge.holds().empty());
+        CHECK(bridge.describe_contents().empty());
         CHECK(bridge.activity().items_in() == bridge.activity().items_out());
     }
 };
@@ -362,7 +362,7 @@ TEST_CASE("bridge: breaches of a memory are errors that name the bridge's socket
 }
 
 TEST_CASE("bridge: writes and reads of records") {
-    Clock clock("clock", period);
+    CycleScheduler clock("clock", period);
     BaseProtocolBridge bridge("bridge", clock, 4);
     BlockingMemory memory("memory", sc_time(30, SC_PS));
     bridge.to_memory.bind(memory.socket);

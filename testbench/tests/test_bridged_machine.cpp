@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "modules/datapath/pack_triangle.h"
-#include "modules/memory/base_protocol_bridge.h"
+#include "modules/memories/base_protocol_bridge.h"
 #include "testbench/benchmark/bare_recursion.h"
 #include "testbench/tests/base_protocol_memories.h"
 #include "testbench/tests/job_results.h"
@@ -47,7 +47,7 @@ class BridgedUnits : public UnitFactory {
     void join_any(MemoryPort& port, const MemoryServer& memory, unsigned buffer) {
         const std::string name = memory.basename();
         if (bridges_.count(name) == 0) {
-            auto* clock = dynamic_cast<Clock*>(sc_core::sc_find_object("bridged.clock"));
+            auto* clock = dynamic_cast<CycleScheduler*>(sc_core::sc_find_object("bridged.clock"));
             bridges_[name] =
                 std::make_unique<BaseProtocolBridge>(("bridge_of_" + name).c_str(), *clock, buffer);
             memories_.push_back(make_(*bridges_[name], name));

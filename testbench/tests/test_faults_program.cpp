@@ -48,7 +48,7 @@ TEST_CASE("a lost answer is the watchdog's, with its exit code") {
     INFO(end.text());
     CHECK(end.exit_code == 3);
     CHECK_THAT(end.out, Contains("caught by: watchdog: deadlock"));
-    CHECK_THAT(end.err, Contains("tessera.pass_or_tessellate") && Contains("lacks its parts"));
+    CHECK_THAT(end.err, Contains("tessera.pass_or_tessellate") && Contains("waiting for"));
 }
 
 TEST_CASE("a fault that nobody notices has an exit code of its own") {

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "modules/datapath/map_entry.h"
-#include "modules/memory/table_memory.h"
-#include "modules/units/tessellation_tests/normal_test.h"
+#include "modules/memories/table_memory.h"
+#include "modules/units/edge_tests/normal.h"
 #include "testbench/tests/timed_modules.h"
 
 // The Normal Test unit alone, through its sockets, with and without a Highlight Test.
@@ -36,7 +36,7 @@ constexpr datapath::Direction tilted{3000, 0, 16107};  // 3000 from up, 0.90 fro
 struct Bench {
     datapath::Registers registers;
     Design design;
-    Clock clock{"clock", sc_core::sc_time(10, sc_core::SC_PS)};
+    CycleScheduler clock{"clock", sc_core::sc_time(10, sc_core::SC_PS)};
     NormalMap memory;
     Sink<NormalResult> sink{"sink", clock};
     NormalTest unit;

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "modules/memory/banked_ports.h"
-#include "modules/memory/channel.h"
-#include "modules/memory/storage.h"
+#include "modules/memories/banked_ports.h"
+#include "modules/memories/channel.h"
+#include "modules/memories/storage.h"
 
 // When a memory serves a request, and what it holds: plain C++, without a kernel.
 

@@ -260,24 +260,18 @@ struct Detours : UnitFactory {
     unsigned overtaken = 0;
 
     void made(sc_core::sc_module& module) override {
-        for (sc_core::sc_object* child : module.get_child_objects()) {
-            for_each_item_type([&](auto* item) {
-                using Item = std::remove_const_t<std::remove_pointer_t<decltype(item)>>;
-                if constexpr (is_part<Item>) {
-                    if (auto* output = dynamic_cast<StreamOutput<Item>*>(child))
-                        interpose(*output);
-                }
-            });
-        }
+        for_each_output(module, [&](auto& output) { interpose(output); });
     }
     template <class Item>
     void interpose(StreamOutput<Item>& output) {
-        output.interpose([this](StreamOutput<Item>& from, StreamInput<Item>& to) {
-            auto detour = std::make_unique<Detour<Item>>(sc_core::sc_gen_unique_name("detour"), overtaken);
-            from.bind(detour->in);
-            detour->out.bind(to);
-            detours.push_back(std::move(detour));
-        });
+        if constexpr (is_part<Item>)
+            output.interpose([this](StreamOutput<Item>& from, StreamInput<Item>& to) {
+                auto detour =
+                    std::make_unique<Detour<Item>>(sc_core::sc_gen_unique_name("detour"), overtaken);
+                from.bind(detour->in);
+                detour->out.bind(to);
+                detours.push_back(std::move(detour));
+            });
     }
 };
 

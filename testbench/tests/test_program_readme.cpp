@@ -103,6 +103,15 @@ void try_command(const std::string& command, const Checkout& checkout) {
     CHECK(end.exit_code == 0);
 }
 
+/// [text](file) or [text](file#heading).
+void check_links(const std::string& markdown, const fs::path& folder) {
+    const std::regex link(R"(\]\(([^)#:]+)(#[^)]*)?\))");
+    for (std::sregex_iterator it(markdown.begin(), markdown.end(), link), end; it != end; ++it) {
+        INFO(it->str());
+        CHECK(fs::exists(folder / (*it)[1].str()));
+    }
+}
+
 }  // namespace
 
 TEST_CASE("commands are found in fenced blocks of shell") {
@@ -113,12 +122,31 @@ TEST_CASE("commands are found in fenced blocks of shell") {
 }
 
 TEST_CASE("every command of README.md works") {
-    REQUIRE(fs::is_regular_file(source_folder() / "README.md"));
     const std::vector<std::string> commands = commands_in(read_all(source_folder() / "README.md"));
     REQUIRE_FALSE(commands.empty());
+    check_links(read_all(source_folder() / "README.md"), source_folder());
     const Checkout checkout;
     for (const std::string& command : commands)
         try_command(command, checkout);
+}
+
+TEST_CASE("every command of the folders' READMEs works, and every file they link to is there") {
+    const Checkout checkout;
+    unsigned commands = 0;
+    for (const char* const folder : {"golden", "modules", "scripts", "testbench", "waveforms", ".github"}) {
+        for (const auto& entry : fs::recursive_directory_iterator(source_folder() / folder)) {
+            if (entry.path().extension() != ".md")
+                continue;
+            INFO(entry.path());
+            const std::string text = read_all(entry.path());
+            check_links(text, entry.path().parent_path());
+            for (const std::string& command : commands_in(text)) {
+                ++commands;
+                try_command(command, checkout);
+            }
+        }
+    }
+    CHECK(commands > 10);
 }
 
 TEST_CASE("every script parses") {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "modules/datapath/edge_tests.h"
-#include "modules/stream/packed_item.h"
-#include "modules/unit/stage_steps.h"
+#include "modules/sockets/packed_item.h"
+#include "modules/stage/stage_steps.h"
 #include "testbench/tests/named_machine.h"
 #include "testbench/tests/rtl_displace_vertex.h"
 #include "testbench/tests/timed_checks.h"
@@ -54,7 +54,7 @@ class PackedDisplaceVertex : public DisplaceVertex {
           rtl_(context.registers, tag_bits_, timing_.latency,
                register_stages(timing_, 1, context.timing().displacement_map.latency)) {}
 
-    std::string holds() const override {
+    std::string describe_contents() const override {
         return count_of(rtl_.items() + from_calculate_new_p.size(), "item");
     }
 

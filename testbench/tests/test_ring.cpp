@@ -2,8 +2,8 @@
 #include <memory>
 #include <vector>
 
-#include "modules/unit/pending_item.h"
-#include "modules/unit/ring.h"
+#include "modules/timing/pending_item.h"
+#include "modules/timing/ring.h"
 
 // The ring that buffers are made of, and the item that waits before a full one.
 
@@ -65,6 +65,21 @@ TEST_CASE("ring: a capacity of one") {
         CHECK(ring.empty());
         CHECK(ring.back() == k);
     }
+}
+
+TEST_CASE("ring: at both ends") {
+    Ring<int> ring(3);
+    ring.push(1);
+    ring.push_front() = 0;  // before the first place
+    ring.push(2);
+    for (int k = 0; k < 3; ++k)
+        CHECK(ring.at(static_cast<std::size_t>(k)) == k);
+    ring.pop_back();
+    ring.push(3);
+    ring.pop();
+    CHECK(ring.front() == 1);
+    CHECK(ring.at(1) == 3);
+    CHECK(ring.size() == 2);
 }
 
 TEST_CASE("ring: a capacity of none is full and empty") {

@@ -6,19 +6,16 @@
 #include <type_traits>
 #include <vector>
 
-#include "modules/design.h"
-#include "modules/stream/packed_item.h"
+#include "modules/sockets/packed_item.h"
+#include "modules/timing/design.h"
 #include "testbench/common/random.h"
 #include "testbench/tests/timed_modules.h"
 
-// The items of the streams: each goes through its packed form and back, and modules/stream/README.md lists its fields.
+// The items of the streams: each goes through its packed form and back, and modules/sockets/README.md lists its fields.
 
 using namespace tessera;
 
 namespace {
-
-template <class Pointer>
-using ItemOf = std::remove_const_t<std::remove_pointer_t<Pointer>>;
 
 /// Sets each field to any value that its bits hold: often an end of their range.
 struct Filler {
@@ -152,8 +149,8 @@ TEST_CASE("every stream's item goes through its packed form and back, in any for
     Random random(11);
     for (const datapath::Formats& formats : {datapath::Formats{}, narrow_formats(), widest_formats()}) {
         for (const int tag : {1, 6, 32}) {
-            for_each_item_type(
-                [&](auto* item) { check_round_trips<ItemOf<decltype(item)>>(formats, tag, random); });
+            StreamItems::for_each(
+                [&](auto type) { check_round_trips<typename decltype(type)::Item>(formats, tag, random); });
         }
     }
 }
@@ -196,7 +193,7 @@ TEST_CASE("widths of items in the default formats, with a Highlight Test") {
 // What the item does not describe, here which vertices are new, does not come through.
 TEST_CASE("an output sends its items through their packed form where the design says so, in both modes") {
     using testing::Sink;
-    Clock clock("clock", sc_core::sc_time(10, sc_core::SC_PS));
+    CycleScheduler clock("clock", sc_core::sc_time(10, sc_core::SC_PS));
     testing::Caller unit(clock);
     datapath::Registers registers;
     Design packed, whole;
@@ -258,7 +255,7 @@ TEST_CASE("a tag tells apart all triangles between Get Triangle and Pass or Tess
 }
 
 TEST_CASE("the streams' README lists every item with its fields") {
-    const std::string path = TESSERA_SOURCE_DIR "/modules/stream/README.md";
+    const std::string path = TESSERA_SOURCE_DIR "/modules/sockets/README.md";
     std::stringstream stream;
     stream << std::ifstream(path).rdbuf();
     const std::string document = stream.str();
@@ -266,12 +263,12 @@ TEST_CASE("the streams' README lists every item with its fields") {
     const std::size_t begin = document.find(heading);
     REQUIRE(begin != std::string::npos);
     std::string found;
-    for_each_item_type([&](auto* item) { found += table_of<ItemOf<decltype(item)>>(); });
+    StreamItems::for_each([&](auto type) { found += table_of<typename decltype(type)::Item>(); });
     found.pop_back();
     if (std::getenv("TESSERA_WRITE_STREAMS") != nullptr) {
         std::ofstream(path) << document.substr(0, begin) + heading + found;
         return;
     }
-    INFO("modules/stream/README.md says something else; TESSERA_WRITE_STREAMS=1 has the test write it");
+    INFO("modules/sockets/README.md says something else; TESSERA_WRITE_STREAMS=1 has the test write it");
     CHECK(document.substr(begin + heading.size()) == found);
 }

@@ -3,11 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "modules/unit/activity.h"
-#include "modules/unit/fork.h"
-#include "modules/unit/level_history.h"
-#include "modules/unit/per_triangle.h"
-#include "modules/unit/signals.h"
+#include "modules/stage/fork.h"
+#include "modules/stage/per_triangle.h"
+#include "modules/stage/signals.h"
+#include "modules/timing/activity.h"
+#include "modules/timing/level_history.h"
 #include "modules/units/triangle_store.h"
 #include "testbench/tests/timed_modules.h"
 
@@ -139,7 +139,7 @@ TEST_CASE("fork: an output gets the parts that it is for, and of them what it ne
             fork.add(vertices, corner, vertex_parts);
         }
     } bench("bench");
-    Clock clock("clock", sc_core::sc_time(10, sc_core::SC_PS));
+    CycleScheduler clock("clock", sc_core::sc_time(10, sc_core::SC_PS));
     Sink<ScreenPoint> all("all", clock), edges("edges", clock);
     Sink<ScreenCorner> vertices("vertices", clock);
     bench.all.bind(all.in);
@@ -182,12 +182,12 @@ TEST_CASE("per triangle: found by tag, closed in any order, and it grows") {
     kept.close(8);
     kept.close(8);  // has gone
     CHECK(kept.size() == 2);
-    CHECK(kept.oldest().tag == 7);
+    CHECK(kept.oldest() == 70);
     CHECK(*kept.find(9) == 90);
     kept.close_oldest();
-    CHECK(kept.oldest().tag == 9);
+    CHECK(kept.oldest() == 90);
     CHECK(kept.find(7) == nullptr);
-    CHECK(kept.open(7) == 0);  // anew
+    CHECK(kept.find_or_open(7) == 0);  // anew
 }
 
 TEST_CASE("unit numbers: the units of a machine, anything else is other, nothing is nobody") {

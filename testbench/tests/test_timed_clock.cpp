@@ -20,7 +20,7 @@ namespace {
 
 /// Three callers on a clock of 10 ps, attached in the order a, b, c; each notes its calls.
 struct Three {
-    Clock clock{"clock", sc_time(10, SC_PS)};
+    CycleScheduler clock{"clock", sc_time(10, SC_PS)};
     Caller a{clock}, b{clock}, c{clock};
     Calls calls;
 
@@ -171,12 +171,12 @@ TEST_CASE("clock: a busy cycle below the bound is none") {
     Three t;
     unsigned calls = 0;
     t.a.on_step = [&] {
-        if (++calls < Clock::calls_in_a_cycle)
+        if (++calls < CycleScheduler::calls_in_a_cycle)
             t.clock.wake(t.a);
     };
     t.clock.wake_at(t.a, 1);
     CHECK(error_of([] { sc_core::sc_start(); }).empty());
-    CHECK(calls == Clock::calls_in_a_cycle);
+    CHECK(calls == CycleScheduler::calls_in_a_cycle);
 }
 
 TEST_CASE("clock: without progress for a bound it stops the simulation, with progress it does not") {
@@ -204,7 +204,7 @@ TEST_CASE("clock: running out of things to do is no lack of progress") {
 }
 
 TEST_CASE("clock: a period of zero is an error") {
-    CHECK_THAT(error_of([] { Clock clock("clock", sc_core::SC_ZERO_TIME); }),
+    CHECK_THAT(error_of([] { CycleScheduler clock("clock", sc_core::SC_ZERO_TIME); }),
                Catch::Contains("period is zero"));
 }
 
@@ -212,7 +212,7 @@ namespace {
 
 /// Sixteen cycles, of which SystemC's time is full.
 struct LongClock {
-    Clock clock{"clock", sc_time::from_value(std::uint64_t{1} << 60)};
+    CycleScheduler clock{"clock", sc_time::from_value(std::uint64_t{1} << 60)};
     Caller a{clock}, b{clock};
     std::vector<std::uint64_t> called;
 
@@ -256,7 +256,7 @@ TEST_CASE("clock: idle when nobody asked for a cycle, and not within one") {
 }
 
 TEST_CASE("clock: 64 units, and an error for the next") {
-    Clock clock("clock", sc_time(10, SC_PS));
+    CycleScheduler clock("clock", sc_time(10, SC_PS));
     std::vector<std::unique_ptr<Caller>> callers;
     std::vector<int> order;
     for (int k = 0; k < 64; ++k) {

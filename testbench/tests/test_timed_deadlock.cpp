@@ -148,10 +148,10 @@ TEST_CASE("the bound on progress does not end a run that just keeps it") {
 
 namespace {
 
-/// Takes one triangle to its door, and never lets it in.
-struct Wall : sc_core::sc_module, Clocked {
+/// Leaves one triangle waiting at its input for ever.
+struct Wall : sc_core::sc_module, CycleProcess {
     StreamInput<LitTriangle> in{"in"};
-    Wall(const sc_core::sc_module_name& name, Clock& clock) : sc_module(name) {
+    Wall(const sc_core::sc_module_name& name, CycleScheduler& clock) : sc_module(name) {
         clock.attach(*this);
         in.clocked_by(clock, *this, 1, {});
     }
@@ -178,7 +178,7 @@ TEST_CASE("a rasteriser that takes nothing is a deadlock that begins at Lighting
         INFO(unit.name());
         CHECK(unit.activity().state() == State::blocked);
         CHECK(unit.activity().by() == &by);
-        CHECK_FALSE(unit.holds().empty());
+        CHECK_FALSE(unit.describe_contents().empty());
     };
     expect_blocked(pipeline.lighting, wall);
     expect_blocked(pipeline.pass_or_tessellate, pipeline.lighting);

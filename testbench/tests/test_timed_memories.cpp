@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "modules/memory/memory_port.h"
-#include "modules/memory/table_memory.h"
+#include "modules/memories/table_memory.h"
+#include "modules/sockets/memory_port.h"
 #include "testbench/tests/timed_modules.h"
 
 // A table's memory to the cycle: ports, banks, latency, width, gathers, arbitration, back-pressure.
@@ -29,7 +29,7 @@ struct Reader : sc_core::sc_module {
     Cycles offered, answered;
     std::vector<std::uint64_t> values;
 
-    Reader(const sc_core::sc_module_name& name, Clock& clock, std::size_t most_under_way)
+    Reader(const sc_core::sc_module_name& name, CycleScheduler& clock, std::size_t most_under_way)
         : sc_module(name), port("port", 4, false), clock_(clock), caller_(clock) {
         port.clocked_by(clock, caller_, most_under_way);
         caller_.on_step = [this] { step(); };
@@ -53,13 +53,13 @@ struct Reader : sc_core::sc_module {
         }
     }
 
-    Clock& clock_;
+    CycleScheduler& clock_;
     Caller caller_;
 };
 
 /// A memory in which entry k holds 3 * k + 1, and its readers.
 struct Bench {
-    Clock clock{"clock", period};
+    CycleScheduler clock{"clock", period};
     TableMemory memory;
     std::vector<std::unique_ptr<Reader>> readers;
 
@@ -88,7 +88,7 @@ struct Bench {
                     REQUIRE(reader->values.at(place++) == 3 * entry + 1);
         }
         CHECK(memory.activity().items_in() == memory.activity().items_out());
-        CHECK(memory.holds().empty());
+        CHECK(memory.describe_contents().empty());
     }
 
     void fill() {
@@ -215,7 +215,7 @@ TEST_CASE("memory: requests wait while every bank is taken") {
 }
 
 TEST_CASE("memory: an idle bank does not let requests past one that is taken") {
-    // all in bank 0 of two: one a cycle, as with one bank, and the buffer (1) holds the rest at the door
+    // all in bank 0 of two: one a cycle, as with one bank, and the buffer (1) leaves the rest waiting at the inputs
     Bench bench(timing(1, 2, 1), 1, {}, 2);
     for (std::uint32_t k = 0; k < 10; ++k)
         bench.reader().reads.push_back({2 * k, 2 * k + 4, 2 * k + 8});
@@ -227,7 +227,7 @@ TEST_CASE("memory: an idle bank does not let requests past one that is taken") {
 
 TEST_CASE("memory: three readers take turns, none starves") {
     // One port, 30 reads each. In cycle 10 the reader called first takes the free port, then the buffer, and is the
-    // first at the doors: its data come in 11, 12, 13. From then on all three wait at their doors and each has every
+    // first to wait: its data come in 11, 12, 13. From then on all three wait at their inputs and each has every
     // third cycle, until the first reader has had its 30, in 94; the other two share the rest.
     Bench bench(timing(1, 1, 1), 3);
     for (const auto& reader : bench.readers)
@@ -247,10 +247,10 @@ TEST_CASE("memory: what it holds, in words") {
     for (const auto& reader : bench.readers)
         reader->reads = single_reads(30);
     sc_core::sc_start(sc_time(20 * 10, SC_PS));
-    // one being read, one in the buffer, one of each reader at its door
-    CHECK(bench.memory.holds() == "2 requests, 3 at its doors");
+    // one being read, one in the buffer, one of each reader at an input
+    CHECK(bench.memory.describe_contents() == "2 requests, 3 waiting at the inputs");
     sc_core::sc_start();
-    CHECK(bench.memory.holds().empty());
+    CHECK(bench.memory.describe_contents().empty());
 }
 
 TEST_CASE("memory: a reader that comes later gets its turn after at most the others' and the buffer's") {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "modules/memory/memory_port.h"
-#include "modules/memory/table_memory.h"
+#include "modules/memories/table_memory.h"
+#include "modules/sockets/memory_port.h"
 #include "testbench/tests/memory_protocol.h"
 #include "testbench/tests/timed_modules.h"
 
@@ -24,7 +24,7 @@ const sc_time period(10, SC_PS);
 const datapath::TableLayout layout{4096, 16, 16, 4};
 
 struct TableBench {
-    Clock clock{"clock", period};
+    CycleScheduler clock{"clock", period};
     TableMemory memory{"memory", clock, layout, MemoryTiming{}, {}};
     Initiator initiator{"initiator"};
     unsigned char data[64] = {};
@@ -110,7 +110,7 @@ TEST_CASE("table memory: debug access reads and writes what lies in the table, a
 }
 
 TEST_CASE("table memory: the host loads it by the base protocol's debug transport, any number of bytes") {
-    Clock clock("clock", period);
+    CycleScheduler clock("clock", period);
     TableMemory memory("memory", clock, layout, MemoryTiming{}, {});
     struct Host : sc_core::sc_module {
         tlm_utils::simple_initiator_socket<Host> socket{"socket"};
@@ -152,7 +152,7 @@ TEST_CASE("table memory: direct access is granted for reads, over the whole tabl
 }
 
 TEST_CASE("table memory: a plain read takes a port of its own address's bank") {
-    Clock clock("clock", period);
+    CycleScheduler clock("clock", period);
     MemoryTiming timing;
     timing.banks = 2;
     timing.buffer = 2;
@@ -202,7 +202,7 @@ TEST_CASE("table memory: breaches of an initiator are errors that name the memor
         CHECK_THAT(error_of([&] { bench.initiator.send(first, phase); }),
                    Contains("memory.socket") && Contains("other than BEGIN_REQ"));
     CHECK(bench.initiator.send(first, tlm::BEGIN_REQ) == tlm::TLM_UPDATED);    // in the buffer
-    CHECK(bench.initiator.send(second, tlm::BEGIN_REQ) == tlm::TLM_ACCEPTED);  // at the door
+    CHECK(bench.initiator.send(second, tlm::BEGIN_REQ) == tlm::TLM_ACCEPTED);  // waits
     CHECK_THAT(error_of([&] { bench.initiator.send(third, tlm::BEGIN_REQ); }),
                Contains("memory.socket") && Contains("BEGIN_REQ before END_REQ"));
     bench.initiator.reply = tlm::TLM_ACCEPTED;  // wants to end the response itself
@@ -214,7 +214,7 @@ namespace {
 
 /// A MemoryPort of three requests before a target that the test plays.
 struct PortBench : sc_core::sc_module {
-    Clock clock{"clock", period};
+    CycleScheduler clock{"clock", period};
     MemoryPort port{"port", 4, false};
     Target target{"target"};
     Caller owner{clock};

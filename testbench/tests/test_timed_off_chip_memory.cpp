@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "modules/memory/memory_port.h"
-#include "modules/memory/off_chip_memory.h"
+#include "modules/memories/off_chip_memory.h"
+#include "modules/sockets/memory_port.h"
 #include "testbench/tests/memory_protocol.h"
 #include "testbench/tests/timed_modules.h"
 
@@ -25,7 +25,7 @@ const sc_time period(10, SC_PS);
 
 /// Off-chip memory of 1000 bytes and a port for records of 40 bytes, of which 8 take no time.
 struct OffChipBench : sc_core::sc_module {
-    Clock clock{"clock", period};
+    CycleScheduler clock{"clock", period};
     OffChipMemory memory;
     Caller owner{clock};
     MemoryPort port{"port", 40, false};
@@ -128,7 +128,7 @@ TEST_CASE("off-chip memory: an access that begins beyond its size is an error, t
 }
 
 TEST_CASE("off-chip memory: as many answers under way as the latency asks for, in order") {
-    Clock clock("clock", period);
+    CycleScheduler clock("clock", period);
     OffChipMemory memory("memory", clock, {1000, 8, 64}, {}, 1000, 8);
     clock.attach(memory);
     Initiator initiator("initiator");
@@ -152,7 +152,7 @@ TEST_CASE("off-chip memory: as many answers under way as the latency asks for, i
 }
 
 TEST_CASE("off-chip memory: a command that is neither read nor write, and breaches of an initiator") {
-    Clock clock("clock", period);
+    CycleScheduler clock("clock", period);
     OffChipMemory memory("memory", clock, {1, 8, 1}, {}, 1000, 8);
     clock.attach(memory);
     Initiator initiator("initiator");

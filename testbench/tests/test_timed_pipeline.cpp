@@ -16,7 +16,7 @@
 //              the third vertex is on the screen in V = G + 2 + P + Md + D + T, the last edge three cycles later.
 //   corners    the Normal Test has the third corner's map entry (read: Mn) in A = G + 2 + C + Mn, C: Calculate New U;
 //              it starts no edge of a base triangle before.
-//   edge 2     View Test (L) and Normal Test (N) each hold one edge at their input and keep another at the door, in
+//   edge 2     View Test (L) and Normal Test (N) each hold one edge at their input and keep another waiting, in
 //              Calculate New U. A Calculate New U of one cycle has room for one edge: so edges 0 and 1 go to the other
 //              tests in U = G + 3 + C and U + 1, and edge 2 enters Calculate New U when both have started edge 0, and
 //              leaves it in W = max(G + 5, V, A) + 1. With a latency of 2 and more it waits at its end: then

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "modules/datapath/pack_triangle.h"
-#include "modules/memory/off_chip_memory.h"
+#include "modules/memories/off_chip_memory.h"
 #include "modules/units/triangle_queue.h"
 #include "testbench/tests/timed_modules.h"
 
@@ -27,7 +27,7 @@ struct Bench {
     TriangleQueue queue;
     Driver<datapath::Triangle> driver;
 
-    Bench(const std::string& name, Clock& clock, const datapath::Registers& registers,
+    Bench(const std::string& name, CycleScheduler& clock, const datapath::Registers& registers,
           const QueueDesign& design, std::uint64_t seed, const StallParameters& sink_stalls)
         : all(with(design)),
           sink(("sink_" + name).c_str(), clock, sink_stalls),
@@ -73,7 +73,7 @@ std::vector<std::uint32_t> in_order() {
 }  // namespace
 
 TEST_CASE("triangle queue: first in first out, through off-chip memory and back") {
-    Clock clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
+    CycleScheduler clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
     const datapath::Registers registers;
     std::vector<std::unique_ptr<Bench>> benches;
     for (std::uint64_t seed = 0; seed < 8; ++seed) {
@@ -94,7 +94,7 @@ TEST_CASE("triangle queue: first in first out, through off-chip memory and back"
 }
 
 TEST_CASE("triangle queue: last in first out, through off-chip memory and back, none is lost or doubled") {
-    Clock clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
+    CycleScheduler clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
     const datapath::Registers registers;
     std::vector<std::unique_ptr<Bench>> benches;
     for (std::uint64_t seed = 0; seed < 8; ++seed) {
@@ -116,7 +116,7 @@ TEST_CASE("triangle queue: last in first out, through off-chip memory and back, 
 }
 
 TEST_CASE("triangle queue: a triangle that does not fit its record is an error, not another triangle") {
-    Clock clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
+    CycleScheduler clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
     const datapath::Registers registers;
     QueueDesign design;
     design.capacity = 1;
@@ -129,7 +129,7 @@ TEST_CASE("triangle queue: a triangle that does not fit its record is an error, 
 
 // Nobody takes what the queue offers, for far longer than the test looks.
 TEST_CASE("triangle queue: the host may send while fewer triangles wait than the watermark says") {
-    Clock clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
+    CycleScheduler clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
     const datapath::Registers registers;
     std::vector<std::unique_ptr<Bench>> benches;
     for (unsigned waiting = 0; waiting < 5; ++waiting) {

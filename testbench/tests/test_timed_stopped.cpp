@@ -32,7 +32,7 @@ Texts texts_of_every_cycle(const Setup& setup) {
         sc_core::sc_start(pipeline.clock.period());
         bool all_empty = true;
         for (const Unit* unit : pipeline.units()) {
-            std::string text = unit->holds();
+            std::string text = unit->describe_contents();
             INFO("cycle " << pipeline.clock.last_cycle() << ": " << unit->name() << ": \"" << text << '"');
             REQUIRE((text.empty() || is_well_formed(text)));
             if (!unit->idle())
@@ -112,11 +112,11 @@ TEST_CASE("stopped anywhere: the paper's design, items stalled at random") {
     const Texts texts = texts_of_every_cycle(setup_of(job));
     CHECK(any_contains(texts, "get_triangle", "not all of it sent"));
     CHECK(any_contains(texts, "get_triangle", "may not take: the queue is at its watermark"));
-    CHECK(any_contains(texts, "pass_or_tessellate", "lacks its parts from both branches"));
-    CHECK(any_contains(texts, "pass_or_tessellate", "lacks its parts from Tessellation Tests"));
-    CHECK(any_contains(texts, "transform", "at its door"));
-    CHECK(any_contains(texts, "summed_height_table", "one at its door"));
-    CHECK(any_contains(texts, "off_chip_memory", "one at its door"));
+    CHECK(any_contains(texts, "pass_or_tessellate", "waiting for both branches"));
+    CHECK(any_contains(texts, "pass_or_tessellate", "waiting for Tessellation Tests"));
+    CHECK(any_contains(texts, "transform", "waiting at the input"));
+    CHECK(any_contains(texts, "summed_height_table", "one waiting at the input"));
+    CHECK(any_contains(texts, "off_chip_memory", "one waiting at the input"));
 }
 
 TEST_CASE("stopped anywhere: every unit slower to begin than to end, a queue of three that spills") {
@@ -144,7 +144,7 @@ TEST_CASE("stopped anywhere: three tests units, a slow Transform, host triangles
     Setup setup = setup_of(job);
     setup.design.timing.transform = {300, 90, 1};
     const Texts texts = texts_of_every_cycle(setup);
-    CHECK(any_contains(texts, "pass_or_tessellate", "lacks its parts from Transform"));
+    CHECK(any_contains(texts, "pass_or_tessellate", "waiting for Transform"));
     CHECK(any_contains(texts, "get_triangle", "a host triangle"));
 }
 

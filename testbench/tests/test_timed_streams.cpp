@@ -20,7 +20,7 @@ const sc_time period(10, SC_PS);
 
 /// An input of a given depth whose owner takes nothing but what the test pops.
 struct Holder : sc_core::sc_module {
-    Clock clock{"clock", period};
+    CycleScheduler clock{"clock", period};
     StreamInput<int> in{"in"};
     Caller owner{clock};
     std::vector<std::uint64_t> called;
@@ -37,7 +37,7 @@ struct Holder : sc_core::sc_module {
 
 /// An output whose owner notes when it is called.
 struct Offerer : sc_core::sc_module {
-    Clock clock{"clock", period};
+    CycleScheduler clock{"clock", period};
     StreamOutput<int> out{"out"};
     Caller owner{clock};
     std::vector<std::uint64_t> called;
@@ -105,7 +105,7 @@ TEST_CASE("stream input: the delay of nb_transport_fw is added before the item i
     sc_core::sc_start(sc_time(100, SC_PS));  // cycle 10
     int item = 7;
     tlm::tlm_phase phase = tlm::BEGIN_REQ;
-    // 21 ps from cycle 10 on: there in cycle 13, cycles rounded up; until then the door is closed, room or not
+    // 21 ps from cycle 10 on: there in cycle 13, cycles rounded up; until then it waits, room or not
     CHECK(producer.offer(item, phase, sc_time(21, SC_PS)) == tlm::TLM_ACCEPTED);
     CHECK(holder.in.empty());
     holder.clock.wake(holder.owner);
@@ -173,7 +173,7 @@ TEST_CASE("stream output: deliver offers an item once, and says once that it is 
 TEST_CASE("stream: one item a cycle is never taken twice, lost or reordered behind a consumer of one place") {
     // The consumer takes an item every cycle in which it is called; producer and consumer have no latency: all 100
     // items go over in the cycle they are offered, one at a time.
-    Clock clock("clock", period);
+    CycleScheduler clock("clock", period);
     Sink<int> sink("sink", clock);
     Driver<int> driver("driver", clock);
     driver.out.bind(sink.in);
@@ -186,7 +186,7 @@ TEST_CASE("stream: one item a cycle is never taken twice, lost or reordered behi
 
 TEST_CASE("stream: an item that is always stalled one cycle comes through every cycle") {
     // longest = 1 and 1000 per mille: item k, offered when item k - 1 was taken in cycle k, is taken in cycle k + 1
-    Clock clock("clock", period);
+    CycleScheduler clock("clock", period);
     Sink<int> sink("sink", clock, {1, 1000, 1});
     Driver<int> driver("driver", clock);
     driver.out.bind(sink.in);
@@ -198,7 +198,7 @@ TEST_CASE("stream: an item that is always stalled one cycle comes through every 
 }
 
 TEST_CASE("stream: random stalls hold back the share of items asked for, for up to the longest time") {
-    Clock clock("clock", period);
+    CycleScheduler clock("clock", period);
     Sink<int> sink("sink", clock, {42, 300, 8});
     Driver<int> driver("driver", clock);
     driver.out.bind(sink.in);
@@ -253,7 +253,7 @@ TEST_CASE("stream: every breach of a producer is an error that names the consume
     tlm::tlm_phase phase = tlm::BEGIN_REQ;
     producer.offer(item, phase, SC_ZERO_TIME);  // taken
     phase = tlm::BEGIN_REQ;
-    producer.offer(item, phase, SC_ZERO_TIME);  // at the door
+    producer.offer(item, phase, SC_ZERO_TIME);  // waits
     phase = tlm::BEGIN_REQ;
     CHECK_THAT(error_of([&] { producer.offer(item, phase, SC_ZERO_TIME); }),
                Contains("holder.in") && Contains("BEGIN_REQ before END_REQ"));
@@ -298,7 +298,7 @@ TEST_CASE("stream: every breach of a consumer is an error that names the produce
 }
 
 TEST_CASE("stream: no memory, so neither direct nor debug access") {
-    Clock clock("clock", period);
+    CycleScheduler clock("clock", period);
     Sink<int> sink("sink", clock);
     Offerer offerer("offerer");
     offerer.out.bind(sink.in);
@@ -317,7 +317,7 @@ TEST_CASE("stream: who is behind a socket") {
     struct Channel : sc_core::sc_module, sc_core::sc_interface {
         explicit Channel(const sc_core::sc_module_name& name) : sc_module(name) {}
     } channel("channel");
-    Clock clock("clock", period);
+    CycleScheduler clock("clock", period);
     Sink<int> sink("sink", clock);
     Offerer offerer("offerer");
     offerer.out.bind(sink.in);
@@ -331,7 +331,7 @@ TEST_CASE("stream: who is behind a socket") {
 }
 
 TEST_CASE("stream: b_transport adds to the delay it is given") {
-    Clock clock("clock", period);
+    CycleScheduler clock("clock", period);
     Sink<int> sink("sink", clock);
     Offerer offerer("offerer");
     offerer.out.bind(sink.in);

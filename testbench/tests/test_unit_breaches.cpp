@@ -17,7 +17,7 @@ namespace {
 struct JoinBench {
     datapath::Registers registers;
     Design design;
-    Clock clock{"clock", sc_core::sc_time(10, sc_core::SC_PS)};
+    CycleScheduler clock{"clock", sc_core::sc_time(10, sc_core::SC_PS)};
     PassOrTessellate unit{"unit", {clock, registers, design}};
     Sink<DecidedTriangle> tessellation{"tessellation", clock};
     Sink<TriangleToLight> lighting{"lighting", clock};

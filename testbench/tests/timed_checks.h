@@ -60,7 +60,7 @@ inline void require_empty(const Unit& unit) {
     INFO(unit.name());
     CHECK(unit.activity().items_in() == unit.activity().items_out());
     CHECK(unit.activity().level() == 0);
-    CHECK(unit.holds().empty());
+    CHECK(unit.describe_contents().empty());
 }
 
 /// Of the Tessellation Tests units, however many: what `figure` says of each, summed.

@@ -5,22 +5,22 @@
 #include <utility>
 #include <vector>
 
-#include "modules/clock/clock.h"
-#include "modules/stream/stream_input.h"
-#include "modules/stream/stream_output.h"
+#include "modules/sockets/stream_input.h"
+#include "modules/sockets/stream_output.h"
+#include "modules/timing/cycle_scheduler.h"
 
 /// What stands before and behind a unit that is tested alone.
 namespace tessera::testing {
 
 /// Offers items one after another, each as soon as the one before has been taken and its own gap is over.
 template <class Payload>
-class Driver : public sc_core::sc_module, public Clocked {
+class Driver : public sc_core::sc_module, public CycleProcess {
   public:
     StreamOutput<Payload> out{"out"};
     std::vector<Payload> items;
     std::vector<std::uint64_t> offered;  ///< the cycle of each
 
-    Driver(const sc_core::sc_module_name& name, Clock& clock, const StallParameters& gaps = {})
+    Driver(const sc_core::sc_module_name& name, CycleScheduler& clock, const StallParameters& gaps = {})
         : sc_module(name), clock_(clock), gaps_(gaps, "gaps") {
         clock.attach(*this);
         out.clocked_by(clock, *this);
@@ -41,7 +41,7 @@ class Driver : public sc_core::sc_module, public Clocked {
         }
     }
 
-    Clock& clock_;
+    CycleScheduler& clock_;
     RandomStalls gaps_;
     std::uint64_t not_before_ = 0;
     std::size_t next_ = 0;
@@ -49,17 +49,17 @@ class Driver : public sc_core::sc_module, public Clocked {
 
 /// Takes items, after the stalls of its channel, and notes when; functional mode: likewise, without the when.
 template <class Payload>
-class Sink : public sc_core::sc_module, public Clocked {
+class Sink : public sc_core::sc_module, public CycleProcess {
   public:
     StreamInput<Payload> in{"in"};
     std::vector<Payload> items;
     std::vector<std::uint64_t> cycles;
     std::vector<sc_core::sc_time> delays;  ///< functional mode: as they came
 
-    Sink(const sc_core::sc_module_name& name, Clock& clock, const StallParameters& stalls = {})
+    Sink(const sc_core::sc_module_name& name, CycleScheduler& clock, const StallParameters& stalls = {})
         : sc_module(name), clock_(clock) {
         clock.attach(*this);
-        in.template serve<&Sink::b_transport>(*this);
+        in.template register_b_transport<&Sink::b_transport>(*this);
         in.clocked_by(clock, *this, 1, stalls);
     }
 
@@ -76,13 +76,13 @@ class Sink : public sc_core::sc_module, public Clocked {
         }
     }
 
-    Clock& clock_;
+    CycleScheduler& clock_;
 };
 
 /// Does what a test tells it to when the clock calls it.
-class Caller : public Clocked {
+class Caller : public CycleProcess {
   public:
-    explicit Caller(Clock& clock) { clock.attach(*this); }
+    explicit Caller(CycleScheduler& clock) { clock.attach(*this); }
     std::function<void()> on_step = [] {};
 
   private:

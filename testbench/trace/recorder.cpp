@@ -37,15 +37,15 @@ Recorder::Recorder(Pipeline& pipeline, VcdWriter* vcd, TimelineWriter* timeline,
       vcd_(vcd),
       timeline_(timeline),
       window_(window),
-      // An item held back at random calls its unit only when its time has come, but stands at the door at once.
+      // An item held back at random calls its unit only when its time has come, but waits at its input at once.
       show_every_unit_(pipeline.random_stalls()) {
     if (vcd_ != nullptr) {
         cycle_signal_ = vcd_->add(pipeline.clock.name(), "cycle", 48);
         passes_signal_ = vcd_->add(pipeline.name(), "passes_under_way", 32);
         for (const Unit* unit : units) {
-            traced_.push_back({unit, Clock::bit_of(*unit), Signals(*vcd_, numbers_, unit->name())});
+            traced_.push_back({unit, CycleScheduler::bit_of(*unit), Signals(*vcd_, numbers_, unit->name())});
             traced_.back().signals.begin(true);
-            unit->show(traced_.back().signals);
+            unit->trace_signals(traced_.back().signals);
         }
     }
     if (timeline_ != nullptr) {
@@ -92,7 +92,7 @@ void Recorder::enter_window() {
 
 void Recorder::name_items(std::uint64_t cycle, std::uint64_t called) {
     for (Track& track : tracks_) {
-        if (!show_every_unit_ && (called & Clock::bit_of(track.unit)) == 0)
+        if (!show_every_unit_ && (called & CycleScheduler::bit_of(track.unit)) == 0)
             continue;
         const Begun begun = track.unit.begun();
         if (begun.count == track.count)
@@ -127,7 +127,7 @@ TimelineWriter::FlowStep Recorder::step_at(const Track& track) {
 void Recorder::show_all() {
     for (TracedUnit& traced : traced_) {
         traced.signals.begin(false);
-        traced.unit->show(traced.signals);
+        traced.unit->trace_signals(traced.signals);
         traced.signals.set_running();
     }
     vcd_->set(passes_signal_, pipeline_.passes_under_way());
@@ -152,7 +152,7 @@ void Recorder::show_called(std::uint64_t called) {
     for (TracedUnit& traced : traced_) {
         if ((called & traced.bit) != 0) {
             traced.signals.begin(false);
-            traced.unit->show(traced.signals);
+            traced.unit->trace_signals(traced.signals);
         }
     }
     vcd_->set(passes_signal_, pipeline_.passes_under_way());

@@ -6,10 +6,10 @@
 #include <systemc>
 #include <vector>
 
-#include "modules/clock/clock.h"
 #include "modules/pipeline.h"
-#include "modules/unit/activity.h"
-#include "modules/unit/signals.h"
+#include "modules/stage/signals.h"
+#include "modules/timing/activity.h"
+#include "modules/timing/cycle_scheduler.h"
 #include "testbench/trace/timeline_writer.h"
 #include "testbench/trace/trace_window.h"
 #include "testbench/trace/vcd_writer.h"
@@ -18,7 +18,7 @@ namespace tessera {
 
 /// Shows a pipeline in timed mode to the writers of waveforms and of the timeline, each optional.
 ///
-/// Waveforms: the signals of the chosen units (Unit::show), at the end of each cycle in which they were called; and the
+/// Waveforms: the signals of the chosen units (Unit::trace_signals), at the end of each cycle in which they were called; and the
 /// cycle (tessera.clock.cycle) and the passes under way. Timeline: a track per unit with its states, by whom it is
 /// blocked, for whom it waits or who it lacks, and the item it has begun on last; the Triangle Queue's level. A flow
 /// leads from unit to unit, in the order of time, through the intervals in which each began on a triangle: from Get

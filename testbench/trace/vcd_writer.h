@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "modules/unit/signal_sink.h"
+#include "modules/stage/signal_sink.h"
 #include "testbench/trace/trace_window.h"
 
 namespace tessera {

@@ -3,7 +3,7 @@ from section import Chart, Claim, Experiment, Section, Table, MEASURED, PARTLY, 
 import charts
 
 QUIET = {"mode": "timed", "check.golden": False, "check.invariants": False, "output.ply": False}
-DEFAULT_LATENCY = 20  # of Transform, modules/timing.h
+DEFAULT_LATENCY = 20  # of Transform, modules/timing/timing.h
 LATENCIES = (1, 10, 20, 40, 80, 120, 160, 320)
 
 

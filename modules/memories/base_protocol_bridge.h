@@ -1,0 +1,70 @@
+#pragma once
+#include <tlm_utils/simple_initiator_socket.h>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <systemc>
+#include <tlm>
+#include <vector>
+
+#include "modules/memories/memory_server.h"
+
+namespace tessera {
+
+/// Bridge from the memory protocol (memory_request.h) to a memory of the TLM-2.0 base protocol: stands in the place of
+/// a table's memory or of off-chip memory, and needs nothing of the other side but that protocol.
+///
+/// In:        requests, as a MemoryServer. Out: `to_memory`, an ordinary read or write for each entry.
+/// Interval:  one entry a cycle, the next when END_REQ of the one before has come; the entries of a request one after
+///            another. Latency: that of the memory behind; a time that is no whole cycle counts to the next.
+/// Accepts:   END_REQ by return, later, or implied by the answer; an answer by return (TLM_COMPLETED, or BEGIN_RESP, to
+///            which END_RESP is sent at once) or later; answers in any order. Requests are answered in theirs. A
+///            response other than OK becomes the request's.
+/// Functional mode: b_transport for each entry; DMI and debug transport are passed on.
+/// To be made before the units that use it go on the clock: it attaches itself.
+class BaseProtocolBridge : public MemoryServer, public tlm::tlm_mm_interface {
+  public:
+    tlm_utils::simple_initiator_socket<BaseProtocolBridge> to_memory{"to_memory"};
+
+    /// buffer: requests that wait while the entries of one are sent, at least 1.
+    BaseProtocolBridge(const sc_core::sc_module_name& name, CycleScheduler& clock, unsigned buffer,
+                       const StallParameters& stalls = {});
+    ~BaseProtocolBridge() override;
+
+    /// Entries sent, one a cycle.
+    std::uint64_t occupied_cycles() const override { return entries_sent_; }
+
+  private:
+    struct Entry;  // on its way
+    struct Gather {
+        MemoryRequest* request = nullptr;
+        unsigned unanswered = 0;
+        std::uint64_t answer_at = 0;
+    };
+
+    std::uint64_t ready(const MemoryRequest&) const override;
+    std::uint64_t serve(MemoryRequest& request, std::uint64_t cycle) override;
+    void step() override;
+    void send_entry(std::uint64_t cycle);
+    void answered(Entry& entry, std::uint64_t cycle);
+    tlm::tlm_sync_enum nb_transport_bw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
+                                       sc_core::sc_time& delay);
+    void invalidate_direct_mem_ptr(sc_dt::uint64 start, sc_dt::uint64 end);
+    Entry& unused_entry();
+    void free(tlm::tlm_generic_payload* payload) override;
+
+    void b_transport(int id, MemoryRequest& request, sc_core::sc_time& delay) override;
+    bool get_direct_mem_ptr(int id, MemoryRequest& request, tlm::tlm_dmi& dmi) override;
+    unsigned transport_dbg(int id, MemoryRequest& request) override;
+
+    std::vector<std::unique_ptr<Entry>> entries_;
+    std::vector<Entry*> unused_;   // of these
+    std::deque<Gather> gathers_;   // begun and not answered, oldest first
+    unsigned sent_ = 0;            // entries of the newest of these
+    bool sending_ = false;         // not all of them
+    Entry* on_offer_ = nullptr;    // its END_REQ has not come
+    std::uint64_t next_send_ = 0;  // cycle
+    std::uint64_t entries_sent_ = 0;
+};
+
+}  // namespace tessera

@@ -1,0 +1,70 @@
+#include "modules/memories/table_memory.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "modules/stage/signals.h"
+
+namespace tessera {
+
+TableMemory::TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock,
+                         const datapath::TableLayout& layout, const MemoryTiming& timing,
+                         const StallParameters& stalls)
+    : MemoryServer(name, clock, timing.buffer, stalls),
+      storage_(layout.base, layout.bytes()),
+      ports_(timing, layout) {
+    storage_.all();
+}
+
+void TableMemory::read(MemoryRequest& request) {
+    access(storage_, request, false);
+    request.dmi_allowed = request.is_ok();
+    if (request.is_ok())
+        transactions_ += request.count;
+}
+
+std::uint64_t TableMemory::ready(const MemoryRequest& request) const {
+    return ports_.ready(request.address.data(), request.count);
+}
+
+std::uint64_t TableMemory::serve(MemoryRequest& request, std::uint64_t cycle) {
+    read(request);
+    last_ = {request.address[0], request.count, 0};
+    std::memcpy(&last_.data, request.data, std::min<std::size_t>(request.entry_bytes, sizeof last_.data));
+    return ports_.serve(request.address.data(), request.count, cycle);
+}
+
+void TableMemory::b_transport(int, MemoryRequest& request, sc_core::sc_time& delay) {
+    read(request);
+    if (request.is_ok())
+        delay += clock_.period() * ports_.latency();
+}
+
+bool TableMemory::get_direct_mem_ptr(int, MemoryRequest& request, tlm::tlm_dmi& dmi) {
+    if (request.command != tlm::TLM_READ_COMMAND || !storage_.covers(request.address[0], 1))
+        return false;
+    dmi.set_start_address(storage_.base());
+    dmi.set_end_address(storage_.base() + storage_.size() - 1);
+    dmi.set_dmi_ptr(storage_.all());
+    dmi.set_read_latency(clock_.period() * ports_.latency());
+    dmi.allow_read();
+    return true;
+}
+
+/// Shows the request served last, of which data is the first entry, and how many requests have come and entries have
+/// been read: several in a cycle, or in cycles that follow each other, are one pulse.
+void TableMemory::trace_signals(Signals& signals) const {
+    Unit::trace_signals(signals);
+    signals.pulse("served", slots_taken());
+    signals.value("requests", 32, activity_.items_in());
+    signals.value("reads", 32, transactions_);
+    if (signals.when(signals.changed("slots_taken", slots_taken()) && signals.running())) {
+        signals.value("address", 32, last_.address);
+        signals.value("entries", 4, last_.entries);
+        signals.value("data", 64, last_.data);
+    }
+    signals.flag("held_up", held_up());
+    show_waiting(signals);
+}
+
+}  // namespace tessera

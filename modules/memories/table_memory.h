@@ -1,0 +1,72 @@
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <systemc>
+
+#include "modules/memories/banked_ports.h"
+#include "modules/memories/memory_server.h"
+#include "modules/memories/storage.h"
+
+namespace tessera {
+
+/// A memory that holds one table.
+///
+/// Address map: [layout.base, layout.base + layout.bytes()); entry (x, y) at layout.address(x, y), little endian.
+/// Read by units, written only by the host's debug transport before the run.
+/// Timing: banked_ports.h. b_transport, DMI: the latency, once a request.
+/// Utilisation: of the busiest bank's port slots those that were taken, or of the cycles those in which a request was
+/// held up, whichever is more: banks in conflict hold requests up with most of their ports idle.
+/// Errors: a write gives TLM_COMMAND_ERROR_RESPONSE, an address outside TLM_ADDRESS_ERROR_RESPONSE.
+class TableMemory : public MemoryServer {
+  public:
+    TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock,
+                const datapath::TableLayout& layout, const MemoryTiming& timing,
+                const StallParameters& stalls);
+
+    /// Entries read by transactions; what DMI reads is counted by the reader.
+    std::uint64_t transactions() const { return transactions_; }
+    std::uint64_t slots_taken() const { return ports_.slots_taken(); }
+    std::uint64_t slots_per_cycle() const { return ports_.slots_per_cycle(); }
+
+    std::uint64_t occupied_cycles() const override {
+        return std::max(ports_.occupied_cycles(), cycles_held_up());
+    }
+    void trace_signals(Signals& signals) const override;
+
+  private:
+    std::uint64_t ready(const MemoryRequest& request) const override;
+    std::uint64_t serve(MemoryRequest& request, std::uint64_t cycle) override;
+    void b_transport(int id, MemoryRequest& request, sc_core::sc_time& delay) override;
+    bool get_direct_mem_ptr(int id, MemoryRequest& request, tlm::tlm_dmi& dmi) override;
+    unsigned transport_dbg(int, MemoryRequest& request) override { return move(storage_, request); }
+    void read(MemoryRequest& request);
+
+    Storage storage_;
+    BankedPorts ports_;
+    std::uint64_t transactions_ = 0;
+    struct {
+        std::uint64_t address = 0;
+        std::uint64_t entries = 0;
+        std::uint64_t data = 0;  // of the first entry
+    } last_;                     // of the request served last
+};
+
+/// The displacement map: one unsigned code per texel. Read by Displace Vertex.
+class DisplacementMap : public TableMemory {
+  public:
+    using TableMemory::TableMemory;
+};
+
+/// The normal map: three signed components per texel, in the tangent frame. Read by Normal Test.
+class NormalMap : public TableMemory {
+  public:
+    using TableMemory::TableMemory;
+};
+
+/// The Summed Height Table: (width + 1) x (height + 1) sums modulo 2^n. Read by Summed Height Test.
+class SummedHeightTable : public TableMemory {
+  public:
+    using TableMemory::TableMemory;
+};
+
+}  // namespace tessera

@@ -1,0 +1,161 @@
+#pragma once
+#include <tlm_utils/simple_initiator_socket.h>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <systemc>
+#include <tlm>
+#include <vector>
+
+#include "modules/sockets/memory_request.h"
+#include "modules/timing/cycle_scheduler.h"
+#include "modules/timing/ring.h"
+
+namespace tessera {
+
+/// A unit's port on a memory, for entries of one size: a table's, or records in off-chip memory.
+///
+/// Functional mode: read(). DMI where the memory grants it and the unit may use it, else b_transport; the same values,
+/// the same added time and the same counts either way.
+/// Timed mode: requests (memory_request.h). One on offer at a time, several under way, answered in order. The unit is
+/// called when a request that had to wait is taken and when an answer comes.
+/// Errors: responses other than OK, and breaches of the protocol, are SC_ERRORs that name the port.
+class MemoryPort {
+  public:
+    tlm_utils::simple_initiator_socket<MemoryPort, 32, MemoryProtocol> socket;
+
+    /// entry_bytes: at least 1; read() and entry() are for 8 at most.
+    MemoryPort(const char* name, std::size_t entry_bytes, bool use_direct_memory);
+
+    /// Several reads in a row. Through DMI they are counted and timed once, at the end; on destruction.
+    class Burst {
+      public:
+        Burst(MemoryPort& port, sc_core::sc_time& delay)
+            : port_(port),
+              delay_(delay),
+              direct_(port.direct_),
+              start_(port.direct_start_),
+              bytes_(port.direct_bytes_),
+              mask_(port.mask_) {}
+        ~Burst() {
+            port_.reads_ += direct_reads_;
+            delay_ += sc_core::sc_time::from_value(direct_reads_ * port_.direct_time_.value());
+        }
+        Burst(const Burst&) = delete;
+        Burst& operator=(const Burst&) = delete;
+
+        /// The entry at a byte address, zero-extended.
+        std::uint64_t read(std::uint64_t address) {
+            if (address - start_ >= bytes_)
+                return port_.read_by_transaction(address, delay_);
+            ++direct_reads_;
+            std::uint64_t entry = 0;
+            std::memcpy(&entry, direct_ + (address - start_), sizeof entry);
+            return entry & mask_;
+        }
+
+      private:
+        MemoryPort& port_;
+        sc_core::sc_time& delay_;
+        const unsigned char* direct_;
+        std::uint64_t start_;
+        std::uint64_t bytes_;
+        std::uint64_t mask_;
+        std::uint64_t direct_reads_ = 0;
+    };
+
+    /// The entry at a byte address, zero-extended. Adds the memory's read time to `delay`.
+    std::uint64_t read(std::uint64_t address, sc_core::sc_time& delay) {
+        return Burst(*this, delay).read(address);
+    }
+
+    /// Timed mode. most_under_way: requests that may be unanswered at a time; most_entries: of one of them.
+    void clocked_by(CycleScheduler& clock, CycleProcess& unit, std::size_t most_under_way,
+                    unsigned most_entries = datapath::most_rectangle_entries);
+
+    /// A request may be offered.
+    bool may_request() const { return !on_offer_ && !slots_.full(); }
+    /// The request on offer has not been taken.
+    bool on_offer() const { return on_offer_; }
+    bool under_way() const { return !slots_.empty(); }
+    std::size_t requests_under_way() const { return slots_.size(); }
+    /// Of the newest request, if any: the address of its first entry.
+    std::uint64_t last_address() const { return slots_.empty() ? 0 : slots_.back().request.address[0]; }
+
+    /// Asks for `count` entries, 1 to most_rectangle_entries.
+    void request(const std::uint64_t* addresses, unsigned count);
+    void request(std::uint64_t address) { request(&address, 1); }
+    /// The entry that write() will send; to be filled in just before.
+    unsigned char* entry_to_write() { return slots_.at(slots_.size()).data.data(); }
+    void write(std::uint64_t address);
+
+    /// The oldest request under way has been answered.
+    bool answered() const { return answered_ > 0; }
+    bool answer_is_read() const { return slots_.front().request.command == tlm::TLM_READ_COMMAND; }
+    /// Entry k of that answer, zero-extended.
+    std::uint64_t entry(unsigned k) const {
+        std::uint64_t value = 0;
+        // Eight bytes are there: the slot has as many after its last entry.
+        std::memcpy(&value, &slots_.front().data[std::size_t{k} * entry_bytes_], sizeof value);
+        return value & mask_;
+    }
+    /// The bytes of that answer.
+    const unsigned char* answer() const { return slots_.front().data.data(); }
+    void pop_answer() {
+        slots_.pop();
+        --answered_;
+    }
+
+    /// Requests made in timed mode; entries read in either.
+    std::uint64_t requests() const { return requests_; }
+    std::uint64_t reads() const { return reads_; }
+    unsigned entry_bytes() const { return entry_bytes_; }
+
+    /// Binds the port to a memory (with a socket of that name).
+    template <class Memory>
+    void bind(Memory& memory) {
+        bind(memory, memory);
+    }
+    /// The same through what stands before the memory.
+    template <class Interposer>
+    void bind(Interposer& before, const sc_core::sc_object& memory) {
+        socket.bind(before.socket);
+        memory_ = &memory;
+    }
+    /// The memory: who is waited for.
+    const sc_core::sc_object* memory() const { return memory_; }
+
+  private:
+    struct Slot {
+        MemoryRequest request;
+        std::vector<unsigned char> data;
+    };
+
+    std::uint64_t read_by_transaction(std::uint64_t address, sc_core::sc_time& delay);
+    void check_response(const MemoryRequest& request) const;
+    void ask_for_direct_memory(MemoryRequest& request);
+    void invalidate_direct_mem_ptr(sc_dt::uint64, sc_dt::uint64) { direct_bytes_ = 0; }
+    void offer(tlm::tlm_command command, const std::uint64_t* addresses, unsigned count);
+    tlm::tlm_sync_enum nb_transport_bw(MemoryRequest& request, tlm::tlm_phase& phase,
+                                       sc_core::sc_time& delay);
+
+    unsigned entry_bytes_;
+    std::uint64_t mask_;
+    bool use_direct_memory_;
+    std::uint64_t requests_ = 0;
+    std::uint64_t reads_ = 0;
+    const unsigned char* direct_ = nullptr;
+    std::uint64_t direct_start_ = 0;
+    // Addresses at which eight bytes may be loaded; the table's last few entries are read by transaction. 0: no DMI.
+    std::uint64_t direct_bytes_ = 0;
+    sc_core::sc_time direct_time_;
+
+    CycleScheduler* clock_ = nullptr;
+    CycleProcess* unit_ = nullptr;
+    Ring<Slot> slots_;          // the requests under way
+    std::size_t answered_ = 0;  // of these, the first so many
+    bool on_offer_ = false;     // the newest of these
+    const sc_core::sc_object* memory_ = nullptr;
+};
+
+}  // namespace tessera

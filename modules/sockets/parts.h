@@ -1,0 +1,108 @@
+#pragma once
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+
+#include "modules/datapath/fields.h"
+
+namespace tessera {
+
+/// The parts of a triangle, one bit each, in the order in which Get Triangle sends them: the vertices of a base
+/// triangle, normals that have no N's yet, edges.
+using Parts = std::uint16_t;
+constexpr unsigned first_normal_part = 3;
+constexpr unsigned first_edge_part = 6;
+constexpr unsigned part_bits = 4;
+constexpr Parts vertex_parts = 0007;
+constexpr Parts normal_parts = 0070;
+constexpr Parts edge_parts = 0700;
+constexpr Parts all_parts = 0777;
+
+/// The parts of a triangle that go down the branch of Calculate New P: what is not known of it yet, and its edges
+/// unless it is finished.
+constexpr Parts parts_of(const datapath::Triangle& triangle) {
+    unsigned parts = triangle.finished ? 0 : edge_parts;
+    for (unsigned k = 0; k < 3; ++k) {
+        const datapath::Vertex& vertex = triangle.vertices[k];
+        if (!vertex.displaced_known)
+            parts |= 1u << k;
+        else if (!vertex.screen_normal_known)
+            parts |= 1u << (first_normal_part + k);
+    }
+    return static_cast<Parts>(parts);
+}
+
+/// The parts that go to Tessellation Tests unit `number` of 1 or 3: all vertices and edges; of three units, one edge
+/// and the two vertices it joins.
+constexpr Parts parts_for_tests(unsigned number, unsigned units) {
+    if (units == 1)
+        return vertex_parts | edge_parts;
+    return static_cast<Parts>(1u << (first_edge_part + number) | 1u << number | 1u << (number + 1) % 3);
+}
+/// Of some parts that come in order, the last.
+constexpr Parts last_of(Parts parts) {
+    while ((parts & (parts - 1)) != 0)
+        parts = static_cast<Parts>(parts & (parts - 1));
+    return parts;
+}
+
+/// Names a triangle while it is between Get Triangle and Pass or Tessellate: its pass's number modulo 2^tag_bits
+/// (modules/timing/design.h), enough to tell apart those that can be there at a time.
+using Tag = std::uint32_t;
+
+/// The model's names of a triangle, for waveforms and messages. No hardware has them.
+struct Origin {
+    std::uint32_t pass = 0;  ///< passes begun before it, modulo 2^32
+    std::uint32_t base = 0;  ///< index of the base triangle it descends from
+};
+
+template <class Codec, class Any>
+constexpr void describe_origin(datapath::Fields<Codec>& fields, Any& origin) {
+    fields.annotation("triangle", origin.pass);
+    fields.annotation("base", origin.base);
+}
+
+/// Which part of which triangle an item is.
+struct PartTag {
+    Tag triangle = 0;
+    std::uint8_t part = 0;  ///< 0 to 8
+    Origin origin;
+
+    constexpr Parts bit() const { return static_cast<Parts>(1u << part); }
+    /// Which vertex, normal or edge, 0 to 2.
+    constexpr unsigned index() const { return part % 3u; }
+    constexpr bool is_vertex() const { return part < first_normal_part; }
+    constexpr bool is_normal() const { return part >= first_normal_part && part < first_edge_part; }
+    constexpr bool is_edge() const { return part >= first_edge_part; }
+};
+
+template <class Codec, class Any>
+constexpr void describe_tag(datapath::Fields<Codec>& fields, Any& tag) {
+    fields.tag("tag", tag.triangle, "the triangle");
+    fields.number("part", tag.part, part_bits, "vertex, normal or edge: waveforms/parts.txt");
+    describe_origin(fields, tag.origin);
+}
+
+/// An item is a part of a triangle, or else a whole one.
+template <class Item, class = void>
+constexpr bool is_part = false;
+template <class Item>
+constexpr bool is_part<Item, std::void_t<decltype(std::declval<Item>().tag.bit())>> = true;
+
+template <class Item>
+constexpr Parts parts_in(const Item& item) {
+    if constexpr (is_part<Item>)
+        return item.tag.bit();
+    else
+        return all_parts;
+}
+
+template <class Item>
+constexpr const Origin& origin_of(const Item& item) {
+    if constexpr (is_part<Item>)
+        return item.tag.origin;
+    else
+        return item.origin;
+}
+
+}  // namespace tessera

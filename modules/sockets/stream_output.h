@@ -1,0 +1,149 @@
+#pragma once
+#include <functional>
+#include <systemc>
+#include <tlm>
+#include <utility>
+
+#include "modules/sockets/packed_item.h"
+#include "modules/sockets/stream.h"
+#include "modules/timing/cycle_scheduler.h"
+#include "modules/timing/design.h"
+
+namespace tessera {
+
+template <class Payload>
+class StreamInput;
+
+/// A unit's output (timed mode: one item on offer at a time). Checks the consumer's phases. BUSWIDTH means nothing on
+/// a stream; widths follow from the formats.
+template <class Payload>
+class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
+                     public tlm::tlm_bw_transport_if<Stream<Payload>> {
+    using Socket = tlm::tlm_initiator_socket<32, Stream<Payload>>;
+
+  public:
+    explicit StreamOutput(const char* name) : Socket(name) {
+        Socket::bind(static_cast<tlm::tlm_bw_transport_if<Stream<Payload>>&>(*this));
+    }
+
+    /// Who binds this output to its input instead of bind(), and may put something in between: a unit, a fault.
+    using Interposer = std::function<void(StreamOutput& from, StreamInput<Payload>& to)>;
+    void interpose(Interposer interposer) { interposer_ = std::move(interposer); }
+
+    using Socket::bind;
+    void bind(StreamInput<Payload>& input) {
+        if (const Interposer interposer = std::exchange(interposer_, nullptr))
+            interposer(*this, input);
+        else
+            Socket::bind(input);
+    }
+
+    /// Timed mode: `unit` is called when an item that had to wait is taken.
+    void clocked_by(CycleScheduler& clock, CycleProcess& unit) {
+        clock_ = &clock;
+        unit_ = &unit;
+    }
+    /// The same for a unit of the machine, whose items may have to go through their packed form.
+    void clocked_by(const UnitContext& context, CycleProcess& unit) {
+        clocked_by(context.clock, unit);
+        if (context.design.packed_streams)
+            wires_ = {&context.registers.formats, tag_bits_in_use(context.design)};
+    }
+
+    /// Functional mode: hands an item over; the consumer has done all that follows from it on return.
+    void transport(Payload& payload, sc_core::sc_time& delay) {
+        if (wires_.formats == nullptr) {
+            (*this)->b_transport(payload, delay);
+            return;
+        }
+        Payload packed = through_wires(payload);
+        (*this)->b_transport(packed, delay);
+    }
+
+    /// Nothing on offer.
+    bool free() const { return on_offer_ == nullptr; }
+
+    /// Offers an item, which must stay where it is until free(). True: taken at once.
+    bool send(Payload& payload) {
+        if (on_offer_ != nullptr)
+            stream_protocol_error(this->name(), "BEGIN_REQ before END_REQ of the item before", clock_);
+        if (wires_.formats != nullptr)
+            packed_ = through_wires(payload);
+        Payload& sent = wires_.formats != nullptr ? packed_ : payload;
+        tlm::tlm_phase phase = tlm::BEGIN_REQ;
+        sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
+        const tlm::tlm_sync_enum status = (*this)->nb_transport_fw(sent, phase, delay);
+        if (status == tlm::TLM_UPDATED && phase == tlm::END_REQ)
+            return true;
+        if (status != tlm::TLM_ACCEPTED)
+            stream_protocol_error(this->name(), "BEGIN_REQ was answered by neither END_REQ nor TLM_ACCEPTED",
+                                  clock_);
+        on_offer_ = &sent;
+        return false;
+    }
+
+    /// Offers an item once and, called again with the same one, waits for it to be taken. True: the consumer has taken
+    /// it; until then it must stay where it is.
+    bool deliver(Payload& payload) {
+        delivering_ = delivering_ ? !free() : !send(payload);
+        return !delivering_;
+    }
+
+    /// The module that takes the items: who blocks this one.
+    const sc_core::sc_object* consumer() const {
+        if (consumer_ == nullptr)
+            consumer_ = module_behind(this->get_base_port().get_interface());
+        return consumer_;
+    }
+
+  private:
+    /// Null: items are handed over as they are.
+    struct Wires {
+        const datapath::Formats* formats = nullptr;
+        int tag_bits = 0;
+    };
+
+    Payload through_wires(const Payload& payload) const {
+        if constexpr (is_described<Payload>) {
+            PackedItem packed;
+            if (!pack_item(payload, *wires_.formats, wires_.tag_bits, packed))
+                stream_protocol_error(this->name(), "a value that its field cannot hold", clock_);
+            return unpack_item<Payload>(packed, *wires_.formats, wires_.tag_bits);
+        } else {
+            return payload;
+        }
+    }
+
+    tlm::tlm_sync_enum nb_transport_bw(Payload& payload, tlm::tlm_phase& phase,
+                                       sc_core::sc_time& delay) override {
+        if (on_offer_ != &payload || phase != tlm::END_REQ)
+            stream_protocol_error(this->name(), "a phase other than the END_REQ that was due", clock_);
+        on_offer_ = nullptr;
+        if (unit_ != nullptr)
+            clock_->wake_at(*unit_, clock_->cycle() + clock_->cycles(delay));
+        return tlm::TLM_ACCEPTED;
+    }
+    void invalidate_direct_mem_ptr(sc_dt::uint64, sc_dt::uint64) override {}
+
+    CycleScheduler* clock_ = nullptr;
+    CycleProcess* unit_ = nullptr;
+    const Payload* on_offer_ = nullptr;
+    Interposer interposer_;
+    Wires wires_;
+    Payload packed_{};
+    bool delivering_ = false;                               // deliver() has yet to say that its item is taken
+    mutable const sc_core::sc_object* consumer_ = nullptr;  // looked up once: it is slow
+};
+
+/// Calls `each` with every output of a module.
+template <class Each>
+void for_each_output(const sc_core::sc_module& module, Each&& each) {
+    for (sc_core::sc_object* child : module.get_child_objects()) {
+        StreamItems::for_each([&](auto type) {
+            if (auto* output = dynamic_cast<StreamOutput<typename decltype(type)::Item>*>(child))
+                each(*output);
+        });
+    }
+}
+
+}  // namespace tessera

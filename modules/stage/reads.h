@@ -1,0 +1,43 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+namespace tessera {
+
+/// The table entries that a unit's item needs: byte addresses, in requests that a memory serves one after another. To
+/// be filled in by the unit; empty: none.
+class Reads {
+  public:
+    static constexpr unsigned most_requests = 3;
+    static constexpr unsigned most_entries = 27;
+
+    /// One more request, for one entry.
+    void add(std::uint64_t address) {
+        add_request();
+        add_entry(address);
+    }
+    /// One more request, for the 1 to 9 entries that are added next (a gather).
+    void add_request() { count_[requests_++] = 0; }
+    void add_entry(std::uint64_t address) {
+        address_[entries_++] = address;
+        ++count_[requests_ - 1];
+    }
+    void clear() { requests_ = entries_ = 0; }
+
+    unsigned requests() const { return requests_; }
+    unsigned entries() const { return entries_; }
+    /// Entries of a request; of all, their addresses in order.
+    unsigned count(unsigned request) const { return count_[request]; }
+    const std::uint64_t* addresses() const { return address_.data(); }
+
+  private:
+    unsigned requests_ = 0;
+    unsigned entries_ = 0;
+    std::array<unsigned, most_requests> count_;
+    std::array<std::uint64_t, most_entries> address_;
+};
+
+/// What was read, in the order of the addresses, zero-extended.
+using Entries = std::array<std::uint64_t, Reads::most_entries>;
+
+}  // namespace tessera

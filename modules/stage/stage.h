@@ -1,0 +1,82 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <systemc>
+
+#include "modules/sockets/stream_input.h"
+#include "modules/sockets/stream_output.h"
+#include "modules/stage/reads.h"
+#include "modules/stage/unit.h"
+
+namespace tessera {
+
+class MemoryPort;
+
+/// A unit that takes an item, reads table entries for it or none, works on it, and passes it on: most of the machine's.
+/// A derived unit names its sockets once and implements the functions below; both modes run these same functions.
+///
+/// Timed mode: an item starts when the interval is over, a register stage is free and the memory has taken the requests
+/// of the item before. It is finished a latency after its start or, if it reads, after its last answer, and leaves in
+/// order. Register stages: ceil((latency + the memory's latency) / interval), so that neither holds anything up.
+/// Functional mode: reads, works on the item, adds the latency, and hands the result on.
+template <class In, class Out>
+class Stage : public Unit {
+  public:
+    std::string describe_contents() const override;
+    std::uint64_t occupied_cycles() const override;
+    void trace_signals(Signals& signals) const override;
+    Begun begun() const override;
+
+  protected:
+    /// servers: pipelines side by side that take turns. memory_latency: of the table it reads.
+    Stage(const sc_core::sc_module_name& name, const UnitContext& context, const UnitTiming& timing,
+          unsigned servers = 1, unsigned memory_latency = 0);
+    ~Stage() override;
+
+    /// To be called in a derived unit's constructor: its input; each output, what it gets of a result,
+    /// and the parts that it is for; the port it reads through, if it does (most_requests: of one item).
+    void takes_from(const UnitContext& context, StreamInput<In>& input);
+    void delivers_to(const UnitContext& context, StreamOutput<Out>& output, Parts only = all_parts);
+    template <class Payload>
+    void delivers_to(const UnitContext& context, StreamOutput<Payload>& output, Payload (*select)(const Out&),
+                     Parts only);
+    void reads_through(MemoryPort& port, unsigned most_requests);
+    void may_wait() { may_wait_ = true; }
+
+    /// Of a unit that calls may_wait() in its constructor. False: the item waits for what another, earlier one brings.
+    /// Functional mode: that is an error.
+    virtual bool may_start(const In&) const { return true; }
+    /// Who brings it; functional mode: when it came.
+    virtual const sc_core::sc_object* awaited_unit() const { return nullptr; }
+    virtual sc_core::sc_time may_start_after(const In&) const { return sc_core::SC_ZERO_TIME; }
+
+    /// The entries an item needs.
+    virtual void reads(const In&, Reads&) const {}
+    /// The unit's work on an item, with what was read for it: returns what is passed on.
+    virtual Out process(const In& item, const Entries& entries) = 0;
+
+    /// In traces, beside the items' own fields: of one that has started, and of one that has been worked on.
+    virtual void trace_started(Signals&, const In&) const {}
+    virtual void trace_processed(Signals&, const In&, const Out&) const {}
+
+    void step() override;
+
+    const UnitTiming timing_;
+
+  private:
+    struct Machinery;  // stage_steps.h
+
+    void b_transport(In& item, sc_core::sc_time& delay);
+    Out read_and_process(const In& item, sc_core::sc_time& delay);
+    void start(std::uint64_t cycle);
+    void take_answers(std::uint64_t cycle);
+
+    const sc_core::sc_time latency_;
+    bool may_wait_ = false;
+    StreamInput<In>* input_ = nullptr;
+    MemoryPort* port_ = nullptr;  // null: the unit reads nothing
+    const std::unique_ptr<Machinery> machinery_;
+};
+
+}  // namespace tessera

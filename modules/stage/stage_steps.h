@@ -1,0 +1,251 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string>
+#include <type_traits>
+
+#include "modules/sockets/memory_port.h"
+#include "modules/stage/fork.h"
+#include "modules/stage/signals.h"
+#include "modules/stage/stage.h"
+#include "modules/timing/elastic_pipeline.h"
+
+namespace tessera {
+
+// How a Stage does what stage.h says. To be included where one is instantiated.
+
+/// What a stage is made of.
+template <class In, class Out>
+struct Stage<In, Out>::Machinery {
+    /// An item under way: its requests, how many of them have been answered, and the entries that each asks for.
+    struct Slot {
+        In item{};
+        Out result{};
+        std::uint8_t requests = 0;
+        std::uint8_t answered = 0;
+        std::array<std::uint8_t, Reads::most_requests> count;
+
+        bool processed() const { return answered == requests; }
+    };
+
+    Machinery(const UnitTiming& timing, unsigned pipelines, unsigned memory_latency)
+        : servers(pipelines), pipeline(timing, pipelines, memory_latency) {}
+
+    /// Makes as many of the started items' requests as the memory takes. True: all.
+    bool ask(MemoryPort& port) {
+        for (; asked < reads.requests(); ++asked) {
+            if (!port.may_request())
+                return false;
+            port.request(reads.addresses() + asked_entries, reads.count(asked));
+            asked_entries += reads.count(asked);
+        }
+        return !port.on_offer();
+    }
+
+    /// Past the items whose answers have all come.
+    void skip_processed() {
+        while (waiting < pipeline.size() && pipeline.at(waiting).processed())
+            ++waiting;
+    }
+
+    const unsigned servers;
+    Fork<Out> fork;
+    ElasticPipeline<Slot> pipeline;
+    Reads reads;                 // of the item started last
+    unsigned asked = 0;          // of these requests, made
+    unsigned asked_entries = 0;  // and of the entries
+    Entries entries{};           // that have come for the first item that waits for any
+    unsigned come = 0;           // so many
+    std::size_t waiting = 0;     // the first item whose answers have not all come
+};
+
+template <class In, class Out>
+Stage<In, Out>::Stage(const sc_core::sc_module_name& name, const UnitContext& context,
+                      const UnitTiming& timing, unsigned servers, unsigned memory_latency)
+    : Unit(name, context.clock),
+      timing_(timing),
+      latency_(clock_.period() * timing.latency),
+      machinery_(std::make_unique<Machinery>(timing, servers, memory_latency)) {}
+
+template <class In, class Out>
+Stage<In, Out>::~Stage() = default;
+
+template <class In, class Out>
+void Stage<In, Out>::takes_from(const UnitContext& context, StreamInput<In>& input) {
+    input_ = &input;
+    input.template register_b_transport<&Stage::b_transport>(*this);
+    input.clocked_by(clock_, *this, timing_.buffer, context.timing().stalls);
+}
+
+template <class In, class Out>
+void Stage<In, Out>::delivers_to(const UnitContext& context, StreamOutput<Out>& output, Parts only) {
+    machinery_->fork.add(output, only);
+    output.clocked_by(context, *this);
+}
+
+template <class In, class Out>
+template <class Payload>
+void Stage<In, Out>::delivers_to(const UnitContext& context, StreamOutput<Payload>& output,
+                                 Payload (*select)(const Out&), Parts only) {
+    machinery_->fork.add(output, select, only);
+    output.clocked_by(context, *this);
+}
+
+template <class In, class Out>
+void Stage<In, Out>::reads_through(MemoryPort& port, unsigned most_requests) {
+    port_ = &port;
+    port.clocked_by(clock_, *this, machinery_->pipeline.capacity() * most_requests);
+}
+
+template <class In, class Out>
+void Stage<In, Out>::b_transport(In& item, sc_core::sc_time& delay) {
+    if (may_wait_) {
+        if (!may_start(item))
+            SC_REPORT_ERROR("tessera/stage",
+                            (std::string(name()) + ": an item came before what it waits for").c_str());
+        delay = std::max(delay, may_start_after(item));
+    }
+    Out result = read_and_process(item, delay);
+    delay += latency_;
+    machinery_->fork.transport(result, delay);
+}
+
+template <class In, class Out>
+Out Stage<In, Out>::read_and_process(const In& item, sc_core::sc_time& delay) {
+    Entries entries;
+    if (port_ != nullptr) {
+        Reads needed;
+        reads(item, needed);
+        MemoryPort::Burst burst(*port_, delay);
+        for (unsigned k = 0; k < needed.entries(); ++k)
+            entries[k] = burst.read(needed.addresses()[k]);
+    }
+    return process(item, entries);
+}
+
+template <class In, class Out>
+void Stage<In, Out>::start(std::uint64_t cycle) {
+    Machinery& m = *machinery_;
+    typename Machinery::Slot& slot = m.pipeline.start(cycle);
+    slot.item = input_->front();
+    slot.requests = slot.answered = 0;
+    activity_.item_in(cycle);
+    if (port_ != nullptr) {
+        m.reads.clear();
+        m.asked = m.asked_entries = 0;
+        reads(slot.item, m.reads);
+        slot.requests = static_cast<std::uint8_t>(m.reads.requests());
+        for (unsigned k = 0; k < m.reads.requests(); ++k)
+            slot.count[k] = static_cast<std::uint8_t>(m.reads.count(k));
+    }
+    if (slot.requests > 0)
+        m.pipeline.finish(m.pipeline.size() - 1, never);
+    else
+        slot.result = process(slot.item, m.entries);
+    input_->pop();
+}
+
+template <class In, class Out>
+void Stage<In, Out>::take_answers(std::uint64_t cycle) {
+    Machinery& m = *machinery_;
+    while (port_->answered()) {
+        m.skip_processed();
+        typename Machinery::Slot& slot = m.pipeline.at(m.waiting);
+        for (unsigned k = 0; k < slot.count[slot.answered]; ++k)
+            m.entries[m.come++] = port_->entry(k);
+        port_->pop_answer();
+        ++slot.answered;
+        if (slot.processed()) {
+            m.come = 0;
+            slot.result = process(slot.item, m.entries);
+            m.pipeline.finish(m.waiting, cycle + m.pipeline.latency());
+        }
+    }
+    m.skip_processed();
+}
+
+template <class In, class Out>
+void Stage<In, Out>::step() {
+    const std::uint64_t cycle = clock_.last_cycle();
+    Machinery& m = *machinery_;
+    if (port_ != nullptr)
+        take_answers(cycle);
+    while (m.pipeline.front_finished(cycle) && m.fork.deliver(m.pipeline.front().result)) {
+        m.pipeline.pop();
+        if (port_ != nullptr)
+            --m.waiting;
+        activity_.item_out(cycle);
+    }
+    bool lacking = false;
+    while ((port_ == nullptr || m.ask(*port_)) && !input_->empty() && m.pipeline.may_start(cycle)) {
+        lacking = may_wait_ && !may_start(input_->front());
+        if (lacking)
+            break;
+        start(cycle);
+    }
+    if (port_ != nullptr)
+        m.skip_processed();
+    if (m.pipeline.front_finished(cycle))
+        activity_.set(cycle, State::blocked, m.fork.blocked_by());
+    else if (port_ != nullptr && m.waiting == 0 && port_->under_way())
+        activity_.set(cycle, State::waiting_for_memory, port_->memory());
+    else if (!m.pipeline.empty() || (!lacking && !input_->empty()))
+        activity_.set(cycle, State::busy);
+    else
+        activity_.set(cycle, State::starved, lacking ? awaited_unit() : nullptr);
+    wake_at(m.pipeline.next_finished(cycle));
+    if (!input_->empty())
+        wake_at(m.pipeline.next_start(cycle));
+}
+
+template <class In, class Out>
+std::uint64_t Stage<In, Out>::occupied_cycles() const {
+    return activity_.items_in() * timing_.interval / machinery_->servers;
+}
+
+template <class In, class Out>
+std::string Stage<In, Out>::describe_contents() const {
+    std::string text = count_of(machinery_->pipeline.size() + input_->size(), "item");
+    if (port_ != nullptr && port_->on_offer())
+        text = listed(text, "a request its memory does not take");
+    return listed(text, input_->holds_back() ? "one waiting at the input" : "");
+}
+
+/// Shows, as `in`, the item started last and, as `out`, the result of the one worked on last; of a unit that reads,
+/// besides, the request made last, and how many requests and reads there were.
+template <class In, class Out>
+void Stage<In, Out>::trace_signals(Signals& signals) const {
+    const Machinery& m = *machinery_;
+    const auto show_result = [&](const typename Machinery::Slot& slot) {
+        signals.item("out", slot.result);
+        trace_processed(signals, slot.item, slot.result);
+    };
+    Unit::trace_signals(signals);
+    signals.input(*input_);
+    if (signals.when(signals.changed("started", activity_.items_in()) && !m.pipeline.empty())) {
+        signals.item("in", m.pipeline.newest().item);
+        trace_started(signals, m.pipeline.newest().item);
+        if (port_ == nullptr)
+            show_result(m.pipeline.newest());
+    }
+    if (port_ == nullptr)
+        return;
+    signals.pulse("request", port_->requests());
+    signals.value("requests", 32, port_->requests());
+    signals.value("reads", 32, port_->reads());
+    signals.flag("request_held", port_->on_offer());
+    signals.value("requests_under_way", 16, port_->requests_under_way());
+    if (signals.when(signals.changed("asked", port_->reads()) && port_->under_way()))
+        signals.value("address", 32, port_->last_address());
+    if (signals.when(signals.changed("processed", activity_.items_out() + m.waiting) && m.waiting > 0))
+        show_result(m.waiting > 0 ? m.pipeline.at(m.waiting - 1) : m.pipeline.newest());
+}
+
+template <class In, class Out>
+Begun Stage<In, Out>::begun() const {
+    const In& item = machinery_->pipeline.newest().item;
+    return {activity_.items_in(), origin_of(item), parts_in(item)};
+}
+
+}  // namespace tessera

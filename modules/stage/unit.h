@@ -1,0 +1,67 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <systemc>
+
+#include "modules/stage/begun.h"
+#include "modules/timing/activity.h"
+#include "modules/timing/cycle_scheduler.h"
+#include "modules/timing/design.h"
+
+namespace tessera {
+
+class Signals;
+
+/// What every box of the paper's figures 7 and 8 and every memory is: a module on the clock, with a record of what it
+/// did in each cycle.
+class Unit : public CycleProcess, public sc_core::sc_module {
+  public:
+    const Activity& activity() const { return activity_; }
+    Activity& activity() { return activity_; }
+
+    /// For a deadlock's report: what is in the unit and waits at its inputs, in words; empty: nothing.
+    virtual std::string describe_contents() const = 0;
+
+    /// Cycles the unit's work needs at its initiation interval, or at a memory's ports: of all cycles, those in which
+    /// it could not have taken more.
+    virtual std::uint64_t occupied_cycles() const = 0;
+
+    bool idle() const { return activity_.level() == 0; }
+
+    /// Declares the unit's signals, or shows their values at the end of a cycle (modules/stage/signals.h). Of every
+    /// unit: its state, who blocks it or is waited for, and the items in it.
+    virtual void trace_signals(Signals& signals) const;
+
+    /// Valid in a cycle in which the unit has begun on an item, and while it holds any. Units that hold many triangles
+    /// at once, memories and the Triangle Queue, name none.
+    virtual Begun begun() const { return {}; }
+
+  protected:
+    Unit(const sc_core::sc_module_name& name, CycleScheduler& clock) : sc_module(name), clock_(clock) {}
+
+    std::uint64_t now() const { return clock_.cycle(); }
+    void wake_at(std::uint64_t cycle) {
+        if (cycle != ~std::uint64_t{0})
+            clock_.wake_at(*this, cycle);
+    }
+
+    CycleScheduler& clock_;
+    Activity activity_;
+};
+
+/// occupied_cycles() of a unit that holds one item at a time and sends it on in parts: the first a latency after it has
+/// come, but an interval after the part before at least.
+constexpr std::uint64_t one_at_a_time_cycles(const UnitTiming& timing, std::uint64_t items,
+                                             std::uint64_t parts) {
+    const std::uint64_t first = timing.latency > timing.interval ? timing.latency : timing.interval;
+    return items * first + (parts - items) * timing.interval;
+}
+
+/// "3 edges", "1 edge", "".
+std::string count_of(std::size_t count, const char* what);
+
+/// Both, with the separator between them where neither is empty.
+std::string listed(const std::string& text, const std::string& more, const char* separator = ", ");
+
+}  // namespace tessera

@@ -1,0 +1,129 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <systemc>
+#include <utility>
+
+namespace tessera {
+
+/// What a unit does in a cycle. Exactly one of these, so that their cycles add up to the run's:
+///
+///   blocked             a finished item waits for its consumer to take it
+///   busy                none is blocked, and an item is being worked on that has all it needs
+///   waiting for memory  none of the above, and an item's table entries have been asked for and have not come
+///   starved             nothing to work on, or its other half is missing (the screen positions the View Test
+///                       waits for, the other branch in Pass or Tessellate)
+enum class State : std::uint8_t { starved, busy, waiting_for_memory, blocked };
+constexpr std::size_t states = 4;
+
+/// Told of every stretch of cycles a unit spent in one state, when it ends.
+class ActivityObserver {
+  public:
+    /// [begin, end); by: who blocks or is waited for; may be null.
+    virtual void stretch(State state, const sc_core::sc_object* by, std::uint64_t begin,
+                         std::uint64_t end) = 0;
+    virtual ~ActivityObserver() = default;
+};
+
+/// Counts a unit's cycles by state, and the items in it.
+class Activity {
+  public:
+    /// The state at the end of `cycle`, which lasts until another is set. Within one cycle the last call counts.
+    void set(std::uint64_t cycle, State state, const sc_core::sc_object* by = nullptr) {
+        if (state != state_ || by != by_) {
+            close(cycle);
+            state_ = state;
+            by_ = by;
+        }
+    }
+
+    void item_in(std::uint64_t cycle) {
+        integrate(cycle);
+        ++items_in_;
+        if (++level_ > high_water_mark_)
+            high_water_mark_ = level_;
+    }
+    void item_out(std::uint64_t cycle) {
+        integrate(cycle);
+        ++items_out_;
+        --level_;
+    }
+
+    /// Accounts for the cycles up to `cycle`, the run's end.
+    void finish(std::uint64_t cycle) {
+        close(cycle);
+        integrate(cycle);
+    }
+
+    /// The present stretch ends at `cycle` and another like it begins.
+    void split(std::uint64_t cycle) { close(cycle); }
+
+    State state() const { return state_; }
+    const sc_core::sc_object* by() const { return by_; }
+    std::uint64_t cycles_in(State state) const { return cycles_[static_cast<std::size_t>(state)]; }
+
+    /// Cycles blocked by, or waiting for, one other: what `set` named.
+    struct Share {
+        State state = State::starved;
+        const sc_core::sc_object* by = nullptr;
+        std::uint64_t cycles = 0;
+    };
+    static constexpr std::size_t most_shares = 12;
+    const std::array<Share, most_shares>& shares() const { return shares_; }
+
+    std::uint64_t items_in() const { return items_in_; }
+    std::uint64_t items_out() const { return items_out_; }
+    std::uint64_t level() const { return level_; }
+    std::uint64_t high_water_mark() const { return high_water_mark_; }
+    /// Sum over all cycles of the items in the unit: occupancy times cycles, also the sum of all items' stays.
+    std::uint64_t item_cycles() const { return item_cycles_; }
+
+    void observe(ActivityObserver* observer) { observer_ = observer; }
+
+  private:
+    void close(std::uint64_t cycle) {
+        if (cycle <= since_)
+            return;
+        const std::uint64_t length = cycle - since_;
+        cycles_[static_cast<std::size_t>(state_)] += length;
+        if (by_ != nullptr)
+            present_share().cycles += length;
+        if (observer_ != nullptr)
+            observer_->stretch(state_, by_, since_, cycle);
+        since_ = cycle;
+    }
+    Share& present_share() {
+        if (shares_[recent_].by == by_ && shares_[recent_].state == state_)
+            return shares_[recent_];
+        for (recent_ = 0; recent_ < most_shares; ++recent_) {
+            Share& share = shares_[recent_];
+            if (share.by == nullptr)
+                share = {state_, by_, 0};
+            if (share.by == by_ && share.state == state_)
+                return share;
+        }
+        SC_REPORT_ERROR("tessera/activity", "a unit has more neighbours than can be told apart");
+        return shares_[recent_ = 0];
+    }
+    void integrate(std::uint64_t cycle) {
+        item_cycles_ += level_ * (cycle - level_since_);
+        level_since_ = cycle;
+    }
+
+    State state_ = State::starved;
+    const sc_core::sc_object* by_ = nullptr;
+    std::uint64_t since_ = 0;
+    std::array<std::uint64_t, states> cycles_{};
+    std::array<Share, most_shares> shares_{};
+    std::size_t recent_ = 0;  // of these, the one that was added to last
+    std::uint64_t items_in_ = 0;
+    std::uint64_t items_out_ = 0;
+    std::uint64_t level_ = 0;
+    std::uint64_t high_water_mark_ = 0;
+    std::uint64_t item_cycles_ = 0;
+    std::uint64_t level_since_ = 0;
+    ActivityObserver* observer_ = nullptr;
+};
+
+}  // namespace tessera

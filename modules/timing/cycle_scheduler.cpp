@@ -1,0 +1,173 @@
+#include "modules/timing/cycle_scheduler.h"
+
+#include <algorithm>
+#include <functional>
+#include <string>
+
+namespace tessera {
+
+sc_core::sc_time clock_period(const char* instance, unsigned picoseconds) {
+    constexpr std::uint64_t picoseconds_a_second = 1'000'000'000'000;
+    const std::uint64_t steps_a_second = sc_core::sc_time(1, sc_core::SC_SEC).value();
+    if (steps_a_second < picoseconds_a_second &&
+        (steps_a_second == 0 || picoseconds % (picoseconds_a_second / steps_a_second) != 0)) {
+        const std::string message =
+            std::string(instance) + ": a clock period of " + std::to_string(picoseconds) +
+            " ps is no multiple of SystemC's time resolution, " +
+            sc_core::sc_get_time_resolution().to_string() +
+            "; choose another period, or call sc_set_time_resolution(1, SC_PS) before anything is built";
+        SC_REPORT_ERROR("tessera/clock", message.c_str());
+    }
+    return sc_core::sc_time(picoseconds, sc_core::SC_PS);
+}
+
+CycleScheduler::CycleScheduler(const sc_core::sc_module_name& name, const sc_core::sc_time& period)
+    : sc_module(name), period_time_(period), period_(period.value()) {
+    if (period_ == 0)
+        SC_REPORT_ERROR("tessera/clock", "the clock's period is zero");
+    most_cycles_ = UINT64_MAX / period_;
+    for (std::size_t cycles = 0; cycles < delays_.size(); ++cycles)
+        delays_[cycles] = sc_core::sc_time::from_value(cycles * period_);
+    units_.reserve(most_units);
+    far_.reserve(most_units);
+    SC_HAS_PROCESS(CycleScheduler);
+    SC_METHOD(tick);
+    dont_initialize();
+    sensitive << tick_event_;
+}
+
+void CycleScheduler::attach(CycleProcess& unit) {
+    if (units_.size() == most_units)
+        SC_REPORT_ERROR("tessera/clock", "more than 64 units on one clock");
+    unit.bit_ = std::uint64_t{1} << units_.size();
+    units_.push_back(&unit);
+}
+
+void CycleScheduler::wake_far(const CycleProcess& unit, std::uint64_t cycle) {
+    far_.emplace_back(cycle, unit.bit_);
+    std::push_heap(far_.begin(), far_.end(), std::greater<>());
+}
+
+void CycleScheduler::wake_from_outside(const CycleProcess& unit, std::uint64_t cycle) {
+    // The table counts from the cycle that was called last.
+    cycle = std::max(cycle, first_cycle_not_before_now());
+    if (cycle - cycle_ < span) {
+        const std::uint64_t place = cycle % span;
+        due_[place] |= unit.bit_;
+        occupied_[place / 64] |= std::uint64_t{1} << place % 64;
+    } else {
+        wake_far(unit, cycle);
+    }
+    if (halted_)
+        return;
+    if (cycle > most_cycles_) {
+        end_time();
+    } else if (!scheduled_ || cycle < next_tick_) {
+        scheduled_ = true;
+        next_tick_ = cycle;
+        tick_event_.notify(sc_core::sc_time::from_value(cycle * period_) - sc_core::sc_time_stamp());
+    }
+}
+
+void CycleScheduler::end_time() {
+    out_of_time_ = true;
+    halt();
+    quiet_.notify(sc_core::SC_ZERO_TIME);
+}
+
+void CycleScheduler::take_far() {
+    while (!far_.empty() && far_.front().first - cycle_ < span) {
+        const std::uint64_t place = far_.front().first % span;
+        due_[place] |= far_.front().second;
+        occupied_[place / 64] |= std::uint64_t{1} << place % 64;
+        std::pop_heap(far_.begin(), far_.end(), std::greater<>());
+        far_.pop_back();
+    }
+}
+
+bool CycleScheduler::find_next(std::uint64_t& next) const {
+    const std::uint64_t first = (cycle_ + 1) % span;
+    for (std::uint64_t step = 0; step <= span / 64; ++step) {
+        const std::uint64_t word = (first / 64 + step) % (span / 64);
+        std::uint64_t bits = occupied_[word];
+        if (step == 0)
+            bits &= ~std::uint64_t{0} << first % 64;
+        else if (step == span / 64)
+            bits &= ~(~std::uint64_t{0} << first % 64);
+        if (bits != 0) {
+            const std::uint64_t place = word * 64 + static_cast<unsigned>(__builtin_ctzll(bits));
+            next = cycle_ + 1 + (place + span - first) % span;
+            return true;
+        }
+    }
+    if (far_.empty())
+        return false;
+    next = far_.front().first;
+    return true;
+}
+
+/// Those that asked for the present cycle, until none is left. Returns who was called, if observed.
+template <bool Observed>
+std::uint64_t CycleScheduler::call_due() {
+    std::uint64_t called = 0;
+    for (unsigned calls = 0; due_now_ != 0; ++calls) {
+        if (calls == calls_in_a_cycle)
+            SC_REPORT_ERROR("tessera/clock", "a cycle does not end: units keep waking one another");
+        const auto unit = static_cast<unsigned>(__builtin_ctzll(due_now_));
+        if constexpr (Observed)
+            called |= due_now_ & -due_now_;
+        due_now_ &= due_now_ - 1;
+        units_[unit]->admit_and_step();
+    }
+    return called;
+}
+
+/// False: the present cycle is not observed.
+bool CycleScheduler::begin_observing() {
+    if (cycle_ < observed_first_)
+        return false;
+    if (!observer_began_) {
+        observer_began_ = true;
+        observer_->begin(cycle_);
+    }
+    if (cycle_ > observed_last_)
+        observer_ = nullptr;
+    return observer_ != nullptr;
+}
+
+void CycleScheduler::tick() {
+    cycle_ = next_tick_;
+    running_ = true;
+    scheduled_ = false;
+    ++cycles_without_progress_;
+    take_far();
+    const std::uint64_t place = cycle_ % span;
+    due_now_ = due_[place];
+    due_[place] = 0;
+    occupied_[place / 64] &= ~(std::uint64_t{1} << place % 64);
+    if (observer_ != nullptr && begin_observing()) {
+        const std::uint64_t called = call_due<true>();
+        observer_->end_of_cycle(cycle_, called);
+    } else {
+        call_due<false>();
+    }
+    running_ = false;
+    if (cycles_without_progress_ > most_without_progress_ && most_without_progress_ != 0) {
+        stalled_ = true;
+        halt();
+    }
+    if (halted_ || !find_next(next_tick_)) {
+        quiet_.notify(sc_core::SC_ZERO_TIME);
+        return;
+    }
+    if (next_tick_ > most_cycles_) {
+        end_time();
+    } else {
+        scheduled_ = true;
+        const std::uint64_t cycles = next_tick_ - cycle_;
+        tick_event_.notify(cycles < delays_.size() ? delays_[cycles]
+                                                   : sc_core::sc_time::from_value(cycles * period_));
+    }
+}
+
+}  // namespace tessera

@@ -1,0 +1,207 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <systemc>
+#include <utility>
+#include <vector>
+
+namespace tessera {
+
+class CycleScheduler;
+
+/// An input of something clocked, at which an item may have to wait: the clock admits it.
+class CycleInput {
+  public:
+    virtual ~CycleInput() = default;
+    CycleInput(const CycleInput&) = delete;
+    CycleInput& operator=(const CycleInput&) = delete;
+
+  protected:
+    CycleInput() = default;
+
+    /// Called before each step of its owner while an item waits.
+    virtual void admit() = 0;
+    bool waiting_ = false;  ///< an item waits
+
+  private:
+    friend class CycleProcess;
+    CycleInput* next_ = nullptr;  // of the same owner
+};
+
+/// What the clock calls: a unit, a memory, a driver.
+class CycleProcess {
+  public:
+    /// Everything that can happen in the clock's present cycle. Called as often as something new may be possible, so
+    /// that a second call without cause changes nothing.
+    virtual void step() = 0;
+
+    /// `input` must live as long as its owner is stepped. To be called once for each input.
+    void add_input(CycleInput& input) { input.next_ = std::exchange(first_input_, &input); }
+
+    CycleProcess() = default;
+    virtual ~CycleProcess() = default;
+    CycleProcess(const CycleProcess&) = delete;
+    CycleProcess& operator=(const CycleProcess&) = delete;
+
+  private:
+    friend class CycleScheduler;
+    void admit_and_step() {
+        for (CycleInput* input = first_input_; input != nullptr; input = input->next_) {
+            if (input->waiting_)
+                input->admit();
+        }
+        step();
+    }
+
+    CycleInput* first_input_ = nullptr;
+    std::uint64_t bit_ = 0;  // its place among the attached
+};
+
+/// Told of the cycles in which something was called: tracing.
+class CycleObserver {
+  public:
+    /// Before the first observed cycle's calls: all is as the cycles before left it.
+    virtual void begin(std::uint64_t cycle) = 0;
+    /// called: the bits (CycleScheduler::bit_of) of those that were.
+    virtual void end_of_cycle(std::uint64_t cycle, std::uint64_t called) = 0;
+    virtual ~CycleObserver() = default;
+};
+
+/// A clock's period. SC_ERROR, naming the instance that wants it, if it is no multiple of SystemC's time resolution.
+sc_core::sc_time clock_period(const char* instance, unsigned picoseconds);
+
+/// The clock of timed mode: calls those that asked for a cycle, and skips the cycles nobody asked for.
+///
+/// Within a cycle the order is that of attachment, whatever the order of asking: attach downstream units first, so
+/// that a place freed in a cycle is filled in the same cycle, and the simulation is the same on every kernel. One
+/// SC_METHOD serves all: a wake-up costs a bit in a table, not an event.
+///
+/// Capacity: 64 attached. Nothing asked for means that nothing will ever happen: finished, or a deadlock.
+class CycleScheduler : public sc_core::sc_module {
+  public:
+    CycleScheduler(const sc_core::sc_module_name& name, const sc_core::sc_time& period);
+
+    /// SC_ERROR beyond the capacity.
+    void attach(CycleProcess& unit);
+
+    /// Calls `unit` (once more) in the present cycle; from outside a cycle, in the first that begins not before now.
+    void wake(const CycleProcess& unit) {
+        if (running_)
+            due_now_ |= unit.bit_;
+        else
+            wake_from_outside(unit, first_cycle_not_before_now());
+    }
+
+    /// Calls `unit` in a cycle, the present one or later.
+    void wake_at(const CycleProcess& unit, std::uint64_t cycle) {
+        if (!running_) {
+            wake_from_outside(unit, cycle);
+        } else if (cycle <= cycle_) {
+            due_now_ |= unit.bit_;
+        } else if (cycle - cycle_ < span) {
+            const std::uint64_t place = cycle % span;
+            due_[place] |= unit.bit_;
+            occupied_[place / 64] |= std::uint64_t{1} << place % 64;
+        } else {
+            wake_far(unit, cycle);
+        }
+    }
+
+    /// Nothing that `unit` could act upon has happened to it, but something an observer may want to see: calls it in
+    /// the present cycle if that is observed.
+    void wake_if_observed(const CycleProcess& unit) {
+        if (observer_ != nullptr && cycle_ >= observed_first_)
+            wake(unit);
+    }
+
+    /// The present cycle; between two cycles, the next.
+    std::uint64_t cycle() const { return running_ ? cycle_ : first_cycle_not_before_now(); }
+
+    /// The cycle in which something was last called; within a step, the present one.
+    std::uint64_t last_cycle() const { return cycle_; }
+
+    /// Cycles from now on that `delay` spans, rounded up.
+    std::uint64_t cycles(const sc_core::sc_time& delay) const {
+        return delay.value() == 0 ? 0 : (delay.value() + period_ - 1) / period_;
+    }
+    const sc_core::sc_time& period() const { return period_time_; }
+
+    /// Nobody asked for a later cycle.
+    bool idle() const { return !running_ && !scheduled_; }
+
+    /// Notified at the end of a cycle after which nobody has asked for a later one, or the clock has halted.
+    const sc_core::sc_event& quiet() const { return quiet_; }
+
+    /// Calls nobody after the present cycle any more.
+    void halt() { halted_ = true; }
+    bool halted() const { return halted_; }
+
+    /// Told when work is completed (a triangle decided, or lit). When something was called in more than `most` cycles
+    /// without it, 0: for ever, the clock halts. Cycles in which all just wait do not count: a latency,
+    /// however long, comes to its end.
+    void progress() { cycles_without_progress_ = 0; }
+    void halt_without_progress_for(std::uint64_t most) { most_without_progress_ = most; }
+    std::uint64_t most_without_progress() const { return most_without_progress_; }
+    /// The clock did that.
+    bool stalled() const { return stalled_; }
+
+    /// The clock halted because a cycle was asked for that begins after the end of SystemC's time, 2^64 - 1
+    /// time steps.
+    bool out_of_time() const { return out_of_time_; }
+
+    /// From cycle `first` to cycle `last`; outside these an observer costs nothing.
+    void observe(CycleObserver* observer, std::uint64_t first = 0, std::uint64_t last = UINT64_MAX) {
+        observer_ = observer;
+        observed_first_ = first;
+        observed_last_ = last;
+        observer_began_ = false;
+    }
+    /// Its bit in what an observer is told.
+    static std::uint64_t bit_of(const CycleProcess& unit) { return unit.bit_; }
+
+    /// SC_ERROR when one cycle takes more calls than this: a combinational loop.
+    static constexpr unsigned calls_in_a_cycle = 100'000;
+
+  private:
+    static constexpr std::uint64_t span = 1024;  // cycles ahead that the table covers
+    static constexpr unsigned most_units = 64;
+    using Far = std::pair<std::uint64_t, std::uint64_t>;  // cycle and bit, beyond the table
+
+    void tick();
+    template <bool Observed>
+    std::uint64_t call_due();
+    bool begin_observing();
+    void take_far();
+    void wake_far(const CycleProcess& unit, std::uint64_t cycle);
+    void wake_from_outside(const CycleProcess& unit, std::uint64_t cycle);
+    bool find_next(std::uint64_t& next) const;
+    void end_time();
+    std::uint64_t first_cycle_not_before_now() const { return cycles(sc_core::sc_time_stamp()); }
+
+    sc_core::sc_time period_time_;
+    std::uint64_t period_;
+    std::uint64_t most_cycles_ = 0;            // that begin within SystemC's time
+    std::array<sc_core::sc_time, 16> delays_;  // of so many cycles: sc_time is slow to make
+    sc_core::sc_event tick_event_{"tick_event"};
+    sc_core::sc_event quiet_{"quiet"};
+    std::vector<CycleProcess*> units_;
+    std::array<std::uint64_t, span> due_{};            // by cycle modulo span: one bit a unit
+    std::array<std::uint64_t, span / 64> occupied_{};  // one bit a cycle: due_ is not zero
+    std::vector<Far> far_;                             // a heap, earliest first
+    std::uint64_t due_now_ = 0;
+    std::uint64_t cycle_ = 0;
+    std::uint64_t next_tick_ = 0;
+    bool running_ = false;
+    bool scheduled_ = false;
+    std::uint64_t cycles_without_progress_ = 0;
+    std::uint64_t most_without_progress_ = 0;
+    bool halted_ = false;
+    bool stalled_ = false;
+    bool out_of_time_ = false;
+    CycleObserver* observer_ = nullptr;
+    std::uint64_t observed_first_ = 0;
+    std::uint64_t observed_last_ = 0;
+    bool observer_began_ = false;
+};
+
+}  // namespace tessera

@@ -1,0 +1,97 @@
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "modules/datapath/parameters.h"
+#include "modules/timing/cycle_scheduler.h"
+#include "modules/timing/timing.h"
+
+namespace tessera {
+
+/// How the units talk to one another.
+enum class Transport {
+    blocking,      ///< blocking transport: every result, no cycles (functional mode)
+    non_blocking,  ///< non-blocking transport: the same results, to the cycle (timed mode)
+};
+
+/// The order in which the Triangle Queue gives its triangles away.
+enum class TriangleOrder {
+    fifo,  ///< the paper's: breadth first
+    lifo,  ///< depth first: the queue stays short
+};
+
+/// What a full queue does (timed mode).
+enum class QueueOverflow {
+    spill,  ///< to off-chip memory
+    stall,  ///< holds Tessellation back: a deadlock when the whole pipeline is full
+    error,  ///< halts the clock
+};
+
+struct QueueDesign {
+    TriangleOrder order = TriangleOrder::fifo;
+    std::size_t watermark = 1;  ///< at least 1
+    std::size_t capacity = 0;   ///< triangles on chip; 0: unbounded
+    QueueOverflow overflow = QueueOverflow::spill;
+    std::uint64_t off_chip_triangles = std::uint64_t{1} << 20;  ///< places in off-chip memory
+};
+
+/// What is built, as opposed to what is set before a run (datapath::Registers).
+struct Design {
+    Transport transport = Transport::blocking;
+    Timing timing;
+    QueueDesign queue;
+    unsigned tests_units = 1;  ///< Tessellation Tests units: 1 or 3
+    unsigned transform_pipelines = 1;
+    bool direct_memory = true;  ///< units read memories through DMI in functional mode
+#ifdef NDEBUG
+    bool packed_streams = false;
+#else
+    bool packed_streams =
+        true;  ///< each item goes through its packed form: slow, proves that the form is complete
+#endif
+};
+
+/// Register stages of a pipeline, all servers together. further_stages: cycles an item spends outside (in a memory)
+/// that other items must be able to follow it through.
+constexpr unsigned register_stages(const UnitTiming& timing, unsigned servers = 1,
+                                   unsigned further_stages = 0) {
+    return servers * std::max(1u, (timing.latency + further_stages + timing.interval - 1) / timing.interval);
+}
+
+/// Most triangles that Get Triangle has begun and of which no part has reached Pass or Tessellate: one in Get Triangle,
+/// and one part each in the places of the units between. So many wait in Pass or Tessellate for their parts.
+constexpr unsigned triangles_ahead_of_parts(const Design& design) {
+    const Timing& t = design.timing;
+    return 1 + t.calculate_new_p.buffer + register_stages(t.calculate_new_p) + t.displace_vertex.buffer +
+           register_stages(t.displace_vertex, 1, t.displacement_map.latency) + t.transform.buffer +
+           register_stages(t.transform, design.transform_pipelines) + 1;
+}
+
+/// Wires of a triangle's tag: enough to tell apart all that Get Triangle has begun and Pass or Tessellate not decided:
+/// those that wait there, one that Get Triangle still offers, and those whose parts have begun to come.
+constexpr int tag_bits(const Design& design) {
+    const unsigned triangles = triangles_ahead_of_parts(design) + 1 + design.timing.pass_or_tessellate.buffer;
+    int bits = 1;
+    while (bits < 32 && std::uint64_t{1} << bits < triangles)
+        ++bits;
+    return bits;
+}
+
+/// The same in a run. In functional mode, where a triangle may be overtaken by any number of others while its call
+/// waits, a tag is the pass's number itself.
+constexpr int tag_bits_in_use(const Design& design) {
+    return design.transport == Transport::blocking ? 32 : tag_bits(design);
+}
+
+/// What a unit is built from. `registers` must outlive it, and may change between runs; `design` is read while it is
+/// built.
+struct UnitContext {
+    CycleScheduler& clock;
+    const datapath::Registers& registers;
+    const Design& design;
+
+    const Timing& timing() const { return design.timing; }
+};
+
+}  // namespace tessera

@@ -1,0 +1,71 @@
+#pragma once
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace tessera {
+
+/// A queue of fixed capacity, oldest item first. Allocates only when constructed or grown. A popped item stays in its
+/// place until another is pushed there, so items may own storage that is reused. An empty ring begins again at its
+/// first place: one that is hardly used stays in the host's cache.
+template <class Item>
+class Ring {
+  public:
+    explicit Ring(std::size_t capacity = 0) : items_(capacity), capacity_(capacity) {}
+
+    bool empty() const { return size_ == 0; }
+    bool full() const { return size_ == capacity_; }
+    std::size_t size() const { return size_; }
+    std::size_t capacity() const { return capacity_; }
+
+    /// Item k, the oldest being 0. At size(): the place that the next push takes.
+    Item& at(std::size_t k) { return items_[place(k)]; }
+    const Item& at(std::size_t k) const { return items_[place(k)]; }
+    Item& front() { return items_[first_]; }
+    const Item& front() const { return items_[first_]; }
+    /// The item pushed last, even if it has been popped since.
+    Item& back() { return items_[last_]; }
+    const Item& back() const { return items_[last_]; }
+
+    /// Not when full. Returns the new item, which is as the place was left: to be filled in.
+    Item& push() { return items_[last_ = place(size_++)]; }
+    void push(const Item& item) { push() = item; }
+    /// Not when empty.
+    void pop() { first_ = --size_ == 0 ? 0 : place(1); }
+
+    /// At the other ends: a new oldest item; the last one leaves.
+    Item& push_front() {
+        first_ = (first_ == 0 ? capacity_ : first_) - 1;
+        ++size_;
+        return items_[first_];
+    }
+    void pop_back() {
+        if (--size_ == 0)
+            first_ = 0;
+    }
+
+    /// Twice the capacity, at least one; the items stay in their order.
+    void grow() {
+        std::vector<Item> larger(capacity_ == 0 ? 1 : 2 * capacity_);
+        for (std::size_t k = 0; k < size_; ++k)
+            larger[k] = std::move(at(k));
+        items_.swap(larger);
+        capacity_ = items_.size();
+        first_ = 0;
+        last_ = size_ == 0 ? 0 : size_ - 1;
+    }
+
+  private:
+    std::size_t place(std::size_t k) const {
+        const std::size_t sum = first_ + k;
+        return sum < capacity_ ? sum : sum - capacity_;
+    }
+
+    std::vector<Item> items_;
+    std::size_t capacity_;
+    std::size_t first_ = 0;
+    std::size_t last_ = 0;
+    std::size_t size_ = 0;
+};
+
+}  // namespace tessera

@@ -1,0 +1,59 @@
+#pragma once
+#include <cstdint>
+
+#include "modules/timing/random_stalls.h"
+
+namespace tessera {
+
+/// A unit's pipeline, in cycles.
+struct UnitTiming {
+    unsigned latency = 1;   ///< from an item's start to its result, at least 1
+    unsigned interval = 1;  ///< between the starts of two items, at least 1
+    unsigned buffer = 1;    ///< items that may wait at its input, at least 1
+};
+
+/// A memory's ports, in cycles.
+struct MemoryTiming {
+    unsigned ports = 1;    ///< entries a cycle, from each bank
+    unsigned banks = 1;    ///< interleaved entry by entry
+    unsigned latency = 1;  ///< from an entry's address to its data
+    unsigned width = 0;    ///< bytes a port moves in a cycle; 0: a whole entry
+    unsigned buffer = 1;   ///< requests that may wait, at least 1
+};
+
+/// Off-chip memory, as the Triangle Queue sees it.
+struct OffChipTiming {
+    unsigned latency = 40;    ///< cycles from a request's last byte to its answer
+    unsigned bandwidth = 16;  ///< bytes a cycle, both directions together
+    unsigned buffer = 4;      ///< requests that may wait, at least 1
+};
+
+/// Clock period and the datasheet figures of every unit and memory. The defaults are the paper's design where it says
+/// (one port on the Summed Height Table: four cycles a rectangle; tests one edge after another) and plain choices
+/// where it is silent. The only place where they are declared: configuration and reports refer to this.
+struct Timing {
+    unsigned cycle_picoseconds = 5000;  ///< the clock's period
+    UnitTiming get_triangle{1, 1, 1};
+    UnitTiming calculate_new_p{1, 1, 1};
+    UnitTiming displace_vertex{6, 1, 1};  ///< normalise and multiply-accumulate; the map read comes on top
+    UnitTiming transform{20, 1, 1};
+    UnitTiming calculate_new_u{1, 1, 1};
+    UnitTiming tex_coord_test{1, 1, 1};
+    UnitTiming summed_height_test{3, 1, 1};  ///< differences, addresses, compare; the table reads come on top
+    UnitTiming normal_test{9, 1, 1};  ///< normalise, bump, normalise, compare; the map read comes on top
+    unsigned highlight_test_latency =
+        1;  ///< N'.H: on top of the Normal Test's, in a design with a Highlight Test
+    UnitTiming view_test{1, 1, 1};
+    UnitTiming pass_or_tessellate{1, 1, 8};  ///< buffer: triangles of which one branch has come
+    UnitTiming tessellation{1, 1, 1};
+    UnitTiming triangle_queue{1, 1, 1};
+    UnitTiming lighting{4, 1, 1};
+    unsigned results_buffer = 4;  ///< finished tests of an edge that wait for its other tests
+    MemoryTiming displacement_map;
+    MemoryTiming normal_map;
+    MemoryTiming summed_height_table;
+    OffChipTiming off_chip_memory;
+    StallParameters stalls;
+};
+
+}  // namespace tessera

@@ -1,0 +1,138 @@
+#include "modules/units/edge_tests/collect_tests.h"
+
+#include <algorithm>
+
+#include "modules/datapath/edge_tests.h"
+#include "modules/stage/signals.h"
+
+namespace tessera {
+namespace {
+
+void set(std::uint8_t& tests, bool decided, datapath::TestBits bit) {
+    if (decided)
+        tests = static_cast<std::uint8_t>(tests | bit);
+}
+
+void add(TestedEdge& edge, const NormalResult& result) {
+    edge.found.normal = result.n;
+    edge.found.tangent = result.tangent;
+    edge.found.displaced_normal = result.displaced_n;
+    edge.displaced_n_i = result.displaced_n_i;
+    set(edge.found.tests, result.normal, datapath::normal_bit);
+    set(edge.found.tests, result.highlight, datapath::highlight_bit);
+}
+void add(TestedEdge& edge, const TexCoordResult& result) {
+    edge.found.texture = result.t_ij;
+    set(edge.found.tests, result.tex_coord, datapath::tex_coord_bit);
+    set(edge.found.tests, result.generation, datapath::generation_bit);
+}
+void add(TestedEdge& edge, const HeightResult& result) {
+    set(edge.found.tests, result.summed_height, datapath::summed_height_bit);
+}
+void add(TestedEdge& edge, const ViewResult& result) {
+    set(edge.found.tests, result.view, datapath::view_bit);
+}
+
+}  // namespace
+
+CollectTests::CollectTests(const sc_core::sc_module_name& name, const UnitContext& context)
+    : Unit(name, context.clock), registers_(context.registers) {
+    add_input(context, from_normal_test);
+    add_input(context, from_tex_coord_test);
+    add_input(context, from_summed_height_test);
+    add_input(context, from_view_test);
+    to_pass_or_tessellate.clocked_by(context, *this);
+}
+
+template <class Result>
+void CollectTests::add_input(const UnitContext& context, StreamInput<Result>& input) {
+    input.template register_b_transport<&CollectTests::b_transport<Result>>(*this);
+    input.clocked_by(context.clock, *this, context.timing().results_buffer, context.timing().stalls);
+    input.waits_for_all(empty_inputs_);
+}
+
+template <class Result>
+void CollectTests::b_transport(Result& result, sc_core::sc_time& delay) {
+    Decided& decided = decided_.find_or_open(result.tag.triangle);
+    decided.edge.tag = result.tag;
+    add(decided.edge, result);
+    decided.latest = std::max(decided.latest, delay);
+    if (++decided.tests < 4)
+        return;
+    delay = decided.latest;
+    TestedEdge edge = decided.edge;
+    decided_.close(result.tag.triangle);
+    to_pass_or_tessellate.transport(edge, delay);
+}
+
+/// Adds what a test has decided of the edge that leaves.
+template <class Result>
+void CollectTests::take(StreamInput<Result>& input) {
+    const PartTag& tag = input.front().tag;
+    if (tag.triangle != leaving_.tag.triangle || tag.part != leaving_.tag.part)
+        SC_REPORT_ERROR("tessera/collect_tests", "the tests decided different edges");
+    add(leaving_, input.front());
+    input.pop();
+}
+
+void CollectTests::step() {
+    const std::uint64_t cycle = now();
+    for (;;) {
+        if (leaves_) {
+            if (!to_pass_or_tessellate.deliver(leaving_))
+                break;
+            leaves_ = false;
+            activity_.item_out(cycle);
+        }
+        if (empty_inputs_ > 0)
+            break;
+        leaving_ = {};
+        leaving_.tag = from_view_test.front().tag;
+        take(from_normal_test);
+        take(from_tex_coord_test);
+        take(from_summed_height_test);
+        take(from_view_test);
+        leaves_ = true;
+        activity_.item_in(cycle);
+    }
+    if (leaves_)
+        activity_.set(cycle, State::blocked, to_pass_or_tessellate.consumer());
+    else
+        activity_.set(cycle, State::starved);
+}
+
+std::string CollectTests::describe_contents() const {
+    const auto count = [](const auto& input, const char* test) {
+        return input.empty() ? std::string{} : std::to_string(input.size()) + " from " + test + ", ";
+    };
+    std::string text = count(from_normal_test, "normal_test") + count(from_tex_coord_test, "tex_coord_test") +
+                       count(from_summed_height_test, "summed_height_test") +
+                       count(from_view_test, "view_test");
+    if (leaves_)
+        text += "1 edge that Pass or Tessellate does not take, ";
+    return text.empty() ? text : text.substr(0, text.size() - 2);
+}
+
+/// Shows the edge that left last.
+void CollectTests::trace_signals(Signals& signals) const {
+    Unit::trace_signals(signals);
+    signals.input(from_normal_test, "from_normal_test");
+    signals.input(from_tex_coord_test, "from_tex_coord_test");
+    signals.input(from_summed_height_test, "from_summed_height_test");
+    signals.input(from_view_test, "from_view_test");
+    if (signals.when(signals.changed("collected", activity_.items_in()) && (leaves_ || signals.running()))) {
+        const unsigned tests = leaving_.found.tests;
+        signals.item("out", leaving_);
+        signals.flag("normal", (tests & datapath::normal_bit) != 0);
+        signals.flag("summed_height", (tests & datapath::summed_height_bit) != 0);
+        signals.flag("view", (tests & datapath::view_bit) != 0);
+        signals.flag("tex_coord", (tests & datapath::tex_coord_bit) != 0);
+        signals.flag("generation", (tests & datapath::generation_bit) != 0);
+        if (registers_.tests.highlight_test)
+            signals.flag("highlight", (tests & datapath::highlight_bit) != 0);
+        signals.flag("split", datapath::split_decision(static_cast<std::uint8_t>(tests)));
+    }
+    signals.pulse("edge", activity_.items_in());
+}
+
+}  // namespace tessera

@@ -1,0 +1,66 @@
+#pragma once
+#include <array>
+#include <systemc>
+
+#include "modules/sockets/items.h"
+#include "modules/sockets/memory_port.h"
+#include "modules/stage/per_triangle.h"
+#include "modules/stage/stage.h"
+
+namespace tessera {
+
+/// Normal Test (paper figure 8, 2.2, 3.1.4): Calculate New N, Normalise, Bump, and the comparison of the displaced
+/// normals. And, in the same place because it needs the same three normals and their differences, the optional
+/// Highlight Test (golden/ALGORITHM.md 4.6), which asks for more where the Phong highlight is.
+///
+/// In:   NormalOperands: edges; of a base triangle its vertices first, which are bumped and end here.
+/// Out:  NormalResult: N_ij, T_ij, N'_ij, the tests' bits, and N' of the edge's first end.
+/// Memory: one read of the normal map per edge or vertex.
+/// Arithmetic: add, shift by 1; the pipeline's existing normalise and bump units; six absolute differences and
+///       compares, one OR. The Highlight Test adds three dot products with one vector, six compares with another
+///       threshold and three with a cosine; the differences are the Normal Test's.
+/// Timing: one edge or vertex per interval; latency 9 plus the map read, interval 1 by default. A Highlight Test adds
+///       its own latency, 1 by default, and nothing to the interval.
+///         An edge of a base triangle starts when the map entries of all corners that come to the unit have come.
+/// State: a base triangle's tag, and N' of its corners.
+/// Waits for Calculate New U and the normal map. Held back by the collection of the tests.
+class NormalTest : public Stage<NormalOperands, NormalResult> {
+  public:
+    StreamInput<NormalOperands> input{"input"};
+    StreamOutput<NormalResult> output{"output"};
+    MemoryPort normal_map;
+
+    /// takes: the vertices and edges of a triangle that come to the unit (parts_for_tests).
+    NormalTest(const sc_core::sc_module_name& name, const UnitContext& context,
+               Parts takes = parts_for_tests(0, 1));
+
+    const datapath::Saturations& saturations() const { return saturations_; }
+
+    void trace_signals(Signals& signals) const override;
+
+  protected:
+    /// Of a base triangle.
+    struct Corners {
+        Parts bumped = 0;
+        std::array<datapath::Direction, 3> displaced_n;
+    };
+
+    bool may_start(const NormalOperands& part) const override;
+    void reads(const NormalOperands& part, Reads& reads) const override;
+    NormalResult process(const NormalOperands& part, const Entries& entries) override;
+    void trace_processed(Signals& signals, const NormalOperands& part,
+                         const NormalResult& result) const override;
+
+    datapath::Direction bumped(const datapath::Direction& n, const datapath::Direction& t, int handedness,
+                               std::uint64_t entry);
+    NormalResult test_edge(const NormalOperands& edge, std::uint64_t entry);
+    void take_corners(const NormalOperands& edge);
+
+    const datapath::Registers& registers_;
+    Parts takes_;
+    PerTriangle<Corners> corners_{1};
+    std::array<datapath::Direction, 3> compared_{};  // N'_i, N'_j, N'_ij of the part worked on last
+    datapath::Saturations saturations_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,69 @@
+#include "modules/units/edge_tests/summed_height.h"
+
+#include "modules/datapath/edge_tests.h"
+#include "modules/stage/stage_steps.h"
+
+namespace tessera {
+
+SummedHeightTest::SummedHeightTest(const sc_core::sc_module_name& name, const UnitContext& context)
+    : Stage(name, context, context.timing().summed_height_test, 1,
+            context.timing().summed_height_table.latency),
+      summed_height_table("summed_height_table", context.registers.summed_height_table.entry_bytes,
+                          context.design.direct_memory),
+      registers_(context.registers) {
+    takes_from(context, input);
+    delivers_to(context, output);
+    reads_through(summed_height_table, 3);
+}
+
+/// Of the edge's three rectangles.
+datapath::RectangleSize SummedHeightTest::size(const HeightOperands& edge) const {
+    return rectangle_size(edge.t_i, edge.t_j, registers_.map, registers_.formats);
+}
+
+void SummedHeightTest::reads(const HeightOperands& edge, Reads& reads) const {
+    if (!registers_.tests.summed_height_test)
+        return;
+    const datapath::RectangleSize its_size = size(edge);
+    for (const datapath::TexCoord& centre : {edge.t_i, edge.t_j, edge.t_ij}) {
+        reads.add_request();
+        rectangle_entries(centred_rectangle(centre, its_size, registers_.map, registers_.formats),
+                          registers_.map, registers_.summed_height_table,
+                          [&](std::uint64_t address, bool) { reads.add_entry(address); });
+    }
+}
+
+HeightResult SummedHeightTest::process(const HeightOperands& edge, const Entries& entries) {
+    if (!registers_.tests.summed_height_test)
+        return {edge.tag, false};
+    const datapath::RectangleSize its_size = size(edge);
+    unsigned sum = 0;
+    unsigned next = 0;
+    for (const datapath::TexCoord& centre : {edge.t_i, edge.t_j, edge.t_ij})
+        sums_[sum++] = rectangle_sum(centred_rectangle(centre, its_size, registers_.map, registers_.formats),
+                                     registers_.map, registers_.summed_height_table, registers_.formats,
+                                     [&](std::uint64_t) { return entries[next++]; });
+    return {edge.tag, summed_height_test(sums_[0], sums_[1], sums_[2], its_size, registers_.tests)};
+}
+
+void SummedHeightTest::trace_signals(Signals& signals) const {
+    Stage::trace_signals(signals);
+    signals.value("threshold", 64, registers_.tests.summed_height_threshold);
+}
+
+void SummedHeightTest::trace_started(Signals& signals, const HeightOperands& edge) const {
+    const datapath::RectangleSize its_size = size(edge);
+    signals.value("width", 16, its_size.width);
+    signals.value("height", 16, its_size.height);
+}
+
+void SummedHeightTest::trace_processed(Signals& signals, const HeightOperands& edge,
+                                       const HeightResult&) const {
+    signals.value("sum_i", 48, sums_[0]);
+    signals.value("sum_j", 48, sums_[1]);
+    signals.value("sum_ij", 48, sums_[2]);
+    signals.value("difference", 64, datapath::summed_height_difference(sums_[0], sums_[1], sums_[2]));
+    signals.value("limit", 64, summed_height_limit(size(edge), registers_.tests));
+}
+
+}  // namespace tessera

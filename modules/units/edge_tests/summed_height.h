@@ -1,0 +1,46 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <systemc>
+
+#include "modules/datapath/rectangle.h"
+#include "modules/sockets/items.h"
+#include "modules/sockets/memory_port.h"
+#include "modules/stage/stage.h"
+
+namespace tessera {
+
+/// Summed Height Test (paper figure 8, 2.3, 3.1.3): does the average height around the midpoint differ from that
+/// around the ends?
+///
+/// In:   HeightOperands. Out: HeightResult.
+/// Memory: three rectangles an edge on the Summed Height Table, four reads each; up to nine where a rectangle wraps
+///         around a repeated map. A rectangle is one request.
+/// Arithmetic: subtract, shift, add, compare; sums modulo 2^n. With the area threshold two multiplications.
+/// Timing: one edge per interval, latency 3, interval 1 by default, plus the table reads: with one port a rectangle
+///         takes four cycles, an edge 12, a triangle 36.
+/// Waits for Calculate New U and the Summed Height Table; held back by the collection of the tests.
+class SummedHeightTest : public Stage<HeightOperands, HeightResult> {
+  public:
+    StreamInput<HeightOperands> input{"input"};
+    StreamOutput<HeightResult> output{"output"};
+    MemoryPort summed_height_table;
+
+    SummedHeightTest(const sc_core::sc_module_name& name, const UnitContext& context);
+
+    void trace_signals(Signals& signals) const override;
+
+  protected:
+    void reads(const HeightOperands& edge, Reads& reads) const override;
+    HeightResult process(const HeightOperands& edge, const Entries& entries) override;
+    void trace_started(Signals& signals, const HeightOperands& edge) const override;
+    void trace_processed(Signals& signals, const HeightOperands& edge,
+                         const HeightResult& result) const override;
+
+    datapath::RectangleSize size(const HeightOperands& edge) const;
+
+    const datapath::Registers& registers_;
+    std::array<std::uint64_t, 3> sums_{};  // around t_i, t_j, t_ij of the edge decided last
+};
+
+}  // namespace tessera

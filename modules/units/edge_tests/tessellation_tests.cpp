@@ -1,0 +1,33 @@
+#include "modules/units/edge_tests/tessellation_tests.h"
+
+namespace tessera {
+
+TessellationTests::Units TessellationTests::make(const UnitContext& context, UnitFactory& factory,
+                                                 unsigned number) {
+    const Parts takes = parts_for_tests(number, context.design.tests_units);
+    Units made;
+    made.calculate_new_u = factory.calculate_new_u("calculate_new_u", context);
+    made.tex_coord_test = factory.tex_coord_test("tex_coord_test", context);
+    made.summed_height_test = factory.summed_height_test("summed_height_test", context);
+    made.normal_test = factory.normal_test("normal_test", context, takes);
+    made.view_test = factory.view_test("view_test", context, takes);
+    made.collect_tests = factory.collect_tests("collect_tests", context);
+    return made;
+}
+
+TessellationTests::TessellationTests(const sc_core::sc_module_name& name, const UnitContext& context,
+                                     UnitFactory& factory, unsigned number)
+    : sc_module(name), made_(make(context, factory, number)) {}
+
+void TessellationTests::wire() {
+    calculate_new_u.to_tex_coord_test.bind(tex_coord_test.input);
+    calculate_new_u.to_summed_height_test.bind(summed_height_test.input);
+    calculate_new_u.to_normal_test.bind(normal_test.input);
+    calculate_new_u.to_view_test.bind(view_test.input);
+    tex_coord_test.output.bind(collect_tests.from_tex_coord_test);
+    summed_height_test.output.bind(collect_tests.from_summed_height_test);
+    normal_test.output.bind(collect_tests.from_normal_test);
+    view_test.output.bind(collect_tests.from_view_test);
+}
+
+}  // namespace tessera

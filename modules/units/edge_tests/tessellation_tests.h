@@ -1,0 +1,61 @@
+#pragma once
+#include <array>
+#include <memory>
+#include <systemc>
+
+#include "modules/timing/design.h"
+#include "modules/unit_factory.h"
+
+namespace tessera {
+
+/// Tessellation Tests (paper figures 7 and 8): decides for each edge, from its two ends alone.
+///
+///     edge ──> Calculate New U ──┬──> Tex Coord Test ───────┐
+///                                ├──> Summed Height Test ───┼──> Pass or Tessellate
+///                                ├──> Normal Test ──────────┤
+///              P's ──────────────┴──> View Test ────────────┘
+///
+/// In:   calculate_new_u.input: edges; vertices of a base triangle. view_test.from_transform: their screen positions.
+/// Out:  collect_tests.to_pass_or_tessellate: TestedEdge.
+/// Of three units, each takes one edge of a triangle and, of a base triangle, the two vertices it joins
+/// (parts_for_tests).
+/// Timing: edges go one after another through one pipeline; bound by the Summed Height Test's table reads. A design has
+///       one such unit or three, one for each edge of a triangle, which share the memories.
+/// Waits for Transform (base triangles), the Summed Height Table, the normal map; held back by Pass or Tessellate.
+class TessellationTests : public sc_core::sc_module {
+    struct Units {
+        std::unique_ptr<CalculateNewU> calculate_new_u;
+        std::unique_ptr<TexCoordTest> tex_coord_test;
+        std::unique_ptr<SummedHeightTest> summed_height_test;
+        std::unique_ptr<NormalTest> normal_test;
+        std::unique_ptr<ViewTest> view_test;
+        std::unique_ptr<CollectTests> collect_tests;
+    };
+    const Units made_;
+
+  public:
+    CalculateNewU& calculate_new_u = *made_.calculate_new_u;
+    TexCoordTest& tex_coord_test = *made_.tex_coord_test;
+    SummedHeightTest& summed_height_test = *made_.summed_height_test;
+    NormalTest& normal_test = *made_.normal_test;
+    ViewTest& view_test = *made_.view_test;
+    CollectTests& collect_tests = *made_.collect_tests;
+
+    /// number: of the unit, from 0.
+    TessellationTests(const sc_core::sc_module_name& name, const UnitContext& context, UnitFactory& factory,
+                      unsigned number);
+
+    /// Binds the units inside to one another. To be called once.
+    void wire();
+
+    /// In the order of figure 8.
+    std::array<Unit*, 6> units() {
+        return {&calculate_new_u, &tex_coord_test, &summed_height_test,
+                &normal_test,     &view_test,      &collect_tests};
+    }
+
+  private:
+    static Units make(const UnitContext& context, UnitFactory& factory, unsigned number);
+};
+
+}  // namespace tessera

@@ -1,0 +1,59 @@
+#pragma once
+#include <array>
+#include <systemc>
+
+#include "modules/sockets/items.h"
+#include "modules/stage/per_triangle.h"
+#include "modules/stage/stage.h"
+
+namespace tessera {
+
+/// View Test (paper figure 8, 2.4, 3.1.1): is the edge long enough on the screen to be worth splitting?
+///
+/// In:   ViewOperands; of a base triangle the three ScreenCorners besides. Out: ViewResult. An edge with one end on or
+///       behind the near plane counts as long, with both as invisible.
+/// Arithmetic: two subtractions, absolute values, add, compare.
+/// Timing: one edge per interval; latency 1, interval 1 by default.
+/// State: for each base triangle under way between Transform and Pass or Tessellate its tag and the corners that have
+///        come: as many places as Pass or Tessellate has, and two for what waits at its input.
+/// Waits for Calculate New U, and for a base triangle's edge until Transform has sent the screen positions of its
+/// vertices, which it takes at any time. Held back by the collection of the tests.
+class ViewTest : public Stage<ViewOperands, ViewResult> {
+  public:
+    StreamInput<ViewOperands> input{"input"};
+    StreamInput<ScreenCorner> from_transform{"from_transform"};
+    StreamOutput<ViewResult> output{"output"};
+
+    /// takes: the vertices and edges of a triangle that come to the unit (parts_for_tests).
+    ViewTest(const sc_core::sc_module_name& name, const UnitContext& context, Parts takes);
+
+    void trace_signals(Signals& signals) const override;
+
+  protected:
+    /// Of a base triangle: which corners have come, and where they are; functional mode: since when.
+    struct Corners {
+        Parts come = 0;
+        std::array<datapath::ScreenPosition, 3> screen;
+        sc_core::sc_time since;
+    };
+    struct Ends {
+        datapath::ScreenPosition i, j;
+    };
+
+    void take_corner(ScreenCorner& corner, sc_core::sc_time& when);
+    void step() override;
+    bool may_start(const ViewOperands& edge) const override;
+    sc_core::sc_time may_start_after(const ViewOperands& edge) const override;
+    const sc_core::sc_object* awaited_unit() const override { return transform_; }
+    ViewResult process(const ViewOperands& edge, const Entries& entries) override;
+    void trace_processed(Signals& signals, const ViewOperands& edge, const ViewResult& result) const override;
+    void end_of_elaboration() override;
+
+    const datapath::Registers& registers_;
+    Parts last_edge_;  // that comes of a triangle
+    PerTriangle<Corners> corners_;
+    Ends ends_;  // of the edge decided last
+    const sc_core::sc_object* transform_ = nullptr;
+};
+
+}  // namespace tessera
