@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# Sourced by the scripts beside it: where the project lies, and one way to configure and build a preset.
+# Sourced by the scripts: where the project lies, one way to configure and build a preset, and steps with a summary.
 
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.." && pwd)
 cores=$(nproc)
@@ -46,4 +46,27 @@ build() {
         flock 9
         cmake --build "$folder" --parallel "$cores" "${targets[@]}"
     ) 9>"$folder/lock"
+}
+
+# What a script says of itself above its code, with the first line on its own a summary.
+explain() {
+    sed -E '1d; /^(set |"""$)/Q; s/^(# ?|""")//' "$1"
+}
+
+summary=()
+failed_steps=()
+# step NAME COMMAND...: one that fails does not keep the others from running.
+step() {
+    local name=$1 begin=$SECONDS verdict=passed line
+    shift
+    printf '\n======== %s ========\n' "$name"
+    "$@" || { verdict=FAILED && failed_steps+=("$name"); }
+    printf -v line '%-7s %5d s  %s' "$verdict" "$((SECONDS - begin))" "$name"
+    summary+=("$line")
+    printf -- '-------- %s\n' "$line"
+}
+
+print_summary() {
+    printf '\n======== summary: %d min ========\n' "$((SECONDS / 60))"
+    printf '%s\n' "${summary[@]}"
 }

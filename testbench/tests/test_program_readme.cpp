@@ -50,7 +50,7 @@ Trial trial_of(const std::string& command) {
     const auto says = [&](const char* words) { return std::regex_search(command, std::regex(words)); };
     if (says("^(git|sudo|apt|apt-get|docker|cd) "))
         return Trial::foreign;
-    if (says("^(\\.ci/|scripts/(check_|install)|scripts/figures$)"))
+    if (says("^(\\.ci/|scripts/(check|install)|scripts/figures$)"))
         return Trial::parse;
     if (says("^cmake .*--target "))
         return Trial::build;
@@ -150,11 +150,44 @@ TEST_CASE("every command of the folders' READMEs works, and every file they link
 }
 
 TEST_CASE("every script parses") {
-    for (const char* const folder : {"scripts", ".ci"}) {
+    for (const char* const folder : {"scripts", "scripts/checks", ".ci"}) {
         for (const auto& entry : fs::directory_iterator(source_folder() / folder)) {
-            if (entry.is_regular_file() && entry.path().filename() != "common.sh")
+            if (entry.is_regular_file() && entry.path().extension().empty())
                 parse_script(entry.path());
         }
+    }
+}
+
+TEST_CASE("scripts/check lists its checks and runs those named, with their options") {
+    const Checkout checkout;
+    const fs::path checks = checkout.root() / "scripts/checks";
+    write_all(checks / "failing", "#!/bin/sh\n# Fails.\nset -e\necho \"failing $*\"\nexit 3\n");
+    fs::permissions(checks / "failing", fs::perms::owner_all);
+
+    const ProgramEnd help = checkout.run("scripts/check --help");
+    CHECK(help.exit_code == 0);
+    CHECK_THAT(help.out, Contains("  failing      Fails.\n") && Contains("\n  all  "));
+    for (const auto& entry : fs::directory_iterator(checks)) {
+        if (entry.is_regular_file())
+            CHECK_THAT(help.out, Contains("\n  " + entry.path().filename().string() + " "));
+    }
+
+    const ProgramEnd one = checkout.run("scripts/check failing --seconds 3 obj");
+    CHECK(one.exit_code == 3);
+    CHECK(one.out == "failing --seconds 3 obj\n");
+    const ProgramEnd both = checkout.run("scripts/check failing rooms");
+    INFO(both.text());
+    CHECK(both.exit_code == 1);
+    CHECK(std::regex_search(both.out,
+                            std::regex("summary: \\d+ min =+\nFAILED .* failing\npassed .* rooms\n$")));
+    CHECK(checkout.run("scripts/check failing --help").out == "Fails.\n");
+
+    for (const char* const words : {"nothing", "failing rooms nothing", "--nothing"}) {
+        const ProgramEnd unknown = checkout.run("scripts/check " + std::string(words));
+        INFO(unknown.text());
+        CHECK(unknown.exit_code == 2);
+        CHECK(unknown.out.empty());
+        CHECK_THAT(unknown.err, Contains("nothing") && Contains("  failing  "));
     }
 }
 

@@ -1,4 +1,4 @@
-"""Lines and branches of modules/ and golden/ that the tests executed; see scripts/coverage."""
+"""Lines and branches of modules/ and golden/ that the tests executed; see scripts/checks/coverage."""
 import json
 import os
 import subprocess
@@ -53,7 +53,7 @@ def count(root, folder):
     merged = folder / "counts.profdata"
     counts = sorted(str(path) for path in (folder / "counts").glob("*.profraw"))
     if not counts:
-        sys.exit(f"scripts/coverage: no counts in {folder}/counts; run scripts/coverage without --report-only")
+        sys.exit(f"scripts/check coverage: no counts in {folder}/counts; run scripts/check coverage without --report-only")
     subprocess.run(["llvm-profdata", "merge", "--sparse", "-o", merged, *counts], check=True)
     programs = sorted(path for path in (folder / "testbench").rglob("*")
                       if path.is_file() and path.parent.name in ("tests", "program")
@@ -152,11 +152,11 @@ def main():
     faults = [f"{what}: {value:.2f} %, wanted are {WANTED} %" for what, value in (("lines", lines), ("branches", branches))
               if value < WANTED]
     if unexplained:
-        faults.append(f"{len(unexplained)} lines are not wholly reached, and scripts/coverage_report/unreached.toml does "
+        faults.append(f"{len(unexplained)} lines are not wholly reached, and scripts/checks/coverage_report/unreached.toml does "
                       "not say why")
-    faults += [f"scripts/coverage_report/unreached.toml: reached, or gone: {entry}" for entry in reasons.unused()]
+    faults += [f"scripts/checks/coverage_report/unreached.toml: reached, or gone: {entry}" for entry in reasons.unused()]
     for fault in faults:
-        print(f"scripts/coverage: {fault}", file=sys.stderr)
+        print(f"scripts/check coverage: {fault}", file=sys.stderr)
     return 1 if faults else 0
 
 
