@@ -30,7 +30,8 @@ void promise_complete(const HeightMap& map) {
                 "a repair that is not a line of words");
 }
 
-/// The content decides the reader, so one check serves the three formats; their corpora differ.
+}  // namespace
+
 void check_map(std::string_view bytes) {
     const std::filesystem::path& path = file_of(bytes);
     try {
@@ -38,18 +39,6 @@ void check_map(std::string_view bytes) {
     } catch (const InputError& error) {
         promise_message(error.what(), path.string());
     }
-}
-
-}  // namespace
-
-void check_exr(std::string_view bytes) {
-    check_map(bytes);
-}
-void check_png(std::string_view bytes) {
-    check_map(bytes);
-}
-void check_pgm(std::string_view bytes) {
-    check_map(bytes);
 }
 
 }  // namespace tessera::fuzz
