@@ -16,9 +16,9 @@ namespace tessera {
 /// repair_non_finite.h for the others; equal for a constant map. Subnormal numbers are kept and counted.
 ///
 /// Refused: deep data, several parts, a subsampled channel, missing channel, pixels missing or undecodable, no finite
-/// value, a header that lacks what the format requires, chunks of more than 32 MiB or an image of more than 1 GiB when
-/// decoded, all channels together. Read, with a remark in `repairs`: a damaged offset table, if all chunks are found
-/// without it. EXR has no checksum: a changed byte in uncompressed pixels goes unnoticed.
+/// value, chunks of more than 32 MiB or an image of more than 1 GiB when decoded, all channels together. Read, with a
+/// remark in `repairs`: an offset table that its writer did not finish, a header without an attribute that the format
+/// requires but the map does not need. EXR has no checksum: a changed byte in uncompressed pixels goes unnoticed.
 HeightMap read_exr(const std::filesystem::path& path, const std::string& channel);
 
 }  // namespace tessera

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <string>
 #include <vector>
 
 #include "testbench/common/error.h"
@@ -14,6 +15,7 @@
 
 using namespace tessera;
 using namespace tessera::map_test;
+using namespace std::string_literals;
 using Catch::Contains;
 
 namespace {
@@ -232,6 +234,56 @@ TEST_CASE("an EXR chunk that holds less than its pixels is refused, whatever its
     CHECK_THROWS_WITH(
         read_height_map(folder / "bad.exr"),
         Contains(compression == 0 ? "bytes of pixels of " : "decompress") && Contains("It is damaged"));
+}
+
+TEST_CASE("an EXR file without what its pixels can do without is read with a remark") {
+    const TemporaryFolder folder;
+    ExrImage image = steps();
+    image.tiled = GENERATE(false, true);
+    write_exr(folder / "good.exr", image);
+    const std::string good = read_bytes(folder / "good.exr");
+    const std::size_t chunks = image.tiled ? 9 : 2, table = first_chunk(good, chunks) - 8 * chunks;
+    std::string bad = good;
+    std::string remark;
+    SECTION("offsets") {
+        // All of the table, and its last entry only.
+        const std::size_t missing = GENERATE(true, false) ? chunks : 1;
+        bad.replace(table + 8 * (chunks - missing), 8 * missing, std::string(8 * missing, '\0'));
+        remark = "offset table is incomplete";
+    }
+    SECTION("attributes") {
+        const auto name =
+            GENERATE("displayWindow"s, "pixelAspectRatio"s, "screenWindowCenter"s, "screenWindowWidth"s);
+        bad[bad.find(name)] = 'x';
+        remark = "lacks the required attribute " + name;
+    }
+    write_bytes(folder / "bad.exr", bad);
+    const HeightMap map = read_height_map(folder / "bad.exr");
+    CHECK(map.values == read_height_map(folder / "good.exr").values);
+    REQUIRE(map.repairs.size() == 1);
+    CHECK_THAT(map.repairs[0], Contains(remark));
+}
+
+TEST_CASE("an EXR file without what its pixels need is refused") {
+    const TemporaryFolder folder;
+    write_exr(folder / "good.exr", steps());
+    const std::string good = read_bytes(folder / "good.exr");
+    std::string bad = good, message;
+    SECTION("attributes") {
+        const auto name = GENERATE("channels"s, "compression"s, "dataWindow"s, "lineOrder"s);
+        bad[bad.find(name)] = 'x';
+        message = "'" + name + "' attribute not found";
+    }
+    SECTION("an offset beyond the file") {
+        bad[first_chunk(good, 2) - 5] = 1;
+        message = "offset table";
+    }
+    SECTION("one part, flat pixels") {
+        bad[5] = static_cast<char>(GENERATE(0x08, 0x10));  // deep, several parts
+        message = "OpenEXR cannot read the file";
+    }
+    write_bytes(folder / "bad.exr", bad);
+    CHECK_THROWS_WITH(read_height_map(folder / "bad.exr"), Contains(message));
 }
 
 TEST_CASE("EXR chunks that overlap are refused") {
