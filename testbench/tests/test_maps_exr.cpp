@@ -286,6 +286,27 @@ TEST_CASE("an EXR file without what its pixels need is refused") {
     CHECK_THROWS_WITH(read_height_map(folder / "bad.exr"), Contains(message));
 }
 
+TEST_CASE("EXR attributes that are not as long as they say are refused") {
+    const TemporaryFolder folder;
+    const auto [type, value] = GENERATE(table<std::string, std::string>({
+        {"preview", "\xff\xff\0\0\xff\x3f\0\0"s},
+        {"stringvector", "\xff\xff\xff\x7fhere"s},
+        {"stringvector", "\2\0\0\0abc"s},
+        {"chlist", "\0\0\0"s},
+        {"chlist", "Y\0\2\0"s},
+        {"floatvector", "\0\0\0"s},
+        {"v2f", "\0\0\0\0"s},
+    }));
+    write_exr(folder / "good.exr", steps());
+    std::string bad = read_bytes(folder / "good.exr");
+    constexpr std::size_t magic_and_version = 8;
+    bad.insert(magic_and_version,
+               "extra\0"s + type + '\0' + static_cast<char>(value.size()) + "\0\0\0"s + value);
+    write_bytes(folder / "bad.exr", bad);
+    CHECK_THROWS_WITH(read_height_map(folder / "bad.exr"),
+                      Contains("OpenEXR cannot read the file") && Contains("damaged"));
+}
+
 TEST_CASE("EXR chunks that overlap are refused") {
     const TemporaryFolder folder;
     ExrImage image{64, 64, std::vector<float>(4096, 0.5F)};
