@@ -53,6 +53,9 @@ TEST_CASE("a 16-bit P5 is big-endian, and its first sample may look like white s
     CHECK(map.at(1, 0) == static_cast<float>(0x0a23 / 65535.0));
     CHECK(read_text_as(folder, "b.pgm", "P5 1 1 255\r\n"s).at(0, 0) == eighth_bit(10));
     CHECK(read_text_as(folder, "c.pgm", "P5 2 1 255\n#\n"s).at(0, 0) == eighth_bit('#'));
+    // After CRLF only if the file's size says so.
+    CHECK(read_text_as(folder, "d.pgm", "P5 1 1 255\r\nA"s).at(0, 0) == eighth_bit('A'));
+    CHECK(read_text_as(folder, "e.pgm", "P5 1 1 255\r\nAB"s).at(0, 0) == eighth_bit('\n'));
 }
 
 TEST_CASE("a PGM file with something odd about it is read with a remark") {
@@ -152,6 +155,9 @@ TEST_CASE("colour and alpha in a PNG map: luma, exact where grey, alpha ignored,
     REQUIRE(map.repairs.size() == 2);
     CHECK_THAT(map.repairs[0], Contains("1 texels") && Contains("0.2126 R"));
     CHECK_THAT(map.repairs[1], Contains("1 texels") && Contains("alpha was ignored"));
+
+    write_png(folder / "rgb.png", {3, 1, 8, PNG_COLOR_TYPE_RGB, {255, 0, 0, 0, 255, 0, 0, 0, 255}, {}});
+    CHECK(read_height_map(folder / "rgb.png").values == std::vector<float>{0.2126F, 0.7152F, 0.0722F});
 
     write_png(folder / "ga16.png", {1, 1, 16, PNG_COLOR_TYPE_GRAY_ALPHA, {0x80, 0, 0xff, 0xff}, {}});
     CHECK(read_height_map(folder / "ga16.png").at(0, 0) == static_cast<float>(0x8000 / 65535.0));

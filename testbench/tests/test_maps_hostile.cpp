@@ -252,3 +252,18 @@ TEST_CASE("an EXR file with more channels than can be decoded in reasonable memo
     }
     CHECK(outcome_of(folder / "bad.exr").kind == Outcome::Kind::refused);
 }
+
+TEST_CASE("an EXR file with larger tiles than a map can have is refused") {
+    const TemporaryFolder folder;
+    ExrImage image{8, 8, std::vector<float>(64)};
+    image.tiled = true;
+    write_exr(folder / "a.exr", image);
+    std::string bytes = read_bytes(folder / "a.exr");
+    const std::size_t tiles = bytes.find("tiledesc") + std::string_view("tiledesc?size").size();
+    set_word(bytes, tiles, 4096);
+    write_bytes(folder / "a.exr", bytes);
+    CHECK(outcome_of(folder / "a.exr").kind == Outcome::Kind::loaded);
+    set_word(bytes, tiles, 4097);
+    write_bytes(folder / "a.exr", bytes);
+    CHECK_THAT(outcome_of(folder / "a.exr").message, Catch::Contains("exceeds max size (4097 vs max 4096)"));
+}
