@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <png.h>
 
-#include <algorithm>
 #include <csetjmp>
 #include <cstdint>
 #include <cstdio>
@@ -30,7 +29,10 @@ struct Messages {
 }
 
 void on_warning(png_structp png, png_const_charp message) {
-    static_cast<Messages*>(png_get_error_ptr(png))->warnings.emplace_back(message);
+    constexpr std::size_t most = 8;
+    auto& warnings = static_cast<Messages*>(png_get_error_ptr(png))->warnings;
+    if (warnings.size() < most)
+        warnings.emplace_back(message);
 }
 
 struct Decoder {
@@ -49,7 +51,6 @@ bool decode(png_structp png, png_infop info, std::FILE* file) {
     if (setjmp(png_jmpbuf(png)) != 0)
         return false;
     png_init_io(png, file);
-    png_set_user_limits(png, largest_map_side, largest_map_side);
     // Of the ancillary chunks only tRNS is looked at: a damaged colour profile, or comment, is no reason to refuse.
     png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_WARN_DISCARD);
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
@@ -115,9 +116,8 @@ HeightMap read_png(const std::filesystem::path& path) {
     map.height = static_cast<int>(png_get_image_height(decoder.png, decoder.info));
     map.values.resize(static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height));
     convert(decoder, map);
-    constexpr std::size_t most_warnings = 8;
-    for (std::size_t k = 0; k < std::min(messages.warnings.size(), most_warnings); ++k)
-        map.repairs.push_back(fmt::format("libpng warns: {}.", printable_ascii(messages.warnings[k])));
+    for (const std::string& warning : messages.warnings)
+        map.repairs.push_back(fmt::format("libpng warns: {}.", printable_ascii(warning)));
     const std::uint64_t read = static_cast<std::uint64_t>(std::ftell(file.get()));
     if (read < size)
         map.repairs.push_back(fmt::format("{} bytes after the PNG file's end were ignored.", size - read));
