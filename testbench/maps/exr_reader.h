@@ -7,7 +7,7 @@
 namespace tessera {
 
 /// Reads one channel of an OpenEXR file (single part, scan lines or tiles, every compression of OpenEXR 3.1)
-/// through OpenEXR's core library, which checks what a header claims against the file before it allocates.
+/// through OpenEXR, single-threaded, after check_exr().
 ///
 /// The map is the data window, wherever it lies; the display window is of no interest. Of several levels
 /// (mip or rip map) the finest is read.
@@ -15,10 +15,8 @@ namespace tessera {
 /// values; uint is rounded to float (exact up to 2^24). Range: lowest to highest finite value, see
 /// repair_non_finite.h for the others; equal for a constant map. Subnormal numbers are kept and counted.
 ///
-/// Refused: deep data, several parts, a subsampled channel, missing channel, pixels missing or undecodable, no finite
-/// value, chunks of more than 32 MiB or an image of more than 1 GiB when decoded, all channels together. Read, with a
-/// remark in `repairs`: an offset table that its writer did not finish, a header without an attribute that the format
-/// requires but the map does not need. EXR has no checksum: a changed byte in uncompressed pixels goes unnoticed.
+/// Refused: what check_exr() refuses, a subsampled or missing channel, pixels that cannot be decoded, no finite
+/// value. EXR has no checksum: a changed byte in uncompressed pixels goes unnoticed, here as everywhere.
 HeightMap read_exr(const std::filesystem::path& path, const std::string& channel);
 
 }  // namespace tessera
