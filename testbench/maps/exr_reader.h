@@ -6,8 +6,8 @@
 
 namespace tessera {
 
-/// Reads one channel of an OpenEXR file (versions up to 2, single part, scan lines or tiles, every
-/// compression of libOpenEXR 3.1) through libOpenEXR, single-threaded.
+/// Reads one channel of an OpenEXR file (single part, scan lines or tiles, every compression of OpenEXR 3.1)
+/// through OpenEXR, single-threaded, after check_exr().
 ///
 /// The map is the data window, wherever it lies; the display window is of no interest. Of several levels
 /// (mip or rip map) the finest is read.
@@ -15,9 +15,8 @@ namespace tessera {
 /// values; uint is rounded to float (exact up to 2^24). Range: lowest to highest finite value, see
 /// repair_non_finite.h for the others; equal for a constant map. Subnormal numbers are kept and counted.
 ///
-/// Refused: deep data, several parts, a subsampled channel, missing channel, pixels missing or undecodable,
-/// no finite value, a claim the file cannot hold (exr_header.h). EXR has no checksum: a changed byte in
-/// uncompressed pixels goes unnoticed, here as everywhere.
+/// Refused: what check_exr() refuses, a subsampled or missing channel, pixels that cannot be decoded, no finite
+/// value. EXR has no checksum: a changed byte in uncompressed pixels goes unnoticed, here as everywhere.
 HeightMap read_exr(const std::filesystem::path& path, const std::string& channel);
 
 }  // namespace tessera

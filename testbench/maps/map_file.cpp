@@ -51,20 +51,18 @@ std::string map_file_start(const std::filesystem::path& path, std::size_t count)
     return start;
 }
 
-std::vector<std::uint8_t> map_file_bytes(const std::filesystem::path& path) {
+std::string map_file_bytes(const std::filesystem::path& path) {
     const std::uint64_t size = map_file_size(path);
     if (size > largest_map_file) {
         throw InputError(
-            fmt::format("{}: the map file has {} bytes; PNG and PGM files may have {}. A map of {} x {} "
+            fmt::format("{}: the map file has {} bytes; PGM files may have {}. A map of {} x {} "
                         "texels fits into that, so save it without padding or comments.",
                         path.string(), size, largest_map_file, largest_map_side, largest_map_side));
     }
-    std::ifstream file = open_file(path);
-    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
-    file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-    if (static_cast<std::uint64_t>(file.gcount()) != size) {
+    std::string bytes = map_file_start(path, static_cast<std::size_t>(size));
+    if (bytes.size() != size) {
         throw InputError(fmt::format("{}: only {} of the map file's {} bytes could be read.", path.string(),
-                                     file.gcount(), size));
+                                     bytes.size(), size));
     }
     return bytes;
 }

@@ -4,12 +4,11 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace tessera {
 
-/// Largest PNG or PGM file, read into memory whole. The largest PNG of 4096 x 4096 texels (16 bit RGBA,
-/// incompressible) has 128 MiB, the largest tidy P2 file 96 MiB. EXR files are read piecemeal: no limit.
+/// Largest PGM file, read into memory whole. The largest tidy P2 file of 4096 x 4096 texels has 96 MiB. EXR and PNG
+/// files are read piecemeal: no limit.
 inline constexpr std::uint64_t largest_map_file = 192ULL << 20;
 
 /// The regular file's size in bytes. Throws InputError if there is none, or it is a directory, pipe, ...
@@ -19,7 +18,7 @@ std::uint64_t map_file_size(const std::filesystem::path& path);
 std::string map_file_start(const std::filesystem::path& path, std::size_t count);
 
 /// The whole file. Throws InputError beyond largest_map_file.
-std::vector<std::uint8_t> map_file_bytes(const std::filesystem::path& path);
+std::string map_file_bytes(const std::filesystem::path& path);
 
 /// Throws InputError unless both sides are in 1..largest_map_side. `what` begins the sentence: a file's name
 /// or "the built-in map".

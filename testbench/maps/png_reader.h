@@ -13,9 +13,9 @@ namespace tessera {
 /// exactly R where R = G = B; other texels are counted in `repairs`. Alpha is ignored; texels that are not
 /// opaque are counted in `repairs`.
 ///
-/// Refused: every CRC error, also in chunks a map does not need; a missing end; sides out of range; a file
-/// too short for what it claims. Read, with a remark in `repairs`: whatever libpng warns of; bytes after the
-/// end.
+/// Refused: a CRC error in a chunk that the pixels need; a missing end; sides out of range; a file too short for what
+/// it claims. Read, with a remark in `repairs`: whatever libpng warns of, a CRC error in another chunk for example;
+/// bytes after the end.
 HeightMap read_png(const std::filesystem::path& path);
 
 }  // namespace tessera

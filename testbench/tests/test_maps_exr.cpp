@@ -1,10 +1,17 @@
+#include <ImfChannelList.h>
+#include <ImfDeepScanLineOutputFile.h>
+#include <ImfHeader.h>
+#include <ImfMultiPartOutputFile.h>
+#include <ImfPartType.h>
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <string>
 #include <vector>
 
 #include "testbench/common/error.h"
@@ -14,6 +21,7 @@
 
 using namespace tessera;
 using namespace tessera::map_test;
+using namespace std::string_literals;
 using Catch::Contains;
 
 namespace {
@@ -28,8 +36,10 @@ ExrImage steps() {
     return image;
 }
 
-/// So many zeros, as ZIP compression stores them.
-std::string deflated(std::size_t count) {
+/// So many zeros, 128 at the most, as RLE (1) or ZIP compression (2, 3) stores them.
+std::string compressed_zeros(int compression, std::size_t count) {
+    if (compression == 1)
+        return {static_cast<char>(count - 1), '\0'};
     const std::vector<Bytef> zeros(count);
     std::string result(compressBound(count), '\0');
     uLongf size = result.size();
@@ -166,11 +176,11 @@ TEST_CASE("the face in every EXR variant is the same map") {
         const HeightMap map = read_height_map(entry.path());
         REQUIRE(map.width == 97);
         REQUIRE(map.height == 81);
-        const bool half = name.find("_half_") != std::string::npos;
+        const bool in_half = name.find("_half_") != std::string::npos;
         const double loss = name.find("half_b44") != std::string::npos      ? 4.6e-3
                             : name.find("float_pxr24") != std::string::npos ? 3e-5
                                                                             : 0;
-        const std::vector<float>& expected = half ? half_reference.values : reference.values;
+        const std::vector<float>& expected = in_half ? half_reference.values : reference.values;
         double worst = 0;
         double sum = 0;
         for (std::size_t i = 0; i < map.values.size(); ++i) {
@@ -178,7 +188,7 @@ TEST_CASE("the face in every EXR variant is the same map") {
             sum += static_cast<double>(map.values[i]);
         }
         CHECK(worst <= loss * 1.05);  // the README's two digits
-        CHECK(sum == Approx(15278.5).epsilon(0).margin(half ? 1.0 : 0.1));
+        CHECK(sum == Approx(15278.5).epsilon(0).margin(in_half ? 1.0 : 0.1));
     }
     CHECK(count == 22);
 }
@@ -203,8 +213,8 @@ TEST_CASE("the OpenEXR project's own test images are read") {
 
 TEST_CASE("an EXR chunk that holds less than its pixels is refused, whatever its compression") {
     const TemporaryFolder folder;
-    const auto [compression, tiled] =
-        GENERATE(table<int, bool>({{0, false}, {0, true}, {2, false}, {3, false}, {3, true}}));
+    const auto [compression, tiled] = GENERATE(
+        table<int, bool>({{0, false}, {0, true}, {1, false}, {1, true}, {2, false}, {3, false}, {3, true}}));
     ExrImage image{16, 16, std::vector<float>(256)};
     for (std::size_t k = 0; k < image.values.size(); ++k)
         image.values[k] = static_cast<float>(k / 2);  // shrinks under every compression
@@ -221,46 +231,104 @@ TEST_CASE("an EXR chunk that holds less than its pixels is refused, whatever its
         bad[chunk + head - 4] = static_cast<char>(tiled ? 252 : 60);  // a pixel less
         bad[chunk + head - 3] = 0;
     } else {
-        // Half of the first chunk's pixels, deflated anew.
-        const std::string half = deflated(compression == 2 ? 32 : tiled ? 128 : 512);
-        REQUIRE(half.size() <= static_cast<unsigned char>(bad[chunk + head - 4]) + 256u);
-        bad[chunk + head - 4] = static_cast<char>(half.size());
+        const std::string shorter = compressed_zeros(compression, tiled ? 128 : compression == 3 ? 512 : 32);
+        REQUIRE(shorter.size() <= static_cast<unsigned char>(bad[chunk + head - 4]) + 256u);
+        bad[chunk + head - 4] = static_cast<char>(shorter.size());
         bad[chunk + head - 3] = 0;
-        bad.replace(chunk + head, std::min(half.size(), bad.size() - chunk - head), half);
+        bad.replace(chunk + head, std::min(shorter.size(), bad.size() - chunk - head), shorter);
     }
     write_bytes(folder / "bad.exr", bad);
-    CHECK_THROWS_WITH(read_height_map(folder / "bad.exr"),
-                      Contains("bytes of pixels of ") && Contains("It is damaged"));
+    CHECK_THROWS_WITH(
+        read_height_map(folder / "bad.exr"),
+        Contains(compression == 0 ? "bytes of pixels of " : "decompress") && Contains("It is damaged"));
 }
 
-TEST_CASE("EXR chunks that overlap are refused before they are read over and over") {
+TEST_CASE("an EXR file without what its pixels can do without is read with a remark") {
     const TemporaryFolder folder;
-    ExrImage image{64, 64, std::vector<float>(4096, 0.5F)};
-    image.compression = 0;
-    // A chunk as long as the rest of the file.
-    const auto stretch = [](std::string& file, std::size_t chunk, std::size_t head) {
-        const std::size_t rest = file.size() - chunk - head;
-        file[chunk + head - 4] = static_cast<char>(rest & 0xff);
-        file[chunk + head - 3] = static_cast<char>(rest >> 8);
-    };
-    SECTION("scan lines") {
-        write_exr(folder / "good.exr", image);
-        std::string bad = read_bytes(folder / "good.exr");
-        for (std::size_t chunk = first_chunk(bad, 64); chunk < bad.size(); chunk += 8 + 64 * 4)
-            stretch(bad, chunk, 8);
-        write_bytes(folder / "bad.exr", bad);
+    ExrImage image = steps();
+    image.tiled = GENERATE(false, true);
+    write_exr(folder / "good.exr", image);
+    const std::string good = read_bytes(folder / "good.exr");
+    const std::size_t chunks = image.tiled ? 9 : 2, table = first_chunk(good, chunks) - 8 * chunks;
+    std::string bad = good;
+    std::string remark;
+    SECTION("offsets") {
+        // All of the table, and its last entry only.
+        const std::size_t missing = GENERATE(true, false) ? chunks : 1;
+        bad.replace(table + 8 * (chunks - missing), 8 * missing, std::string(8 * missing, '\0'));
+        remark = "offset table is incomplete";
     }
-    SECTION("tiles that are all the same, whatever the compression") {
-        image.compression = GENERATE(0, 4);
-        image.tiled = true;
-        write_exr(folder / "good.exr", image);
-        std::string bad = read_bytes(folder / "good.exr");
-        const std::size_t first = first_chunk(bad, 64), table = first - 8 * 64;
-        stretch(bad, first, 20);
-        for (std::size_t k = 1; k < 64; ++k)
-            bad.replace(table + 8 * k, 8, bad, table, 8);
-        write_bytes(folder / "bad.exr", bad);
+    SECTION("attributes") {
+        const auto name =
+            GENERATE("displayWindow"s, "pixelAspectRatio"s, "screenWindowCenter"s, "screenWindowWidth"s);
+        bad[bad.find(name)] = 'x';
+        remark = "lacks the required attribute " + name;
     }
-    CHECK(read_height_map(folder / "good.exr").at(63, 63) == 0.5F);
-    CHECK_THROWS_WITH(read_height_map(folder / "bad.exr"), Contains("they overlap. It is damaged"));
+    write_bytes(folder / "bad.exr", bad);
+    const HeightMap map = read_height_map(folder / "bad.exr");
+    CHECK(map.values == read_height_map(folder / "good.exr").values);
+    REQUIRE(map.repairs.size() == 1);
+    CHECK_THAT(map.repairs[0], Contains(remark));
+}
+
+TEST_CASE("an EXR file without what its pixels need is refused") {
+    const TemporaryFolder folder;
+    write_exr(folder / "good.exr", steps());
+    const std::string good = read_bytes(folder / "good.exr");
+    std::string bad = good, message;
+    SECTION("attributes") {
+        const auto name = GENERATE("channels"s, "compression"s, "dataWindow"s, "lineOrder"s);
+        bad[bad.find(name)] = 'x';
+        message = "'" + name + "' attribute not found";
+    }
+    SECTION("an offset beyond the file") {
+        bad[first_chunk(good, 2) - 5] = 1;
+        message = "offset table";
+    }
+    write_bytes(folder / "bad.exr", bad);
+    CHECK_THROWS_WITH(read_height_map(folder / "bad.exr"), Contains(message));
+}
+
+TEST_CASE("EXR files of several parts, or of deep data, are refused") {
+    const TemporaryFolder folder;
+    const std::string path = folder / "bad.exr";
+    Imf::Header header(4, 4);
+    header.channels().insert("Y", Imf::Channel(Imf::HALF));
+    std::string message;
+    SECTION("parts") {
+        header.setType(Imf::SCANLINEIMAGE);
+        header.setName("a");
+        Imf::Header other = header;
+        other.setName("b");
+        const Imf::MultiPartOutputFile file(path.c_str(), std::array{header, other}.data(), 2);
+        message = "has several parts";
+    }
+    SECTION("deep data") {
+        header.setType(Imf::DEEPSCANLINE);
+        header.compression() = Imf::ZIPS_COMPRESSION;
+        const Imf::DeepScanLineOutputFile file(path.c_str(), header);
+        message = "holds deep data";
+    }
+    CHECK_THROWS_WITH(read_height_map(path), Contains(message));
+}
+
+TEST_CASE("EXR attributes that are not as long as they say are refused") {
+    const TemporaryFolder folder;
+    const auto [type, value] = GENERATE(table<std::string, std::string>({
+        {"preview", "\xff\xff\0\0\xff\x3f\0\0"s},
+        {"stringvector", "\xff\xff\xff\x7fhere"s},
+        {"stringvector", "\2\0\0\0abc"s},
+        {"chlist", "\0\0\0"s},
+        {"chlist", "Y\0\2\0"s},
+        {"floatvector", "\0\0\0"s},
+        {"v2f", "\0\0\0\0"s},
+    }));
+    write_exr(folder / "good.exr", steps());
+    std::string bad = read_bytes(folder / "good.exr");
+    constexpr std::size_t magic_and_version = 8;
+    bad.insert(magic_and_version,
+               "extra\0"s + type + '\0' + static_cast<char>(value.size()) + "\0\0\0"s + value);
+    write_bytes(folder / "bad.exr", bad);
+    CHECK_THROWS_WITH(read_height_map(folder / "bad.exr"),
+                      Contains("OpenEXR cannot read the file") && Contains("damaged"));
 }

@@ -183,37 +183,15 @@ TEST_CASE("limits: headers of a few bytes that claim gigabytes") {
     };
     const std::string filling(380, '\0');
     check_map("P5 4096 4096 65535\n" + filling, {"33554432"});
-    check_map("P5 65536 65536 255\n" + filling, {"65536 x 65536", "4096"});
-    check_map("P2 999999999 999999999 255\n" + filling, {"999999999 x 999999999", "4096"});
-    check_map("P5 99999999999999999999 1 255\n" + filling, {"the width", "999999999"});
+    check_map("P5 65536 65536 255\n" + filling, {"the width", "65536", "4096"});
+    check_map("P5 99999999999999999999 1 255\n" + filling, {"the width", "99999999999999999999", "4096"});
     for (const std::uint32_t side : {4096u, 0x7fffffffu, 0xffffffffu}) {
         const std::string png = std::string("\x89PNG\r\n\x1a\n") + big_endian(13) + "IHDR" +
                                 big_endian(side) + big_endian(side) + std::string("\x10\x06\0\0\1", 5) +
                                 big_endian(0);
-        check_map(png + filling, {std::to_string(side) + " x " + std::to_string(side)});
+        const std::string sides = std::to_string(side) + " x " + std::to_string(side);
+        check_map(png + filling, {side == 4096 ? "libpng cannot read" : sides});
     }
-}
-
-TEST_CASE("limits: a second channel list, a preview, a list of texts that are not as long as they say") {
-    const fs::path corpus = source_folder() / "testbench/fuzz/corpus/exr";
-    const TestFolder here;
-    const auto check_attribute = [&](const std::string& bytes) {
-        write_all(here.path() / "map", bytes);
-        check_refused(run_with({"map.source=file", "map.file=map"}, here.path()), ExitCode::bad_input,
-                      {"map: the EXR file's", "damaged"});
-    };
-    check_attribute(read_all(corpus / "found_second_channel_list_ends_early.exr"));
-    const std::string good = read_all(corpus / "seed_none_half.exr");
-    constexpr std::size_t header = 8;  // magic number and version
-    const auto with = [&](const std::string& type, const std::string& value) {
-        const std::string attribute = std::string("extra") + '\0' + type + '\0' +
-                                      static_cast<char>(value.size()) + std::string(3, '\0') + value;
-        return good.substr(0, header) + attribute + good.substr(header);
-    };
-    check_attribute(with("preview", std::string("\xff\xff\0\0\xff\x3f\0\0", 8)));
-    check_attribute(with("stringvector", "\xff\xff\xff\x7fhere"));
-    check_attribute(with("stringvector", std::string("\2\0\0\0abc", 7)));
-    check_attribute(with("chlist", std::string(3, '\0')));
 }
 
 TEST_CASE("limits: TOML without end, too deep, or of another encoding") {
