@@ -105,7 +105,7 @@ void try_command(const std::string& command, const Checkout& checkout) {
 
 /// [text](file) or [text](file#heading).
 void check_links(const std::string& markdown, const fs::path& folder) {
-    const std::regex link(R"(\]\(([^)#:]+)(#[^)]*)?\))");
+    const std::regex link(R"(\]\(([^)#: ]+)(#[^)]*)?\))");
     for (std::sregex_iterator it(markdown.begin(), markdown.end(), link), end; it != end; ++it) {
         INFO(it->str());
         CHECK(fs::exists(folder / (*it)[1].str()));
