@@ -117,53 +117,15 @@ TEST_CASE("numbers are those of the text, correctly rounded") {
 }
 
 TEST_CASE("bad input ends in an error with file and line") {
-    std::istringstream bad_lines(R"(v nan 0 0
-v -inf 0 0
-v 1e39 0 0
-v 1e999 0 0
-v a b c
-v 0,5 0 0
-v 123456789012345678901234567890123456789012345e300 0 0
-v 0x10 0 0
-v 1.5.2 0 0
-v +-1 0 0
-v 1e 0 0
-v 1 0
-v
-v 1 2 3 4 5 6 7 8
-v 1 2 3 nan
-vt nan 0
-vt
-vt 0 0 0 0
-vn 0 0
-vn 0 0 1 0
-f
-f 1
-f 1/1 2/2
-f 0 1 2
-f 1/0 2/1 3/1
-f 1 2 5
-f 1 2 -5
-f 1/1 2/2 3/-5
-f 1 2 -2147483648
-f 1 2 -9223372036854775808
-f 1 2 99999999999999999999999
-f 1 2 4294967297
-f 1/1 2/2 3/9
-f 1//1 2//1 3//2
-f 1.5 2 3
-f 1-2 2 3
-f a b c
-f 1/ 2/ 3/
-f 1// 2// 3//
-f 1/1/ 2/2/ 3/3/
-f /1 /2 /3
-f //1 //1 //1
-f 1/1/1/1 2/2/1/1 3/3/1/1
-f 1,2,3
-f 1 2 0x3
-f 1 2 3\)");
-    for (std::string bad; std::getline(bad_lines, bad);) {
+    std::istringstream bad_lines(
+        "v nan 0 0|v -inf 0 0|v 1e39 0 0|v 1e999 0 0|v a b c|v 0,5 0 0|"
+        "v 123456789012345678901234567890123456789012345e300 0 0|v 0x10 0 0|v 1.5.2 0 0|v +-1 0 0|"
+        "v 1e 0 0|v 1 0|v|v 1 2 3 4 5 6 7 8|v 1 2 3 nan|vt nan 0|vt|vt 0 0 0 0|vn 0 0|vn 0 0 1 0|f|"
+        "f 1|f 1/1 2/2|f 0 1 2|f 1/0 2/1 3/1|f 1 2 5|f 1 2 -5|f 1/1 2/2 3/-5|f 1 2 -2147483648|"
+        "f 1 2 -9223372036854775808|f 1 2 99999999999999999999999|f 1 2 4294967297|f 1/1 2/2 3/9|"
+        "f 1//1 2//1 3//2|f 1.5 2 3|f 1-2 2 3|f a b c|f 1/ 2/ 3/|f 1// 2// 3//|f 1/1/ 2/2/ 3/3/|"
+        "f /1 /2 /3|f //1 //1 //1|f 1/1/1/1 2/2/1/1 3/3/1/1|f 1,2,3|f 1 2 0x3|f 1 2 3\\");
+    for (std::string bad; std::getline(bad_lines, bad, '|');) {
         INFO(bad);
         // line 10, behind the nine of the square; a good face follows unless the line is to be the last
         const std::string text = square + bad + (bad.back() == '\\' ? "" : "\nf 1/1 2/2 3/3 4/4\n");
