@@ -114,19 +114,20 @@ bool clip_ears(const std::vector<glm::dvec2>& points, std::vector<std::uint32_t>
     for (std::size_t k = 0; k < outline.size(); ++k) {
         classify(k);
     }
+    std::uint64_t work = 0;
     const auto is_ear = [&](const std::array<std::uint32_t, 3>& t) {
         const glm::dvec2 &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
         return !blocks[t[1]] && std::none_of(outline.begin(), outline.end(), [&](std::uint32_t i) {
             const glm::dvec2& p = points[i];
+            work += blocks[i];
             return blocks[i] && p != a && p != b && p != c && in_or_on(p, a, b, c);
         });
     };
     std::size_t at = 0;
     for (std::size_t tried = 0; outline.size() > 3 && tried < outline.size();) {
-        if (work_left < outline.size()) {
+        if (++work > work_left) {
             return false;
         }
-        work_left -= outline.size();
         const std::array<std::uint32_t, 3> triangle = around(at);
         if (!is_ear(triangle)) {
             at = (at + 1) % outline.size();
@@ -140,6 +141,7 @@ bool clip_ears(const std::vector<glm::dvec2>& points, std::vector<std::uint32_t>
         tried = 0;
         at = (at + 1) % outline.size();  // not the next: ears cut side by side make slivers
     }
+    work_left -= std::min(work, work_left);
     std::rotate(outline.begin(), outline.begin() + static_cast<std::ptrdiff_t>(at), outline.end());
     result.crosses_itself |=
         outline.size() > 3 || turn(points[outline[0]], points[outline[1]], points[outline[2]]) < 0;
