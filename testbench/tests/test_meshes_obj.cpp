@@ -135,6 +135,7 @@ TEST_CASE("bad input ends in an error with file and line") {
     CHECK_THROWS_WITH(parse(square + "v 1 nan 0\n"), Contains("'nan' in `v`"));
     CHECK_THROWS_WITH(parse(square + "v 1\v2 3 4\n"), Contains("\\x0b"));
     CHECK_THROWS_WITH(parse(square + "f 1 2 3.5\n"), Contains("'3.5'"));
+    CHECK_THROWS_WITH(parse(square + "f 0 1 2\nv 0 0 1\n"), StartsWith("test.obj:10: "));  // not the next
     CHECK_THROWS_WITH(parse(square + "f 1 2 \\\n3\n# none\nv 0 0 nan\n"), StartsWith("test.obj:13: "));
     using namespace std::string_literals;
     const std::pair<std::string, std::string> bad_files[] = {
@@ -291,13 +292,27 @@ TEST_CASE("concave polygons are cut inside their outline") {
         {{0, 0}, {1, 0}, {0, 1}, {0, 0.5}},                                // a triangle with one more
         {{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}},  // a U
         {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1}},  // a hole, bridged
+        {{0, -1},
+         {1, -3},
+         {2, -8},
+         {3, -3},
+         {4, -8},
+         {5, -3},
+         {6, -10},
+         {7, 4},
+         {6, 0},
+         {5, 3},
+         {4, -2},
+         {3, 3},
+         {2, 0},
+         {1, 3}},  // saws
     };
-    const double areas[] = {10, 1.25, 4, 0.5, 7, 12};
+    const double areas[] = {10, 1.25, 4, 0.5, 7, 12, 42};
     for (std::size_t i = 0; i < outlines.size(); ++i) {
         for (bool reversed : {false, true}) {
             std::vector<glm::dvec2> outline = outlines[i];
             if (reversed) {
-                std::reverse(outline.begin(), outline.end());
+                std::reverse(outline.begin() + 1, outline.end());
             }
             INFO(i << reversed);
             const BaseMesh mesh = parse(polygon(outline));
