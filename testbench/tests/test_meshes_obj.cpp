@@ -285,6 +285,13 @@ TEST_CASE("texture scale is the area-weighted mean with its spread") {
 }
 
 TEST_CASE("concave polygons are cut inside their outline") {
+    std::vector<glm::dvec2> saws{{0, -1}};
+    for (const double y : {-3, -8, -3, -8, -3, -10}) {
+        saws.emplace_back(saws.size(), y);
+    }
+    for (const double y : {4, 0, 3, -2, 3, 0, 3}) {
+        saws.emplace_back(14 - saws.size(), y);
+    }
     const std::vector<std::vector<glm::dvec2>> outlines{
         {{0, 0}, {4, 0}, {4, 4}, {2, 1}, {0, 4}},                          // a notch
         {{0, 0}, {2, 0}, {1, 0.5}, {1, 2}},                                // a dart
@@ -292,20 +299,7 @@ TEST_CASE("concave polygons are cut inside their outline") {
         {{0, 0}, {1, 0}, {0, 1}, {0, 0.5}},                                // a triangle with one more
         {{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}},  // a U
         {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1}},  // a hole, bridged
-        {{0, -1},
-         {1, -3},
-         {2, -8},
-         {3, -3},
-         {4, -8},
-         {5, -3},
-         {6, -10},
-         {7, 4},
-         {6, 0},
-         {5, 3},
-         {4, -2},
-         {3, 3},
-         {2, 0},
-         {1, 3}},  // saws
+        saws,
     };
     const double areas[] = {10, 1.25, 4, 0.5, 7, 12, 42};
     for (std::size_t i = 0; i < outlines.size(); ++i) {
