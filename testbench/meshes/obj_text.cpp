@@ -123,7 +123,7 @@ class Reader {
             out_.textures.emplace_back(numbers(lists_[1], rest));
         } else if (keyword == "vn") {
             out_.normals.push_back(numbers(lists_[2], rest));
-        } else if (keyword == "f") {
+        } else if (keyword == "f" || keyword == "fo") {
             face(rest);
         } else if (!keyword.empty() && !is_skipped(keyword) && unknown_++ == 0) {
             unknown_keyword_ = quoted(keyword);

@@ -29,9 +29,9 @@ struct ObjText {
     std::vector<std::string> repairs;  ///< one sentence each
 };
 
-/// Reads the `v`, `vt`, `vn` and `f` statements of an OBJ text: indices from 1 or negative from the end, also of
-/// vertices that follow; UTF-8 byte order mark, LF, CRLF, CR, `\` at a line's end, comments. Groups, materials, lines
-/// and points are skipped; other words are skipped with a repair that counts them.
+/// Reads the `v`, `vt`, `vn` and `f` (once `fo`) statements of an OBJ text: indices from 1 or negative from the end,
+/// also of vertices that follow; UTF-8 byte order mark, LF, CRLF, CR, `\` at a line's end, comments. Groups, materials,
+/// lines and points are skipped; other words are skipped with a repair that counts them.
 ///
 /// Errors: "name:line: what, the value, what to do". InputError for anything that is not a finite number of single
 /// precision or an existing index, a face of fewer than three corners, UTF-16 text or a zero byte, another kind of

@@ -117,10 +117,13 @@ bool clip_ears(const std::vector<glm::dvec2>& points, std::vector<std::uint32_t>
     std::uint64_t work = 0;
     const auto is_ear = [&](const std::array<std::uint32_t, 3>& t) {
         const glm::dvec2 &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
+        // in_or_on() lets any point pass for a triangle far smaller than the polygon.
+        const double left = std::min({a.x, b.x, c.x}), right = std::max({a.x, b.x, c.x});
         return !blocks[t[1]] && std::none_of(outline.begin(), outline.end(), [&](std::uint32_t i) {
             const glm::dvec2& p = points[i];
             work += blocks[i];
-            return blocks[i] && p != a && p != b && p != c && in_or_on(p, a, b, c);
+            return blocks[i] && p.x >= left && p.x <= right && p != a && p != b && p != c &&
+                   in_or_on(p, a, b, c);
         });
     };
     std::size_t at = 0;

@@ -75,7 +75,7 @@ TEST_CASE("the forms an OBJ may take all give the same mesh") {
         "\xef\xbb\xbf" + square +
             "g a\ns off\nusemtl x\no y # z\nf 1/1/1 2/2/1 3/3/1 4/4/1 # comment\nl 1 2\np 1",
         "f 1/1 2/2 3/3 4/4\n" + square,
-        "# C:\\temp\\\n" + square + "f 1/1 2/2 3/3 4/4",
+        "# C:\\temp\\\n" + square + "fo 1/1 2/2 3/3 4/4",
         "v 0e999 -0.0 +0 1\nv 1E+0 1e-320 .0 1 0 0 1\nv 10e-1 1. 0 1 1 1\nv 1e-400 +1 "
         "0.0000000000000000000000000000001e-999\n"
         "vt 0\nvt 1 0\nvt 1 1 0\nvt 0 1\nf 1/1 2/2 3/3 4/4",
