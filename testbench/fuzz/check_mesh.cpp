@@ -6,7 +6,6 @@
 #include "testbench/fuzz/fuzz_target.h"
 #include "testbench/meshes/bezier_patches.h"
 #include "testbench/meshes/mesh_limits.h"
-#include "testbench/meshes/obj_reader.h"
 #include "testbench/meshes/triangle_geometry.h"
 
 namespace tessera::fuzz {
@@ -36,18 +35,6 @@ void promise_scale(const BaseMesh::TextureScale& s) {
             "the mean texture scale in v is not between the smallest and the largest");
 }
 
-template <class Read>
-void check_reader(Read&& read) {
-    const std::string name = "fuzzed";
-    try {
-        promise_complete(read(name));
-    } catch (const InputError& error) {
-        promise_message(error.what(), name);
-    } catch (const ResourceError& error) {
-        promise_message(error.what(), name);
-    }
-}
-
 }  // namespace
 
 void promise_complete(const BaseMesh& mesh) {
@@ -66,15 +53,16 @@ void promise_complete(const BaseMesh& mesh) {
         promise(!repair.empty(), "a repair without words");
 }
 
-void check_obj(std::string_view bytes) {
-    check_reader([&](const std::string& name) { return parse_obj(bytes, name); });
-}
-
 void check_patches(std::string_view bytes) {
     constexpr std::int64_t columns = 3, rows = 2;
-    check_reader([&](const std::string& name) {
-        return make_patch_mesh(parse_bezier_patches(bytes, name), columns, rows, name);
-    });
+    const std::string name = "fuzzed";
+    try {
+        promise_complete(make_patch_mesh(parse_bezier_patches(bytes, name), columns, rows, name));
+    } catch (const InputError& error) {
+        promise_message(error.what(), name);
+    } catch (const ResourceError& error) {
+        promise_message(error.what(), name);
+    }
 }
 
 }  // namespace tessera::fuzz

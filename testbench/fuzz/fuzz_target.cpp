@@ -26,8 +26,8 @@ void promise_message(std::string_view message, std::string_view file) {
 
 const std::vector<FuzzTarget>& fuzz_targets() {
     static const std::vector<FuzzTarget> targets{
-        {"obj", check_obj},   {"patches", check_patches}, {"ply", check_ply},           {"map", check_map},
-        {"toml", check_toml}, {"surface", check_surface}, {"datapath", check_datapath},
+        {"patches", check_patches}, {"ply", check_ply},         {"map", check_map},
+        {"toml", check_toml},       {"surface", check_surface}, {"datapath", check_datapath},
     };
     return targets;
 }

@@ -36,8 +36,7 @@ struct Tally {
 
 class Assembler {
   public:
-    Assembler(ObjText text, std::string const& name, MissingTexture missing)
-        : text_(std::move(text)), name_(name), missing_(missing) {
+    Assembler(ObjText text, std::string const& name) : text_(std::move(text)), name_(name) {
         mesh_.repairs = std::move(text_.repairs);
         std::vector<PositionKey> keys;
         keys.reserve(text_.positions.size());
@@ -77,7 +76,7 @@ class Assembler {
     }
 
     void cut_faces() {
-        PolygonCutter cutter;
+        std::uint64_t work_left = largest_cutting_work;
         Tally crossing, nonplanar, repeated, degenerate;
         std::vector<std::uint32_t> corners;
         std::vector<glm::dvec3> points;
@@ -103,20 +102,20 @@ class Assembler {
             for (std::uint32_t corner : corners) {
                 points.push_back(point(corner));
             }
-            const PolygonCutter::Cut cut = cutter.cut(points);
-            if (cut.out_of_work) {
+            const std::optional<PolygonCut> cut = cut_polygon(points, work_left);
+            if (!cut) {
                 throw ResourceError(
                     fmt::format("{}:{}: up to this face of {} corners, cutting polygons that are not convex "
                                 "took {} steps, the limit: triangulate the mesh in the program that made it",
                                 name_, face.line, face.count, largest_cutting_work));
             }
-            if (cut.crosses_itself) {
+            if (cut->crosses_itself) {
                 crossing.add(face.line);
             }
-            if (cut.nonplanar) {
+            if (cut->nonplanar) {
                 nonplanar.add(face.line);
             }
-            for (Triangle const& t : cut.triangles) {
+            for (Triangle const& t : cut->triangles) {
                 const Triangle triangle{corners[t[0]], corners[t[1]], corners[t[2]]};
                 if (triangle_normal(point(triangle[0]), point(triangle[1]), point(triangle[2])) ==
                     glm::dvec3(0)) {
@@ -246,16 +245,10 @@ class Assembler {
         repair(zero_normals,
                "{} vertex normal(s) have no length, first used in line {}: smooth normals took their place.");
         repair(odd_normals, "{} vertex normal(s) are not of unit length, first used in line {}: made so.");
-        if (bare.count > 0 && missing_ == MissingTexture::refuse) {
-            throw InputError(
-                fmt::format("{}:{}: a face without texture coordinates, which the displacement map needs: "
-                            "export the mesh with them (vt lines, f v/vt)",
-                            name_, bare.first_line));
-        }
         std::string why = fmt::format("{} vertices have no texture coordinates, first used in line {}",
                                       bare.count, bare.first_line);
         const auto has_area = [this](Triangle const& t) { return texture_gradient(mesh_, t).has_value(); };
-        if (without_texture.empty() && missing_ == MissingTexture::project &&
+        if (without_texture.empty() &&
             std::none_of(mesh_.triangles.begin(), mesh_.triangles.end(), has_area)) {
             without_texture.resize(mesh_.vertices.size());
             std::iota(without_texture.begin(), without_texture.end(), 0u);
@@ -303,7 +296,6 @@ class Assembler {
 
     ObjText text_;
     std::string const& name_;
-    MissingTexture missing_;
     std::vector<std::uint32_t> same_position_;  // per `v` line: the first with that position
     std::vector<Triangle> triangles_;           // of corners
     std::vector<std::size_t> lines_;            // per triangle
@@ -312,12 +304,12 @@ class Assembler {
 
 }  // namespace
 
-BaseMesh parse_obj(std::string_view text, std::string const& name, MissingTexture missing) {
-    return Assembler(read_obj_text(text, name), name, missing).assemble();
+BaseMesh parse_obj(std::string_view text, std::string const& name) {
+    return Assembler(read_obj_text(text, name), name).assemble();
 }
 
-BaseMesh read_obj(std::string const& path, MissingTexture missing) {
-    return parse_obj(read_mesh_text(path, "an OBJ file"), path, missing);
+BaseMesh read_obj(std::string const& path) {
+    return parse_obj(read_mesh_text(path, "an OBJ file"), path);
 }
 
 }  // namespace tessera

@@ -6,19 +6,14 @@
 
 namespace tessera {
 
-/// What becomes of face corners without texture coordinates, or of a mesh none of whose triangles has an area in them,
-/// which a displacement map needs.
-enum class MissingTexture {
-    project,  ///< the mesh's bounding box, seen along its thinnest axis, is the map; a repair says so
-    refuse,   ///< InputError
-};
-
 /// The base mesh in a Wavefront OBJ file, complete: triangles, unit normals, tangent frames, texture scale.
 ///
 /// - Each different corner (v, vt, vn) becomes a vertex, in the order of first use; what no face uses is left
 /// out.
 /// - Polygons are cut as polygon_cutter.h says. Outlines that cross themselves or are not plane load with a
 /// repair.
+/// - Corners without texture coordinates get the map laid over the mesh's bounding box, seen along its thinnest axis;
+///   so do all where no triangle has an area in texture space.
 /// - Normals are made unit length; absent or of zero length, they are the smooth ones of smooth_normals.h.
 /// - Dropped and counted, with a repair: triangles of zero area or with a vertex twice; a triangle on the
 /// same
@@ -29,10 +24,9 @@ enum class MissingTexture {
 /// Errors: as read_obj_text (obj_text.h); InputError also for a file that cannot be read or is no regular
 /// file, for one without a triangle left, and for a mesh smaller than smallest_size; ResourceError beyond the
 /// limits of mesh_limits.h.
-BaseMesh read_obj(std::string const& path, MissingTexture missing = MissingTexture::project);
+BaseMesh read_obj(std::string const& path);
 
 /// The same from memory; `name` stands for the file in messages.
-BaseMesh parse_obj(std::string_view text, std::string const& name,
-                   MissingTexture missing = MissingTexture::project);
+BaseMesh parse_obj(std::string_view text, std::string const& name);
 
 }  // namespace tessera

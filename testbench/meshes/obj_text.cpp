@@ -6,7 +6,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <optional>
 
 #include "testbench/common/error.h"
@@ -16,335 +15,226 @@
 namespace tessera {
 namespace {
 
+constexpr std::string_view blanks = " \t";
+
+/// Takes the first word off `text`; empty if there is none.
+std::string_view next_word(std::string_view& text) {
+    const std::size_t start = std::min(text.find_first_not_of(blanks), text.size());
+    const std::size_t end = std::min(text.find_first_of(blanks, start), text.size());
+    const std::string_view word = text.substr(start, end - start);
+    text.remove_prefix(end);
+    return word;
+}
+
+/// Statements of an OBJ file without polygons in them.
+bool is_skipped(std::string_view keyword) {
+    constexpr std::array<std::string_view, 21> skipped{
+        "g",        "o",        "s",   "mg",         "usemtl",    "mtllib", "usemap",
+        "maplib",   "l",        "p",   "vp",         "curv",      "curv2",  "bevel",
+        "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "ctech",  "stech"};
+    return std::find(skipped.begin(), skipped.end(), keyword) != skipped.end();
+}
+
 class Reader {
   public:
-    Reader(std::string_view text, std::string const& name) : text_(text), name_(name) {}
+    Reader(std::string_view text, const std::string& name) : text_(text), name_(name) {}
 
     ObjText read() {
-        check_encoding();
-        while (next_statement()) {
-            statement();
+        check_kind();
+        while (at_ < text_.size()) {
+            next_statement();
+            read_statement();
         }
-        finish();
+        check_indices();
+        if (unknown_ > 0) {
+            out_.repairs.push_back(
+                fmt::format("{} line(s) begin with a word that is not read and were skipped, the first is "
+                            "line {}: {}.",
+                            unknown_, unknown_line_, unknown_keyword_));
+        }
         return std::move(out_);
     }
 
   private:
-    [[noreturn]] void fail(std::size_t line, std::string const& what) const {
-        throw InputError(fmt::format("{}:{}: {}", name_, line, what));
+    struct List {
+        std::string_view keyword;
+        int fewest, most;       ///< numbers of a statement
+        std::size_t count = 0;  ///< statements so far
+    };
+
+    [[noreturn]] void fail(std::size_t line, const std::string& what) const {
+        throw InputError(
+            fmt::format("{}:{}: {}; correct the line or export the file again", name_, line, what));
     }
-    [[noreturn]] void fail(std::string const& what) const { fail(line_, what); }
-    [[noreturn]] void too_much(std::string const& what) const {
-        throw ResourceError(fmt::format("{}:{}: {}", name_, line_, what));
+    [[noreturn]] void fail(const std::string& what) const { fail(line_, what); }
+
+    void limit(std::size_t count, std::size_t largest, const char* of_what) const {
+        if (count > largest) {
+            throw ResourceError(fmt::format(
+                "{}:{}: more than {} {}, the limit: simplify the mesh, the tessellator refines it", name_,
+                line_, largest, of_what));
+        }
     }
 
-    void check_encoding() {
-        using namespace std::string_view_literals;
-        if (text_.substr(0, 2) == "\xff\xfe"sv || text_.substr(0, 2) == "\xfe\xff"sv) {
-            fail(1, "the file is UTF-16 text: save it as UTF-8 or ASCII");
-        }
-        if (text_.substr(0, 3) == "\xef\xbb\xbf"sv) {
+    void check_kind() {
+        constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+        if (text_.substr(0, 3) == byte_order_mark) {
             text_.remove_prefix(3);
         }
         if (const std::string_view kind = foreign_mesh_kind(text_); !kind.empty()) {
             throw InputError(
                 fmt::format("{}: this is {}, and mesh.file takes OBJ: open it in Blender, MeshLab or the "
-                            "like, export it as OBJ "
-                            "with texture coordinates, and name that file",
+                            "like, export it as OBJ with texture coordinates, and name that file",
                             name_, kind));
         }
-        const std::size_t zero = text_.find('\0');
-        if (zero != std::string_view::npos) {
-            const auto lines =
-                std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(zero), '\n');
-            fail(static_cast<std::size_t>(lines) + 1,
-                 "a zero byte: the file is not text, so no OBJ, or it is damaged; export it again");
+        if (text_.find('\0') != std::string_view::npos) {
+            throw InputError(
+                fmt::format("{}: a zero byte: the file is UTF-16, no text, or damaged: save it as UTF-8 or "
+                            "export it again",
+                            name_));
         }
     }
 
-    /// The next physical line, without its end. A lone CR ends one too (old Macintosh files).
-    std::string_view next_line() {
-        const std::size_t end = std::min(text_.find_first_of("\r\n", at_), text_.size());
-        const std::string_view line = text_.substr(at_, end - at_);
-        at_ = std::min(end + (text_.substr(end, 2) == "\r\n" ? 2 : 1), text_.size());
-        ++next_line_number_;
-        return line;
-    }
-
-    static bool continues(std::string_view line) {
-        const std::size_t last = line.find_last_not_of(" \t");
-        return last != std::string_view::npos && line[last] == '\\';
-    }
-
-    /// Puts the next statement's words into tokens_. False at the end of the file.
-    bool next_statement() {
-        while (at_ < text_.size()) {
-            line_ = next_line_number_;
-            std::string_view line = next_line();
-            const std::size_t start = line.find_first_not_of(" \t");
-            if (start == std::string_view::npos || line[start] == '#') {
-                continue;  // a comment does not continue: Windows paths in comments end in a backslash
+    /// A line, and those that follow it for a `\` at the end, without comments.
+    void next_statement() {
+        statement_.clear();
+        line_ = next_line_;
+        for (bool continued = true; continued;) {
+            if (at_ >= text_.size()) {
+                fail("the file ends in a line continuation");
             }
-            if (continues(line)) {
-                joined_.clear();
-                while (continues(line)) {
-                    joined_.append(line.substr(0, line.find_last_of('\\'))).push_back(' ');
-                    if (at_ >= text_.size()) {
-                        fail("the file ends in a line continuation: it is cut off; export it again");
-                    }
-                    line = next_line();
-                }
-                joined_.append(line);
-                line = joined_;
-            }
-            split(line);
-            if (!tokens_.empty()) {
-                return true;
-            }
-        }
-        return false;
-    }
-
-    void split(std::string_view line) {
-        tokens_.clear();
-        std::size_t start = line.find_first_not_of(" \t");
-        while (start != std::string_view::npos && line[start] != '#') {
-            const std::size_t end = std::min(line.find_first_of(" \t", start), line.size());
-            tokens_.push_back(line.substr(start, end - start));
-            start = line.find_first_not_of(" \t", end);
+            const std::size_t end = std::min(text_.find_first_of("\r\n", at_), text_.size());
+            std::string_view line = text_.substr(at_, end - at_);
+            line = line.substr(0, line.find('#'));
+            at_ = end + (text_.substr(end, 2) == "\r\n" ? 2 : 1);
+            ++next_line_;
+            const std::size_t last = line.find_last_not_of(blanks);
+            continued = last != std::string_view::npos && line[last] == '\\';
+            (statement_ += line.substr(0, continued ? last : line.size())) += ' ';
         }
     }
 
-    void statement() {
-        const std::string_view keyword = tokens_.front();
+    void read_statement() {
+        std::string_view rest = statement_;
+        const std::string_view keyword = next_word(rest);
         if (keyword == "v") {
-            numbers({3, 4, 6, 7}, "x y z, x y z w, or either with a colour r g b");
-            limit_records(out_.positions.size(), "v");
-            out_.positions.push_back({values_[0], values_[1], values_[2]});
+            out_.positions.push_back(numbers(lists_[0], rest));
         } else if (keyword == "vt") {
-            numbers({1, 2, 3}, "u, u v, or u v w");
-            limit_records(out_.textures.size(), "vt");
-            out_.textures.push_back({values_[0], tokens_.size() > 2 ? values_[1] : 0});
+            out_.textures.emplace_back(numbers(lists_[1], rest));
         } else if (keyword == "vn") {
-            numbers({3}, "x y z");
-            limit_records(out_.normals.size(), "vn");
-            out_.normals.push_back({values_[0], values_[1], values_[2]});
+            out_.normals.push_back(numbers(lists_[2], rest));
         } else if (keyword == "f" || keyword == "fo") {
-            face();
-        } else if (keyword == "surf") {
-            count(free_form_, free_form_line_);
-        } else if (!is_skipped(keyword)) {
-            if (unknown_ == 0) {
-                unknown_keyword_ = quoted(keyword);
+            face(rest);
+        } else if (!keyword.empty() && !is_skipped(keyword) && unknown_++ == 0) {
+            unknown_keyword_ = quoted(keyword);
+            unknown_line_ = line_;
+        }
+    }
+
+    /// The first three numbers of a statement, all of them checked.
+    glm::dvec3 numbers(List& list, std::string_view rest) const {
+        glm::dvec3 first(0);
+        int count = 0;
+        for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
+            const double value = to_number(word).value_or(HUGE_VAL);
+            if (!(std::abs(value) <= largest_coordinate)) {
+                fail(
+                    fmt::format("{} in `{}` is no number up to {:g}, written with a point and between blanks",
+                                quoted(word), list.keyword, largest_coordinate));
             }
-            count(unknown_, unknown_line_);
-        }
-    }
-
-    void count(std::size_t& counter, std::size_t& first_line) const {
-        if (counter++ == 0) {
-            first_line = line_;
-        }
-    }
-
-    static bool is_skipped(std::string_view keyword) {
-        constexpr std::array<std::string_view, 41> skipped{
-            "vp",     "deg",        "bmat",      "step",     "cstype",   "p",   "l",      "curv",   "curv2",
-            "parm",   "trim",       "hole",      "scrv",     "sp",       "end", "con",    "g",      "s",
-            "mg",     "o",          "bevel",     "c_interp", "d_interp", "lod", "usemtl", "mtllib", "usemap",
-            "maplib", "shadow_obj", "trace_obj", "ctech",    "stech",    "bsp", "bzp",    "cdc",    "cdp",
-            "res",    "call",       "csh",       "vw",       "t"};
-        return std::find(skipped.begin(), skipped.end(), keyword) != skipped.end();
-    }
-
-    void limit_records(std::size_t have, char const* keyword) const {
-        if (have >= largest_obj_records) {
-            too_much(fmt::format("more than {} `{}` lines, the limit of one file: split or simplify the mesh",
-                                 largest_obj_records, keyword));
-        }
-    }
-
-    /// Checks the statement's numbers and leaves the first three in values_.
-    void numbers(std::initializer_list<std::size_t> counts, char const* form) {
-        const std::size_t count = tokens_.size() - 1;
-        if (std::find(counts.begin(), counts.end(), count) == counts.end()) {
-            fail(fmt::format("`{}` with {} number(s): it takes {}; correct the line or export the file again",
-                             tokens_.front(), count, form));
-        }
-        for (std::size_t i = 0; i < count; ++i) {
-            const std::string_view token = tokens_[i + 1];
-            const std::optional<double> value = to_number(token);
-            if (!value) {
-                const bool comma = token.find(',') != std::string_view::npos;
-                fail(fmt::format("{} in `{}` is not a number: {}", quoted(token), tokens_.front(),
-                                 comma ? "write decimals with a point, numbers apart with blanks"
-                                       : "correct the line or export the file again"));
+            if (count < 3) {
+                first[count] = value;
             }
-            if (!(std::abs(*value) <= largest_coordinate)) {  // also catches nan
+            ++count;
+        }
+        if (count < list.fewest || count > list.most) {
+            fail(fmt::format("`{}` with {} number(s): it takes {} to {}", list.keyword, count, list.fewest,
+                             list.most));
+        }
+        limit(++list.count, largest_obj_records, "lines of vertices");
+        return first;
+    }
+
+    void face(std::string_view rest) {
+        ObjText::Face face{out_.corners.size(), 0, line_};
+        for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
+            limit(++face.count, largest_face_corners, "corners of a face");
+            const std::optional<ObjText::Corner> corner = this->corner(word);
+            if (!corner) {
                 fail(fmt::format(
-                    "{} in `{}` is not a finite number of single precision (at most {:g}): correct the "
-                    "line or export the file again",
-                    quoted(token), tokens_.front(), largest_coordinate));
+                    "face corner {}: it must be v, v/vt, v//vn or v/vt/vn, whole numbers from 1, or "
+                    "from -1 backwards to the first defined",
+                    quoted(word)));
             }
-            if (i < values_.size()) {
-                values_[i] = *value;
+            out_.corners.push_back(*corner);
+        }
+        if (face.count < 3) {
+            fail(fmt::format("a face with {} corner(s): it needs three or more", face.count));
+        }
+        triangles_ += face.count - 2;
+        limit(triangles_, largest_base_triangles, "base triangles");
+        out_.faces.push_back(face);
+    }
+
+    /// Nothing where it is none. Larger indices pass, as vertices may follow later.
+    std::optional<ObjText::Corner> corner(std::string_view word) const {
+        std::array<std::uint32_t, 3> indices{ObjText::none, ObjText::none, ObjText::none};
+        for (std::size_t k = 0; k < lists_.size(); ++k) {
+            const std::size_t end = std::min(word.find('/'), word.size());
+            const auto have = static_cast<std::int64_t>(lists_[k].count);
+            std::int64_t index = 0;
+            const auto [stop, error] = std::from_chars(word.data(), word.data() + end, index);
+            if (error == std::errc() && stop == word.data() + end && index != 0 && index >= -have &&
+                index <= static_cast<std::int64_t>(largest_obj_records)) {
+                indices[k] = static_cast<std::uint32_t>(index > 0 ? index - 1 : have + index);
+            } else if (k != 1 || end > 0 || word.size() < 2) {  // only the second of three may be left out
+                return std::nullopt;
             }
-        }
-    }
-
-    void face() {
-        const std::size_t count = tokens_.size() - 1;
-        if (count < 3) {
-            fail(fmt::format(
-                "a face with {} corner(s): it needs three or more; delete the line or export the file again",
-                count));
-        }
-        if (count > largest_face_corners) {
-            too_much(fmt::format(
-                "a face with {} corners, the limit is {}: triangulate the mesh in the program that made "
-                "it",
-                count, largest_face_corners));
-        }
-        triangles_ += count - 2;
-        if (triangles_ > largest_base_triangles) {
-            too_much(fmt::format(
-                "more than {} base triangles, the limit: simplify the mesh, the tessellator refines it",
-                largest_base_triangles));
-        }
-        out_.faces.push_back({out_.corners.size(), static_cast<std::uint32_t>(count), line_});
-        for (std::size_t i = 1; i <= count; ++i) {
-            const ObjText::Corner corner = this->corner(tokens_[i]);
-            if (i > 1) {
-                ObjText::Corner const& before = out_.corners.back();
-                if ((before.texture == ObjText::none) != (corner.texture == ObjText::none) ||
-                    (before.normal == ObjText::none) != (corner.normal == ObjText::none)) {
-                    fail(fmt::format(
-                        "face corners {} and {} are of different forms: all corners of a face must be v, "
-                        "v/vt, v//vn or v/vt/vn alike",
-                        quoted(tokens_[i - 1]), quoted(tokens_[i])));
-                }
+            if (end == word.size()) {
+                return ObjText::Corner{indices[0], indices[1], indices[2]};
             }
-            out_.corners.push_back(corner);
+            word.remove_prefix(end + 1);
         }
+        return std::nullopt;
     }
 
-    ObjText::Corner corner(std::string_view token) const {
-        std::array<std::string_view, 3> parts;
-        std::size_t count = 0, start = 0;
-        for (;;) {
-            const std::size_t end = std::min(token.find('/', start), token.size());
-            if (count == parts.size()) {
-                fail_corner(token, "has more than three parts");
-            }
-            parts[count++] = token.substr(start, end - start);
-            if (end == token.size()) {
-                break;
-            }
-            start = end + 1;
-        }
-        if (parts[count - 1].empty()) {
-            fail_corner(token, count == 1 ? "is empty" : "ends in a slash");
-        }
-        ObjText::Corner corner;
-        corner.position = index(token, parts[0], out_.positions.size());
-        if (!parts[1].empty()) {
-            corner.texture = index(token, parts[1], out_.textures.size());
-        }
-        if (!parts[2].empty()) {
-            corner.normal = index(token, parts[2], out_.normals.size());
-        }
-        return corner;
-    }
-
-    [[noreturn]] void fail_corner(std::string_view token, char const* what) const {
-        fail(fmt::format("face corner {} {}: it must be v, v/vt, v//vn or v/vt/vn, whole numbers",
-                         quoted(token), what));
-    }
-
-    /// From 0. A positive index may name a vertex that is still to come: its range is checked in finish().
-    std::uint32_t index(std::string_view token, std::string_view part, std::size_t have) const {
-        if (part.size() > 1 && part.front() == '+' && part[1] != '-') {
-            part.remove_prefix(1);
-        }
-        std::int64_t value = 0;
-        char const* end = part.data() + part.size();
-        const auto [stop, error] = std::from_chars(part.data(), end, value);
-        if (stop != end || (error != std::errc() && error != std::errc::result_out_of_range)) {
-            fail_corner(token, "holds something else than whole numbers");
-        }
-        if (error == std::errc() && value == 0) {
-            fail(fmt::format("face corner {} names index 0: indices run from 1, or from -1 backwards",
-                             quoted(token)));
-        }
-        if (error != std::errc() || value > static_cast<std::int64_t>(largest_obj_records) ||
-            value < -static_cast<std::int64_t>(have)) {
-            fail(fmt::format("face corner {} names index {}, out of range: {} are defined up to here",
-                             quoted(token), quoted(part), have));
-        }
-        return static_cast<std::uint32_t>(value > 0 ? value - 1 : static_cast<std::int64_t>(have) + value);
-    }
-
-    void check_range(std::size_t line, std::uint32_t index, std::size_t have, char const* keyword) const {
-        if (index == ObjText::none || index < have) {
-            return;
-        }
-        if (have == 0 && keyword == std::string_view("vt")) {
-            fail(line,
-                 fmt::format("a face names texture coordinate {}, but the file has no `vt` line, and the "
-                             "displacement map needs texture coordinates: export the mesh with them",
-                             index + 1));
-        }
-        fail(line,
-             fmt::format(
-                 "a face names `{}` number {}, the file has {}: correct the line or export the file again",
-                 keyword, index + 1, have));
-    }
-
-    void finish() {
+    void check_indices() const {
         if (out_.faces.empty()) {
             throw InputError(fmt::format(
                 "{}: no face (`f` line) in {} line(s){}: is it a Wavefront OBJ file with polygons?", name_,
-                next_line_number_ - 1,
+                next_line_ - 1,
                 unknown_ > 0 ? fmt::format(", but {} of other words ({} in line {} first)", unknown_,
                                            unknown_keyword_, unknown_line_)
                              : ""));
         }
-        for (ObjText::Face const& face : out_.faces) {
+        for (const ObjText::Face& face : out_.faces) {
             for (std::size_t i = face.first; i < face.first + face.count; ++i) {
-                check_range(face.line, out_.corners[i].position, out_.positions.size(), "v");
-                check_range(face.line, out_.corners[i].texture, out_.textures.size(), "vt");
-                check_range(face.line, out_.corners[i].normal, out_.normals.size(), "vn");
+                const ObjText::Corner& corner = out_.corners[i];
+                const std::array<std::uint32_t, 3> indices{corner.position, corner.texture, corner.normal};
+                for (std::size_t k = 0; k < lists_.size(); ++k) {
+                    if (indices[k] != ObjText::none && indices[k] >= lists_[k].count) {
+                        fail(face.line, fmt::format("a face names `{}` number {}, the file has {}",
+                                                    lists_[k].keyword, indices[k] + 1, lists_[k].count));
+                    }
+                }
             }
-        }
-        if (unknown_ > 0) {
-            out_.repairs.push_back(
-                fmt::format("{} line(s) begin with a word that is not OBJ and were skipped, the first "
-                            "is line {}: {}.",
-                            unknown_, unknown_line_, unknown_keyword_));
-        }
-        if (free_form_ > 0) {
-            out_.repairs.push_back(
-                fmt::format("{} free-form surface(s) (`surf`, the first in line {}) were skipped: only "
-                            "polygons are read.",
-                            free_form_, free_form_line_));
         }
     }
 
     std::string_view text_;
-    std::string const& name_;
-    std::size_t at_ = 0, line_ = 1, next_line_number_ = 1;
-    std::string joined_;                    // a statement of several lines
-    std::vector<std::string_view> tokens_;  // the statement's words, the keyword first
-    std::array<double, 3> values_{};
+    const std::string& name_;
+    std::size_t at_ = 0, line_ = 1, next_line_ = 1;
+    std::string statement_;  // all its lines in one
+    std::array<List, 3> lists_{{{"v", 3, 7}, {"vt", 1, 3}, {"vn", 3, 3}}};
     std::size_t triangles_ = 0;
-    std::size_t unknown_ = 0, unknown_line_ = 0, free_form_ = 0, free_form_line_ = 0;
+    std::size_t unknown_ = 0, unknown_line_ = 0;
     std::string unknown_keyword_;
     ObjText out_;
 };
 
 }  // namespace
 
-ObjText read_obj_text(std::string_view text, std::string const& name) {
+ObjText read_obj_text(std::string_view text, const std::string& name) {
     return Reader(text, name).read();
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "testbench/meshes/triangle_geometry.h"
@@ -14,31 +15,31 @@ constexpr std::size_t most_fanned = 8;
 constexpr double nonplanar_part = 0.05;  // quads of a curved surface are bent by less as a rule
 constexpr double on_line = 1e-14;        // of the polygon's squared size
 
-double cross(glm::dvec2 const& a, glm::dvec2 const& b) {
+double cross(const glm::dvec2& a, const glm::dvec2& b) {
     return a.x * b.y - a.y * b.x;
 }
 
 /// +1 where the outline turns left at b, -1 right, 0 straight on, back, or nowhere.
-int turn(glm::dvec2 const& a, glm::dvec2 const& b, glm::dvec2 const& c) {
+int turn(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
     const glm::dvec2 ab = b - a, bc = c - b;
     const double twice_area = cross(ab, bc);
     const double flat = flattest_triangle * std::max(glm::dot(ab, ab), glm::dot(bc, bc));
     return twice_area > flat ? 1 : twice_area < -flat ? -1 : 0;
 }
 
-bool in_or_on(glm::dvec2 const& p, glm::dvec2 const& a, glm::dvec2 const& b, glm::dvec2 const& c) {
+bool in_or_on(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
     return cross(b - a, p - a) >= -on_line && cross(c - b, p - b) >= -on_line &&
            cross(a - c, p - c) >= -on_line;
 }
 
 /// Left turns only, and once around: a pentagram turns left only, but twice around.
-bool strictly_convex(std::vector<glm::dvec2> const& points) {
+bool strictly_convex(const std::vector<glm::dvec2>& points) {
     const std::size_t n = points.size();
     int reversals = 0;
     bool right = false, known = false;
     for (std::size_t i = 0; i <= n; ++i) {
-        glm::dvec2 const& a = points[i % n];
-        glm::dvec2 const& b = points[(i + 1) % n];
+        const glm::dvec2& a = points[i % n];
+        const glm::dvec2& b = points[(i + 1) % n];
         if (turn(a, b, points[(i + 2) % n]) <= 0) {
             return false;
         }
@@ -52,7 +53,7 @@ bool strictly_convex(std::vector<glm::dvec2> const& points) {
 }
 
 /// Twice the vector area (Newell): its direction is the mean normal by the winding.
-glm::dvec3 vector_area(std::vector<glm::dvec3> const& points) {
+glm::dvec3 vector_area(const std::vector<glm::dvec3>& points) {
     glm::dvec3 sum(0);
     for (std::size_t i = 0; i < points.size(); ++i) {
         sum += glm::cross(points[i], points[(i + 1) % points.size()]);
@@ -60,7 +61,7 @@ glm::dvec3 vector_area(std::vector<glm::dvec3> const& points) {
     return sum;
 }
 
-void fan(std::vector<std::uint32_t> const& corners, PolygonCutter::Cut& result) {
+void fan(const std::vector<std::uint32_t>& corners, PolygonCut& result) {
     for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
         result.triangles.push_back({corners[0], corners[i], corners[i + 1]});
     }
@@ -68,7 +69,7 @@ void fan(std::vector<std::uint32_t> const& corners, PolygonCutter::Cut& result) 
 
 /// Cuts off every second corner, round by round, until few enough are left for a fan. A fan of thousands would be
 /// slivers that all lie in one another's boxes: what searches the mesh by boxes would take quadratic time.
-void cut_convex(std::vector<std::uint32_t> corners, PolygonCutter::Cut& result) {
+void cut_convex(std::vector<std::uint32_t> corners, PolygonCut& result) {
     while (corners.size() > most_fanned) {
         std::vector<std::uint32_t> left;
         const std::size_t n = corners.size();
@@ -83,30 +84,12 @@ void cut_convex(std::vector<std::uint32_t> corners, PolygonCutter::Cut& result) 
     fan(corners, result);
 }
 
-std::vector<std::uint32_t> numbers_up_to(std::size_t n) {
-    std::vector<std::uint32_t> numbers(n);
-    for (std::size_t i = 0; i < n; ++i) {
-        numbers[i] = static_cast<std::uint32_t>(i);
-    }
-    return numbers;
-}
-
-}  // namespace
-
-bool PolygonCutter::spend(std::uint64_t work) {
-    const bool enough = work <= work_left_;
-    work_left_ -= std::min(work, work_left_);
-    return enough;
-}
-
-bool PolygonCutter::crosses_itself(std::vector<glm::dvec2> const& points) {
+bool outline_crosses_itself(const std::vector<glm::dvec2>& points) {
     const std::size_t n = points.size();
     for (std::size_t i = 0; i < n; ++i) {
         for (std::size_t j = i + 2; j < n && (i > 0 || j + 1 < n); ++j) {
-            glm::dvec2 const& a = points[i];
-            glm::dvec2 const& b = points[(i + 1) % n];
-            glm::dvec2 const& c = points[j];
-            glm::dvec2 const& d = points[(j + 1) % n];
+            const glm::dvec2 &a = points[i], &b = points[(i + 1) % n], &c = points[j],
+                             &d = points[(j + 1) % n];
             if (turn(a, b, c) * turn(a, b, d) < 0 && turn(c, d, a) * turn(c, d, b) < 0) {
                 return true;
             }
@@ -115,125 +98,92 @@ bool PolygonCutter::crosses_itself(std::vector<glm::dvec2> const& points) {
     return false;
 }
 
-void PolygonCutter::clip_ears(std::vector<glm::dvec2> const& points, Cut& result) {
-    const auto n = static_cast<std::uint32_t>(points.size());
-    std::vector<std::uint32_t> next(n), previous(n);
-    for (std::uint32_t i = 0; i < n; ++i) {
-        next[i] = (i + 1) % n;
-        previous[(i + 1) % n] = i;
-    }
-    // only a corner that does not turn left can lie in an ear
-    constexpr std::uint32_t absent = UINT32_MAX;
-    std::vector<std::uint32_t> blockers, place(n, absent);
-    auto classify = [&](std::uint32_t i, bool in_outline) {
-        const bool blocks = in_outline && turn(points[previous[i]], points[i], points[next[i]]) <= 0;
-        if (blocks && place[i] == absent) {
-            place[i] = static_cast<std::uint32_t>(blockers.size());
-            blockers.push_back(i);
-        } else if (!blocks && place[i] != absent) {
-            place[blockers.back()] = place[i];
-            blockers[place[i]] = blockers.back();
-            blockers.pop_back();
-            place[i] = absent;
-        }
+/// Takes the ears off `outline` until three corners are left, or no ear is. False where the work ran out.
+bool clip_ears(const std::vector<glm::dvec2>& points, std::vector<std::uint32_t> outline, PolygonCut& result,
+               std::uint64_t& work_left) {
+    // Only a corner that does not turn left can lie in an ear.
+    std::vector<bool> blocks(points.size());
+    const auto around = [&](std::size_t k) {
+        const std::size_t n = outline.size();
+        return std::array<std::uint32_t, 3>{outline[(k + n - 1) % n], outline[k % n], outline[(k + 1) % n]};
     };
-    for (std::uint32_t i = 0; i < n; ++i) {
-        classify(i, true);
+    const auto classify = [&](std::size_t k) {
+        const auto [a, b, c] = around(k);
+        blocks[b] = turn(points[a], points[b], points[c]) <= 0;
+    };
+    for (std::size_t k = 0; k < outline.size(); ++k) {
+        classify(k);
     }
     std::uint64_t work = 0;
-    auto is_ear = [&](std::uint32_t i) {
-        glm::dvec2 const& a = points[previous[i]];
-        glm::dvec2 const& b = points[i];
-        glm::dvec2 const& c = points[next[i]];
-        if (place[i] != absent || turn(a, b, c) <= 0) {
+    const auto is_ear = [&](const std::array<std::uint32_t, 3>& t) {
+        const glm::dvec2 &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
+        // in_or_on() lets any point pass for a triangle far smaller than the polygon.
+        const double left = std::min({a.x, b.x, c.x}), right = std::max({a.x, b.x, c.x});
+        return !blocks[t[1]] && std::none_of(outline.begin(), outline.end(), [&](std::uint32_t i) {
+            const glm::dvec2& p = points[i];
+            work += blocks[i];
+            return blocks[i] && p.x >= left && p.x <= right && p != a && p != b && p != c &&
+                   in_or_on(p, a, b, c);
+        });
+    };
+    std::size_t at = 0;
+    for (std::size_t tried = 0; outline.size() > 3 && tried < outline.size();) {
+        if (++work > work_left) {
             return false;
         }
-        const double left = std::min({a.x, b.x, c.x}), right = std::max({a.x, b.x, c.x});
-        for (std::size_t k = 0; k < blockers.size(); ++k) {
-            glm::dvec2 const& p = points[blockers[k]];
-            if (p.x >= left && p.x <= right && p != a && p != b && p != c && in_or_on(p, a, b, c)) {
-                work += k;
-                return false;
-            }
-        }
-        work += blockers.size();
-        return true;
-    };
-
-    std::uint32_t remaining = n, at = 0, tried = 0;
-    while (remaining > 3 && tried < remaining) {
-        const bool ear = is_ear(at);
-        if (!spend(work + 1)) {
-            result.out_of_work = true;
-            return;
-        }
-        work = 0;
-        if (!ear) {
-            at = next[at];
+        const std::array<std::uint32_t, 3> triangle = around(at);
+        if (!is_ear(triangle)) {
+            at = (at + 1) % outline.size();
             ++tried;
             continue;
         }
-        const std::uint32_t a = previous[at], c = next[at];
-        result.triangles.push_back({a, at, c});
-        next[a] = c;
-        previous[c] = a;
-        classify(at, false);
-        classify(a, true);
-        classify(c, true);
-        --remaining;
+        result.triangles.push_back(triangle);
+        outline.erase(outline.begin() + static_cast<std::ptrdiff_t>(at));
+        classify((at + outline.size() - 1) % outline.size());
+        classify(at % outline.size());
         tried = 0;
-        at = next[c];  // not c: ears cut side by side make slivers
+        at = (at + 1) % outline.size();  // not the next: ears cut side by side make slivers
     }
-    std::vector<std::uint32_t> rest;
-    for (std::uint32_t i = 0; i < remaining; ++i) {
-        rest.push_back(at);
-        at = next[at];
-    }
-    if (remaining > 3 || turn(points[rest[0]], points[rest[1]], points[rest[2]]) < 0) {
-        result.crosses_itself = true;
-    }
-    fan(rest, result);
+    work_left -= std::min(work, work_left);
+    std::rotate(outline.begin(), outline.begin() + static_cast<std::ptrdiff_t>(at), outline.end());
+    result.crosses_itself |=
+        outline.size() > 3 || turn(points[outline[0]], points[outline[1]], points[outline[2]]) < 0;
+    fan(outline, result);
+    return true;
 }
 
-PolygonCutter::Cut PolygonCutter::cut(std::vector<glm::dvec3> const& corners) {
-    Cut result;
+}  // namespace
+
+std::optional<PolygonCut> cut_polygon(const std::vector<glm::dvec3>& corners, std::uint64_t& work_left) {
+    PolygonCut result;
     const std::size_t n = corners.size();
-    result.triangles.reserve(n - 2);
+    std::vector<std::uint32_t> outline(n);
+    std::iota(outline.begin(), outline.end(), 0u);
     if (n == 3) {
-        result.triangles.push_back({0, 1, 2});
+        fan(outline, result);
         return result;
     }
     double size = 0;
-    for (glm::dvec3 const& p : corners) {
+    for (const glm::dvec3& p : corners) {
         const glm::dvec3 d = p - corners[0];
         size = std::max({size, std::abs(d.x), std::abs(d.y), std::abs(d.z)});
     }
-    if (!(size > 0)) {
-        fan(numbers_up_to(n), result);
-        return result;
-    }
     std::vector<glm::dvec3> local(n);
+    glm::dvec3 centre(0);
     for (std::size_t i = 0; i < n; ++i) {
-        local[i] = (corners[i] - corners[0]) / size;
+        local[i] = size > 0 ? (corners[i] - corners[0]) / size : glm::dvec3(0);
+        centre += local[i] / static_cast<double>(n);
     }
     const glm::dvec3 area = vector_area(local);
     if (!(safe_length(area) > flattest_triangle)) {  // a bow tie whose halves cancel, or all on one line
-        fan(numbers_up_to(n), result);
-        for (auto const& t : result.triangles) {
+        fan(outline, result);
+        for (const auto& t : result.triangles) {
             result.crosses_itself |=
                 triangle_normal(corners[t[0]], corners[t[1]], corners[t[2]]) != glm::dvec3(0);
         }
         return result;
     }
     const glm::dvec3 normal = unit_or_zero(area);
-    glm::dvec3 centre(0);
-    for (glm::dvec3 const& p : local) {
-        centre += p / static_cast<double>(n);
-    }
-    for (glm::dvec3 const& p : local) {
-        result.nonplanar |= std::abs(glm::dot(normal, p - centre)) > nonplanar_part;
-    }
-
     int axis = 2;
     for (int k = 0; k < 2; ++k) {
         if (std::abs(normal[k]) > std::abs(normal[axis])) {
@@ -241,23 +191,26 @@ PolygonCutter::Cut PolygonCutter::cut(std::vector<glm::dvec3> const& corners) {
         }
     }
     const int first = (axis + 1) % 3, second = (axis + 2) % 3;
-    std::vector<glm::dvec2> points(n);
-    for (std::size_t i = 0; i < n; ++i) {
-        points[i] = normal[axis] > 0 ? glm::dvec2(local[i][first], local[i][second])
-                                     : glm::dvec2(local[i][second], local[i][first]);
+    std::vector<glm::dvec2> points;
+    for (const glm::dvec3& p : local) {
+        result.nonplanar |= std::abs(glm::dot(normal, p - centre)) > nonplanar_part;
+        points.push_back(normal[axis] > 0 ? glm::dvec2(p[first], p[second])
+                                          : glm::dvec2(p[second], p[first]));
     }
     if (strictly_convex(points)) {
-        cut_convex(numbers_up_to(n), result);
+        cut_convex(outline, result);
         return result;
     }
     if (n <= most_checked_for_crossing) {
-        if (!spend(n * n)) {
-            result.out_of_work = true;
-            return result;
+        if (work_left < n * n) {
+            return std::nullopt;
         }
-        result.crosses_itself = crosses_itself(points);
+        work_left -= n * n;
+        result.crosses_itself = outline_crosses_itself(points);
     }
-    clip_ears(points, result);
+    if (!clip_ears(points, outline, result, work_left)) {
+        return std::nullopt;
+    }
     return result;
 }
 

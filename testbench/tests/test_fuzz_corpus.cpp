@@ -48,9 +48,6 @@ void run_corpus(std::string_view name) {
 
 }  // namespace
 
-TEST_CASE("fuzz corpus: OBJ") {
-    run_corpus("obj");
-}
 TEST_CASE("fuzz corpus: Bezier patches") {
     run_corpus("patches");
 }

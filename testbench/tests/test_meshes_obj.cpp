@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
+#include <sstream>
 
 #include "testbench/common/error.h"
 #include "testbench/meshes/obj_reader.h"
@@ -75,9 +76,9 @@ TEST_CASE("the forms an OBJ may take all give the same mesh") {
             "g a\ns off\nusemtl x\no y # z\nf 1/1/1 2/2/1 3/3/1 4/4/1 # comment\nl 1 2\np 1",
         "f 1/1 2/2 3/3 4/4\n" + square,
         "# C:\\temp\\\n" + square + "fo 1/1 2/2 3/3 4/4",
-        "v 0e0 -0.0 +0 1\nv 1E+0 1e-320 .0 1 0 0 1\nv 10e-1 1. 0 1 1 1\nv 1e-400 +1 "
+        "v 0e999 -0.0 +0 1\nv 1E+0 1e-320 .0 1 0 0 1\nv 10e-1 1. 0 1 1 1\nv 1e-400 +1 "
         "0.0000000000000000000000000000001e-999\n"
-        "vt 0\nvt 1 0\nvt 1 1 0\nvt 0 1\nf +1/1 2/2 3/3 4/4",
+        "vt 0\nvt 1 0\nvt 1 1 0\nvt 0 1\nf 1/1 2/2 3/3 4/4",
     };
     const BaseMesh wanted = parse(square + "f 1/1/1 2/2/1 3/3/1 4/4/1\n");
     for (std::string text : forms) {
@@ -100,85 +101,65 @@ TEST_CASE("the forms an OBJ may take all give the same mesh") {
     }
 }
 
-TEST_CASE("bad input ends in an error with file, line, value and advice") {
-    struct Bad {
-        std::string line, message;
-    };
-    const Bad cases[] = {
-        {"v nan 0 0", "'nan'"},
-        {"v -inf 0 0", "not a finite number"},
-        {"v 1e39 0 0", "single precision"},
-        {"v 1e999 0 0", "'1e999'"},
-        {"v 123456789012345678901234567890123456789012345e300 0 0", "..."},
-        {"v a b c", "'a' in `v` is not a number"},
-        {"v 0,5 0 0", "decimals with a point"},
-        {"v 0x10 0 0", "'0x10'"},
-        {"v 1.5.2 0 0", "'1.5.2'"},
-        {"v +-1 0 0", "'+-1'"},
-        {"v 1e 0 0", "'1e'"},
-        {"v 1 0", "2 number(s)"},
-        {"v", "0 number(s)"},
-        {"v 1 2 3 4 5", "5 number(s)"},
-        {"v 1 2 3 nan", "'nan'"},
-        {"v 1\v2 3 4", "\\x0b"},
-        {"vt nan 0", "'nan' in `vt`"},
-        {"vt", "0 number(s)"},
-        {"vn 0 0", "2 number(s)"},
-        {"vn 0 0 1 0", "4 number(s)"},
-        {"f", "0 corner(s)"},
-        {"f 1", "1 corner(s)"},
-        {"f 1/1 2/2", "2 corner(s)"},
-        {"f 0 1 2", "index 0"},
-        {"f 1/0 2/1 3/1", "index 0"},
-        {"f 1 2 5", "number 5, the file has 4"},
-        {"f 1 2 -5", "'-5'"},
-        {"f 1 2 -2147483648", "out of range"},
-        {"f 1 2 -9223372036854775808", "out of range"},
-        {"f 1 2 99999999999999999999999", "out of range"},
-        {"f 1 2 4294967297", "out of range"},
-        {"f 1/1 2/2 3/9", "`vt` number 9, the file has 4"},
-        {"f 1//1 2//1 3//2", "`vn` number 2, the file has 1"},
-        {"f 1.5 2 3", "'1.5'"},
-        {"f a b c", "'a'"},
-        {"f 1/ 2/ 3/", "ends in a slash"},
-        {"f 1// 2// 3//", "ends in a slash"},
-        {"f 1/1/ 2/2/ 3/3/", "ends in a slash"},
-        {"f /1 /2 /3", "whole numbers"},
-        {"f //1 //1 //1", "whole numbers"},
-        {"f 1/1/1/1 2/2/1/1 3/3/1/1", "three parts"},
-        {"f 1/1 2 3", "different forms"},
-        {"f 1,2,3", "1 corner(s)"},
-        {"f 1 2 0x3", "'0x3'"},
-        {"f 1 2 3\\", "cut off"},
-    };
-    for (Bad const& bad : cases) {
-        INFO(bad.line);
-        // line 10, behind the nine of the square; a good face follows unless the line is to be the last
-        const std::string text = square + bad.line + (bad.line.back() == '\\' ? "" : "\nf 1/1 2/2 3/3 4/4\n");
-        CHECK_THROWS_AS(parse(text), InputError);
-        CHECK_THROWS_WITH(parse(text), StartsWith("test.obj:10: ") && Contains(bad.message));
+TEST_CASE("numbers are those of the text, correctly rounded") {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> mantissa(-10, 10), exponent(-20, 30);
+    for (int i = 0; i < 1000; ++i) {
+        const double value = mantissa(random), scaled = value * std::pow(10, exponent(random));
+        for (std::string const& text :
+             {fmt::format("{:.17g}", scaled), fmt::format("{:.9g}", scaled), fmt::format("{:.12f}", value)}) {
+            INFO(text);
+            const BaseMesh mesh = parse(fmt::format("v 0 0 0\nv {} 0 0\nv 0 {} 0\nf 1 2 3\n", text, text));
+            const double wanted = std::strtod(text.c_str(), nullptr);
+            CHECK(mesh.vertices[1].position.x == wanted);
+        }
     }
-    using namespace std::string_literals;
-    CHECK_THROWS_WITH(parse(""), Contains("no face"));
-    CHECK_THROWS_WITH(parse("<!DOCTYPE html><html>404</html>\n"),
-                      Contains("no face") && Contains("'<!DOCTYPE'"));
-    CHECK_THROWS_WITH(parse("v 0 0 0\nv 1 0\0 0\n"s), StartsWith("test.obj:2: a zero byte"));
-    CHECK_THROWS_WITH(parse("\xff\xfev\0 \0"s), Contains("UTF-16"));
-    CHECK_THROWS_WITH(
-        parse("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2/2 3/3\n"),
-        StartsWith("test.obj:4: ") && Contains("the displacement map needs texture coordinates"));
 }
 
-TEST_CASE("corners without texture coordinates: projected, with a repair, or refused") {
-    const std::string text = "v 0 0 5\nv 4 0 5\nv 0 2 5\nf 1 2 3\n";
-    const BaseMesh mesh = parse(text);
+TEST_CASE("bad input ends in an error with file and line") {
+    std::istringstream bad_lines(
+        "v nan 0 0|v -inf 0 0|v 1e39 0 0|v 1e999 0 0|v a b c|v 0,5 0 0|"
+        "v 123456789012345678901234567890123456789012345e300 0 0|v 0x10 0 0|v 1.5.2 0 0|v +-1 0 0|"
+        "v 1e 0 0|v 1 0|v|v 1 2 3 4 5 6 7 8|v 1 2 3 nan|vt nan 0|vt|vt 0 0 0 0|vn 0 0|vn 0 0 1 0|f|"
+        "f 1|f 1/1 2/2|f 0 1 2|f 1/0 2/1 3/1|f 1 2 5|f 1 2 -5|f 1/1 2/2 3/-5|f 1 2 -2147483648|"
+        "f 1 2 -9223372036854775808|f 1 2 99999999999999999999999|f 1 2 4294967297|f 1/1 2/2 3/9|"
+        "f 1//1 2//1 3//2|f 1.5 2 3|f 1-2 2 3|f a b c|f 1/ 2/ 3/|f 1// 2// 3//|f 1/1/ 2/2/ 3/3/|"
+        "f /1 /2 /3|f //1 //1 //1|f 1/1/1/1 2/2/1/1 3/3/1/1|f 1,2,3|f 1 2 0x3|f 1 2 3\\");
+    for (std::string bad; std::getline(bad_lines, bad, '|');) {
+        INFO(bad);
+        // line 10, behind the nine of the square; a good face follows unless the line is to be the last
+        const std::string text = square + bad + (bad.back() == '\\' ? "" : "\nf 1/1 2/2 3/3 4/4\n");
+        CHECK_THROWS_AS(parse(text), InputError);
+        CHECK_THROWS_WITH(parse(text), StartsWith("test.obj:10: "));
+    }
+    CHECK_THROWS_WITH(parse(square + "v 1 nan 0\n"), Contains("'nan' in `v`"));
+    CHECK_THROWS_WITH(parse(square + "v 1\v2 3 4\n"), Contains("\\x0b"));
+    CHECK_THROWS_WITH(parse(square + "f 1 2 3.5\n"), Contains("'3.5'"));
+    CHECK_THROWS_WITH(parse(square + "f 0 1 2\nv 0 0 1\n"), StartsWith("test.obj:10: "));  // not the next
+    CHECK_THROWS_WITH(parse(square + "f 1 2 \\\n3\n# none\nv 0 0 nan\n"), StartsWith("test.obj:13: "));
+    using namespace std::string_literals;
+    const std::pair<std::string, std::string> bad_files[] = {
+        {"", "no face"},
+        {"<!DOCTYPE html><html>404</html>\n",
+         "no face (`f` line) in 1 line(s), but 1 of other words ('<!DOCTYPE'"},
+        {"v 0 0 0\nv 1 0\0 0\n"s, "a zero byte"},
+        {"\xff\xfev\0 \0"s, "UTF-16"},
+    };
+    for (auto const& [text, message] : bad_files) {
+        CHECK_THROWS_AS(parse(text), InputError);
+        CHECK_THROWS_WITH(parse(text), StartsWith("test.obj: ") && Contains(message));
+    }
+}
+
+TEST_CASE("corners without texture coordinates get the map laid over the mesh, with a repair") {
+    const BaseMesh mesh = parse("v 0 0 5\nv 4 0 5\nv 0 2 5\nf 1 2 3\n");
     require_complete(mesh);
     CHECK_THAT(all_repairs(mesh),
                StartsWith("3 vertices have no texture coordinates") && Contains("along z"));
     CHECK(mesh.vertices[1].texture == glm::dvec2(1, 0));
     CHECK(mesh.vertices[2].texture == glm::dvec2(0, 1));
-    CHECK_THROWS_WITH(parse_obj(text, "test.obj", MissingTexture::refuse),
-                      StartsWith("test.obj:4: ") && Contains("displacement map needs"));
+    CHECK_THAT(all_repairs(parse(square + "f 1/1 2 3/3\n")),
+               StartsWith("1 vertices have no texture coordinates, first used in line 10"));
 }
 
 TEST_CASE("flat triangles are dropped and counted; nothing left is an error") {
@@ -304,6 +285,13 @@ TEST_CASE("texture scale is the area-weighted mean with its spread") {
 }
 
 TEST_CASE("concave polygons are cut inside their outline") {
+    std::vector<glm::dvec2> saws{{0, -1}};
+    for (const double y : {-3, -8, -3, -8, -3, -10}) {
+        saws.emplace_back(saws.size(), y);
+    }
+    for (const double y : {4, 0, 3, -2, 3, 0, 3}) {
+        saws.emplace_back(14 - saws.size(), y);
+    }
     const std::vector<std::vector<glm::dvec2>> outlines{
         {{0, 0}, {4, 0}, {4, 4}, {2, 1}, {0, 4}},                          // a notch
         {{0, 0}, {2, 0}, {1, 0.5}, {1, 2}},                                // a dart
@@ -311,13 +299,14 @@ TEST_CASE("concave polygons are cut inside their outline") {
         {{0, 0}, {1, 0}, {0, 1}, {0, 0.5}},                                // a triangle with one more
         {{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}},  // a U
         {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1}},  // a hole, bridged
+        saws,
     };
-    const double areas[] = {10, 1.25, 4, 0.5, 7, 12};
+    const double areas[] = {10, 1.25, 4, 0.5, 7, 12, 42};
     for (std::size_t i = 0; i < outlines.size(); ++i) {
         for (bool reversed : {false, true}) {
             std::vector<glm::dvec2> outline = outlines[i];
             if (reversed) {
-                std::reverse(outline.begin(), outline.end());
+                std::reverse(outline.begin() + 1, outline.end());
             }
             INFO(i << reversed);
             const BaseMesh mesh = parse(polygon(outline));
@@ -400,8 +389,7 @@ TEST_CASE("limits are named") {
         face += i % 3 == 0 ? " 1" : i % 3 == 1 ? " 2" : " 3";
     }
     CHECK_THROWS_AS(parse(square + face + "\n"), ResourceError);
-    CHECK_THROWS_WITH(parse(square + face + "\n"),
-                      StartsWith("test.obj:10: ") && Contains("1000000") && Contains("65536"));
+    CHECK_THROWS_WITH(parse(square + face + "\n"), StartsWith("test.obj:10: ") && Contains("65536"));
     std::string many = square;
     for (std::size_t i = 0; i < 4'000'001; ++i) {
         many += "f 1 2 3\n";
@@ -414,30 +402,34 @@ TEST_CASE("limits are named") {
         comb.push_back({i, i % 2 * 100, 0});
     }
     comb.push_back({500, -100, 0});
-    CHECK(PolygonCutter(1000).cut(comb).out_of_work);
-    CHECK_FALSE(PolygonCutter().cut(comb).out_of_work);
+    std::uint64_t little = 1000, much = largest_cutting_work;
+    CHECK_FALSE(cut_polygon(comb, little));
+    CHECK(cut_polygon(comb, much));
+    CHECK(much < largest_cutting_work);
 }
 
-TEST_CASE("words that are not OBJ are skipped and told") {
+TEST_CASE("words that are not read are skipped and told") {
     const BaseMesh mesh = parse("hello\n" + square + "\x01\x02 3\nf 1/1 2/2 3/3\nsurf 0 1 0 1 1 2 3 4\n");
-    CHECK_THAT(all_repairs(mesh),
-               Contains("2 line(s) begin with a word that is not OBJ") && Contains("line 1: 'hello'"));
-    CHECK_THAT(all_repairs(mesh), Contains("1 free-form surface(s)"));
+    CHECK_THAT(all_repairs(mesh), Contains("3 line(s) begin with a word that is not read") &&
+                                      Contains("the first is line 1: 'hello'."));
 }
 
 namespace {
 
-/// A mesh or one of our two errors, and never anything else. Tells whether it loaded.
+/// A mesh or one of our two errors in printable words, and never anything else. Tells whether it loaded.
 bool survives(std::string const& text) {
+    std::string message;
     try {
         const BaseMesh mesh = parse(text);
         require_complete(mesh);
         return true;
     } catch (InputError const& error) {
-        CHECK_THAT(error.what(), StartsWith("test.obj:"));
+        message = error.what();
     } catch (ResourceError const& error) {
-        CHECK_THAT(error.what(), StartsWith("test.obj:"));
+        message = error.what();
     }
+    CHECK_THAT(message, StartsWith("test.obj:"));
+    CHECK(std::all_of(message.begin(), message.end(), [](char c) { return c >= ' ' && c <= '~'; }));
     return false;
 }
 
@@ -448,45 +440,39 @@ const std::string small_mesh =
 
 }  // namespace
 
-TEST_CASE("a file cut off anywhere ends well") {
+TEST_CASE("damaged files end in a mesh or an error") {
     REQUIRE(survives(small_mesh));
-    for (std::size_t length = 0; length < small_mesh.size(); ++length) {
-        INFO(length);
-        survives(small_mesh.substr(0, length));
-    }
-}
-
-TEST_CASE("a file with any one byte changed ends well") {
-    std::size_t loaded = 0;
-    for (std::size_t at = 0; at < small_mesh.size(); ++at) {
-        for (unsigned value = 0; value < 256; ++value) {
-            std::string text = small_mesh;
-            text[at] = static_cast<char>(value);
-            INFO(at << " " << value);
-            loaded += survives(text);
-        }
-    }
-    CHECK(loaded > 0);
-}
-
-TEST_CASE("random texts of OBJ words end well") {
-    const char* const words[] = {"v ", "vt ",   "vn ",       "f ",        "0 ",        "1 ",       "2 ",
-                                 "3 ", "-1 ",   "1/1 ",      "2//1 ",     "3/1/1 ",    "\n",       "\n",
-                                 "\n", "1e9 ",  "# ",        "\\\n",      "1e-30 ",    "-3 ",      "4 ",
-                                 "\r", "0.5 ",  "-2 ",       "l ",        "g ",        "nan ",     "/",
-                                 "\t", "3e38 ", "v 0 0 1\n", "v 1 0 0\n", "v 0 1 0\n", "f 1 2 3\n"};
+    const char* const words[] = {"v ",       "f ",   "/",     "-",  "1e999 ", "0e999 ",
+                                 "nan ",     "\\\n", "\n",    "#",  "\r",     "99999999999 ",
+                                 "1.5/1/1 ", "\xff", "g x\n", "vn "};
     std::mt19937 random(1);
     std::size_t loaded = 0;
-    for (int run = 0; run < 20000; ++run) {
-        std::string text = run % 2 ? square : "";
-        const auto count = random() % 60;
-        for (unsigned i = 0; i < count; ++i) {
-            text += words[random() % std::size(words)];
+    for (int run = 0; run < 600; ++run) {
+        std::string text = small_mesh;
+        for (auto damages = 1 + random() % 3; damages > 0; --damages) {
+            const std::size_t at = random() % (text.size() + 1), length = random() % 20;
+            switch (random() % 5) {
+                case 0:
+                    text.resize(at);
+                    break;
+                case 1:
+                    text.erase(at, length);
+                    break;
+                case 2:
+                    text.insert(at, words[random() % std::size(words)]);
+                    break;
+                case 3:
+                    text.insert(at, text.substr(random() % (text.size() + 1), length));
+                    break;
+                default:
+                    text.insert(at, 1, static_cast<char>(random()));
+            }
         }
         INFO(text);
         loaded += survives(text);
     }
-    CHECK(loaded > 100);
+    CHECK(loaded > 20);
+    CHECK(loaded < 400);
 }
 
 TEST_CASE("random triangle soups of all sizes keep the promises of a base mesh") {
