@@ -90,7 +90,7 @@ TEST_CASE("limits: a polygon of a million corners is refused at once") {
         return std::pair(1000 * std::cos(angle), 1000 * std::sin(angle));
     });
     check_refused(run_with(polygon_of_file, here.path()), ExitCode::resource_limit,
-                  {"a.obj:1000001", "1000000 corners", "the limit is 65536"});
+                  {"a.obj:1000001", "65536 corners", "simplify the mesh"});
 }
 
 TEST_CASE("limits: the largest convex polygon runs") {
