@@ -5,7 +5,7 @@
 namespace tessera {
 
 /// Takes the signals that units show (modules/stage/signals.h) and their values. Implemented by the testbench's
-/// VcdWriter (testbench/trace/vcd_writer.h), which writes them to a file.
+/// VcdWriter (testbench/output/trace/vcd_writer.h), which writes them to a file.
 class SignalSink {
   public:
     using Signal = std::uint32_t;

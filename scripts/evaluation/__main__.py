@@ -23,7 +23,7 @@ def options_from(arguments):
     parser.add_argument("--list", action="store_true", help="name the experiments and stop")
     parser.add_argument("--jobs", type=int, default=2, help="experiments at a time (%(default)s)")
     parser.add_argument("--picture-width", type=int, default=800, help="pixels (%(default)s)")
-    parser.add_argument("--program", type=Path, default=ROOT / "build/release/testbench/program/tessera",
+    parser.add_argument("--program", type=Path, default=ROOT / "build/release/testbench/commands/tessera",
                         help=argparse.SUPPRESS)
     options = parser.parse_args(arguments)
     options.output = options.output or Path("runs/figures_only" if options.only else "runs/figures")

@@ -8,7 +8,7 @@ from pathlib import Path
 from emitted_mesh import read_mesh
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-JOBS = ROOT / "testbench/jobs"
+JOBS = ROOT / "testbench/examples/jobs"
 
 
 class ProgramError(Exception):
@@ -70,7 +70,7 @@ class Study:
         return run
 
     def run(self, name, job=None, settings=None, exit_codes=(0,)):
-        """job: a name in testbench/jobs, a path, or None for the half donut."""
+        """job: a name in testbench/examples/jobs, a path, or None for the half donut."""
         folder = self.folder / name
         arguments = ["run"]
         if job is not None:

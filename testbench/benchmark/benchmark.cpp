@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "golden/golden_model.h"
-#include "testbench/benchmark/bare_recursion.h"
+#include "testbench/machine/bare_recursion.h"
 #include "testbench/check/golden_inputs.h"
-#include "testbench/host/inputs.h"
-#include "testbench/host/simulation.h"
+#include "testbench/machine/inputs.h"
+#include "testbench/machine/simulation.h"
 
 // One process, one job: half donut 1024 x 1024 on the plane of 18 triangles, about 0.2 million triangles out. Times the
 // golden model, the bare datapath, functional mode and timed mode side by side, in edges evaluated per second.

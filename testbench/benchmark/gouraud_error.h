@@ -3,8 +3,8 @@
 #include <glm/glm.hpp>
 
 #include "testbench/check/golden_inputs.h"
-#include "testbench/host/emitted_mesh.h"
-#include "testbench/host/setup.h"
+#include "testbench/machine/emitted_mesh.h"
+#include "testbench/machine/setup.h"
 
 namespace tessera {
 

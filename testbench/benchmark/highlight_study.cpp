@@ -5,9 +5,9 @@
 #include <string>
 #include <systemc>
 
-#include "testbench/benchmark/bare_recursion.h"
+#include "testbench/machine/bare_recursion.h"
 #include "testbench/benchmark/gouraud_error.h"
-#include "testbench/host/inputs.h"
+#include "testbench/machine/inputs.h"
 #include "testbench/job/read_job.h"
 #include "testbench/job/validate_job.h"
 

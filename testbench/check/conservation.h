@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "testbench/check/work_check.h"
-#include "testbench/host/simulation.h"
+#include "testbench/machine/simulation.h"
 
 namespace tessera {
 

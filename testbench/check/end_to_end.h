@@ -6,8 +6,8 @@
 
 #include "testbench/check/golden_inputs.h"
 #include "testbench/check/golden_job.h"
-#include "testbench/host/emitted_mesh.h"
-#include "testbench/host/setup.h"
+#include "testbench/machine/emitted_mesh.h"
+#include "testbench/machine/setup.h"
 
 namespace tessera {
 

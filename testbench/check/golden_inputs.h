@@ -7,7 +7,7 @@
 #include "golden/golden_model.h"
 #include "modules/datapath/format.h"
 #include "modules/datapath/vertex.h"
-#include "testbench/host/setup.h"
+#include "testbench/machine/setup.h"
 
 namespace tessera {
 

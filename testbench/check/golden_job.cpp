@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "testbench/host/resolve_job.h"
+#include "testbench/machine/resolve_job.h"
 
 namespace tessera {
 

@@ -3,10 +3,10 @@
 #include <cstdint>
 
 #include "golden/golden_setup.h"
-#include "testbench/host/setup.h"
+#include "testbench/machine/setup.h"
 #include "testbench/job/job.h"
-#include "testbench/maps/height_map.h"
-#include "testbench/meshes/base_mesh.h"
+#include "testbench/input/map/height_map.h"
+#include "testbench/input/mesh/base_mesh.h"
 
 namespace tessera {
 

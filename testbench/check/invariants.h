@@ -5,7 +5,7 @@
 
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/vertex.h"
-#include "testbench/host/emitted_mesh.h"
+#include "testbench/machine/emitted_mesh.h"
 
 namespace tessera {
 

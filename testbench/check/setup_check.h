@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "testbench/check/golden_job.h"
-#include "testbench/host/setup.h"
-#include "testbench/host/simulation.h"
+#include "testbench/machine/setup.h"
+#include "testbench/machine/simulation.h"
 
 namespace tessera {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "testbench/job/job_keys.h"
-#include "testbench/meshes/make_base_mesh.h"
+#include "testbench/input/mesh/make_base_mesh.h"
 
 namespace tessera {
 

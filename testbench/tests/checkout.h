@@ -27,9 +27,9 @@ class Checkout {
         std::filesystem::copy(source_folder() / "scripts", root() / "scripts",
                               std::filesystem::copy_options::recursive);
         for (const char* const preset : {"release", "debug", "asan"}) {
-            std::filesystem::create_directories(root() / "build" / preset / "testbench/program");
+            std::filesystem::create_directories(root() / "build" / preset / "testbench/commands");
             std::filesystem::create_symlink(TESSERA_PROGRAM,
-                                            root() / "build" / preset / "testbench/program/tessera");
+                                            root() / "build" / preset / "testbench/commands/tessera");
         }
     }
 

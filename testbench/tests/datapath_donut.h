@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "testbench/maps/built_in_maps.h"
+#include "testbench/input/map/built_in_maps.h"
 #include "testbench/tests/datapath_edge.h"
 
 namespace tessera::testing {

@@ -15,7 +15,7 @@
 #include "modules/datapath/tessellate.h"
 #include "modules/datapath/transform.h"
 #include "modules/datapath/triangle_pass.h"
-#include "testbench/proof/edge_machine.h"
+#include "testbench/prove/random_edges/edge_machine.h"
 
 /// The whole recursion on the datapath alone.
 namespace tessera::testing {

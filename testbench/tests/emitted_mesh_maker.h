@@ -8,7 +8,7 @@
 #include "modules/datapath/edge_tests.h"
 #include "modules/datapath/midpoint.h"
 #include "modules/datapath/triangulate.h"
-#include "testbench/host/emitted_mesh.h"
+#include "testbench/machine/emitted_mesh.h"
 
 namespace tessera {
 

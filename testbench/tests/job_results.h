@@ -4,7 +4,7 @@
 
 namespace tessera {
 
-/// What a job of testbench/jobs comes to, in either mode; half_donut is the default job. A change of the datapath, the
+/// What a job of testbench/examples/jobs comes to, in either mode; half_donut is the default job. A change of the datapath, the
 /// host, a default or the timing shows here. Whoever changes a line says in the commit's message why it changed.
 struct JobResult {
     const char* name;

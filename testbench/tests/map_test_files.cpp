@@ -17,7 +17,7 @@
 #include <stdexcept>
 
 #include "testbench/common/error.h"
-#include "testbench/maps/read_height_map.h"
+#include "testbench/input/map/read_height_map.h"
 
 namespace tessera::map_test {
 

@@ -7,11 +7,11 @@
 #include <random>
 
 #include "testbench/check/nearest_triangle.h"
-#include "testbench/maps/height_map.h"
-#include "testbench/measure/measure_error.h"
-#include "testbench/measure/mesh_samples.h"
-#include "testbench/measure/reference_lattice.h"
-#include "testbench/meshes/base_mesh.h"
+#include "testbench/input/map/height_map.h"
+#include "testbench/check/surface_error/measure_error.h"
+#include "testbench/check/surface_error/mesh_samples.h"
+#include "testbench/check/surface_error/reference_lattice.h"
+#include "testbench/input/mesh/base_mesh.h"
 
 namespace tessera {
 

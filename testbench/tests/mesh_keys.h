@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <set>
 
-#include "testbench/host/emitted_mesh.h"
+#include "testbench/machine/emitted_mesh.h"
 
 namespace tessera::testing {
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "testbench/benchmark/bare_recursion.h"
-#include "testbench/host/host.h"
-#include "testbench/host/mesh_monitor.h"
-#include "testbench/host/rasteriser.h"
+#include "testbench/machine/bare_recursion.h"
+#include "testbench/machine/host.h"
+#include "testbench/machine/mesh_monitor.h"
+#include "testbench/machine/rasteriser.h"
 #include "testbench/tests/mesh_keys.h"
 
 namespace tessera::testing {

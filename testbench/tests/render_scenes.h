@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-#include "testbench/render/image.h"
-#include "testbench/render/render_mesh.h"
-#include "testbench/render/style.h"
-#include "testbench/render/view.h"
+#include "testbench/output/picture/image.h"
+#include "testbench/output/picture/render_mesh.h"
+#include "testbench/output/picture/style.h"
+#include "testbench/output/picture/view.h"
 
 namespace tessera {
 

@@ -12,7 +12,7 @@
 #include "modules/datapath/parameters.h"
 #include "testbench/check/golden_inputs.h"
 #include "testbench/check/scoreboard.h"
-#include "testbench/host/setup.h"
+#include "testbench/machine/setup.h"
 #include "testbench/tests/datapath_edge.h"
 #include "testbench/tests/datapath_random.h"
 

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "testbench/check/scoreboard.h"
-#include "testbench/host/simulation.h"
+#include "testbench/machine/simulation.h"
 #include "testbench/tests/count_allocations.h"
 #include "testbench/tests/timed_checks.h"
 

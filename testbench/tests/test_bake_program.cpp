@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "testbench/maps/read_height_map.h"
+#include "testbench/input/map/read_height_map.h"
 #include "testbench/tests/program_runner.h"
 
 using namespace tessera;
@@ -10,7 +10,7 @@ namespace fs = std::filesystem;
 namespace {
 
 fs::path example(const char* name) {
-    return source_folder() / "testbench/surfaces/examples" / name;
+    return source_folder() / "testbench/examples/surfaces" / name;
 }
 
 ProgramEnd bake(std::vector<std::string> arguments, const fs::path& here, const ProgramLimits& limits = {}) {
@@ -111,7 +111,7 @@ TEST_CASE("bake: the job fits the domain and finds its files from its own folder
 TEST_CASE("bake: overlapping base triangles are told of") {
     const TestFolder here;
     write_all(here.path() / "ball.toml", "[quadric]\nshape = \"sphere\"\nradius = 6\n");
-    CHECK_THAT(baked({"ball.toml", "--mesh", (source_folder() / "testbench/jobs/teapot.toml").string(),
+    CHECK_THAT(baked({"ball.toml", "--mesh", (source_folder() / "testbench/examples/jobs/teapot.toml").string(),
                       "--output", "ball.pgm"},
                      here.path()),
                Contains("note: 6") && Contains("lie in several base triangles"));

@@ -109,7 +109,7 @@ TEST_CASE("round trip: a baked Bezier patch's vertices lie on the patch") {
 
 TEST_CASE("round trip: on the default plane a vertex lies on the dome at the texel it reads") {
     const TestFolder here;
-    baked({(source_folder() / "testbench/surfaces/examples/dome.toml").string(), "--output", "dome.pgm"},
+    baked({(source_folder() / "testbench/examples/surfaces/dome.toml").string(), "--output", "dome.pgm"},
           here.path());
     const RecordedMesh mesh = mesh_of_run("dome.job.toml", {}, here.path());
     CHECK(mesh.triangles.size() > 1000);
@@ -130,7 +130,7 @@ TEST_CASE("round trip: on the default plane a vertex lies on the dome at the tex
 
 TEST_CASE("round trip: a cylinder baked to a sphere closes at its seam, and only where the map repeats") {
     const TestFolder here;
-    const fs::path examples = source_folder() / "testbench/surfaces/examples";
+    const fs::path examples = source_folder() / "testbench/examples/surfaces";
     // Off the axis, so that the two sides of the seam are not each other's mirror image.
     write_all(here.path() / "ball.toml",
               "[quadric]\nshape = \"sphere\"\nradius = 1.4\ncentre = [0.25, 0.1, 0.05]\n");

@@ -9,7 +9,7 @@
 
 #include "modules/datapath/pack_triangle.h"
 #include "modules/memories/base_protocol_bridge.h"
-#include "testbench/benchmark/bare_recursion.h"
+#include "testbench/machine/bare_recursion.h"
 #include "testbench/tests/base_protocol_memories.h"
 #include "testbench/tests/job_results.h"
 #include "testbench/tests/timed_checks.h"

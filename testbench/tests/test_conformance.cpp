@@ -6,11 +6,11 @@
 #include "testbench/check/end_to_end.h"
 #include "testbench/check/scoreboard.h"
 #include "testbench/check/setup_check.h"
-#include "testbench/host/resolve_job.h"
-#include "testbench/host/simulation.h"
-#include "testbench/maps/built_in_maps.h"
-#include "testbench/maps/read_height_map.h"
-#include "testbench/meshes/make_base_mesh.h"
+#include "testbench/machine/resolve_job.h"
+#include "testbench/machine/simulation.h"
+#include "testbench/input/map/built_in_maps.h"
+#include "testbench/input/map/read_height_map.h"
+#include "testbench/input/mesh/make_base_mesh.h"
 
 using namespace tessera;
 
@@ -18,7 +18,7 @@ using namespace tessera;
 // time, as ctest does.
 namespace {
 
-const std::filesystem::path jobs = TESSERA_SOURCE_DIR "/testbench/jobs";
+const std::filesystem::path jobs = TESSERA_SOURCE_DIR "/testbench/examples/jobs";
 
 void expect_conformance(const Job& asked, const HeightMap& map) {
     const BaseMesh mesh = make_base_mesh(asked.mesh, (jobs / asked.mesh.file).string());

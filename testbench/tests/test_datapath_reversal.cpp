@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "testbench/proof/direct_edge.h"
-#include "testbench/proof/edge_trial.h"
+#include "testbench/prove/random_edges/direct_edge.h"
+#include "testbench/prove/random_edges/edge_trial.h"
 #include "testbench/tests/datapath_edge.h"
 #include "testbench/tests/datapath_random.h"
 

@@ -8,9 +8,9 @@
 #include "testbench/check/end_to_end.h"
 #include "testbench/check/surface_distance.h"
 #include "testbench/common/parallel.h"
-#include "testbench/host/resolve_job.h"
-#include "testbench/maps/built_in_maps.h"
-#include "testbench/meshes/built_in.h"
+#include "testbench/machine/resolve_job.h"
+#include "testbench/input/map/built_in_maps.h"
+#include "testbench/input/mesh/built_in.h"
 #include "testbench/tests/scoreboard_cases.h"
 
 using namespace tessera;

@@ -1,4 +1,4 @@
-#include "testbench/report/error_report.h"
+#include "testbench/output/report/error_report.h"
 
 #include <catch2/catch.hpp>
 #include <string>

@@ -16,7 +16,7 @@
 
 #include "testbench/check/conservation.h"
 #include "testbench/common/leave_process.h"
-#include "testbench/faults/checked_run.h"
+#include "testbench/prove/faults/checked_run.h"
 #include "testbench/job/job_choices.h"
 #include "testbench/tests/timed_checks.h"
 
@@ -297,9 +297,9 @@ std::string table(Mode mode, const Places& places, const Kinds& kinds, bool memo
     return text;
 }
 
-/// The part of testbench/faults/CATCHERS.md under a heading. TESSERA_WRITE_CATCHERS: written anew instead.
+/// The part of testbench/prove/faults/CATCHERS.md under a heading. TESSERA_WRITE_CATCHERS: written anew instead.
 void compare_with_document(const std::string& heading, const std::string& found) {
-    const std::string path = TESSERA_SOURCE_DIR "/testbench/faults/CATCHERS.md";
+    const std::string path = TESSERA_SOURCE_DIR "/testbench/prove/faults/CATCHERS.md";
     std::stringstream stream;
     stream << std::ifstream(path).rdbuf();
     std::string document = stream.str();
@@ -312,7 +312,7 @@ void compare_with_document(const std::string& heading, const std::string& found)
         std::ofstream(path) << document;
         return;
     }
-    INFO("testbench/faults/CATCHERS.md says something else; TESSERA_WRITE_CATCHERS=1 has the test write it");
+    INFO("testbench/prove/faults/CATCHERS.md says something else; TESSERA_WRITE_CATCHERS=1 has the test write it");
     CHECK(document.substr(from, to - from) == found);
 }
 

@@ -1,4 +1,4 @@
-#include "testbench/program/frame_table.h"
+#include "testbench/commands/frame_table.h"
 
 #include <catch2/catch.hpp>
 #include <string>

@@ -1,4 +1,4 @@
-// What the fuzzers start from and what they found, through the same checks (testbench/fuzz), in every build.
+// What the fuzzers start from and what they found, through the same checks (testbench/prove/fuzz), in every build.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "testbench/common/random.h"
-#include "testbench/fuzz/fuzz_target.h"
+#include "testbench/prove/fuzz/fuzz_target.h"
 
 using namespace tessera;
 namespace fs = std::filesystem;
@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 namespace {
 
 fs::path corpus() {
-    return fs::path(TESSERA_SOURCE_DIR) / "testbench/fuzz/corpus";
+    return fs::path(TESSERA_SOURCE_DIR) / "testbench/prove/fuzz/corpus";
 }
 
 std::vector<fs::path> files_of(const fuzz::FuzzTarget& target) {

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "testbench/benchmark/bare_recursion.h"
+#include "testbench/machine/bare_recursion.h"
 #include "testbench/benchmark/gouraud_error.h"
 #include "testbench/check/invariants.h"
 #include "testbench/check/scoreboard.h"

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "testbench/benchmark/bare_recursion.h"
+#include "testbench/machine/bare_recursion.h"
 #include "testbench/check/invariants.h"
 #include "testbench/check/scoreboard.h"
 #include "testbench/common/error.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "testbench/common/error.h"
-#include "testbench/maps/read_height_map.h"
+#include "testbench/input/map/read_height_map.h"
 #include "testbench/tests/map_test_files.h"
 
 using namespace tessera;

@@ -4,9 +4,9 @@
 #include <numeric>
 
 #include "testbench/common/error.h"
-#include "testbench/maps/built_in_maps.h"
-#include "testbench/maps/read_height_map.h"
-#include "testbench/maps/stroke_font.h"
+#include "testbench/input/map/built_in_maps.h"
+#include "testbench/input/map/read_height_map.h"
+#include "testbench/input/map/stroke_font.h"
 #include "testbench/tests/map_test_files.h"
 #include "testbench/tests/shared_data.h"
 
@@ -64,7 +64,7 @@ TEST_CASE("half donut and ramp agree with the reference maps to one code of 16 b
 }
 
 TEST_CASE("the maps of the project's jobs are those of the shared data") {
-    const std::filesystem::path shared = shared_data("maps"), ours = TESSERA_SOURCE_DIR "/testbench/jobs";
+    const std::filesystem::path shared = shared_data("maps"), ours = TESSERA_SOURCE_DIR "/testbench/examples/jobs";
     if (shared.empty())
         return;
     const HeightMap crater = read_height_map(ours / "crater_lake_west.png");
@@ -79,7 +79,7 @@ TEST_CASE("the maps of the project's jobs are those of the shared data") {
 }
 
 TEST_CASE("the maps of the project's jobs hold what ORIGINS.txt says") {
-    const std::filesystem::path ours = TESSERA_SOURCE_DIR "/testbench/jobs";
+    const std::filesystem::path ours = TESSERA_SOURCE_DIR "/testbench/examples/jobs";
     const HeightMap crater = read_height_map(ours / "crater_lake_west.png");
     REQUIRE(crater.width == 336);
     REQUIRE(crater.height == 459);

@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "testbench/maps/encode_height_map.h"
-#include "testbench/maps/read_height_map.h"
+#include "testbench/input/map/encode_height_map.h"
+#include "testbench/input/map/read_height_map.h"
 #include "testbench/tests/map_test_files.h"
 
 using namespace tessera;

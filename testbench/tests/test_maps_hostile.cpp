@@ -11,7 +11,7 @@
 #include <string>
 
 #include "testbench/common/random.h"
-#include "testbench/fuzz/fuzz_target.h"
+#include "testbench/prove/fuzz/fuzz_target.h"
 #include "testbench/tests/map_test_files.h"
 #include "testbench/tests/shared_data.h"
 

@@ -3,7 +3,7 @@
 
 #include "testbench/common/error.h"
 #include "testbench/common/parallel.h"
-#include "testbench/meshes/built_in.h"
+#include "testbench/input/mesh/built_in.h"
 #include "testbench/tests/measure_cases.h"
 
 using namespace tessera;

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "testbench/meshes/built_in.h"
+#include "testbench/input/mesh/built_in.h"
 #include "testbench/tests/measure_cases.h"
 
 using namespace tessera;

@@ -9,7 +9,7 @@
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/error.h"
 #include "testbench/job/dump_job.h"
-#include "testbench/report/ply_writer.h"
+#include "testbench/output/report/ply_writer.h"
 #include "testbench/run_folder/ply_reader.h"
 #include "testbench/run_folder/read_run.h"
 

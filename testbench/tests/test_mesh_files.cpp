@@ -19,8 +19,8 @@
 
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/error.h"
-#include "testbench/report/obj_writer.h"
-#include "testbench/report/ply_writer.h"
+#include "testbench/output/report/obj_writer.h"
+#include "testbench/output/report/ply_writer.h"
 #include "testbench/tests/emitted_mesh_maker.h"
 
 namespace tessera {

@@ -3,8 +3,8 @@
 #include <set>
 
 #include "testbench/common/error.h"
-#include "testbench/meshes/built_in.h"
-#include "testbench/meshes/make_base_mesh.h"
+#include "testbench/input/mesh/built_in.h"
+#include "testbench/input/mesh/make_base_mesh.h"
 #include "testbench/tests/mesh_checks.h"
 
 using namespace tessera;

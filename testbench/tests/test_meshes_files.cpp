@@ -5,8 +5,8 @@
 #include <set>
 
 #include "testbench/common/error.h"
-#include "testbench/meshes/built_in.h"
-#include "testbench/meshes/obj_reader.h"
+#include "testbench/input/mesh/built_in.h"
+#include "testbench/input/mesh/obj_reader.h"
 #include "testbench/tests/mesh_checks.h"
 #include "testbench/tests/shared_data.h"
 

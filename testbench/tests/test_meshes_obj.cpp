@@ -7,10 +7,10 @@
 #include <sstream>
 
 #include "testbench/common/error.h"
-#include "testbench/meshes/obj_reader.h"
-#include "testbench/meshes/polygon_cutter.h"
-#include "testbench/meshes/surface_flaws.h"
-#include "testbench/meshes/tangent_frames.h"
+#include "testbench/input/mesh/obj_reader.h"
+#include "testbench/input/mesh/polygon_cutter.h"
+#include "testbench/input/mesh/surface_flaws.h"
+#include "testbench/input/mesh/tangent_frames.h"
 #include "testbench/tests/mesh_checks.h"
 
 using namespace tessera;

@@ -4,10 +4,10 @@
 #include <filesystem>
 
 #include "testbench/common/error.h"
-#include "testbench/meshes/bezier_patches.h"
-#include "testbench/meshes/make_base_mesh.h"
-#include "testbench/meshes/mesh_limits.h"
-#include "testbench/meshes/obj_reader.h"
+#include "testbench/input/mesh/bezier_patches.h"
+#include "testbench/input/mesh/make_base_mesh.h"
+#include "testbench/input/mesh/mesh_limits.h"
+#include "testbench/input/mesh/obj_reader.h"
 #include "testbench/tests/mesh_checks.h"
 #include "testbench/tests/shared_data.h"
 
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path teapot_file = fs::path(TESSERA_SOURCE_DIR) / "testbench/jobs/teapot_newell.txt";
+const fs::path teapot_file = fs::path(TESSERA_SOURCE_DIR) / "testbench/examples/jobs/teapot_newell.txt";
 
 BezierPatches teapot() {
     return read_bezier_patches(teapot_file.string());

@@ -3,12 +3,12 @@
 #include <tuple>
 #include <vector>
 
-#include "testbench/benchmark/bare_recursion.h"
+#include "testbench/machine/bare_recursion.h"
 #include "testbench/check/invariants.h"
 #include "testbench/check/scoreboard.h"
 #include "testbench/common/error.h"
-#include "testbench/host/inputs.h"
-#include "testbench/host/simulation.h"
+#include "testbench/machine/inputs.h"
+#include "testbench/machine/simulation.h"
 #include "testbench/tests/mesh_keys.h"
 
 // The whole machine, from the host's triangles to the rasteriser. SystemC elaborates once a process, so each case runs

@@ -114,7 +114,7 @@ TEST_CASE("two runs leave identical bytes, and so do the jobs they write down") 
     require_same_files(first, run_in("dumped", {(here.path() / "dump.toml").string()}));
     require_same_files(first, run_in("own", {(here.path() / "first/runs/half_donut/job.toml").string()}));
     // This one states some defaults in other words.
-    auto stated = run_in("file", {(source_folder() / "testbench/jobs/half_donut.toml").string()});
+    auto stated = run_in("file", {(source_folder() / "testbench/examples/jobs/half_donut.toml").string()});
     stated["job.toml"] = first.at("job.toml");
     require_same_files(first, stated);
     CHECK(run_well({"run", (here.path() / "dump.toml").string(), "--dump-config"}, here.path()).out == dump);

@@ -57,10 +57,10 @@ TEST_CASE("figures: the page holds what the runs left") {
 
 TEST_CASE("figures: a program that fails is named on the page, and by the exit code") {
     const Checkout checkout;
-    fs::remove(checkout.root() / "build/release/testbench/program/tessera");
-    write_all(checkout.root() / "build/release/testbench/program/tessera",
+    fs::remove(checkout.root() / "build/release/testbench/commands/tessera");
+    write_all(checkout.root() / "build/release/testbench/commands/tessera",
               "#!/bin/sh\necho no luck >&2\nexit 3\n");
-    fs::permissions(checkout.root() / "build/release/testbench/program/tessera", fs::perms::owner_all);
+    fs::permissions(checkout.root() / "build/release/testbench/commands/tessera", fs::perms::owner_all);
     const ProgramEnd end = checkout.run("scripts/figures --only text_plane");
     CHECK(end.exit_code == 1);
     CHECK_THAT(end.err, Contains("exit code 3") && Contains("no luck"));

@@ -32,7 +32,7 @@ void check_result(const JobResult& expected, const fs::path& folder) {
 
 /// Runs one of the project's jobs and requires what every one of them must hold.
 void run_job_well(const std::string& name) {
-    const fs::path job = source_folder() / "testbench/jobs" / (name + ".toml");
+    const fs::path job = source_folder() / "testbench/examples/jobs" / (name + ".toml");
     const TestFolder here;
     const ProgramEnd end = run_tessera({"run", job.string()}, here.path());
     INFO(end.text());
@@ -73,7 +73,7 @@ void run_job_well(const std::string& name) {
 
 TEST_CASE("every job of the project has its test here") {
     std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(source_folder() / "testbench/jobs"))
+    for (const auto& entry : fs::directory_iterator(source_folder() / "testbench/examples/jobs"))
         if (entry.path().extension() == ".toml")
             names.push_back(entry.path().stem().string());
     std::sort(names.begin(), names.end());

@@ -203,7 +203,7 @@ TEST_CASE("scripts/run takes a job by name or by file and hands everything on") 
     };
     works("scripts/run" + quick);
     works("scripts/run half_donut" + quick);
-    works("scripts/run testbench/jobs/half_donut.toml" + quick);
+    works("scripts/run testbench/examples/jobs/half_donut.toml" + quick);
     works(
         "mkdir elsewhere && cd elsewhere && ../scripts/run half_donut --set tests.generation_limit=1"
         " --set output.folder=../out");

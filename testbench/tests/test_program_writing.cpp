@@ -219,7 +219,7 @@ TEST_CASE("an output that is a link is replaced, and what it leads to stays") {
     check_replaced({"compare", "out/run"}, {run / "error.txt", run / "error.json"});
     check_replaced({"render", "out/run", "--size", "64x64", "--view", "shaded"}, {run / "shaded.png"});
     const fs::path out = here.path() / "out";
-    check_replaced({"bake", (source_folder() / "testbench/surfaces/examples/dome.toml").string(), "--size",
+    check_replaced({"bake", (source_folder() / "testbench/examples/surfaces/dome.toml").string(), "--size",
                     "16x16", "--output", "out/baked.png"},
                    {out / "baked.png"});
     check_replaced({"tune", "--triangles", "60", "--set", "map.width=16", "--set", "map.height=16",
@@ -346,7 +346,7 @@ TEST_CASE(
     for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
              {"compare", "out/run"},
              {"render", "out/run", "--size", "64x64", "--view", "shaded", "--view", "generation"},
-             {"bake", (source_folder() / "testbench/surfaces/examples/dome.toml").string(), "--size", "16x16",
+             {"bake", (source_folder() / "testbench/examples/surfaces/dome.toml").string(), "--size", "16x16",
               "--output", "out/baked.png"},
              {"tune", "--triangles", "60", "--set", "map.width=16", "--set", "map.height=16", "--output",
               "out/tuned.toml"}}) {

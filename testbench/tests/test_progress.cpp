@@ -4,7 +4,7 @@
 #include <string>
 #include <thread>
 
-#include "testbench/program/progress.h"
+#include "testbench/commands/progress.h"
 #include "testbench/tests/program_runner.h"
 
 using namespace tessera;

@@ -3,13 +3,13 @@
 #include <set>
 #include <string>
 
-#include "testbench/benchmark/bare_recursion.h"
+#include "testbench/machine/bare_recursion.h"
 #include "testbench/check/invariants.h"
-#include "testbench/host/inputs.h"
-#include "testbench/host/resolve_job.h"
+#include "testbench/machine/inputs.h"
+#include "testbench/machine/resolve_job.h"
 #include "testbench/job/read_job.h"
-#include "testbench/random_cases/lineage_check.h"
-#include "testbench/random_cases/random_case.h"
+#include "testbench/prove/random_machines/lineage_check.h"
+#include "testbench/prove/random_machines/random_case.h"
 #include "testbench/tests/program_runner.h"
 
 /// The generator of random cases and its program; that the cases hold is what tessera_random_cases itself is run for.

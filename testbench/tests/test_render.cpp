@@ -9,17 +9,17 @@
 #include <vector>
 
 #include "testbench/common/parallel.h"
-#include "testbench/render/draw_text.h"
-#include "testbench/render/image.h"
-#include "testbench/render/key_light.h"
-#include "testbench/render/legend.h"
-#include "testbench/render/overview.h"
-#include "testbench/render/palette.h"
-#include "testbench/render/png_writer.h"
-#include "testbench/render/render.h"
-#include "testbench/render/render_mesh.h"
-#include "testbench/render/view.h"
-#include "testbench/render/wireframe.h"
+#include "testbench/output/picture/draw_text.h"
+#include "testbench/output/picture/image.h"
+#include "testbench/output/picture/key_light.h"
+#include "testbench/output/picture/legend.h"
+#include "testbench/output/picture/overview.h"
+#include "testbench/output/picture/palette.h"
+#include "testbench/output/picture/png_writer.h"
+#include "testbench/output/picture/render.h"
+#include "testbench/output/picture/render_mesh.h"
+#include "testbench/output/picture/view.h"
+#include "testbench/output/picture/wireframe.h"
 #include "testbench/tests/render_scenes.h"
 
 using namespace tessera;

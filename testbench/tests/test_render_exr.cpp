@@ -7,10 +7,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "testbench/render/exr_writer.h"
-#include "testbench/render/overview.h"
-#include "testbench/render/palette.h"
-#include "testbench/render/view_picture.h"
+#include "testbench/output/picture/exr_writer.h"
+#include "testbench/output/picture/overview.h"
+#include "testbench/output/picture/palette.h"
+#include "testbench/output/picture/view_picture.h"
 #include "testbench/tests/render_scenes.h"
 
 using namespace tessera;

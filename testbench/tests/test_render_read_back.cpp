@@ -2,8 +2,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "testbench/render/render_mesh.h"
-#include "testbench/report/ply_writer.h"
+#include "testbench/output/picture/render_mesh.h"
+#include "testbench/output/report/ply_writer.h"
 #include "testbench/run_folder/ply_reader.h"
 #include "testbench/tests/program_runner.h"
 

@@ -4,14 +4,14 @@
 #include <set>
 #include <string>
 
-#include "testbench/render/colour_bar.h"
-#include "testbench/render/error_range.h"
-#include "testbench/render/legend.h"
-#include "testbench/render/overview.h"
-#include "testbench/render/palette.h"
-#include "testbench/render/picture_view.h"
-#include "testbench/render/render.h"
-#include "testbench/render/view_picture.h"
+#include "testbench/output/picture/colour_bar.h"
+#include "testbench/output/picture/error_range.h"
+#include "testbench/output/picture/legend.h"
+#include "testbench/output/picture/overview.h"
+#include "testbench/output/picture/palette.h"
+#include "testbench/output/picture/picture_view.h"
+#include "testbench/output/picture/render.h"
+#include "testbench/output/picture/view_picture.h"
 #include "testbench/tests/render_scenes.h"
 
 using namespace tessera;

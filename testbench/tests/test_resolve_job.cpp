@@ -5,12 +5,12 @@
 
 #include "testbench/check/golden_job.h"
 #include "testbench/common/error.h"
-#include "testbench/host/resolve_job.h"
-#include "testbench/host/setup.h"
+#include "testbench/machine/resolve_job.h"
+#include "testbench/machine/setup.h"
 #include "testbench/job/job_keys.h"
-#include "testbench/maps/built_in_maps.h"
-#include "testbench/meshes/built_in.h"
-#include "testbench/meshes/obj_reader.h"
+#include "testbench/input/map/built_in_maps.h"
+#include "testbench/input/mesh/built_in.h"
+#include "testbench/input/mesh/obj_reader.h"
 
 // What a job leaves to the program, by values derived by hand.
 

@@ -3,13 +3,13 @@
 
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/error.h"
-#include "testbench/host/host_traffic.h"
+#include "testbench/machine/host_traffic.h"
 #include "testbench/job/dump_job.h"
 #include "testbench/job/frame_job.h"
-#include "testbench/maps/built_in_maps.h"
-#include "testbench/meshes/built_in.h"
-#include "testbench/meshes/run_mesh.h"
-#include "testbench/report/ply_writer.h"
+#include "testbench/input/map/built_in_maps.h"
+#include "testbench/input/mesh/built_in.h"
+#include "testbench/input/mesh/run_mesh.h"
+#include "testbench/output/report/ply_writer.h"
 #include "testbench/tests/program_runner.h"
 
 using namespace tessera;

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <functional>
 
-#include "testbench/benchmark/bare_recursion.h"
+#include "testbench/machine/bare_recursion.h"
 #include "testbench/common/error.h"
-#include "testbench/report/saturation_figures.h"
+#include "testbench/output/report/saturation_figures.h"
 #include "testbench/tests/datapath_reference.h"
 #include "testbench/tests/timed_checks.h"
 

@@ -11,9 +11,9 @@
 #include "modules/datapath/map_entry.h"
 #include "testbench/check/end_to_end.h"
 #include "testbench/check/setup_check.h"
-#include "testbench/host/inputs.h"
-#include "testbench/host/simulation.h"
-#include "testbench/report/conformance_report.h"
+#include "testbench/machine/inputs.h"
+#include "testbench/machine/simulation.h"
+#include "testbench/output/report/conformance_report.h"
 
 using namespace tessera;
 using Catch::Contains;

@@ -1,4 +1,4 @@
-#include "testbench/report/statistics.h"
+#include "testbench/output/report/statistics.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,11 +1,11 @@
-#include "testbench/program/summary.h"
+#include "testbench/commands/summary.h"
 
 #include <catch2/catch.hpp>
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "testbench/report/conformance_report.h"
+#include "testbench/output/report/conformance_report.h"
 #include "testbench/tests/hand_made_run.h"
 
 // What a run prints: each figure in its place, on a machine whose counts are all different, and a run of one triangle.

@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "testbench/common/error.h"
-#include "testbench/meshes/built_in.h"
-#include "testbench/meshes/obj_reader.h"
-#include "testbench/surfaces/bake.h"
+#include "testbench/input/mesh/built_in.h"
+#include "testbench/input/mesh/obj_reader.h"
+#include "testbench/input/surface/bake.h"
 
 using namespace tessera;
 using Catch::Matchers::Contains;

@@ -2,7 +2,7 @@
 #include <filesystem>
 
 #include "testbench/common/error.h"
-#include "testbench/surfaces/surface_file.h"
+#include "testbench/input/surface/surface_file.h"
 
 using namespace tessera;
 using Catch::Matchers::Contains;
@@ -37,7 +37,7 @@ std::string nurbs(const std::string& key = "", const std::string& line = "") {
 
 TEST_CASE("surface file: the examples are read") {
     const std::filesystem::path examples =
-        std::filesystem::path(TESSERA_SOURCE_DIR) / "testbench/surfaces/examples";
+        std::filesystem::path(TESSERA_SOURCE_DIR) / "testbench/examples/surfaces";
     const Surface dome = read_surface(examples / "dome.toml");
     const auto& sphere = std::get<QuadricSurface>(dome.shape);
     CHECK(sphere.quadric.centre == glm::dvec3(0, 0, -0.25));

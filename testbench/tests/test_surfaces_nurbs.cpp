@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "testbench/surfaces/nurbs_patch.h"
+#include "testbench/input/surface/nurbs_patch.h"
 
 using namespace tessera;
 

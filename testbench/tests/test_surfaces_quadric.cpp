@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "testbench/surfaces/quadric.h"
+#include "testbench/input/surface/quadric.h"
 
 using namespace tessera;
 

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "testbench/benchmark/bare_recursion.h"
+#include "testbench/machine/bare_recursion.h"
 #include "testbench/check/scoreboard.h"
 #include "testbench/tests/timed_checks.h"
 

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cstdint>
 
-#include "testbench/report/timing_report.h"
+#include "testbench/output/report/timing_report.h"
 #include "testbench/tests/timed_checks.h"
 
 // Long runs: the slowest unit's interval times its work, and the cycles the machine takes to fill and to drain, to the

@@ -1,4 +1,4 @@
-#include "testbench/report/timing_report.h"
+#include "testbench/output/report/timing_report.h"
 
 #include <catch2/catch.hpp>
 #include <string>

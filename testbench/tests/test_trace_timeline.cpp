@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "testbench/trace/timeline_writer.h"
+#include "testbench/output/trace/timeline_writer.h"
 
 namespace tessera {
 namespace {

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "testbench/trace/vcd_writer.h"
+#include "testbench/output/trace/vcd_writer.h"
 
 namespace tessera {
 namespace {

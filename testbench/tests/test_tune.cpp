@@ -6,14 +6,14 @@
 #include <set>
 #include <tuple>
 
-#include "testbench/benchmark/bare_recursion.h"
+#include "testbench/machine/bare_recursion.h"
 #include "testbench/common/error.h"
-#include "testbench/host/inputs.h"
-#include "testbench/measure/height_field.h"
-#include "testbench/meshes/obj_reader.h"
-#include "testbench/tune/threshold_level.h"
-#include "testbench/tune/tune.h"
-#include "testbench/tune/tune_report.h"
+#include "testbench/machine/inputs.h"
+#include "testbench/check/surface_error/height_field.h"
+#include "testbench/input/mesh/obj_reader.h"
+#include "testbench/explore/thresholds/threshold_level.h"
+#include "testbench/explore/thresholds/tune.h"
+#include "testbench/explore/thresholds/tune_report.h"
 
 using namespace tessera;
 using Catch::Contains;

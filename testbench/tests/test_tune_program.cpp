@@ -118,7 +118,7 @@ TEST_CASE("tune works where the surface is no height field") {
 
 TEST_CASE("tune finds thresholds for Crater Lake") {
     const TestFolder here;
-    const std::string job = (source_folder() / "testbench/jobs/crater_lake_704.toml").string();
+    const std::string job = (source_folder() / "testbench/examples/jobs/crater_lake_704.toml").string();
     succeed(
         {"tune", job, "--triangles", "3047", "--grid", "lattice16,lattice32", "--set", "tests.view=false"},
         here.path());

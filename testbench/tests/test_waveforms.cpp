@@ -7,7 +7,7 @@
 
 #include "testbench/tests/program_runner.h"
 #include "testbench/tests/vcd_file.h"
-#include "testbench/trace/recorder.h"
+#include "testbench/output/trace/recorder.h"
 
 using namespace tessera;
 using Catch::Contains;

@@ -7,7 +7,7 @@
 #include "testbench/check/scoreboard.h"
 #include "testbench/common/error.h"
 #include "testbench/tests/timed_checks.h"
-#include "testbench/widths/widths_report.h"
+#include "testbench/explore/widths/widths_report.h"
 
 using namespace tessera;
 using namespace tessera::testing;

@@ -157,7 +157,7 @@ TEST_CASE("widths: a sweep of which every width is refused is no result") {
 
 TEST_CASE("widths: Crater Lake's Summed Height Table and positions") {
     const TestFolder here;
-    const std::string job = (source_folder() / "testbench/jobs/crater_lake_24.toml").string();
+    const std::string job = (source_folder() / "testbench/examples/jobs/crater_lake_24.toml").string();
     succeed({"widths", job, "--quantity", "summed_height,position", "--bits", "24..32", "--output", "w"},
             here.path());
     const Json table = read_json(here.path() / "w/widths.json").at("quantities");

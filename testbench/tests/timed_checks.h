@@ -4,8 +4,8 @@
 #include <string>
 
 #include "testbench/check/conservation.h"
-#include "testbench/host/inputs.h"
-#include "testbench/host/simulation.h"
+#include "testbench/machine/inputs.h"
+#include "testbench/machine/simulation.h"
 #include "testbench/tests/mesh_keys.h"
 
 /// What must hold of every timed run, whatever its job and its timing.

@@ -2,7 +2,7 @@
 from section import Claim, Experiment, Picture, Section, Table, reproduced_if
 from study import ROOT
 
-EXAMPLES = ROOT / "testbench/surfaces/examples"
+EXAMPLES = ROOT / "testbench/examples/surfaces"
 SURFACES = {"pillow": ("a bicubic Bezier patch over a plane", None),
             "hills": ("a rational B-spline patch over a plane", None),
             "barrel": ("a sphere over a cylinder, along its normals", "barrel_base")}

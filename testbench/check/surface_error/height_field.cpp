@@ -1,0 +1,199 @@
+#include "testbench/check/surface_error/height_field.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "testbench/common/error.h"
+#include "testbench/check/surface_error/texel_centres.h"
+
+namespace tessera {
+namespace {
+
+constexpr std::int64_t most_cells = std::int64_t{1} << 22;  // of a band
+
+/// A triangle over the grid: texel coordinates and heights of its corners.
+struct Facet {
+    std::array<glm::dvec2, 3> texel;
+    std::array<double, 3> height;
+};
+
+/// Rows of a band, and its columns.
+struct Band {
+    GridRange columns, rows;
+
+    std::size_t index(std::int64_t x, std::int64_t y) const {
+        return static_cast<std::size_t>((y - rows.first) * (columns.last - columns.first + 1) +
+                                        (x - columns.first));
+    }
+};
+
+/// Calls at(x, y, height) for the grid points of the band under a triangle, its border among them.
+template <class At>
+void cover(const Facet& facet, const Band& band, At&& at) {
+    for_texel_centres(facet.texel, band.columns, band.rows,
+                      [&](std::int64_t x, std::int64_t y, const glm::dvec3& b) {
+                          at(x, y, b.x * facet.height[0] + b.y * facet.height[1] + b.z * facet.height[2]);
+                      });
+}
+
+Facet facet_of(const HeightField& field, const std::array<glm::dvec3, 3>& corners) {
+    Facet facet;
+    for (std::size_t k = 0; k < 3; ++k) {
+        facet.texel[k] = field.texel(corners[k]);
+        facet.height[k] = field.height(corners[k]);
+    }
+    return facet;
+}
+
+}  // namespace
+
+std::optional<HeightField> find_height_field(const BaseMesh& base, const HeightMap& map,
+                                             const DisplacementOf& displacement, std::string& why) {
+    constexpr double tolerance = 1e-6, texel_tolerance = 1e-3;
+    const auto corner = [&](std::size_t triangle, std::size_t k) -> const BaseVertex& {
+        return base.vertices[base.triangles[triangle][k]];
+    };
+    // The triangle largest in texture space fixes the plane and the affine function.
+    std::size_t largest = base.triangles.size();
+    double largest_area = 0;
+    const auto texels = [&](std::size_t triangle) {
+        std::array<glm::dvec2, 3> t;
+        for (std::size_t k = 0; k < 3; ++k)
+            t[k] = texel_of(corner(triangle, k), map, displacement);
+        return t;
+    };
+    for (std::size_t k = 0; k < base.triangles.size(); ++k) {
+        const auto t = texels(k);
+        const double area = std::abs(cross(t[1] - t[0], t[2] - t[0]));
+        if (area > largest_area) {
+            largest_area = area;
+            largest = k;
+        }
+    }
+    why = "no base triangle has an area in texture space";
+    if (largest == base.triangles.size())
+        return std::nullopt;
+    HeightField field;
+    field.origin = corner(largest, 0).position;
+    const glm::dvec3 p = corner(largest, 1).position - field.origin,
+                     q = corner(largest, 2).position - field.origin;
+    const glm::dvec3 across = glm::cross(p, q);
+    const double area = glm::length(across);
+    why = "its base triangle that is largest in texture space has no area that can be computed with";
+    if (!(area > 0) || !std::isfinite(area))
+        return std::nullopt;
+    field.normal = across / area;
+    // dot(dual_p, p) = 1, dot(dual_p, q) = 0, and the other way round
+    const glm::dvec3 dual_p = glm::cross(q, field.normal) / area, dual_q = glm::cross(field.normal, p) / area;
+    const auto t = texels(largest);
+    field.texel_origin = t[0];
+    const glm::dvec2 along_p = t[1] - t[0], along_q = t[2] - t[0];
+    field.u = along_p.x * dual_p + along_q.x * dual_q;
+    field.v = along_p.y * dual_p + along_q.y * dual_q;
+
+    // Heights count along the normals of the vertices, whichever side of the triangle they are on.
+    if (glm::dot(field.normal, corner(largest, 0).normal) < 0)
+        field.normal = -field.normal;
+    glm::dvec3 low(base.vertices.front().position), high(low);
+    for (const BaseVertex& vertex : base.vertices) {
+        low = glm::min(low, vertex.position);
+        high = glm::max(high, vertex.position);
+    }
+    const double size = glm::length(high - low);
+    // What is looked at first is what is said: all positions, then all normals, then all texture coordinates.
+    const auto holds = [&](const char* else_why, const auto& test) {
+        why = else_why;
+        for (std::size_t k = 0; k < base.triangles.size(); ++k)
+            for (std::size_t c = 0; c < 3; ++c)
+                if (!test(corner(k, c)))
+                    return false;
+        return true;
+    };
+    if (!holds("the base mesh is not planar",
+               [&](const BaseVertex& v) { return std::abs(field.height(v.position)) <= tolerance * size; }) ||
+        !holds("the base mesh's normals are not those of its plane",
+               [&](const BaseVertex& v) { return glm::length(v.normal - field.normal) <= tolerance; }) ||
+        !holds("texture coordinates are not an affine function of position", [&](const BaseVertex& v) {
+            const glm::dvec2 off = glm::abs(field.texel(v.position) - texel_of(v, map, displacement));
+            return std::max(off.x, off.y) <= texel_tolerance;
+        }))
+        return std::nullopt;
+    why.clear();
+    return field;
+}
+
+VerticalError measure_vertical_error(const HeightField& field, const BaseMesh& base, const HeightMap& map,
+                                     const DisplacementOf& displacement, const RecordedMesh& mesh) {
+    VerticalError result;
+    result.map_unit = std::abs(displacement.scale) / map.source_units;
+    glm::dvec2 low(std::numeric_limits<double>::infinity()), high(-low);
+    for (const auto& triangle : base.triangles)
+        for (const std::uint32_t v : triangle) {
+            const glm::dvec2 t = field.texel(base.vertices[v].position);
+            low = glm::min(low, t);
+            high = glm::max(high, t);
+        }
+    const GridRange columns = grid_lines(low.x, high.x), rows = grid_lines(low.y, high.y);
+    const std::int64_t width = columns.last - columns.first + 1, height = rows.last - rows.first + 1;
+    if (width < 1 || height < 1)
+        return result;
+    if (std::max(width, height) > std::int64_t{1} << 30 || width * height > std::int64_t{1} << 32)
+        throw ResourceError(
+            "the base mesh repeats the map so often that it has more than 2^32 grid points: compare a "
+            "run with fewer repetitions");
+    const std::int64_t band_rows = std::max<std::int64_t>(1, most_cells / width);
+    constexpr float outside = -2, uncovered = -1;  // else the error
+    std::vector<float> errors;
+    double squares = 0;
+    for (std::int64_t first = rows.first; first <= rows.last; first += band_rows) {
+        const Band band{columns, {first, std::min(rows.last, first + band_rows - 1)}};
+        errors.assign(static_cast<std::size_t>(width * (band.rows.last - band.rows.first + 1)), outside);
+        for (const auto& t : base.triangles)
+            cover(facet_of(field, {base.vertices[t[0]].position, base.vertices[t[1]].position,
+                                   base.vertices[t[2]].position}),
+                  band,
+                  [&](std::int64_t x, std::int64_t y, double) { errors[band.index(x, y)] = uncovered; });
+        for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {
+            cover(facet_of(field, mesh.corners(mesh.triangles[k])), band,
+                  [&](std::int64_t x, std::int64_t y, double at) {
+                      float& error = errors[band.index(x, y)];
+                      if (error == outside)
+                          return;
+                      const double wanted = displacement.of(static_cast<double>(
+                          map.at(static_cast<int>(addressed(x, map.width, displacement.address_u)),
+                                 static_cast<int>(addressed(y, map.height, displacement.address_v)))));
+                      const double off = std::abs(at - wanted);
+                      error = std::max(error, static_cast<float>(off));
+                      if (off > result.max) {
+                          result.max = off;
+                          result.worst_texel = glm::dvec2(x, y) + 0.5;
+                          result.worst_triangle = k;
+                          // undoes field.texel() on the plane
+                          const glm::dvec2 away = result.worst_texel - field.texel_origin;
+                          const glm::dvec3 across = glm::cross(field.u, field.v);
+                          const double area = glm::dot(across, across);
+                          result.worst_position =
+                              field.origin +
+                              (away.x * glm::cross(field.v, across) + away.y * glm::cross(across, field.u)) /
+                                  area +
+                              wanted * field.normal;
+                      }
+                  });
+        }
+        for (const float error : errors) {
+            result.grid_points += error == outside ? 0 : 1;
+            if (error < 0)
+                continue;
+            ++result.covered;
+            squares += static_cast<double>(error) * static_cast<double>(error);
+        }
+    }
+    if (result.covered > 0)
+        result.rms = std::sqrt(squares / static_cast<double>(result.covered));
+    return result;
+}
+
+}  // namespace tessera

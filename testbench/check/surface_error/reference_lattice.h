@@ -1,0 +1,75 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "testbench/check/surface_error/displaced_surface.h"
+
+namespace tessera {
+
+/// The dense samples of the displaced surface. A base triangle is cut into n * n congruent triangles, "facets", by
+/// points (i, j), i + j <= n, at barycentric coordinates (n - i - j, i, j) / n, displaced one by one; n is the least
+/// that leaves no edge of a facet longer than a quarter of a texel along u or along v, and at least 4: a base surface
+/// with few texels is curved too.
+///
+/// Beyond `most_samples` the density is lowered, for all base triangles by one factor, and density() says to
+/// what; to one facet a base triangle at the least, however many there are.
+/// Between the samples the reference is flat; bilinear interpolation is not quite: where its slope along an
+/// axis changes at a texel centre, by a height of s a texel, a facet's edge cuts off a corner of at most
+/// s / 16.
+///
+/// Not stored but evaluated in tiles of 16 by 16 cells, each cell two facets.
+class ReferenceLattice {
+  public:
+    static constexpr double samples_per_texel = 4;
+    static constexpr std::size_t tile_cells = 16;
+
+    ReferenceLattice(const DisplacedSurface& surface, std::uint64_t most_samples);
+
+    std::uint64_t samples() const {
+        return samples_;
+    }                                            ///< points, those of shared edges once per base triangle
+    double density() const { return density_; }  ///< samples per texel along an axis, at least
+
+    struct Tile {
+        std::uint32_t triangle;
+        std::uint16_t column, row;  ///< its first cell is (16 column, 16 row)
+    };
+    const std::vector<Tile>& tiles() const { return tiles_; }
+    std::uint32_t subdivision(std::size_t triangle) const { return subdivisions_[triangle]; }
+
+    /// Facets of a cell (a, b) of a tile by the points' numbers; the second one is missing on the triangle's third
+    /// edge.
+    struct Cell {
+        std::size_t facets = 0;
+        std::array<std::array<std::size_t, 3>, 2> corners{};
+    };
+
+    /// A tile's displaced points, local; (a, b) counts from the tile's first cell.
+    struct Points {
+        static constexpr std::size_t side = tile_cells + 1;
+        static constexpr std::size_t number(std::size_t a, std::size_t b) { return b * side + a; }
+
+        std::size_t limit = 0;  ///< points with a + b <= limit are there
+        std::array<glm::dvec3, side * side> point;
+
+        bool has(std::size_t a, std::size_t b) const { return a < side && b < side && a + b <= limit; }
+        Cell cell(std::size_t a, std::size_t b) const;
+    };
+    void evaluate(const Tile& tile, Sampling sampling, Points& points) const;
+
+    /// Where in its base triangle a tile's point lies.
+    glm::dvec3 barycentric(const Tile& tile, std::size_t a, std::size_t b) const;
+
+    const DisplacedSurface& surface() const { return surface_; }
+
+  private:
+    const DisplacedSurface& surface_;
+    std::uint64_t samples_ = 0;
+    double density_ = samples_per_texel;
+    std::vector<std::uint32_t> subdivisions_;
+    std::vector<Tile> tiles_;
+};
+
+}  // namespace tessera

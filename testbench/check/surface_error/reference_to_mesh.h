@@ -1,0 +1,75 @@
+#pragma once
+#include <vector>
+
+#include "testbench/check/nearest_triangle.h"
+#include "testbench/check/surface_error/reference_lattice.h"
+
+namespace tessera {
+
+/// From every sample of a reference lattice to the nearest point of a mesh, a tile at a time. One a thread.
+///
+/// Samples are so dense that asking for each alone would take minutes. Of a block of samples only the centre
+/// asks: if it is d from the mesh and the block's radius is r, no sample's nearest triangle is farther than
+/// d + 2 r from the centre. Those triangles, nearest first, are all its samples look at; a block that has too
+/// many is cut in four.
+class ReferenceToMesh {
+  public:
+    struct Sample {
+        glm::dvec3 position{0};    ///< local
+        glm::dvec2 texture{0};     ///< 0..1 spans the map
+        double squared = 0;        ///< distance to the mesh, local
+        std::size_t triangle = 0;  ///< nearest, of equally near ones the first
+        double weight = 0;         ///< the base surface's area it stands for in this tile
+    };
+
+    /// Lattice, soup and the search through it must outlive this. With an empty soup, and no search, tiles
+    /// are evaluated, nothing measured.
+    ReferenceToMesh(const ReferenceLattice& lattice, Sampling sampling, const TriangleSoup& soup,
+                    const NearestTriangle* nearest);
+
+    /// Calls take(sample) for all points of a tile, in a fixed order; those on the border between tiles come in each.
+    /// Gives the box about the tile's points.
+    template <class Take>
+    BoxHierarchy::Box measure(std::size_t tile, Take&& take) {
+        const BoxHierarchy::Box box = start(tile);
+        if (nearest_) {
+            measure_blocks();
+            for (std::size_t b = 0; b < ReferenceLattice::Points::side; ++b)
+                for (std::size_t a = 0; points_.has(a, b); ++a)
+                    take(sample(tile, a, b));
+        }
+        return box;
+    }
+
+  private:
+    BoxHierarchy::Box start(std::size_t tile);
+    void measure_blocks();
+    void measure_block(std::size_t a, std::size_t b, std::size_t size);
+    NearestTriangle::Found nearest_candidate(const glm::dvec3& p, double from_centre) const;
+    Sample sample(std::size_t tile, std::size_t a, std::size_t b) const;
+
+    struct Candidate {
+        std::size_t triangle;
+        double from_centre;  // distance from the block's centre
+        BoxHierarchy::Box box;
+    };
+
+    const ReferenceLattice& lattice_;
+    Sampling sampling_;
+    const TriangleSoup& soup_;
+    const NearestTriangle* nearest_;
+    NearestTriangle::Guess guess_;
+
+    ReferenceLattice::Points points_;
+    DisplacedSurface::Corners corners_;
+    double facet_area_ = 0;  // on the base surface
+    std::array<std::uint8_t, ReferenceLattice::Points::side * ReferenceLattice::Points::side> facets_{};
+    std::array<NearestTriangle::Found, ReferenceLattice::Points::side * ReferenceLattice::Points::side>
+        found_;
+    std::size_t block_ = ReferenceLattice::Points::side;  // samples along a block's side to begin with
+    std::size_t blocks_cut_ = 0, blocks_whole_ = 0, tiles_ = 0;
+    std::vector<NearestTriangle::Found> within_;
+    std::vector<Candidate> candidates_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,127 @@
+#include "testbench/commands/bake_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "testbench/common/atomic_file.h"
+#include "testbench/common/atomic_set.h"
+#include "testbench/machine/inputs.h"
+#include "testbench/job/dump_job.h"
+#include "testbench/job/job_paths.h"
+#include "testbench/job/toml_text.h"
+#include "testbench/job/validate_job.h"
+#include "testbench/commands/load_job.h"
+#include "testbench/commands/output_folder.h"
+#include "testbench/commands/progress.h"
+#include "testbench/commands/run_files.h"
+#include "testbench/input/surface/bake.h"
+
+namespace tessera {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The job whose map is to be baked: the base mesh's, or the default one on a plane of the surface's size.
+Job base_job(const BakeRequest& request, const Surface& surface) {
+    Job job;
+    if (request.mesh_job.empty()) {
+        job.mesh.width = surface.high.x - surface.low.x;
+        job.mesh.depth = surface.high.y - surface.low.y;
+        return job;
+    }
+    return load_job(request.mesh_job.string(), {});
+}
+
+BakedMap bake(const BakeRequest& request, const Surface& surface, const Job& job,
+              const fs::path& data_folder) {
+    const auto* const quadric = std::get_if<QuadricSurface>(&surface.shape);
+    if (quadric == nullptr || request.mesh_job.empty())
+        return bake_heights(surface, request.width, request.height);
+    return bake_over_mesh(*quadric, load_mesh(job, data_folder), job.map, request.width, request.height);
+}
+
+/// The job must not be written over what it is made from.
+void check_job_file(const BakeRequest& request, const fs::path& job_file) {
+    for (const fs::path& read : {request.surface, request.mesh_job}) {
+        std::error_code absent;
+        if (!read.empty() && fs::equivalent(job_file, read, absent))
+            throw InputError(
+                fmt::format("--output {}: the job {} beside it would overwrite {}: choose another name",
+                            request.output.string(), job_file.filename().string(), read.string()));
+    }
+}
+
+std::string share(std::size_t texels, const BakedMap& map) {
+    return fmt::format("{} texel{} ({:.1f} %)", texels, texels == 1 ? "" : "s",
+                       100 * static_cast<double>(texels) / static_cast<double>(map.values.size()));
+}
+
+std::string summary(const BakedMap& map, const EncodedMap& file) {
+    const auto [low, high] = std::minmax_element(map.values.begin(), map.values.end());
+    std::string text =
+        fmt::format("  map               {} x {} texels, displacements {:.6g} .. {:.6g} model units\n",
+                    map.width, map.height, *low, *high);
+    text += file.step > 0 ? fmt::format("  rounding          16 bits, to half a step of {:.3g} model units\n",
+                                        file.step)
+            : *low < *high ? "  rounding          to 32-bit floats\n"
+                           : "  rounding          none: all displacements are the same\n";
+    if (map.absent > 0)
+        text += fmt::format("  surface absent    at {}: {:.6g} there\n", share(map.absent, map), map.floor);
+    if (map.raised > 0)
+        text += fmt::format("  below the floor   {}: {:.6g} there\n", share(map.raised, map), map.floor);
+    if (map.uncovered > 0)
+        text += fmt::format("  no base triangle  at {}: their nearest neighbours' values there\n",
+                            share(map.uncovered, map));
+    if (map.overlaps > 0)
+        text +=
+            fmt::format("  note: {} lie in several base triangles: the first one's surface is in the map\n",
+                        share(map.overlaps, map));
+    text += fmt::format("  for a job         displacement.scale = {}, displacement.bias = {}\n",
+                        toml_number(file.scale), toml_number(file.bias));
+    return text;
+}
+
+}  // namespace
+
+ExitCode bake_command(const BakeRequest& request, const fs::path& data_folder) {
+    const Surface surface = read_surface(request.surface);
+    Job job = base_job(request, surface);
+    const fs::path folder = request.output.has_parent_path() ? request.output.parent_path() : fs::path(".");
+    check_output_folder(folder, "--output");
+    const std::string name = request.output.stem().string();
+    const fs::path job_file = folder / (name + ".job.toml");
+    check_job_file(request, job_file);
+
+    Progress progress;
+    progress.show("baking", 0);
+    const BakedMap map = bake(request, surface, job, data_folder);
+    const EncodedMap file = encode_height_map(map.width, map.height, map.values, request.format);
+    progress.clear();
+
+    job.map.source = MapSource::file;
+    job.map.file = rebase_path(request.output.string(), "", job.folder);
+    job.map.fingerprint.clear();
+    job.map.channel.clear();
+    job.displacement = {file.scale, file.bias};
+    job.output.folder = "runs/" + name;
+    validate(job);
+    require_inputs_stay(job, data_folder);
+    const std::string job_text = dump_short_job(
+        job, folder,
+        fmt::format("What `tessera bake` made of {}.", printable(request.surface.filename().string())));
+
+    OutputFolder output(folder, "--output");
+    AtomicSet files;
+    write_file(request.output, file.bytes);
+    write_file(job_file, job_text);
+    files.commit();
+    output.keep();
+    fmt::print("{}  {} and {}: tessera run {}\n", summary(map, file),
+               request.output.lexically_normal().string(), job_file.filename().string(),
+               job_file.lexically_normal().string());
+    return ExitCode::fine;
+}
+
+}  // namespace tessera

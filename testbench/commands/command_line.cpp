@@ -1,0 +1,177 @@
+#include "testbench/commands/command_line.h"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+
+#include "testbench/common/error.h"
+#include "testbench/commands/bake_options.h"
+#include "testbench/commands/render_options.h"
+#include "testbench/commands/tune_options.h"
+#include "testbench/commands/widths_options.h"
+
+namespace tessera {
+
+namespace {
+
+std::filesystem::path default_data_folder() {
+    const char* const from_environment = std::getenv("TESSERA_DATA");
+    return from_environment != nullptr ? std::filesystem::path(from_environment)
+                                       : std::filesystem::path(TESSERA_SOURCE_DIR) / ".." / "shared" / "data";
+}
+
+/// What the options for traces stand for: settings, and a flag of the command's own.
+class TraceOptions {
+  public:
+    void add_to(CLI::App& run) {
+        const std::string group = "Traces (mode = \"timed\")";
+        run.add_flag("--vcd", vcd_, "write waveforms, trace.vcd: as --set output.vcd=true")->group(group);
+        run.add_flag("--fst", fst_, "and compress them, trace.fst (with vcd2fst of the package gtkwave)")
+            ->group(group);
+        run.add_flag("--timeline", timeline_,
+                     "write activity per unit, timeline.json: as --set output.timeline=true")
+            ->group(group);
+        run.add_option("--trace", window_,
+                       "cycles FROM:TO of both: as --set output.trace_from=FROM --set output.trace_to=TO")
+            ->group(group);
+        run.add_option(
+               "--trace-units", units_,
+               "waveforms of units whose name contains one of these words: as --set output.trace_units")
+            ->group(group);
+    }
+
+    void apply_to(Command& command) const {
+        command.fst = fst_;
+        const auto set = [&](const char* key, const std::string& value) {
+            command.settings.push_back(fmt::format("output.{}={}", key, value));
+        };
+        if (vcd_ || fst_)
+            set("vcd", "true");
+        if (timeline_)
+            set("timeline", "true");
+        if (!window_.empty() || !units_.empty())
+            command.trace_option = window_.empty() ? "--trace-units" : "--trace";
+        if (!window_.empty()) {
+            const std::size_t colon = window_.find(':');
+            if (colon == std::string::npos || colon == 0 || colon + 1 == window_.size())
+                throw InputError(
+                    fmt::format("--trace {}: wanted are two cycles, FROM:TO, as in --trace 0:5000", window_));
+            set("trace_from", window_.substr(0, colon));
+            set("trace_to", window_.substr(colon + 1));
+        }
+        if (!units_.empty())
+            set("trace_units", units_);
+    }
+
+  private:
+    bool vcd_ = false, fst_ = false, timeline_ = false;
+    std::string window_, units_;
+};
+
+}  // namespace
+
+std::optional<Command> read_command_line(int argc, const char* const* argv) {
+    Command command;
+    std::string data = default_data_folder().lexically_normal().string();
+
+    CLI::App app{
+        "tessera: a SystemC model of hardware that renders displacement maps by adaptive tessellation"};
+    app.set_version_flag("--version", TESSERA_VERSION);
+    app.require_subcommand(0, 1);  // none is told apart below, from one that does not exist
+    app.footer(
+        "exit codes: 0 fine, 1 conformance or an invariant violated, 2 bad input or usage, 3 deadlock,\n"
+        "            4 a stated resource limit, 5 a fault put in on purpose that no check noticed");
+
+    CLI::App* const run =
+        app.add_subcommand("run", "run a job: tessellate, check against the golden model, report");
+    CLI::Option* const job = run->add_option(
+        "JOB", command.job_file, "job file (TOML); without one, the half donut on the plane of 18 triangles");
+    run->add_option("--set", command.settings, "set one key of the job, as in --set tests.view_threshold=2")
+        ->take_all()
+        ->allow_extra_args(false);
+    run->add_option("--data", data, "folder that `data:` paths of a job begin at; $TESSERA_DATA likewise");
+    run->add_flag("--dump-config", command.dump_config,
+                  "print the effective job, every key documented, and stop");
+
+    TraceOptions traces;
+    traces.add_to(*run);
+
+    CLI::App* const compare = app.add_subcommand(
+        "compare",
+        "measure a run's mesh against the displaced surface: error.json and error.txt in its folder");
+    compare->add_option("RUN", command.run_folder, "folder that `tessera run` left")->required();
+    compare->add_option("--data", data,
+                        "folder that `data:` paths of its job begin at; $TESSERA_DATA likewise");
+
+    CLI::App* const render =
+        app.add_subcommand("render", "pictures of a finished run, from its folder, as PNG or EXR");
+    RenderOptions render_options;
+    render_options.add_to(*render);
+    render->add_option("--data", data, "folder that `data:` paths of the run's job begin at");
+
+    CLI::App* const bake = app.add_subcommand(
+        "bake", "sample a curved surface, a quadric or NURBS patch, into a displacement map");
+    BakeOptions bake_options;
+    bake_options.add_to(*bake);
+    bake->add_option("--data", data, "folder that `data:` paths of the base mesh's job begin at");
+
+    CLI::App* const tune = app.add_subcommand(
+        "tune", "find a job's thresholds for a number of triangles or a bound on the error");
+    TuneOptions tune_options;
+    tune_options.add_to(*tune);
+    tune->add_option("--data", data, "folder that `data:` paths of the job begin at; $TESSERA_DATA likewise");
+
+    CLI::App* const widths = app.add_subcommand(
+        "widths", "how many bits each quantity needs: width against flipped decisions, error and triangles");
+    WidthsOptions widths_options;
+    widths_options.add_to(*widths);
+    widths->add_option("--data", data,
+                       "folder that `data:` paths of the job begin at; $TESSERA_DATA likewise");
+
+    CLI::App* const keys =
+        app.add_subcommand("keys", "print every key of a job file: unit, default, range, meaning");
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& success) {
+        app.exit(success);
+        return std::nullopt;
+    } catch (const CLI::ParseError& error) {
+        const std::vector<CLI::App*> verbs = app.get_subcommands();
+        throw InputError(fmt::format("{}; see `tessera --help` and `tessera {} --help`", error.what(),
+                                     verbs.empty() ? "run" : verbs.front()->get_name()));
+    }
+    if (app.get_subcommands().empty())
+        throw InputError(
+            "say what to do: `tessera run`, `tessera compare`, `tessera render`, `tessera bake`, `tessera "
+            "tune`, `tessera widths` or `tessera "
+            "keys`; "
+            "see `tessera --help`");
+    if (job->count() > 0 && command.job_file.empty())
+        throw InputError("JOB is empty: name a job file, or leave it out for the default job");
+    command.verb = keys->parsed()      ? Command::Verb::keys
+                   : compare->parsed() ? Command::Verb::compare
+                                       : Command::Verb::run;
+    command.data_folder = data;
+    if (render->parsed()) {
+        command.verb = Command::Verb::render;
+        command.render = render_options.request();
+    }
+    if (bake->parsed()) {
+        command.verb = Command::Verb::bake;
+        command.bake = bake_options.request();
+    }
+    if (tune->parsed()) {
+        command.verb = Command::Verb::tune;
+        command.tune = tune_options.order();
+    }
+    if (widths->parsed()) {
+        command.verb = Command::Verb::widths;
+        command.widths = widths_options.order();
+    }
+    traces.apply_to(command);
+    return command;
+}
+
+}  // namespace tessera

@@ -1,0 +1,36 @@
+#include "testbench/commands/compare_run.h"
+
+#include <fmt/core.h>
+
+#include "testbench/common/atomic_file.h"
+#include "testbench/common/atomic_set.h"
+#include "testbench/machine/inputs.h"
+#include "testbench/check/surface_error/measure_error.h"
+#include "testbench/commands/progress.h"
+#include "testbench/output/report/error_report.h"
+#include "testbench/run_folder/read_run.h"
+
+namespace tessera {
+
+ExitCode compare_run(const Command& command) {
+    Progress progress;
+    progress.show("reading the run", 0);
+    const RecordedRun run = read_run(command.run_folder, command.data_folder);
+    const BaseMesh base = load_mesh(run.job, command.data_folder);
+    const HeightMap map = load_map(run.job, command.data_folder);
+    MeasureLimits limits;
+    limits.progress = [&](double part) { progress.show("measuring distances", 0.1 + 0.9 * part); };
+    const MeshError error = measure_error(base, map, DisplacementOf::from(run.job, map), run.mesh, limits);
+    progress.clear();
+
+    const std::string text = error_text(run.job, run.mesh, error);
+    AtomicSet files;
+    write_file(run.folder / "error.json", statistics_json(error_figures(run.mesh, error)));
+    write_file(run.folder / "error.txt", text);
+    files.commit();
+    fmt::print("{}\n  error.json and error.txt in {}\n", text,
+               std::filesystem::absolute(run.folder).lexically_normal().string());
+    return ExitCode::fine;
+}
+
+}  // namespace tessera

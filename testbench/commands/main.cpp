@@ -1,0 +1,86 @@
+#include <fmt/core.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <exception>
+#include <new>
+#include <optional>
+#include <system_error>
+#include <systemc>
+
+#include "testbench/common/error.h"
+#include "testbench/common/interruption.h"
+#include "testbench/job/document_keys.h"
+#include "testbench/commands/bake_command.h"
+#include "testbench/commands/command_line.h"
+#include "testbench/commands/compare_run.h"
+#include "testbench/commands/render_command.h"
+#include "testbench/commands/run_job.h"
+#include "testbench/commands/tune_command.h"
+#include "testbench/commands/widths_command.h"
+
+namespace {
+
+int failed(tessera::ExitCode code, const char* message) {
+    std::fflush(stdout);
+    fmt::print(stderr, "tessera: {}\n", message);
+    return static_cast<int>(code);
+}
+
+tessera::ExitCode obey(const std::optional<tessera::Command>& command) {
+    if (!command)
+        return tessera::ExitCode::fine;
+    if (command->verb == tessera::Command::Verb::run)
+        return tessera::run_job(*command);
+    if (command->verb == tessera::Command::Verb::render)
+        return tessera::render_command(command->render, command->data_folder);
+    if (command->verb == tessera::Command::Verb::bake)
+        return tessera::bake_command(command->bake, command->data_folder);
+    if (command->verb == tessera::Command::Verb::compare)
+        return tessera::compare_run(*command);
+    if (command->verb == tessera::Command::Verb::tune)
+        return tessera::tune_command(command->tune, command->data_folder);
+    if (command->verb == tessera::Command::Verb::widths)
+        return tessera::widths_command(command->widths, command->data_folder);
+    fmt::print("{}", tessera::document_keys());
+    return tessera::ExitCode::fine;
+}
+
+}  // namespace
+
+int sc_main(int argc, char** argv) {
+    using tessera::ExitCode;
+    // Reaching a limit stops the simulation: SystemC need not say so on standard output.
+    sc_core::sc_report_handler::set_actions(sc_core::SC_INFO, sc_core::SC_DO_NOTHING);
+    try {
+        const ExitCode code = obey(tessera::read_command_line(argc, argv));
+        // What was printed may still wait, and a full disk be found out only now.
+        if (std::fflush(stdout) != 0)
+            return failed(ExitCode::resource_limit,
+                          fmt::format("standard output: {}", std::generic_category().message(errno)).c_str());
+        return static_cast<int>(code);
+    } catch (const tessera::InputError& error) {
+        return failed(ExitCode::bad_input, error.what());
+    } catch (const tessera::ResourceError& error) {
+        return failed(ExitCode::resource_limit, error.what());
+    } catch (const std::bad_alloc&) {
+        return failed(ExitCode::resource_limit,
+                      "out of memory; use a smaller map or raise the thresholds under [tests]");
+    } catch (const std::system_error& error) {
+        return failed(ExitCode::resource_limit, error.what());
+    } catch (const sc_core::sc_report& report) {
+        return failed(ExitCode::check_failed, report.what());
+    } catch (const std::exception& error) {
+        return failed(ExitCode::check_failed, error.what());
+    }
+}
+
+// SystemC's own main() prints a banner into every run.
+int main(int argc, char** argv) {
+    setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 0);
+    // A file beyond `ulimit -f` is then an error of write(), which is reported and cleaned up after.
+    std::signal(SIGXFSZ, SIG_IGN);
+    tessera::Interruption::expect();
+    return sc_core::sc_elab_and_sim(argc, argv);
+}

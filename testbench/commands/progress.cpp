@@ -1,0 +1,124 @@
+#include "testbench/commands/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <system_error>
+#include <utility>
+
+#include "testbench/common/interruption.h"
+
+namespace tessera {
+
+namespace {
+
+constexpr std::chrono::seconds between_lines{10};
+const Progress::Clock::time_point program_began = Progress::Clock::now();
+
+}  // namespace
+
+Progress::Progress(std::string before)
+    : Progress(std::move(before),
+               {stderr, isatty(STDERR_FILENO) != 0, program_began, &Progress::Clock::now}) {
+    if (!display_.terminal)
+        begin_to_say();
+}
+
+Progress::Progress(std::string before, const Display& display)
+    : before_(std::move(before)), display_(display), next_(display.now()), said_(tens()) {}
+
+Progress::~Progress() {
+    clear();
+    if (!speaker_.joinable())
+        return;
+    {
+        const std::lock_guard lock(mutex_);
+        stopped_ = true;
+    }
+    stop_.notify_one();
+    speaker_.join();
+}
+
+std::int64_t Progress::tens() const {
+    return (display_.now() - display_.begin) / between_lines;
+}
+
+/// Signals are the main thread's: there an Interruption can hold them back.
+void Progress::begin_to_say() {
+    sigset_t all;
+    sigset_t before;
+    ::sigfillset(&all);
+    ::pthread_sigmask(SIG_SETMASK, &all, &before);
+    try {
+        speaker_ = std::thread([this] { say_until_stopped(); });
+    } catch (const std::system_error&) {
+        // No thread is to be had: show() says what it can.
+    }
+    ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+/// A log that cannot be written ends no run; fmt::print would throw, in the speaker's thread and in the destructor.
+void Progress::write(const std::string& text) {
+    std::fwrite(text.data(), 1, text.size(), display_.file);
+    std::fflush(display_.file);
+}
+
+void Progress::say_until_stopped() {
+    std::unique_lock lock(mutex_);
+    while (!stop_.wait_until(lock, display_.begin + (said_ + 1) * between_lines, [&] { return stopped_; }))
+        say_if_due_locked();
+}
+
+void Progress::say_if_due() {
+    const std::lock_guard lock(mutex_);
+    say_if_due_locked();
+}
+
+void Progress::say_if_due_locked() {
+    const std::int64_t now = tens();
+    if (display_.terminal || now <= said_)
+        return;
+    said_ = now;
+    if (text_size_ == 0)
+        return;
+    const auto elapsed =
+        std::chrono::duration_cast<std::chrono::seconds>(display_.now() - display_.begin).count();
+    write(fmt::format("tessera: after {} s {}\n", elapsed, text()));
+}
+
+void Progress::show(const std::string& what, double part) {
+    const std::lock_guard lock(mutex_);
+    const auto end =
+        fmt::format_to_n(text_.data(), text_.size(), "at {:.0f} %, {}{}", 100 * part, before_, what);
+    text_size_ = std::min(end.size, text_.size());
+    Interruption::note(text());
+    say_if_due_locked();
+    if (display_.terminal)
+        show_on_terminal(what, part);
+}
+
+void Progress::show_on_terminal(const std::string& what, double part) {
+    const Clock::time_point now = display_.now();
+    if (now < next_)
+        return;
+    next_ = now + std::chrono::milliseconds(100);
+    constexpr int width = 30;
+    const int full = static_cast<int>(std::clamp(part, 0.0, 1.0) * width);
+    write(fmt::format("\r\x1b[K[{:=<{}}{: <{}}] {:3.0f} %  {}{}", "", full, "", width - full, 100 * part,
+                      before_, what));
+    shown_ = true;
+}
+
+void Progress::clear() {
+    Interruption::note({});
+    const std::lock_guard lock(mutex_);
+    text_size_ = 0;
+    if (!shown_)
+        return;
+    write("\r\x1b[K");
+    shown_ = false;
+}
+
+}  // namespace tessera

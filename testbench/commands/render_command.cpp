@@ -1,0 +1,190 @@
+#include "testbench/commands/render_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "testbench/common/atomic_file.h"
+#include "testbench/common/atomic_set.h"
+#include "testbench/job/validate_job.h"
+#include "testbench/commands/output_folder.h"
+#include "testbench/commands/progress.h"
+#include "testbench/commands/run_error.h"
+#include "testbench/output/picture/error_range.h"
+#include "testbench/output/picture/overview.h"
+#include "testbench/output/picture/png_writer.h"
+#include "testbench/output/picture/view_picture.h"
+#include "testbench/run_folder/read_run.h"
+
+namespace tessera {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where the pictures go.
+struct Output {
+    fs::path folder;
+    std::string file;  ///< the only one's name; empty: named after the view
+    std::optional<ExrSamples> exr;
+
+    fs::path path_of(PictureView view) const {
+        return folder / (file.empty() ? std::string(name_of(view)) + (exr ? ".exr" : ".png") : file);
+    }
+};
+
+std::string lower_case(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+Output choose_output(const RenderRequest& request) {
+    Output output{request.output.empty() ? request.run : request.output, {}, request.exr};
+    std::error_code error;
+    if (request.output.empty() || fs::is_directory(request.output, error) || !request.output.has_filename() ||
+        request.output.extension().empty())
+        return output;
+    const std::string ending = lower_case(request.output.extension().string());
+    if (ending != ".png" && ending != ".exr")
+        throw InputError(fmt::format(
+            "--output {}: pictures are written as FILE.png or FILE.exr; a folder that is not there "
+            "yet is named with a / at its end",
+            request.output.string()));
+    if (request.views.size() > 1)
+        throw InputError(
+            fmt::format("--output {}: {} views make {} pictures and this is one file; name a folder",
+                        request.output.string(), request.views.size(), request.views.size()));
+    if (ending == ".png" && request.exr)
+        throw InputError(fmt::format("--output {}: --exr asks for another kind of file; name it FILE.exr",
+                                     request.output.string()));
+    if (ending == ".exr" && !output.exr)
+        output.exr = ExrSamples::half;
+    output.folder = request.output.has_parent_path() ? request.output.parent_path() : fs::path(".");
+    output.file = request.output.filename().string();
+    return output;
+}
+
+View choose_camera(const RenderRequest& request, Job job) {
+    if (!request.eye && !request.target && !request.up && !request.field_of_view)
+        return make_view(job.camera);
+    job.camera.eye = request.eye.value_or(job.camera.eye);
+    job.camera.target = request.target.value_or(job.camera.target);
+    job.camera.up = request.up.value_or(job.camera.up);
+    job.camera.field_of_view = request.field_of_view.value_or(job.camera.field_of_view);
+    try {
+        validate(job);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format(
+            "a camera with this --eye, --target, --up and --field-of-view (without one, the run's) "
+            "cannot be: {}",
+            error.what()));
+    }
+    return make_view(job.camera);
+}
+
+void check_size(const RenderRequest& request, const RenderMesh& mesh, const View& camera) {
+    std::int64_t pixels = 0;
+    for (const PictureView view : request.views) {
+        const int height = request.picture.height > 0 ? request.picture.height
+                           : view == PictureView::overview
+                               ? overview_height(mesh, camera, request.picture)
+                               : picture_height(mesh, camera, view, request.picture);
+        pixels += std::int64_t{request.picture.width} * height;
+    }
+    if (pixels > most_picture_pixels)
+        throw InputError(fmt::format(
+            "--size: {} pixels in {} picture{}; {} are the most for all views together: make them smaller, "
+            "or "
+            "ask for fewer views at once",
+            pixels, request.views.size(), request.views.size() == 1 ? "" : "s", most_picture_pixels));
+}
+
+bool asks_for(const RenderRequest& request, PictureView view) {
+    return std::find(request.views.begin(), request.views.end(), view) != request.views.end();
+}
+
+/// The colours span what all but a hundredth of the surface keeps, or what was asked for: a few triangles on a step of
+/// the map, where errors are as large as the step, leave no colour for the rest.
+void add_errors(const RecordedRun& run, const fs::path& data_folder, RenderMesh& mesh, ErrorScale& scale) {
+    RunError error = measure_run_error(run, data_folder);
+    mesh.triangle_errors = std::move(error.triangles);
+    scale.texel = error.texel;
+    scale.beyond = largest_of(mesh.triangle_errors);
+    if (scale.largest == 0)
+        scale.largest = error_of_most(mesh, 0.99);
+    if (scale.largest == 0)
+        scale.largest = scale.beyond;
+}
+
+std::vector<Picture> draw(const RenderRequest& request, const RenderMesh& mesh, const View& camera) {
+    std::vector<PictureView> single;
+    for (const PictureView view : request.views)
+        if (view != PictureView::overview)
+            single.push_back(view);
+    std::vector<Picture> singles = render_views(mesh, camera, single, request.picture);
+    std::vector<Picture> pictures;
+    auto next = singles.begin();
+    for (const PictureView view : request.views)
+        pictures.push_back(view == PictureView::overview ? render_overview(mesh, camera, request.picture)
+                                                         : std::move(*next++));
+    return pictures;
+}
+
+void write(const fs::path& path, const Picture& picture, const std::optional<ExrSamples>& exr) {
+    if (exr) {
+        write_file(path, encode_exr(picture.linear, *exr));
+        return;
+    }
+    const std::vector<std::uint8_t> file = encode_png(picture.image);
+    write_file(path, std::string(file.begin(), file.end()));
+}
+
+}  // namespace
+
+ExitCode render_command(const RenderRequest& asked, const fs::path& data_folder) {
+    RenderRequest request = asked;
+    const Output output = choose_output(request);
+    request.picture.linear = output.exr.has_value();
+    const RecordedRun run = read_run(request.run, data_folder);
+    const View camera = choose_camera(request, run.job);
+    check_output_folder(output.folder, "--output");
+    RenderMesh mesh = make_render_mesh(run.mesh);
+    check_size(request, mesh, camera);
+
+    Progress progress;
+    if (asks_for(request, PictureView::error)) {
+        progress.show("measuring", 0);
+        add_errors(run, data_folder, mesh, request.picture.errors);
+    }
+    progress.show("rendering", 0);
+    const std::vector<Picture> pictures = draw(request, mesh, camera);
+    OutputFolder folder(output.folder, "--output");
+    AtomicSet files;
+    for (std::size_t i = 0; i < pictures.size(); ++i)
+        write(output.path_of(request.views[i]), pictures[i], output.exr);
+    files.commit();
+    folder.keep();
+    progress.clear();
+
+    for (std::size_t i = 0; i < pictures.size(); ++i)
+        fmt::print("  {}: {} x {} pixels\n", output.path_of(request.views[i]).lexically_normal().string(),
+                   pictures[i].image.width, pictures[i].image.height);
+    const bool in_sight = std::any_of(pictures.begin(), pictures.end(),
+                                      [](const Picture& picture) { return picture.mesh_in_sight; });
+    if (!in_sight)
+        fmt::print("  {}\n", mesh.triangles.empty() ? "the run's mesh is empty: all of it was culled"
+                                                    : "nothing of the mesh is in sight of this camera");
+    return ExitCode::fine;
+}
+
+std::vector<std::string> picture_names() {
+    std::vector<std::string> names;
+    for (const PictureView view : picture_views)
+        for (const char* const ending : {".png", ".exr"})
+            names.push_back(std::string(name_of(view)) + ending);
+    return names;
+}
+
+}  // namespace tessera

@@ -1,0 +1,182 @@
+#include "testbench/commands/run_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "testbench/common/atomic_file.h"
+#include "testbench/common/error.h"
+#include "testbench/job/dump_job.h"
+#include "testbench/job/frame_job.h"
+#include "testbench/job/job_paths.h"
+#include "testbench/commands/render_command.h"
+
+namespace tessera {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* run_file_names[] = {
+    "job.toml",        "mesh.ply",         "mesh.obj",   "statistics.json",  "statistics.csv",
+    "conformance.txt", "conformance.json", "timing.txt", "queue_levels.csv", "picture.png",
+    "error.json",      "error.txt",        "trace.vcd",  "trace.fst",        "timeline.json",
+    "frames.csv",      "frames.txt"};
+
+/// Whether a run, or what is done with it, writes or takes away a file of this name.
+bool is_run_file(const std::string& name) {
+    const std::vector<std::string> pictures = picture_names();
+    const auto among = [&](const auto& names) {
+        return std::find(std::begin(names), std::end(names), name) != std::end(names);
+    };
+    return among(run_file_names) || among(pictures);
+}
+
+void take_away_plain(const fs::path& file, AtomicSet& files) {
+    std::error_code absent;
+    if (fs::is_regular_file(fs::symlink_status(file, absent)))
+        files.take_away(file);
+}
+
+/// Whether a run left this folder.
+bool is_run_folder(const fs::path& folder) {
+    std::ifstream job(folder / "job.toml");
+    std::string first;
+    return std::getline(job, first) && first == run_job_heading;
+}
+
+/// The names of a run's files that are taken in a folder, by whatever it is.
+std::vector<std::string> names_taken(const fs::path& folder) {
+    std::vector<std::string> names(std::begin(run_file_names), std::end(run_file_names));
+    const std::vector<std::string> pictures = picture_names();
+    names.insert(names.end(), pictures.begin(), pictures.end());
+    names.erase(std::remove_if(names.begin(), names.end(),
+                               [&](const std::string& name) {
+                                   std::error_code absent;
+                                   return !fs::exists(fs::symlink_status(folder / name, absent));
+                               }),
+                names.end());
+    return names;
+}
+
+/// Whether a run into `output` has `folder` to itself: it is that, or a frame in it.
+bool is_of(const fs::path& folder, const fs::path& output) {
+    return folder == output || (folder.parent_path() == output && is_frame_name(folder.filename().string()));
+}
+
+}  // namespace
+
+fs::path real_place(const fs::path& path) {
+    std::error_code failed;
+    const fs::path absolute = fs::absolute(path).lexically_normal();
+    const fs::path canonical = fs::weakly_canonical(absolute, failed);
+    const fs::path& result = failed ? absolute : canonical;
+    return result.has_filename() ? result : result.parent_path();
+}
+
+fs::path place_of_name(const fs::path& path) {
+    const fs::path absolute = fs::absolute(path).lexically_normal();
+    return real_place(absolute.parent_path()) / absolute.filename();
+}
+
+void take_away_run(const fs::path& folder, AtomicSet& files) {
+    if (!is_run_folder(folder))
+        return;
+    for (const char* const name : run_file_names)
+        take_away_plain(folder / name, files);
+    for (const std::string& name : picture_names())
+        take_away_plain(folder / name, files);
+}
+
+std::vector<fs::path> take_away_frames(const fs::path& folder, AtomicSet& files) {
+    std::error_code failed;
+    std::vector<fs::path> frames;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
+        const fs::path& frame = entry.path();
+        if (is_frame_name(frame.filename().string()) && fs::is_directory(fs::symlink_status(frame, failed)))
+            frames.push_back(frame);
+    }
+    for (const fs::path& frame : frames) {
+        remove_left_overs(frame);
+        take_away_run(frame, files);
+    }
+    return frames;
+}
+
+void replace_run(const fs::path& folder, AtomicSet& files) {
+    const Interruption::Delay delay;
+    take_away_run(folder, files);
+    const std::vector<fs::path> frames = take_away_frames(folder, files);
+    files.commit();
+    std::error_code holds_more;
+    for (const fs::path& frame : frames)
+        fs::remove(frame, holds_more);
+    Interruption::note("when the results were complete");
+}
+
+void require_run_folder(const Job& job) {
+    const auto refuse = [&](const std::string& why) {
+        throw InputError(fmt::format("output.folder = \"{}\": {}", job.output.folder, why));
+    };
+    const fs::path output = real_place(job.output.folder);
+    const fs::path inside = fs::current_path().lexically_relative(output);
+    if (!output.has_relative_path() || (inside != "." && *inside.begin() != ".."))
+        refuse("holds the working folder; name a folder for the run alone");
+    std::vector<fs::path> folders{output};
+    for (std::int64_t k = 0; job.frames.count > 1 && k < job.frames.count; ++k)
+        folders.push_back(output / frame_name(k));
+    for (const fs::path& folder : folders) {
+        const std::vector<std::string> taken = names_taken(folder);
+        if (!taken.empty() && !is_run_folder(folder))
+            refuse(fmt::format(
+                "the run would replace {}, and no run of tessera left that folder: move the file away, "
+                "or choose another output.folder",
+                (folder / taken.front()).string()));
+    }
+}
+
+void require_inputs_stay(const Job& job, const fs::path& data_folder) {
+    const fs::path output = real_place(job.output.folder);
+    const auto refuse = [&](const char* what, const char* key, const std::string& file) {
+        throw InputError(
+            fmt::format("output.folder = \"{}\": the run would take away its own {}, that of {} = \"{}\"; "
+                        "choose another output.folder",
+                        job.output.folder, what, key, file));
+    };
+    const auto path_of = [&](const std::string& file) { return resolve_path(file, job.folder, data_folder); };
+    const auto taken = [&](const std::string& file) {
+        for (const fs::path& place : {place_of_name(path_of(file)), real_place(path_of(file))})
+            if (is_of(place.parent_path(), output) && is_run_file(place.filename().string()))
+                return true;
+        return false;
+    };
+    if (job.mesh.source == MeshSource::run ? is_of(real_place(path_of(job.mesh.file)), output)
+                                           : reads_file(job.mesh.source) && taken(job.mesh.file))
+        refuse("base mesh", "mesh.file", job.mesh.file);
+    if (job.map.source == MapSource::file && taken(job.map.file))
+        refuse("map", "map.file", job.map.file);
+}
+
+void require_inputs_kept(const std::string& output, const std::vector<fs::path>& written,
+                         const std::string& job_file, const Job& job, const fs::path& data_folder) {
+    std::vector<fs::path> read;
+    if (!job_file.empty())
+        read.emplace_back(job_file);
+    if (reads_file(job.mesh.source))
+        read.push_back(resolve_path(job.mesh.file, job.folder, data_folder));
+    if (job.map.source == MapSource::file)
+        read.push_back(resolve_path(job.map.file, job.folder, data_folder));
+    for (const fs::path& to : written)
+        for (const fs::path& from : read)
+            if (place_of_name(to) == place_of_name(from) || place_of_name(to) == real_place(from))
+                throw InputError(
+                    fmt::format("--output {}: {} would overwrite {}, which is read; choose another name",
+                                output, to.string(), from.string()));
+}
+
+}  // namespace tessera

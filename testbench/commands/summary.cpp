@@ -1,0 +1,198 @@
+#include "testbench/commands/summary.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "modules/datapath/widths.h"
+#include "testbench/common/grouped_digits.h"
+#include "testbench/output/report/saturation_figures.h"
+#include "testbench/output/report/timing_report.h"
+
+namespace tessera {
+
+namespace {
+
+std::string row(const char* name, const std::string& value) {
+    return fmt::format("  {:<26}{}\n", name, value);
+}
+
+std::string count(std::uint64_t value) {
+    return grouped_digits(value);
+}
+
+double percent(std::uint64_t part, std::uint64_t whole) {
+    return whole == 0 ? 0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
+}
+
+/// A check's row; one that fails says so.
+std::string check_row(const char* name, bool passed, const std::string& value) {
+    return row(name, (passed ? "" : "FAILED: ") + value);
+}
+
+std::string checks_rows(const Checks& checks) {
+    std::string text;
+    if (checks.setup)
+        text += check_row("set-up", checks.setup->passed(),
+                          fmt::format("{} values of registers, base vertices and tables compared, {} wrong",
+                                      count(checks.setup->compared()), count(checks.setup->wrong())));
+    if (checks.conformance) {
+        const ConformanceResult& c = *checks.conformance;
+        std::string verdict;
+        if (c.flips_percent() > checks.allowed_flips)
+            verdict =
+                fmt::format(", more than the {} % that check.allowed_flips allows", checks.allowed_flips);
+        text += check_row(
+            "golden model", c.passed(checks.allowed_flips),
+            fmt::format("{} edges compared, {} mismatches, {} allowed flips ({:.3f} %){}", count(c.edges),
+                        count(c.mismatches), count(c.flipped_edges), c.flips_percent(), verdict));
+    }
+    if (checks.end_to_end) {
+        const EndToEndResult& e = *checks.end_to_end;
+        text += check_row(
+            "golden mesh", e.passed(),
+            e.bound_hit
+                ? fmt::format("more than {} triangles, where its run was stopped", count(e.bound))
+                : fmt::format(
+                      "{} triangles ({:+.2f} %, allowed {}); {:.2f} % of the points farther apart than "
+                      "rounding explains (allowed {:.3g}), at most {:.3g} model units, RMS {:.3g} (allowed "
+                      "{:.3g})",
+                      count(e.golden_triangles), e.more_triangles(),
+                      std::isinf(e.allowed.triangles) ? std::string("any, since values saturated")
+                                                      : fmt::format("{} %", e.allowed.triangles),
+                      e.farther(), e.allowed_farther(), e.max_model(), e.rms_model(), e.allowed_rms_model()));
+        const double unseen = std::max(e.hardware_to_golden.unseen, e.golden_to_hardware.unseen);
+        if (unseen > 0)
+            text += row(
+                "", fmt::format("at {} of {} points; with {} % confidence at most {:.2g} % lie farther apart",
+                                count(e.hardware_to_golden.measured + e.golden_to_hardware.measured),
+                                count(e.hardware_to_golden.points + e.golden_to_hardware.points),
+                                100 * EndToEndResult::confidence, 100 * unseen));
+    }
+    if (checks.invariants) {
+        const InvariantResult& i = *checks.invariants;
+        text +=
+            check_row("invariants", i.passed(),
+                      fmt::format("{} cracks, {} T-vertices; in texture space {} collapsed, {} turned over",
+                                  i.cracks, i.t_vertices, i.collapsed, i.turned_over));
+        if (i.open_texture_seam_edges > 0)
+            text += row(
+                "texture seams",
+                fmt::format("{} edges open: the map is not continuous across a seam of this mesh's texture "
+                            "coordinates",
+                            count(i.open_texture_seam_edges)));
+    }
+    if (checks.work)
+        text += check_row("work conservation", checks.work->passed(),
+                          fmt::format("{} triangles and {} balances of units checked, {} violations",
+                                      count(checks.work->triangles), count(checks.work->equations),
+                                      count(checks.work->violations)));
+    if (checks.reads)
+        text += check_row("reads", checks.reads->passed(),
+                          fmt::format("{} entries compared, {} wrong", count(checks.reads->entries),
+                                      count(checks.reads->wrong)));
+    return text;
+}
+
+/// What was done over and over, beside what the mesh needs of it.
+std::string work_rows(const Simulation& simulation, const MeshCounts& mesh) {
+    const Pipeline& p = simulation.pipeline;
+    const double tests = mesh.tested_edges() == 0 ? 0
+                                                  : static_cast<double>(p.edges_tested()) /
+                                                        static_cast<double>(mesh.tested_edges());
+    return row("distinct edges",
+               fmt::format("{}, each tested {:.1f} times on average", count(mesh.tested_edges()), tests)) +
+           row("distinct vertices",
+               fmt::format("{}; {} computed, {} of them discarded, and {} normals transformed",
+                           count(mesh.vertices), count(p.transform.positions()),
+                           count(thrown_away_vertices(p, simulation.setup.base_triangles.size())),
+                           count(p.transform.normals())));
+}
+
+std::string timing_rows(const Simulation& simulation) {
+    const Pipeline& p = simulation.pipeline;
+    const auto per = [&](std::uint64_t count) {
+        return count == 0 ? 0.0 : static_cast<double>(simulation.cycles()) / static_cast<double>(count);
+    };
+    const double period = simulation.setup.design.timing.cycle_picoseconds * 1e-12;
+    std::string text = row(
+        "cycles",
+        fmt::format("{}: {:.1f} a finished triangle, {:.1f} a pass, {:.1f} an edge; {:.3g} ms at {:.4g} MHz",
+                    count(simulation.cycles()), per(p.pass_or_tessellate.counts().finished),
+                    per(p.pass_or_tessellate.counts().passes), per(p.edges_tested()),
+                    static_cast<double>(simulation.cycles()) * period * 1e3, 1e-6 / period));
+    text += row("bottleneck", bottleneck_text(p, simulation.cycles()));
+    if (p.triangle_queue.spilled() > 0)
+        text +=
+            row("spilled", fmt::format("{} triangles, at most {} on chip", count(p.triangle_queue.spilled()),
+                                       count(p.triangle_queue.on_chip_high_water_mark())));
+    return text;
+}
+
+}  // namespace
+
+std::string found_text(const std::vector<FoundValue>& found) {
+    std::string text;
+    for (const FoundValue& it : found)
+        text += row(it.key.c_str(), fmt::format("{} ({})", it.value, it.rule));
+    return text;
+}
+
+std::string summary(const Setup& setup, const Simulation& simulation, const MeshCounts& mesh,
+                    const Checks& checks, double seconds) {
+    const Pipeline& p = simulation.pipeline;
+    const auto& counts = p.pass_or_tessellate.counts();
+    const std::uint64_t edges = p.edges_tested();
+    const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
+    const std::uint64_t table_reads = p.summed_height_table_reads();
+
+    std::string text;
+    text += row(
+        "triangles",
+        fmt::format("{} base -> {} finished{}", count(setup.base_triangles.size()), count(counts.finished),
+                    counts.culled > 0 ? fmt::format(", {} culled", count(counts.culled)) : ""));
+    text += row("edges", fmt::format("{} tested, {} split ({:.1f} %)", count(edges),
+                                     count(counts.edges_split), percent(counts.edges_split, edges)));
+    text +=
+        row("  split by",
+            fmt::format("normal alone {}, summed height alone {}, both {}{}", count(counts.split_by_normal),
+                        count(counts.split_by_summed_height), count(counts.split_by_both),
+                        setup.registers.tests.highlight_test
+                            ? fmt::format(", highlight alone {}", count(counts.split_by_highlight))
+                            : ""));
+    text += row("  wanted, but stopped by",
+                fmt::format("view alone {}, tex coord alone {}, generation alone {}, several {}",
+                            count(counts.stopped_by_view_alone), count(counts.stopped_by_tex_coord_alone),
+                            count(counts.stopped_by_generation_alone), count(counts.stopped_by_several)));
+    text += work_rows(simulation, mesh);
+    text += row("triangle queue", fmt::format("at most {} triangles waiting, {} bits each",
+                                              count(p.triangle_queue.high_water_mark()), widths.triangle));
+    text +=
+        row("summed height table",
+            fmt::format("{} bytes, {} bit entries{}; {} reads, {:.1f} an edge",
+                        count(setup.registers.summed_height_table.bytes()),
+                        setup.registers.formats.summed_height.bits,
+                        setup.summed_height_bits_chosen ? " (chosen)" : "", count(table_reads),
+                        edges == 0 ? 0.0 : static_cast<double>(table_reads) / static_cast<double>(edges)));
+    const std::vector<SaturationFigure> saturations = saturation_figures(setup, p.saturations());
+    text += row("saturations", saturations_text(saturations));
+    text += checks_rows(checks);
+    const bool timed = setup.design.transport == Transport::non_blocking;
+    if (timed)
+        text += timing_rows(simulation);
+    text +=
+        row(timed ? "timed mode" : "functional mode",
+            fmt::format("simulated in {:.2f} s, {:.2f} million edges a second, with the checks of each edge",
+                        seconds, static_cast<double>(edges) / seconds / 1e6));
+    for (const std::string& warning : saturation_warnings(saturations))
+        text += fmt::format("  warning: {}\n", warning);
+    if (!checks.texel_borders.empty())
+        text += fmt::format("  warning: {}\n", checks.texel_borders);
+    for (const std::string& note : saturation_notes(saturations))
+        text += fmt::format("  note: {}\n", note);
+    for (const std::string& remark : setup.remarks)
+        text += fmt::format("  note: {}\n", remark);
+    return text;
+}
+
+}  // namespace tessera

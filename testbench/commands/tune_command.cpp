@@ -1,0 +1,290 @@
+#include "testbench/commands/tune_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+
+#include "testbench/machine/bare_recursion.h"
+#include "testbench/common/atomic_file.h"
+#include "testbench/common/atomic_set.h"
+#include "testbench/machine/inputs.h"
+#include "testbench/machine/simulation.h"
+#include "testbench/job/dump_job.h"
+#include "testbench/job/job_choices.h"
+#include "testbench/job/job_paths.h"
+#include "testbench/commands/load_job.h"
+#include "testbench/commands/output_folder.h"
+#include "testbench/commands/progress.h"
+#include "testbench/commands/run_files.h"
+#include "testbench/explore/thresholds/tune.h"
+#include "testbench/explore/thresholds/tune_report.h"
+
+namespace tessera {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t largest_base_for_error = 2048;
+constexpr int most_rounds = 20;
+
+/// A positive whole number; 0 if it is none.
+std::int64_t number_in(const std::string& text) {
+    const bool digits = !text.empty() && text.size() <= 6 &&
+                        std::all_of(text.begin(), text.end(),
+                                    [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; });
+    return digits ? std::stol(text) : 0;
+}
+
+void add_grid(const std::string& grid, const TuneRequest& request, const HeightMap& map,
+              std::vector<BaseChoice>& bases) {
+    const auto refuse = [&](const std::string& why) {
+        throw InputError(fmt::format("--grid {}: {}", grid, why));
+    };
+    if (request.job.mesh.source != MeshSource::plane)
+        refuse("only a plane (mesh.source = \"plane\") has other grids; leave --grid out");
+    if (grid == "auto") {
+        bases.emplace_back();
+        const std::uint64_t most = request.goal.triangles > 0
+                                       ? std::max<std::uint64_t>(2, request.goal.triangles / 10 * 9)
+                                       : largest_base_for_error;
+        for (const BaseChoice& base : usual_bases(request.job.mesh, map.width, map.height, most))
+            bases.push_back(base);
+        return;
+    }
+    const std::string lattice = "lattice";
+    if (grid.rfind(lattice, 0) == 0) {
+        const std::int64_t spacing = number_in(grid.substr(lattice.size()));
+        if (spacing == 0 || (spacing & (spacing - 1)) != 0 || spacing > std::min(map.width, map.height))
+            refuse(fmt::format("a lattice's spacing is a power of two of at most {} texels, as in lattice32",
+                               std::min(map.width, map.height)));
+        for (const bool alternate : {false, true})
+            bases.push_back(lattice_choice(spacing, alternate, map.width, map.height));
+        return;
+    }
+    const std::size_t x = grid.find('x');
+    BaseChoice plane;
+    plane.kind = BaseChoice::Kind::plane;
+    if (x != std::string::npos) {
+        plane.columns = number_in(grid.substr(0, x));
+        plane.rows = number_in(grid.substr(x + 1));
+    }
+    if (plane.columns == 0 || plane.rows == 0)
+        refuse("wanted is auto, COLUMNSxROWS as in 16x22, or latticeSPACING as in lattice32");
+    bases.push_back(plane);
+}
+
+void choose_tests(const TuneOrder& order, TuneRequest& request) {
+    Job::Tests& tests = request.job.tests;
+    const auto listed = [&](const char* name) {
+        return std::find(order.tests.begin(), order.tests.end(), name) != order.tests.end();
+    };
+    const bool by_job = order.tests.empty();
+    request.space = order.vary;
+    request.space.normal = by_job ? tests.normal : listed("normal");
+    request.space.summed_height = by_job ? tests.summed_height : listed("summed_height");
+    request.space.view = by_job ? tests.view : listed("view");
+    // a test whose threshold is looked for is on
+    tests.normal = tests.normal || request.space.normal;
+    tests.summed_height = tests.summed_height || request.space.summed_height;
+    tests.view = tests.view || request.space.view;
+    if (!tests.normal && !tests.summed_height)
+        throw InputError(
+            "tests.normal and tests.summed_height are both off: no edge is ever split; switch one on, or "
+            "name it "
+            "with --tests");
+    if (!tests.generation && !tests.tex_coord)
+        throw InputError(
+            "tests.generation and tests.tex_coord are both off: low thresholds would split without end; "
+            "switch "
+            "one on");
+    if (request.job.frames.count > 1)
+        throw InputError(fmt::format(
+            "frames.count = {}: thresholds are tuned for one frame; tune with --set frames.count=1 and "
+            "set it in the tuned job, whose other frames may have more triangles",
+            request.job.frames.count));
+    if (request.job.fault.kind != FaultKind::none)
+        throw InputError(fmt::format(
+            "fault.kind = \"{}\": thresholds are tuned for the machine as it should be; tune with --set "
+            "fault.kind=none --set fault.place=",
+            name_of(request.job.fault.kind)));
+    if (tests.highlight)
+        throw InputError(
+            "tests.highlight = true: the search knows nothing of highlights; tune with --set "
+            "tests.highlight=false and set it in the tuned job, which then has more triangles");
+    if (request.job.hardware.culling != Culling::none)
+        throw InputError(
+            "hardware.culling = \"back\": culled triangles cannot be measured; tune with --set "
+            "hardware.culling=none and set it in the tuned job");
+}
+
+TuneRequest request_of(const TuneOrder& order) {
+    TuneRequest request;
+    request.job = load_job(order.job_file, order.settings);
+    request.threads = order.jobs;
+    choose_tests(order, request);
+    request.goal.triangles = order.triangles;
+    request.goal.largest = order.largest;
+    request.goal.most_triangles =
+        std::min(most_tuned_triangles, static_cast<std::uint64_t>(request.job.limits.triangles));
+    if (order.triangles > request.goal.most_triangles)
+        throw InputError(
+            fmt::format("--triangles {}: at most {} can be tuned for (2^22 and limits.triangles)",
+                        order.triangles, request.goal.most_triangles));
+    return request;
+}
+
+/// A file that will be written at the end: found out before the work.
+void check_output(const std::string& option, const fs::path& file) {
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    std::error_code error;
+    if (!fs::is_directory(folder, error))
+        throw InputError(fmt::format("{} {}: there is no folder {}; make it first", option, file.string(),
+                                     folder.string()));
+    check_output_folder(folder, option);
+    if (fs::is_directory(file, error))
+        throw InputError(fmt::format("{} {}: is a folder; name a file", option, file.string()));
+}
+
+std::string own_run_folder(const fs::path& job_file) {
+    return (fs::path("runs") / job_file.stem()).generic_string();
+}
+
+/// Nothing that is written may take the place of something read, of another file written, or of somebody's mesh.
+void check_places(const TuneOrder& order, const Job& job, const fs::path& data_folder,
+                  const std::vector<fs::path>& written, const fs::path& obj_file) {
+    require_inputs_kept(order.output, written, order.job_file, job, data_folder);
+    for (std::size_t k = 0; k < written.size(); ++k)
+        for (std::size_t other = 0; other < k; ++other)
+            if (place_of_name(written[k]) == place_of_name(written[other]))
+                throw InputError(fmt::format("--tried {}: is written with the tuned job; choose another name",
+                                             order.tried));
+    std::ifstream mesh(obj_file);
+    std::string first;
+    if (!order.grids.empty() && std::getline(mesh, first) && first.rfind("# tessera tune:", 0) != 0)
+        throw InputError(
+            fmt::format("--output {}: a lattice would overwrite {}, which tessera tune has not made; choose "
+                        "another name",
+                        order.output, obj_file.string()));
+    Job tuned = job;
+    tuned.output.folder = own_run_folder(order.output);
+    require_inputs_stay(tuned, data_folder);
+}
+
+/// The job as it will be written: its lattice beside it, a run folder of its own.
+Job finished_job(const TuneResult& result, const fs::path& job_file, const fs::path& obj_file) {
+    Job job = result.job;
+    if (!result.base_obj.empty())
+        job.mesh.file = rebase_path(obj_file.filename().string(), job_file.parent_path(), job.folder);
+    job.output.folder = own_run_folder(job_file);
+    return job;
+}
+
+}  // namespace
+
+ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
+    TuneRequest request = request_of(order);
+    const fs::path job_file = order.output;
+    const auto beside = [&](const char* extension) {
+        return fs::path(job_file).replace_extension(extension);
+    };
+    const fs::path json_file = beside(".json"), obj_file = beside(".obj");
+    if (job_file.extension() != ".toml")
+        throw InputError(fmt::format(
+            "--output {}: is the tuned job, with figures and a lattice beside it as .json and .obj: name a "
+            ".toml, as in tuned.toml",
+            job_file.string()));
+    check_output("--output", job_file);
+    if (!order.tried.empty())
+        check_output("--tried", order.tried);
+    std::vector<fs::path> written{job_file, json_file, obj_file};
+    if (!order.tried.empty())
+        written.emplace_back(order.tried);
+    check_places(order, request.job, data_folder, written, obj_file);
+
+    Progress progress;
+    progress.show("reading mesh and map", 0);
+    const Inputs inputs = load_inputs(request.job, data_folder);
+    const HeightMap& map = inputs.map;
+    request.job = inputs.resolved.job;
+    if (order.grids.empty())
+        request.bases.emplace_back();
+    for (const std::string& grid : order.grids)
+        add_grid(grid, request, map, request.bases);
+
+    // The search's error and the measured one differ by rounding; a bound holds for the measured one.
+    TuneResult result;
+    TunedFigures figures;
+    ErrorUnit unit;
+    double bound = 0;
+    for (int round = 0; round < most_rounds; ++round) {
+        if (order.error > 0 && round == 0) {
+            const Job job = job_with_base(request.job, request.bases.front());
+            unit = error_unit(job, base_mesh_of(job, request.bases.front(), map, data_folder), map);
+            bound = order.error * unit.model_units;
+            request.goal.error = bound;
+        }
+        result = tune(request, map, data_folder,
+                      [&](const std::string& what, double part) { progress.show(what, 0.95 * part); });
+        const BaseMesh base = base_mesh_of(result.job, request.bases[result.base], map, data_folder);
+        unit = error_unit(result.job, base, map);
+        const Setup setup = make_setup(result.job, base, map);
+        EmittedMesh mesh;
+        BareRecursion(setup).run(mesh);
+        mesh.sort();
+        progress.show("measuring", 0.95);
+        figures = measure_tuned(result.job, base, map, setup, mesh);
+        const double measured = request.goal.largest ? figures.max_model : figures.rms_model;
+        if (order.error == 0 || !unit.height_field || measured <= bound)
+            break;
+        // Not this mesh again.
+        request.goal.error = std::min(bound, request.goal.error_of(result.point.outcome)) * (1 - 1e-9);
+        if (round + 1 == most_rounds)
+            throw InputError(
+                fmt::format("--error {}: the meshes found miss it by rounding only, the last with {:.17g}: "
+                            "ask for a little more",
+                            order.error, measured / unit.model_units));
+    }
+
+    // The figures of record: functional mode's own mesh, of the job as it will be written.
+    progress.show("functional mode", 0.98);
+    const Job job = finished_job(result, job_file, obj_file);
+    Job functional = job;
+    functional.mode = Mode::functional;
+    const BaseMesh base = base_mesh_of(job, request.bases[result.base], map, data_folder);
+    const Setup setup = make_setup(functional, base, map);
+    Simulation simulation(setup, static_cast<std::uint64_t>(job.limits.triangles));
+    if (const std::string stuck = simulation.run(); !stuck.empty())
+        throw std::runtime_error("functional mode did not finish: " + stuck);
+    EmittedMesh& mesh = simulation.monitor.mesh;
+    mesh.sort();
+    const std::uint64_t expected = figures.triangles;
+    figures = measure_tuned(job, base, map, setup, mesh);
+    if (figures.triangles != expected || figures.triangles != result.point.outcome.triangles)
+        throw std::runtime_error(fmt::format(
+            "functional mode's mesh has {} triangles, the search's {}: this is a fault of tessera tune",
+            figures.triangles, result.point.outcome.triangles));
+    progress.clear();
+
+    request.goal.error = bound;  // as asked for
+    std::string names = job_file.string() + ", " + json_file.string();
+    AtomicSet files;
+    if (!order.tried.empty()) {
+        write_file(order.tried, tried_csv(request, result, unit));
+        names += ", " + order.tried;
+    }
+    if (!result.base_obj.empty()) {
+        write_file(obj_file, result.base_obj);
+        names += ", " + obj_file.string();
+    }
+    write_file(json_file, tune_json(request, result, figures, unit));
+    write_file(job_file,
+               tune_comment(request, result, figures, unit) + dump_job(job, job_file.parent_path()));
+    files.commit();
+    fmt::print("{}  {:<24}{}\n", tune_text(request, result, figures, unit), "written", names);
+    return ExitCode::fine;
+}
+
+}  // namespace tessera

@@ -1,0 +1,105 @@
+#include "testbench/commands/tune_options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+
+namespace tessera {
+
+namespace {
+
+constexpr unsigned most_jobs = 64;
+
+void refuse(const std::string& what) {
+    throw InputError(what + "; see `tessera tune --help`");
+}
+
+/// Of the text: what does not fit 64 bits would come out of the conversion as another number.
+std::string triangles_complaint(const std::string& text) {
+    if (text.rfind('-', 0) == 0)
+        return text + " is negative";
+    errno = 0;
+    static_cast<void>(std::strtoull(text.c_str(), nullptr, 10));
+    return errno == ERANGE ? fmt::format("{}: at most {}, and limits.triangles, can be tuned for", text,
+                                         most_tuned_triangles)
+                           : std::string{};
+}
+
+}  // namespace
+
+void TuneOptions::add_to(CLI::App& tune) {
+    job_given_ = tune.add_option("JOB", order_.job_file, "job file (TOML); without one, the default job");
+    triangles_given_ = tune.add_option("--triangles", order_.triangles,
+                                       "find the least error with at most so many triangles")
+                           ->check(triangles_complaint);
+    error_given_ =
+        tune.add_option("--error", order_.error,
+                        "find the fewest triangles with at most this error: units of the map's file on "
+                        "a height field, else model units");
+    tune.add_option("--metric", metric_, "error: rms, or max");
+    tune.add_option(
+            "--tests", order_.tests,
+            "thresholds to search: normal, summed_height, view; default: of the tests the job enables")
+        ->delimiter(',')
+        ->allow_extra_args(false);
+    vary_given_ = tune.add_option("--vary", vary_,
+                                  "what else to search: unit (tests.summed_height_unit), generation "
+                                  "(tests.generation_limit), triangulation, or none; default: all three")
+                      ->delimiter(',')
+                      ->allow_extra_args(false);
+    tune.add_option(
+            "--grid", order_.grids,
+            "of a plane, base meshes to try: COLUMNSxROWS, latticeSPACING (vertices at texel centres, so "
+            "many texels apart, written as OBJ), or auto; default: the job's own")
+        ->delimiter(',')
+        ->allow_extra_args(false);
+    tune.add_option("--output", order_.output,
+                    "the tuned job; its figures beside it as .json, a lattice as .obj");
+    tune.add_option("--tried", order_.tried, "write a table of all that was tried, CSV");
+    tune.add_option("--jobs", order_.jobs, "threads; the result does not depend on them");
+    tune.add_option("--set", order_.settings, "set one key of the job first")
+        ->take_all()
+        ->allow_extra_args(false);
+}
+
+TuneOrder TuneOptions::order() const {
+    TuneOrder order = order_;
+    if (job_given_->count() > 0 && order.job_file.empty())
+        refuse("JOB is empty: name a job file, or leave it out for the default job");
+    if ((triangles_given_->count() > 0) == (error_given_->count() > 0))
+        refuse("say what to tune for: either --triangles N or --error E");
+    if (triangles_given_->count() > 0 && order.triangles == 0)
+        refuse("--triangles 0: a mesh has at least one");
+    if (error_given_->count() > 0 && !(order.error > 0 && std::isfinite(order.error)))
+        refuse(fmt::format("--error {}: must be above 0", order.error));
+    if (metric_ != "rms" && metric_ != "max")
+        refuse(fmt::format("--metric {}: there are rms and max", metric_));
+    order.largest = metric_ == "max";
+    for (const std::string& test : order.tests)
+        if (test != "normal" && test != "summed_height" && test != "view")
+            refuse(fmt::format("--tests {}: there are normal, summed_height and view", test));
+    if (vary_given_->count() > 0) {
+        order.vary.summed_height_unit = order.vary.generation_limit = order.vary.triangulation = false;
+        for (const std::string& choice : vary_) {
+            if (choice == "unit")
+                order.vary.summed_height_unit = true;
+            else if (choice == "generation")
+                order.vary.generation_limit = true;
+            else if (choice == "triangulation")
+                order.vary.triangulation = true;
+            else if (choice != "none" || vary_.size() > 1)
+                refuse(fmt::format("--vary {}: there are unit, generation, triangulation, and none alone",
+                                   choice));
+        }
+    }
+    if (order.jobs < 1 || order.jobs > most_jobs)
+        refuse(fmt::format("--jobs {}: must be 1 to {}", order.jobs, most_jobs));
+    if (order.output.empty())
+        refuse("--output is empty: name the tuned job's file");
+    return order;
+}
+
+}  // namespace tessera

@@ -1,0 +1,95 @@
+#include "testbench/commands/widths_options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+namespace tessera {
+
+namespace {
+
+constexpr unsigned most_jobs = 64;
+constexpr std::int64_t most_bits = 64;
+
+void refuse(const std::string& what) {
+    throw InputError(what + "; see `tessera widths --help`");
+}
+
+/// A positive whole number; 0 if it is none.
+std::int64_t number_in(const std::string& text) {
+    const bool digits = !text.empty() && text.size() <= 3 &&
+                        std::all_of(text.begin(), text.end(),
+                                    [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; });
+    return digits ? std::stol(text) : 0;
+}
+
+std::pair<std::int64_t, std::int64_t> range_in(const std::string& text) {
+    const std::size_t dots = text.find("..");
+    const std::int64_t from = number_in(text.substr(0, dots));
+    const std::int64_t to = dots == std::string::npos ? from : number_in(text.substr(dots + 2));
+    if (from < 1 || to < 1)
+        refuse(
+            fmt::format("--bits {}: wanted is a range of widths in bits, as in --bits 8..16, or one", text));
+    if (from > to)
+        refuse(fmt::format("--bits {}: ends before it begins; write {}..{}", text, to, from));
+    if (to > most_bits)
+        refuse(fmt::format("--bits {}: no format has more than {} bits", text, most_bits));
+    return {from, to};
+}
+
+}  // namespace
+
+void WidthsOptions::add_to(CLI::App& widths) {
+    job_given_ = widths.add_option("JOB", order_.job_file, "job file (TOML); without one, the default job");
+    widths
+        .add_option("--quantity", order_.quantities,
+                    "sweep only these: position, normal, texture, displacement, summed_height, screen, "
+                    "screen_range, generation")
+        ->delimiter(',')
+        ->allow_extra_args(false);
+    bits_given_ =
+        widths.add_option("--bits", bits_,
+                          "widths to try, all bits counted, as in 8..16; default: all that a format may "
+                          "have, in steps where there are many");
+    flips_given_ =
+        widths.add_option("--flips", flips_,
+                          "what a knee may cost: percent of the edges whose split decision differs from "
+                          "exact arithmetic's; default: 0.5 more than the widest's");
+    error_given_ = widths.add_option("--error", error_,
+                                     "what a knee may cost: RMS error of displaced positions in model units; "
+                                     "default: 1.25 times the widest's");
+    widths.add_option("--output", order_.output,
+                      "folder for widths.csv and widths.json, or a .csv file, with a .json beside it");
+    widths.add_option("--jobs", order_.jobs, "threads; the result does not depend on them");
+    widths.add_option("--set", order_.settings, "set one key of the job first")
+        ->take_all()
+        ->allow_extra_args(false);
+}
+
+WidthsOrder WidthsOptions::order() const {
+    WidthsOrder order = order_;
+    if (job_given_->count() > 0 && order.job_file.empty())
+        refuse("JOB is empty: name a job file, or leave it out for the default job");
+    if (bits_given_->count() > 0)
+        order.bits = range_in(bits_);
+    if (flips_given_->count() > 0) {
+        if (!(flips_ >= 0 && flips_ <= 100))
+            refuse(fmt::format("--flips {}: must be 0 to 100 percent", flips_));
+        order.most_flips = flips_;
+    }
+    if (error_given_->count() > 0) {
+        if (!(error_ >= 0 && std::isfinite(error_)))
+            refuse(fmt::format("--error {}: must be 0 or more", error_));
+        order.most_error = error_;
+    }
+    if (order.jobs < 1 || order.jobs > most_jobs)
+        refuse(fmt::format("--jobs {}: must be 1 to {}", order.jobs, most_jobs));
+    if (order.output.empty())
+        refuse("--output is empty: name a folder, or a .csv file");
+    return order;
+}
+
+}  // namespace tessera

@@ -1,0 +1,88 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "modules/datapath/parameters.h"
+#include "testbench/machine/bare_recursion.h"
+#include "testbench/machine/emitted_mesh.h"
+#include "testbench/machine/setup.h"
+#include "testbench/explore/thresholds/texel_error.h"
+
+namespace tessera {
+
+/// What one set of thresholds makes of the base mesh.
+struct Outcome {
+    std::uint64_t triangles = 0;
+    bool complete = true;         ///< false: given up beyond the limit; the rest then tells nothing
+    double rms = 0;               ///< of TexelError, weighted; model units
+    double max = 0;               ///< model units
+    std::uint8_t generation = 0;  ///< the highest of a vertex; counted where it is measured
+};
+
+/// All triangles the datapath makes of a job, whatever the thresholds: each is made once, when first met, and each edge
+/// keeps what its tests compare (the largest difference of normals, the difference of sums, pixels), not what they
+/// decided. New thresholds so cost three compares an edge, about a thirtieth of the datapath's work. The mesh is the
+/// datapath's, bit for bit (tested).
+///
+/// About 200 bytes a triangle and 200 an edge ever met. Registers other than the tests' thresholds, and the
+/// triangulation, are the setup's and must not change.
+class RefinementForest {
+  public:
+    /// `setup` must outlive it. `errors`: what measures a triangle; may be null for a forest that only counts.
+    RefinementForest(const Setup& setup, const TexelError* errors);
+
+    /// Gives up beyond `limit` triangles.
+    Outcome count(const datapath::TestParameters& tests, datapath::Triangulation triangulation,
+                  std::uint64_t limit);
+    /// And measures them.
+    Outcome measure(const datapath::TestParameters& tests, datapath::Triangulation triangulation,
+                    std::uint64_t limit);
+
+    /// The finished triangles' corners, as the datapath has them.
+    std::vector<std::array<datapath::Vertex, 3>> mesh(const datapath::TestParameters& tests,
+                                                      datapath::Triangulation triangulation);
+
+  private:
+    struct Edge {
+        std::uint64_t summed = 0;  ///< |2 S_ij - S_i - S_j|
+        std::uint32_t normal = 0;  ///< the largest of the six differences
+        std::uint32_t area = 1;    ///< of the rectangle
+        std::uint32_t view =
+            0;  ///< Manhattan length; both ends behind the near plane: 0, one: the largest number
+        std::uint32_t middle = 0;     ///< vertex
+        bool open = false;            ///< Tex Coord Test
+        std::uint8_t generation = 0;  ///< of the vertex inserted
+    };
+    struct Node {
+        std::array<Edge, 3> edges;  ///< copies: a walk reads them one after another
+        std::array<std::uint32_t, 3> vertices;
+        std::array<std::uint32_t, 10> children;  ///< first child, by how it was split; 0: not made yet
+        std::uint32_t base;
+        std::uint8_t shorter_is_second = 0;  ///< bit k: with edge k alone whole
+        bool measured = false;
+        TexelError::Sum error;
+    };
+
+    template <class Leaf>
+    Outcome walk(const datapath::TestParameters& tests, datapath::Triangulation triangulation,
+                 std::uint64_t limit, Leaf&& leaf);
+    bool splits(const Edge& edge, const datapath::TestParameters& tests) const;
+    std::uint32_t make_node(const std::array<std::uint32_t, 3>& vertices, std::uint32_t base);
+    std::uint32_t children_of(std::uint32_t node, unsigned split, bool second);
+    const Edge& edge_between(std::uint32_t i, std::uint32_t j);
+    Edge make_edge(const datapath::Vertex& i, const datapath::Vertex& j);
+
+    BareRecursion datapath_;
+    const Setup& setup_;
+    const TexelError* errors_;
+    std::vector<datapath::Vertex> vertices_;
+    std::vector<Edge> edges_;
+    std::unordered_map<std::uint64_t, std::uint32_t> edge_of_;  // by its ends, the smaller number first
+    std::vector<Node> nodes_;                                   // base triangles first
+    std::size_t roots_ = 0;
+    std::vector<std::uint32_t> work_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,247 @@
+#include "testbench/explore/thresholds/tune.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <numeric>
+#include <thread>
+#include <utility>
+
+#include "testbench/common/error.h"
+#include "testbench/machine/inputs.h"
+#include "testbench/input/mesh/obj_reader.h"
+#include "testbench/explore/thresholds/texel_error.h"
+#include "testbench/explore/thresholds/tuned_figures.h"
+
+namespace tessera {
+
+namespace {
+
+constexpr std::size_t most_refined = 3;
+
+/// One base mesh made ready: all evaluations of it share the setup and the forest.
+struct Ground {
+    Job job;
+    Setup setup;
+    TexelError errors;
+    RefinementForest forest;
+
+    Ground(const TuneRequest& request, const BaseChoice& base, const HeightMap& map,
+           const std::filesystem::path& data_folder)
+        : job(job_with_base(request.job, base)),
+          setup(make_setup(job, base_mesh_of(job, base, map, data_folder), map)),
+          errors(setup, map, DisplacementOf::from(job, map)),
+          forest(setup, &errors) {}
+};
+
+/// What exploring one base mesh left.
+struct Explored {
+    ThresholdSearch::Found found;
+    std::size_t base_triangles = 0;
+    Outcome
+        finest;  // all thresholds searched at 0; of a budget, incomplete if there are more triangles than that
+    bool too_large = false;  // the base mesh alone
+};
+
+/// Calls work(k) for 0..count-1, each once, on some threads; the first exception by number is thrown again.
+void on_threads(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& work) {
+    std::atomic<std::size_t> next{0};
+    std::vector<std::exception_ptr> failures(count);
+    const auto run = [&] {
+        for (std::size_t k = next++; k < count; k = next++) {
+            try {
+                work(k);
+            } catch (...) {
+                failures[k] = std::current_exception();
+            }
+        }
+    };
+    std::vector<std::thread> others;
+    for (unsigned k = 1; k < std::min<std::size_t>(threads, count); ++k)
+        others.emplace_back(run);
+    run();
+    for (std::thread& other : others)
+        other.join();
+    for (const std::exception_ptr& failure : failures)
+        if (failure)
+            std::rethrow_exception(failure);
+}
+
+/// Progress of several threads in one figure.
+class SharedProgress {
+  public:
+    SharedProgress(std::size_t parts, const std::function<void(const std::string&, double)>& show)
+        : parts_(parts, 0.0), show_(show) {}
+
+    void set(std::size_t part, double done, const std::string& what, double from, double to) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        parts_[part] = done;
+        const double all = std::accumulate(parts_.begin(), parts_.end(), 0.0);
+        show_(what, from + (to - from) * all / static_cast<double>(parts_.size()));
+    }
+
+  private:
+    std::mutex mutex_;
+    std::vector<double> parts_;
+    const std::function<void(const std::string&, double)>& show_;
+};
+
+[[noreturn]] void refuse_budget(const TuneRequest& request, const std::vector<Explored>& explored) {
+    std::uint64_t least = std::numeric_limits<std::uint64_t>::max(), most = 0;
+    for (const Explored& e : explored) {
+        least = std::min<std::uint64_t>(least, e.base_triangles);
+        most = std::max(most, e.finest.triangles);
+    }
+    if (least > request.goal.triangles)
+        throw InputError(
+            fmt::format("--triangles {}: the base mesh has {} triangles before any is split: ask for at "
+                        "least that many, or "
+                        "take a coarser one (mesh.columns, mesh.rows, or --grid auto)",
+                        request.goal.triangles, least));
+    throw InputError(
+        fmt::format("--triangles {}: with the tests as the job has them the mesh has {} triangles whatever "
+                    "the thresholds "
+                    "searched: search more of them (--tests), or change the others under [tests]",
+                    request.goal.triangles, most));
+}
+
+void refuse_beyond_finest(const TuneRequest& request, const std::vector<Explored>& explored) {
+    std::uint64_t most = 0;
+    for (const Explored& e : explored) {
+        if (e.too_large || !e.finest.complete || e.finest.triangles == request.goal.triangles)
+            return;
+        most = std::max(most, e.finest.triangles);
+    }
+    throw InputError(fmt::format(
+        "--triangles {}: with every threshold at 0 there are {}, and no more can be had: the Tex Coord Test "
+        "(the map's resolution), tests.generation_limit = {} or a test that is not searched stops every "
+        "edge; "
+        "ask for at most {}",
+        request.goal.triangles, most, request.job.tests.generation_limit, most));
+}
+
+[[noreturn]] void refuse_error(const TuneRequest& request, const std::vector<Explored>& explored, double unit,
+                               const std::string& unit_name) {
+    const Outcome* least = nullptr;
+    for (const Explored& e : explored)
+        if (e.found.least_error &&
+            (least == nullptr || request.goal.error_of(*e.found.least_error) < request.goal.error_of(*least)))
+            least = &*e.found.least_error;
+    if (least == nullptr)
+        throw InputError(fmt::format(
+            "--error {:.6g}: no mesh has at most {} triangles, and larger ones are not searched: take a "
+            "coarser base mesh, or raise limits.triangles",
+            request.goal.error / unit, request.goal.most_triangles));
+    throw InputError(
+        fmt::format("--error {:.6g}: the least {} error that was found is {:.6g} {}, with {} triangles: ask "
+                    "for at least that, "
+                    "or try other base meshes (--grid auto)",
+                    request.goal.error / unit, request.goal.largest ? "largest" : "RMS",
+                    request.goal.error_of(*least) / unit, unit_name, least->triangles));
+}
+
+}  // namespace
+
+Job job_with_base(const Job& job, const BaseChoice& base) {
+    Job result = job;
+    if (base.kind == BaseChoice::Kind::job)
+        return result;
+    const bool lattice = base.kind == BaseChoice::Kind::lattice;
+    result.mesh.source = lattice ? MeshSource::file : MeshSource::plane;
+    result.mesh.file.clear();
+    result.mesh.fingerprint.clear();
+    result.mesh.columns = lattice ? 0 : base.columns;
+    result.mesh.rows = lattice ? 0 : base.rows;
+    return result;
+}
+
+BaseMesh base_mesh_of(const Job& job, const BaseChoice& base, const HeightMap& map,
+                      const std::filesystem::path& data_folder) {
+    if (base.kind == BaseChoice::Kind::lattice)
+        return parse_obj(lattice_obj(base, job.mesh, map.width, map.height), "lattice");
+    return load_mesh(job, data_folder);
+}
+
+TuneResult tune(const TuneRequest& request, const HeightMap& map, const std::filesystem::path& data_folder,
+                const std::function<void(const std::string&, double)>& on_progress) {
+    const TuneGoal& goal = request.goal;
+    const std::size_t bases = request.bases.size();
+    std::vector<Explored> explored(bases);
+    SharedProgress exploring(bases, on_progress);
+    on_threads(bases, request.threads, [&](std::size_t k) {
+        Explored& e = explored[k];
+        Ground ground(request, request.bases[k], map, data_folder);
+        e.base_triangles = ground.setup.base_triangles.size();
+        e.too_large = goal.triangles > 0 && e.base_triangles > goal.triangles;
+        if (e.too_large)
+            return;
+        ThresholdSearch search(
+            ground.forest, ground.setup, ground.job, goal, request.space, [&](double done) {
+                exploring.set(k, done, fmt::format("exploring {} base meshes", bases), 0, 0.5);
+            });
+        const datapath::Triangulation triangulation = ground.setup.registers.triangulation;
+        if (goal.triangles > 0)
+            e.finest = ground.forest.count(search.finest(), triangulation, goal.triangles);
+        search.explore();
+        e.found = search.found();
+    });
+    if (goal.triangles > 0)
+        refuse_beyond_finest(request, explored);
+
+    std::vector<std::size_t> order;
+    for (std::size_t k = 0; k < bases; ++k)
+        if (explored[k].found.best)
+            order.push_back(k);
+    if (order.empty()) {
+        if (goal.triangles > 0)
+            refuse_budget(request, explored);
+        const Job job = job_with_base(request.job, request.bases.front());
+        const ErrorUnit unit =
+            error_unit(job, base_mesh_of(job, request.bases.front(), map, data_folder), map);
+        refuse_error(request, explored, unit.model_units, unit.map_units ? "map units" : "model units");
+    }
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return better(explored[a].found.best->point, explored[b].found.best->point, goal);
+    });
+    order.resize(std::min(order.size(), most_refined));
+    SharedProgress refining(order.size(), on_progress);
+    std::vector<ThresholdSearch::Found> refined(order.size());
+    on_threads(order.size(), request.threads, [&](std::size_t k) {
+        Ground ground(request, request.bases[order[k]], map, data_folder);
+        ThresholdSearch search(
+            ground.forest, ground.setup, ground.job, goal, request.space, [&](double done) {
+                refining.set(k, done, fmt::format("refining the best {}", order.size()), 0.5, 1);
+            });
+        search.start_from(explored[order[k]].found);
+        search.refine();
+        refined[k] = search.found();
+    });
+    for (std::size_t k = 0; k < order.size(); ++k)
+        explored[order[k]].found = std::move(refined[k]);
+
+    TuneResult result;
+    for (std::size_t k = 0; k < bases; ++k) {
+        for (const ThresholdSearch::Candidate& candidate : explored[k].found.tried)
+            result.tried.push_back({k, candidate.point});
+        result.evaluations += explored[k].found.evaluations;
+    }
+    result.base = order.front();
+    for (const std::size_t k : order)
+        if (better(explored[k].found.best->point, explored[result.base].found.best->point, goal))
+            result.base = k;
+    result.point = explored[result.base].found.best->point;
+    const BaseChoice& base = request.bases[result.base];
+    result.job = job_with_base(request.job, base);
+    result.job.tests = result.point.tests;
+    result.job.hardware.triangulation = result.point.triangulation;
+    if (base.kind == BaseChoice::Kind::lattice)
+        result.base_obj = lattice_obj(base, request.job.mesh, map.width, map.height);
+    return result;
+}
+
+}  // namespace tessera

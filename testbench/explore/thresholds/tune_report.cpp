@@ -1,0 +1,139 @@
+#include "testbench/explore/thresholds/tune_report.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "testbench/job/job_choices.h"
+#include "testbench/job/toml_text.h"
+
+namespace tessera {
+
+namespace {
+
+/// A budget used to less than that deserves a word.
+constexpr double well_used = 0.97;
+
+std::string goal_text(const TuneRequest& request, const ErrorUnit& unit) {
+    const TuneGoal& goal = request.goal;
+    const char* const metric = goal.largest ? "largest" : "RMS";
+    if (goal.triangles > 0)
+        return fmt::format("the least {} error with at most {} triangles", metric, goal.triangles);
+    return fmt::format("the fewest triangles with an {} error of at most {:.6g} {}s", metric,
+                       goal.error / unit.model_units, unit.map_units ? "map unit" : "model unit");
+}
+
+std::string figures_text(const TunedFigures& figures) {
+    return fmt::format("{} triangles; {}: RMS {:.4g}, largest {:.4g} {}s", figures.triangles, figures.what,
+                       figures.rms, figures.max, figures.unit);
+}
+
+/// "off" or the threshold.
+std::string threshold_text(bool on, double threshold) {
+    return on ? toml_number(threshold) : "off";
+}
+
+std::string rest_text(const TuneRequest& request, const TunedFigures& figures) {
+    const double budget = static_cast<double>(request.goal.triangles);
+    const double used = static_cast<double>(figures.triangles) / budget;
+    if (request.goal.triangles == 0 || used >= well_used)
+        return {};
+    return fmt::format(
+        "{:.1f} % of the budget are used: with these tests more triangles gave no less error, "
+        "or the next step of a threshold gives too many",
+        100 * used);
+}
+
+std::string base_text(const TuneRequest& request, const TuneResult& result) {
+    return request.bases[result.base].name();
+}
+
+}  // namespace
+
+std::string tune_text(const TuneRequest& request, const TuneResult& result, const TunedFigures& figures,
+                      const ErrorUnit& unit) {
+    const Job::Tests& tests = result.point.tests;
+    std::string text;
+    const auto row = [&](const char* name, const std::string& value) {
+        text += fmt::format("  {:<24}{}\n", name, value);
+    };
+    text += fmt::format("tessera tune: {}\n", goal_text(request, unit));
+    row("result", figures_text(figures));
+    row("base mesh", base_text(request, result));
+    row("Normal Test", threshold_text(tests.normal, tests.normal_threshold));
+    row("Summed Height Test",
+        threshold_text(tests.summed_height, tests.summed_height_threshold) +
+            (tests.summed_height ? fmt::format(", {}", name_of(tests.summed_height_unit)) : std::string{}));
+    row("View Test", threshold_text(tests.view, tests.view_threshold));
+    row("generation limit", tests.generation ? std::to_string(tests.generation_limit) : "off");
+    row("triangulation", std::string(name_of(result.point.triangulation)));
+    row("searched", fmt::format("{} base mesh{}, {} meshes", request.bases.size(),
+                                request.bases.size() == 1 ? "" : "es", result.evaluations));
+    if (const std::string rest = rest_text(request, figures); !rest.empty())
+        row("remark", rest);
+    return text;
+}
+
+std::string tune_comment(const TuneRequest& request, const TuneResult& result, const TunedFigures& figures,
+                         const ErrorUnit& unit) {
+    return fmt::format("# Tuned by `tessera tune` for {}.\n# {}.\n# Base mesh: {}.\n",
+                       goal_text(request, unit), figures_text(figures), base_text(request, result));
+}
+
+std::string tune_json(const TuneRequest& request, const TuneResult& result, const TunedFigures& figures,
+                      const ErrorUnit& unit) {
+    const TuneGoal& goal = request.goal;
+    const Job::Tests& tests = result.point.tests;
+    const BaseChoice& base = request.bases[result.base];
+    nlohmann::ordered_json json;
+    if (goal.triangles > 0)
+        json["goal"]["triangles"] = goal.triangles;
+    else
+        json["goal"]["error"] = goal.error / unit.model_units;
+    json["goal"]["metric"] = goal.largest ? "max" : "rms";
+    json["triangles"] = figures.triangles;
+    json["error"] = {
+        {"what", figures.what}, {"unit", figures.unit}, {"rms", figures.rms}, {"max", figures.max}};
+    json["tests"] = {{"normal", tests.normal},
+                     {"normal_threshold", tests.normal_threshold},
+                     {"summed_height", tests.summed_height},
+                     {"summed_height_threshold", tests.summed_height_threshold},
+                     {"summed_height_unit", name_of(tests.summed_height_unit)},
+                     {"view", tests.view},
+                     {"view_threshold", tests.view_threshold},
+                     {"tex_coord", tests.tex_coord},
+                     {"generation", tests.generation},
+                     {"generation_limit", tests.generation_limit}};
+    json["triangulation"] = name_of(result.point.triangulation);
+    json["base"] = {{"name", base.name()}};
+    if (base.kind != BaseChoice::Kind::job) {
+        json["base"]["columns"] = base.columns;
+        json["base"]["rows"] = base.rows;
+        json["base"]["triangles"] = base.triangles();
+    }
+    if (base.kind == BaseChoice::Kind::lattice)
+        json["base"]["spacing"] = base.spacing;
+    json["evaluations"] = result.evaluations;
+    return json.dump(2) + "\n";
+}
+
+std::string tried_csv(const TuneRequest& request, const TuneResult& result, const ErrorUnit& unit) {
+    std::string text = fmt::format(
+        "base,normal_threshold,summed_height_threshold,summed_height_unit,view_threshold,generation_limit,"
+        "triangulation,triangles,rms [{0}],max [{0}]\n",
+        unit.map_units ? "map unit" : "model unit");
+    for (const TriedPoint& tried : result.tried) {
+        const Job::Tests& tests = tried.point.tests;
+        const Outcome& outcome = tried.point.outcome;
+        text +=
+            fmt::format("\"{}\",{},{},{},{},{},{},{},{:.6g},{:.6g}\n", request.bases[tried.base].name(),
+                        threshold_text(tests.normal, tests.normal_threshold),
+                        threshold_text(tests.summed_height, tests.summed_height_threshold),
+                        name_of(tests.summed_height_unit), threshold_text(tests.view, tests.view_threshold),
+                        tests.generation_limit, name_of(tried.point.triangulation), outcome.triangles,
+                        outcome.rms / unit.model_units, outcome.max / unit.model_units);
+    }
+    return text;
+}
+
+}  // namespace tessera

@@ -1,0 +1,25 @@
+#pragma once
+#include <string>
+
+#include "testbench/explore/thresholds/tune.h"
+#include "testbench/explore/thresholds/tuned_figures.h"
+
+namespace tessera {
+
+// What `tessera tune` says and leaves. No seconds: the same tuning gives the same bytes.
+
+/// For the terminal.
+std::string tune_text(const TuneRequest& request, const TuneResult& result, const TunedFigures& figures,
+                      const ErrorUnit& unit);
+
+/// The head of the tuned job file, as TOML comments.
+std::string tune_comment(const TuneRequest& request, const TuneResult& result, const TunedFigures& figures,
+                         const ErrorUnit& unit);
+
+std::string tune_json(const TuneRequest& request, const TuneResult& result, const TunedFigures& figures,
+                      const ErrorUnit& unit);
+
+/// Everything tried that met the goal: a row each, the error at texels as the search sees it, in `unit`.
+std::string tried_csv(const TuneRequest& request, const TuneResult& result, const ErrorUnit& unit);
+
+}  // namespace tessera

@@ -1,0 +1,39 @@
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "testbench/machine/emitted_mesh.h"
+#include "testbench/machine/setup.h"
+#include "testbench/input/map/height_map.h"
+#include "testbench/input/mesh/base_mesh.h"
+#include "testbench/run_folder/recorded_mesh.h"
+
+namespace tessera {
+
+/// What a mesh comes to, measured as `tessera compare` measures it: bit for bit its figures.
+struct TunedFigures {
+    std::uint64_t triangles = 0;
+    double rms = 0,
+           max = 0;  ///< of height fields the vertical error, else from the reference to the mesh; in `unit`
+    double rms_model = 0, max_model = 0;  ///< the same in model units
+    std::string what;                     ///< "vertical error", "distance from the surface to the mesh"
+    std::string unit;                     ///< "map unit" or "model unit"
+};
+
+/// What one unit of errors is in model units: one of the map's source on a height field (1 where it has no
+/// displacement), else 1.
+struct ErrorUnit {
+    double model_units = 1;
+    bool map_units = false;
+    bool height_field = false;
+};
+ErrorUnit error_unit(const Job& job, const BaseMesh& base, const HeightMap& map);
+
+/// The mesh as a run's mesh.ply would hold it.
+RecordedMesh recorded_mesh(const EmittedMesh& mesh, const Setup& setup);
+
+/// `mesh` sorted as a run sorts it. Throws what measuring throws.
+TunedFigures measure_tuned(const Job& job, const BaseMesh& base, const HeightMap& map, const Setup& setup,
+                           const EmittedMesh& mesh);
+
+}  // namespace tessera

@@ -1,0 +1,53 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "testbench/check/conformance_result.h"
+#include "testbench/check/end_to_end.h"
+#include "testbench/check/invariants.h"
+#include "testbench/check/texel_borders.h"
+#include "testbench/machine/setup.h"
+#include "testbench/explore/widths/exact_model.h"
+
+namespace tessera {
+
+/// The decisions that are compared with the exact model's.
+enum class Decided { normal, summed_height, view, tex_coord, generation, highlight, split, count };
+inline constexpr std::array<const char*, static_cast<std::size_t>(Decided::count)> decided_names = {
+    "NT", "SHT", "VT", "TCT", "GT", "HT", "split"};
+
+/// What one set of formats makes of a job.
+struct WidthRun {
+    // As `tessera run` has them in statistics.json and conformance.json.
+    std::uint64_t triangles = 0;
+    std::uint64_t edges = 0;  ///< tested
+    std::uint64_t edges_split = 0;
+    ConformanceResult conformance;  ///< each edge against the golden model from the same, rounded ends
+    InvariantResult invariants;
+    EndToEndResult end_to_end;
+    datapath::Saturations saturations;
+
+    /// Against the exact model, which is led along the machine's own splits: each vertex beside the one that exact
+    /// arithmetic would have inserted, each edge decided from those. Edges on which a decision differs.
+    std::array<std::uint64_t, static_cast<std::size_t>(Decided::count)> flips{};
+    std::uint64_t quadrilaterals = 0;  ///< left by two split edges
+    std::uint64_t diagonal_flips = 0;  ///< of them cut along the other diagonal than the exact vertices'
+    TexelBorderCount texel_borders;
+    /// P' of every base vertex and every inserted one from the exact one, as a distance; model units.
+    std::uint64_t positions = 0;
+    double position_max = 0;
+    double position_rms = 0;
+    double position_lsb = 0;  ///< an LSB of the position in model units
+
+    std::uint64_t flips_of(Decided decided) const { return flips[static_cast<std::size_t>(decided)]; }
+    double split_flips_percent() const {
+        return edges == 0
+                   ? 0
+                   : 100.0 * static_cast<double>(flips_of(Decided::split)) / static_cast<double>(edges);
+    }
+};
+
+/// The datapath on the setup, no simulation: functional mode's results. Throws ResourceError beyond `most_triangles`.
+WidthRun run_widths(const Setup& setup, const ExactModel& exact, std::uint64_t most_triangles);
+
+}  // namespace tessera

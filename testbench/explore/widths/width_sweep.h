@@ -1,0 +1,73 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "testbench/job/job.h"
+#include "testbench/input/map/height_map.h"
+#include "testbench/input/mesh/base_mesh.h"
+#include "testbench/output/report/saturation_figures.h"
+#include "testbench/explore/widths/quantity.h"
+#include "testbench/explore/widths/width_run.h"
+
+namespace tessera {
+
+/// One quantity and the widths, in bits, that are tried of it, widest first.
+struct SweptQuantity {
+    const Quantity* quantity = nullptr;
+    std::vector<std::int64_t> widths;
+};
+
+struct WidthRequest {
+    Job job;
+    std::vector<SweptQuantity> swept;
+    unsigned threads = 1;
+    /// What a knee may cost; where not given, what the widest width costs and a little more.
+    std::optional<double>
+        most_flips;  ///< percent of the edges whose split decision differs from exact arithmetic's
+    std::optional<double> most_error;  ///< RMS of positions, model units
+};
+
+/// One width of one quantity, everything else as the job has it.
+struct WidthRow {
+    std::int64_t bits = 0, fraction = 0;
+    bool of_the_job = false;  ///< the job's own width
+    std::string refused;      ///< not empty: why there is no such design; the rest means nothing
+    WidthRun run;
+    std::vector<SaturationFigure> saturations;
+    std::uint64_t saturated = 0;  ///< all of them together
+
+    // Storage, whether or not this quantity bears on it.
+    std::uint64_t base_vertex_bits = 0, queue_entry_bits = 0;
+    std::uint64_t displacement_map_bytes = 0, normal_map_bytes = 0, summed_height_table_bytes = 0;
+};
+
+/// The narrowest width from which on every wider one that was tried keeps to both limits and to the invariants.
+struct WidthKnee {
+    double most_flips = 0, most_error = 0;
+    bool flips_given = false, error_given = false;
+    std::optional<std::size_t> row;  ///< none: not even the widest does
+};
+
+struct WidthTable {
+    SweptQuantity swept;
+    std::vector<WidthRow> rows;  ///< as swept.widths
+    WidthKnee knee;
+};
+
+struct WidthSweep {
+    std::uint64_t exact_triangles =
+        0;  ///< of the exact model's own mesh; 0: more than four times limits.triangles
+    std::vector<WidthTable> tables;
+    std::string
+        texel_borders;  ///< a warning, see texel_borders.h, of the first design that was made; empty: none
+};
+
+/// The result does not depend on the number of threads. on_progress(what, 0..1) is called from one thread at
+/// a time. Throws what make_setup() throws of the job itself; widths that it refuses are rows.
+WidthSweep sweep_widths(const WidthRequest& request, const BaseMesh& mesh, const HeightMap& map,
+                        const std::function<void(const std::string&, double)>& on_progress);
+
+}  // namespace tessera

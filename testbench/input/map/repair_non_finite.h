@@ -1,0 +1,15 @@
+#pragma once
+#include "testbench/input/map/height_map.h"
+
+namespace tessera {
+
+/// Makes every value of a floating-point map finite, and sets its range.
+///
+///     NaN, -infinity -> lowest finite value        (a hole in a scan or a terrain is usually a bottom)
+///     +infinity      -> highest finite value
+///
+/// Each kind is counted and said in `repairs`. range_low, range_high = lowest and highest finite value; equal
+/// for a constant map. Returns false, and leaves the map alone, if no value is finite.
+bool repair_non_finite(HeightMap& map);
+
+}  // namespace tessera

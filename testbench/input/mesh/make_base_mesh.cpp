@@ -1,0 +1,63 @@
+#include "testbench/input/mesh/make_base_mesh.h"
+
+#include <cstdint>
+
+#include "testbench/common/error.h"
+#include "testbench/input/mesh/bezier_patches.h"
+#include "testbench/input/mesh/built_in.h"
+#include "testbench/input/mesh/obj_reader.h"
+#include "testbench/input/mesh/run_mesh.h"
+
+namespace tessera {
+
+namespace {
+
+/// 0 in a job: the paper's plane of 18 triangles; round surfaces of 32 quads a side, a power of two so that the format
+/// holds their texture coordinates on any map; patches of 32 triangles, which make its teapot.
+std::int64_t quads(std::int64_t wanted, MeshSource source) {
+    if (wanted != 0)
+        return wanted;
+    return source == MeshSource::plane ? 3 : source == MeshSource::patches ? 4 : 32;
+}
+
+}  // namespace
+
+std::array<std::int64_t, 2> quads_of(const Job::Mesh& mesh) {
+    if (mesh.source == MeshSource::file || mesh.source == MeshSource::run)
+        return {0, 0};
+    return {quads(mesh.columns, mesh.source), quads(mesh.rows, mesh.source)};
+}
+
+BaseMesh make_base_mesh(Job::Mesh const& job, std::string const& file) {
+    const std::int64_t columns = quads(job.columns, job.source);
+    const std::int64_t rows = quads(job.rows, job.source);
+    switch (job.source) {
+        case MeshSource::plane:
+            return make_plane(columns, rows, job.width, job.depth);
+        case MeshSource::cylinder:
+            return make_cylinder(columns, rows, job.radius, job.height);
+        case MeshSource::sphere:
+            return make_sphere(columns, rows, job.radius);
+        case MeshSource::file:
+            if (file.empty()) {
+                throw InputError("mesh.file is empty: with mesh.source = \"file\" it must name an OBJ file");
+            }
+            return read_obj(file);
+        case MeshSource::patches:
+            if (file.empty()) {
+                throw InputError(
+                    "mesh.file is empty: with mesh.source = \"patches\" it must name a file of Bezier "
+                    "patches");
+            }
+            return make_patch_mesh(read_bezier_patches(file), columns, rows, file);
+        case MeshSource::run:
+            if (file.empty()) {
+                throw InputError(
+                    "mesh.file is empty: with mesh.source = \"run\" it must name a run's folder");
+            }
+            return read_run_mesh(file);
+    }
+    throw InputError("mesh.source is none of plane, cylinder, sphere, file, patches, run");
+}
+
+}  // namespace tessera

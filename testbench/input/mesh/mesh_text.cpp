@@ -1,0 +1,148 @@
+#include "testbench/input/mesh/mesh_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "testbench/common/error.h"
+#include "testbench/input/mesh/mesh_limits.h"
+
+namespace tessera {
+namespace {
+
+/// Whether a decimal number that a double cannot hold is too small for it, rather than too large.
+bool underflows(std::string_view digits) {
+    std::int64_t exponent = 0;
+    const std::size_t e = digits.find_first_of("eE");
+    if (e != std::string_view::npos) {
+        std::string_view tail = digits.substr(e + 1);
+        const bool negative = !tail.empty() && tail.front() == '-';
+        if (!tail.empty() && (tail.front() == '-' || tail.front() == '+')) {
+            tail.remove_prefix(1);
+        }
+        for (char c : tail) {
+            exponent = std::min<std::int64_t>(exponent * 10 + (c - '0'), std::int64_t{1} << 40);
+        }
+        exponent = negative ? -exponent : exponent;
+        digits = digits.substr(0, e);
+    }
+    const std::size_t significant = digits.find_first_of("123456789");
+    if (significant == std::string_view::npos) {
+        return true;  // zero, whatever its exponent
+    }
+    const std::size_t point = std::min(digits.find('.'), digits.size());
+    return exponent + static_cast<std::int64_t>(point) - static_cast<std::int64_t>(significant) < 0;
+}
+
+}  // namespace
+
+std::string quoted(std::string_view token) {
+    constexpr std::size_t longest = 40;
+    std::string text = "'";
+    for (char c : token.substr(0, longest)) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte < 0x20 || byte >= 0x7f) {
+            text += fmt::format("\\x{:02x}", byte);
+        } else {
+            text += c;
+        }
+    }
+    return text + (token.size() > longest ? "...'" : "'");
+}
+
+std::string_view foreign_mesh_kind(std::string_view content) {
+    using namespace std::string_view_literals;
+    constexpr std::array<std::array<std::string_view, 2>, 8> kinds{{
+        {"ply\n"sv, "a PLY file"sv},
+        {"ply\r"sv, "a PLY file"sv},
+        {"glTF"sv, "a GLB file (binary glTF)"sv},
+        {"Kaydara FBX"sv, "an FBX file"sv},
+        {"BLENDER"sv, "a Blender file"sv},
+        {"OFF"sv, "an OFF file"sv},
+        {"PK\x03\x04"sv, "a ZIP archive (3MF and USDZ are such)"sv},
+        {"<?xml"sv, "an XML file (COLLADA and X3D are such)"sv},
+    }};
+    for (const auto& [start, kind] : kinds) {
+        if (content.substr(0, start.size()) == start) {
+            return kind;
+        }
+    }
+    const std::size_t first = std::min(content.find_first_not_of(" \t\r\n"), content.size());
+    if (content.substr(first, 1) == "{" && content.find("\"asset\"") != std::string_view::npos) {
+        return "a glTF file";
+    }
+    if (content.substr(first, 6) == "solid " && content.find("facet") != std::string_view::npos) {
+        return "an STL file";
+    }
+    // Binary STL: 80 bytes of any text, the number of triangles, 50 bytes for each.
+    constexpr std::size_t header = 84, triangle = 50;
+    if (content.size() >= header) {
+        std::uint64_t triangles = 0;
+        for (std::size_t k = 0; k < 4; ++k) {
+            triangles |= std::uint64_t{static_cast<unsigned char>(content[80 + k])} << (8 * k);
+        }
+        if (triangles > 0 && content.size() == header + triangle * triangles) {
+            return "an STL file";
+        }
+    }
+    return {};
+}
+
+std::optional<double> to_number(std::string_view token) {
+    if (!token.empty() && token.front() == '+') {
+        token.remove_prefix(1);
+        if (!token.empty() && (token.front() == '-' || token.front() == '+')) {
+            return std::nullopt;
+        }
+    }
+    double value = 0;
+    char const* end = token.data() + token.size();
+    const auto [stop, error] = std::from_chars(token.data(), end, value);
+    if (stop != end || (error != std::errc() && error != std::errc::result_out_of_range)) {
+        return std::nullopt;
+    }
+    if (error == std::errc::result_out_of_range) {
+        return underflows(token) ? 0.0 : HUGE_VAL;
+    }
+    return value;
+}
+
+std::string read_mesh_text(std::string const& path, std::string_view kind) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (!std::filesystem::exists(status)) {
+        throw InputError(fmt::format("{}: no such file: mesh.file must name {}", path, kind));
+    }
+    if (!std::filesystem::is_regular_file(status)) {
+        throw InputError(fmt::format("{}: not a regular file: mesh.file must name {}", path, kind));
+    }
+    std::ifstream in(path, std::ios::binary);
+    if (!in) {
+        throw InputError(
+            fmt::format("{}: cannot be opened ({}): check its permissions", path, std::strerror(errno)));
+    }
+    std::string text;
+    std::vector<char> piece(std::size_t{1} << 20);
+    while (in) {
+        in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+        text.append(piece.data(), static_cast<std::size_t>(in.gcount()));
+        if (text.size() > largest_mesh_file) {
+            throw ResourceError(fmt::format("{}: more than {} bytes, the limit of {}: simplify the mesh",
+                                            path, largest_mesh_file, kind));
+        }
+    }
+    if (in.bad()) {
+        throw InputError(fmt::format("{}: reading failed after {} bytes: check the disk", path, text.size()));
+    }
+    return text;
+}
+
+}  // namespace tessera

@@ -1,0 +1,160 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "testbench/common/error.h"
+#include "testbench/input/mesh/bezier_patches.h"
+#include "testbench/input/mesh/mesh_limits.h"
+#include "testbench/input/mesh/mesh_text.h"
+
+namespace tessera {
+namespace {
+
+constexpr char const* blanks = " \t\r";
+
+std::string_view trimmed(std::string_view text) {
+    const std::size_t first = text.find_first_not_of(blanks);
+    return first == std::string_view::npos ? std::string_view()
+                                           : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+class Reader {
+  public:
+    Reader(std::string_view text, std::string const& name) : rest_(text), name_(name) {}
+
+    BezierPatches read() {
+        const std::size_t patches = count("patches", largest_base_triangles);
+        for (std::size_t k = 0; k < patches; ++k) {
+            read_numbers(16, fmt::format("patch {} of {}", k + 1, patches));
+            for (std::size_t i = 0; i < 16; ++i) {
+                indices_[i] = index(numbers_[i]);
+            }
+            result_.patches.push_back(indices_);
+            lines_.push_back(line_);
+        }
+        const std::size_t points = count("points", largest_obj_records);
+        for (std::size_t k = 0; k < points; ++k) {
+            read_numbers(3, fmt::format("point {} of {}", k + 1, points));
+            glm::dvec3 point;
+            for (int i = 0; i < 3; ++i) {
+                point[i] = coordinate(numbers_[static_cast<std::size_t>(i)]);
+            }
+            result_.points.push_back(point);
+        }
+        if (next_line()) {
+            fail(fmt::format(
+                "{} behind the last of {} points: correct the number of points, or delete the rest",
+                quoted(words_), points));
+        }
+        check_indices();
+        return std::move(result_);
+    }
+
+  private:
+    [[noreturn]] void fail(std::string const& what) const {
+        throw InputError(fmt::format("{}:{}: {}", name_, line_, what));
+    }
+
+    /// The next line that is not empty, into words_. False at the end of the file.
+    bool next_line() {
+        while (!rest_.empty()) {
+            const std::size_t end = rest_.find('\n');
+            words_ = trimmed(rest_.substr(0, end));
+            rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+            ++line_;
+            if (!words_.empty()) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+    /// The next line's numbers, into numbers_. `what` they are, for messages.
+    void read_numbers(std::size_t wanted, std::string const& what) {
+        if (!next_line()) {
+            fail(fmt::format("the file ends before {}: it is cut off, or its count is wrong", what));
+        }
+        numbers_.clear();
+        std::string_view row = words_;
+        for (bool more = true; more;) {
+            const std::size_t comma = row.find(',');
+            numbers_.push_back(trimmed(row.substr(0, comma)));
+            more = comma != std::string_view::npos;
+            row.remove_prefix(more ? comma + 1 : row.size());
+        }
+        if (numbers_.size() != wanted) {
+            fail(fmt::format("{} is {} with {} number(s): wanted are {}, separated by commas", what,
+                             quoted(words_), numbers_.size(), wanted));
+        }
+    }
+
+    std::size_t whole_number(std::string_view word, char const* what, std::size_t most) {
+        const std::optional<double> number = to_number(word);
+        if (!number || !(*number >= 1) || std::floor(*number) != *number) {
+            fail(fmt::format("{} is no number of {}: wanted is a whole number from 1", quoted(word), what));
+        }
+        if (*number > static_cast<double>(most)) {
+            throw ResourceError(fmt::format("{}:{}: {} {}, the limit is {}: take a part of the model", name_,
+                                            line_, quoted(word), what, most));
+        }
+        return static_cast<std::size_t>(*number);
+    }
+
+    std::size_t count(char const* what, std::size_t most) {
+        read_numbers(1, fmt::format("the number of {}", what));
+        return whole_number(numbers_.front(), what, most);
+    }
+
+    std::uint32_t index(std::string_view word) {
+        const std::optional<double> number = to_number(word);
+        if (!number || !(*number >= 1 && *number <= static_cast<double>(largest_obj_records)) ||
+            std::floor(*number) != *number) {
+            fail(fmt::format("{} is no point's number: points are counted from 1", quoted(word)));
+        }
+        return static_cast<std::uint32_t>(*number) - 1;
+    }
+
+    double coordinate(std::string_view word) {
+        const std::optional<double> number = to_number(word);
+        if (!number || !(std::abs(*number) <= largest_coordinate)) {
+            fail(fmt::format("{} is no coordinate: wanted is a number of at most {:g}", quoted(word),
+                             largest_coordinate));
+        }
+        return *number;
+    }
+
+    /// Points come after what names them.
+    void check_indices() {
+        for (std::size_t k = 0; k < result_.patches.size(); ++k) {
+            for (const std::uint32_t i : result_.patches[k]) {
+                if (i >= result_.points.size()) {
+                    line_ = lines_[k];
+                    fail(fmt::format("patch {} names point {}, but there are {}: correct the number", k + 1,
+                                     i + 1, result_.points.size()));
+                }
+            }
+        }
+    }
+
+    std::string_view rest_;
+    std::string const& name_;
+    std::size_t line_ = 0;
+    std::string_view words_;
+    std::vector<std::string_view> numbers_;
+    std::array<std::uint32_t, 16> indices_{};
+    std::vector<std::size_t> lines_;  // per patch
+    BezierPatches result_;
+};
+
+}  // namespace
+
+BezierPatches parse_bezier_patches(std::string_view text, std::string const& name) {
+    return Reader(text, name).read();
+}
+
+BezierPatches read_bezier_patches(std::string const& path) {
+    return parse_bezier_patches(read_mesh_text(path, "a file of Bezier patches"), path);
+}
+
+}  // namespace tessera

@@ -1,0 +1,212 @@
+#include "testbench/input/mesh/surface_flaws.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "testbench/input/mesh/equal_groups.h"
+#include "testbench/input/mesh/triangle_geometry.h"
+
+namespace tessera {
+namespace {
+
+constexpr double on_edge = 1e-6;  // of the edge's length: files commonly hold six decimals
+
+struct BorderPoint {
+    glm::dvec3 position;
+    std::uint32_t index;
+};
+
+/// Points in a k-d tree, asked which lie on a segment.
+class PointsOnSegments {
+  public:
+    explicit PointsOnSegments(std::vector<BorderPoint> points) : points_(std::move(points)) {
+        build(0, points_.size(), 0);
+    }
+
+    /// Whether a point other than a and b lies on the segment between them.
+    bool any_between(BorderPoint const& a, BorderPoint const& b) {
+        const Segment segment{a, b, b.position - a.position, safe_length(b.position - a.position)};
+        return segment.length > 0 && any(segment, 0, points_.size(), 0, 0, 1);
+    }
+
+    std::uint64_t steps() const { return steps_; }
+
+  private:
+    struct Segment {
+        BorderPoint const &a, &b;
+        glm::dvec3 along;
+        double length;
+    };
+
+    void build(std::size_t low, std::size_t high, int axis) {
+        if (high - low < 2) {
+            return;
+        }
+        const std::size_t middle = low + (high - low) / 2;
+        const auto at = [&](std::size_t i) { return points_.begin() + static_cast<std::ptrdiff_t>(i); };
+        std::nth_element(at(low), at(middle), at(high), [axis](BorderPoint const& a, BorderPoint const& b) {
+            return a.position[axis] < b.position[axis];
+        });
+        build(low, middle, (axis + 1) % 3);
+        build(middle + 1, high, (axis + 1) % 3);
+    }
+
+    static bool is_on(Segment const& segment, BorderPoint const& point) {
+        if (point.index == segment.a.index || point.index == segment.b.index) {
+            return false;
+        }
+        const glm::dvec3 direction = segment.along / segment.length;
+        const glm::dvec3 offset = (point.position - segment.a.position) / segment.length;
+        const double t = glm::dot(offset, direction);
+        return t > on_edge && t < 1 - on_edge && safe_length(offset - direction * t) <= on_edge;
+    }
+
+    /// The part of the segment from parameter t0 to t1 may pass through this cell.
+    bool any(Segment const& segment, std::size_t low, std::size_t high, int axis, double t0, double t1) {
+        if (low >= high || t0 > t1) {
+            return false;
+        }
+        ++steps_;
+        const std::size_t middle = low + (high - low) / 2;
+        if (is_on(segment, points_[middle])) {
+            return true;
+        }
+        const double plane = points_[middle].position[axis] - segment.a.position[axis];
+        const double speed = segment.along[axis], slack = on_edge * segment.length;
+        double low_t0 = t0, low_t1 = t1, high_t0 = t0, high_t1 = t1;
+        if (speed == 0) {
+            low_t1 = plane >= -slack ? t1 : -1;
+            high_t1 = plane <= slack ? t1 : -1;
+        } else {
+            const double reaches = (plane + slack) / speed, leaves = (plane - slack) / speed;
+            if (speed > 0) {
+                low_t1 = std::min(t1, reaches);
+                high_t0 = std::max(t0, leaves);
+            } else {
+                low_t0 = std::max(t0, reaches);
+                high_t1 = std::min(t1, leaves);
+            }
+        }
+        const int next = (axis + 1) % 3;
+        return any(segment, low, middle, next, low_t0, low_t1) ||
+               any(segment, middle + 1, high, next, high_t0, high_t1);
+    }
+
+    std::vector<BorderPoint> points_;
+    std::uint64_t steps_ = 0;
+};
+
+void find_t_junctions(BaseMesh const& mesh, std::vector<std::array<std::uint32_t, 2>> const& border,
+                      std::uint64_t most_steps, std::vector<std::string>& flaws) {
+    std::vector<std::uint32_t> indices;
+    for (auto const& edge : border) {
+        indices.insert(indices.end(), edge.begin(), edge.end());
+    }
+    std::sort(indices.begin(), indices.end());
+    indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+    std::vector<BorderPoint> points;
+    points.reserve(indices.size());
+    for (std::uint32_t index : indices) {
+        points.push_back({mesh.vertices[index].position, index});
+    }
+    PointsOnSegments tree(std::move(points));
+    std::size_t found = 0, searched = 0;
+    while (searched < border.size() && tree.steps() < most_steps) {
+        auto const& [a, b] = border[searched++];
+        found += tree.any_between({mesh.vertices[a].position, a}, {mesh.vertices[b].position, b});
+    }
+    if (found > 0) {
+        flaws.push_back(
+            fmt::format("{} border edge(s) have another vertex of the border on them (T-junction): the "
+                        "displaced surface may open there.",
+                        found));
+    }
+    if (searched < border.size()) {
+        flaws.push_back(fmt::format("The search for T-junctions was given up after {} of {} border edges.",
+                                    searched, border.size()));
+    }
+}
+
+void edge_flaws(BaseMesh const& mesh, std::vector<std::uint32_t> const& same_position,
+                std::uint64_t most_steps, std::vector<std::string>& flaws) {
+    // one number per edge and triangle: the lower vertex, the higher, the direction; sorting brings them
+    // together
+    std::vector<std::uint64_t> uses;
+    uses.reserve(mesh.triangles.size() * 3);
+    for (auto const& t : mesh.triangles) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint64_t a = same_position[t[k]], b = same_position[t[(k + 1) % 3]];
+            uses.push_back(std::min(a, b) << 33 | std::max(a, b) << 1 | (a < b ? 0u : 1u));
+        }
+    }
+    std::sort(uses.begin(), uses.end());
+    std::size_t crowded = 0, opposed = 0;
+    std::vector<std::array<std::uint32_t, 2>> border;
+    for (std::size_t i = 0; i < uses.size();) {
+        std::size_t end = i;
+        while (end < uses.size() && uses[end] >> 1 == uses[i] >> 1) {
+            ++end;
+        }
+        if (end - i == 1) {
+            border.push_back({static_cast<std::uint32_t>(uses[i] >> 33),
+                              static_cast<std::uint32_t>(uses[i] >> 1 & UINT32_MAX)});
+        } else if (end - i > 2) {
+            ++crowded;
+        } else {
+            opposed += uses[i] == uses[i + 1];
+        }
+        i = end;
+    }
+    if (crowded > 0) {
+        flaws.push_back(fmt::format("{} edge(s) belong to more than two triangles.", crowded));
+    }
+    if (opposed > 0) {
+        flaws.push_back(
+            fmt::format("Across {} edge(s) the winding changes: neighbours face opposite ways.", opposed));
+    }
+    find_t_junctions(mesh, border, most_steps, flaws);
+}
+
+void normal_flaws(BaseMesh const& mesh, std::vector<std::uint32_t> const& same_position,
+                  std::vector<std::string>& flaws) {
+    std::vector<char> several(mesh.vertices.size(), 0);
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        if (mesh.vertices[i].normal != mesh.vertices[same_position[i]].normal) {
+            several[same_position[i]] = 1;
+        }
+    }
+    if (const auto count = std::count(several.begin(), several.end(), 1); count > 0) {
+        flaws.push_back(
+            fmt::format("{} point(s) have more than one normal: the displaced surface opens there.", count));
+    }
+    std::size_t against = 0;
+    for (auto const& t : mesh.triangles) {
+        const glm::dvec3 facing = triangle_normal(mesh.vertices[t[0]].position, mesh.vertices[t[1]].position,
+                                                  mesh.vertices[t[2]].position);
+        against += std::any_of(t.begin(), t.end(), [&](std::uint32_t i) {
+            return glm::dot(facing, mesh.vertices[i].normal) < 0;
+        });
+    }
+    if (against > 0) {
+        flaws.push_back(
+            fmt::format("{} triangle(s) have a normal that points against their winding.", against));
+    }
+}
+
+}  // namespace
+
+std::vector<std::string> surface_flaws(BaseMesh const& mesh, std::uint64_t most_steps) {
+    std::vector<PositionKey> keys;
+    keys.reserve(mesh.vertices.size());
+    for (BaseVertex const& vertex : mesh.vertices) {
+        keys.push_back(position_key(vertex.position));
+    }
+    const std::vector<std::uint32_t> same_position = first_equal(keys);
+    std::vector<std::string> flaws;
+    edge_flaws(mesh, same_position, most_steps, flaws);
+    normal_flaws(mesh, same_position, flaws);
+    return flaws;
+}
+
+}  // namespace tessera

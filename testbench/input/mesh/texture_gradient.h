@@ -1,0 +1,45 @@
+#pragma once
+#include <array>
+#include <glm/glm.hpp>
+#include <optional>
+
+#include "testbench/input/mesh/base_mesh.h"
+#include "testbench/input/mesh/triangle_geometry.h"
+
+namespace tessera {
+
+/// How the position moves with the texture coordinate inside one triangle.
+struct TextureGradient {
+    glm::dvec3 dp_du, dp_dv;  ///< model units for one unit of u, of v
+    bool mirrored;            ///< texture coordinates run clockwise where the triangle runs counter-clockwise
+    double area;              ///< of the triangle, square model units
+};
+
+/// Nothing where the triangle has no area in texture space (or so little that a gradient is not finite).
+inline std::optional<TextureGradient> texture_gradient(BaseMesh const& mesh,
+                                                       std::array<std::uint32_t, 3> const& triangle) {
+    BaseVertex const& a = mesh.vertices[triangle[0]];
+    BaseVertex const& b = mesh.vertices[triangle[1]];
+    BaseVertex const& c = mesh.vertices[triangle[2]];
+    const glm::dvec2 ab = b.texture - a.texture, ac = c.texture - a.texture;
+    // as a triangle in space, so that "no area" means the same in both
+    const glm::dvec3 facing =
+        triangle_normal(glm::dvec3(a.texture, 0), glm::dvec3(b.texture, 0), glm::dvec3(c.texture, 0));
+    if (facing.z == 0) {
+        return std::nullopt;
+    }
+    const double determinant = ab.x * ac.y - ab.y * ac.x;
+    const glm::dvec3 p = b.position - a.position, q = c.position - a.position;
+    TextureGradient gradient;
+    gradient.dp_du = (p * ac.y - q * ab.y) / determinant;
+    gradient.dp_dv = (q * ab.x - p * ac.x) / determinant;
+    gradient.mirrored = facing.z < 0;
+    gradient.area = triangle_area(a.position, b.position, c.position);
+    const double check = safe_length(gradient.dp_du) + safe_length(gradient.dp_dv);
+    if (!std::isfinite(check)) {
+        return std::nullopt;
+    }
+    return gradient;
+}
+
+}  // namespace tessera

@@ -1,0 +1,47 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+
+#include "testbench/input/mesh/mesh_limits.h"
+
+namespace tessera {
+
+/// |a|, without overflow or underflow on the way.
+inline double safe_length(glm::dvec3 const& a) {
+    return std::hypot(a.x, a.y, a.z);
+}
+
+/// a / |a|; zero for the zero vector.
+inline glm::dvec3 unit_or_zero(glm::dvec3 const& a) {
+    const double largest = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)});
+    if (!(largest > 0)) {
+        return glm::dvec3(0);
+    }
+    const glm::dvec3 scaled = a / largest;  // two steps: 1 / |a| may overflow
+    return scaled / std::sqrt(glm::dot(scaled, scaled));
+}
+
+/// Unit normal of the triangle a, b, c by its winding; zero where it has no area (flattest_triangle).
+inline glm::dvec3 triangle_normal(glm::dvec3 const& a, glm::dvec3 const& b, glm::dvec3 const& c) {
+    const glm::dvec3 ab = b - a, ac = c - a, bc = c - b;
+    double largest = 0;
+    for (int k = 0; k < 3; ++k) {
+        largest = std::max({largest, std::abs(ab[k]), std::abs(ac[k]), std::abs(bc[k])});
+    }
+    if (!(largest > 0)) {
+        return glm::dvec3(0);
+    }
+    const glm::dvec3 twice_area = glm::cross(ab / largest, ac / largest);
+    if (!(safe_length(twice_area) > flattest_triangle)) {
+        return glm::dvec3(0);
+    }
+    return unit_or_zero(twice_area);
+}
+
+/// Area in square model units.
+inline double triangle_area(glm::dvec3 const& a, glm::dvec3 const& b, glm::dvec3 const& c) {
+    return safe_length(glm::cross(b - a, c - a)) / 2;
+}
+
+}  // namespace tessera

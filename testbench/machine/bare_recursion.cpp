@@ -1,0 +1,181 @@
+#include "testbench/machine/bare_recursion.h"
+
+#include "modules/datapath/bump.h"
+#include "modules/datapath/cull.h"
+#include "modules/datapath/displace.h"
+#include "modules/datapath/edge_tests.h"
+#include "modules/datapath/map_address.h"
+#include "modules/datapath/map_entry.h"
+#include "modules/datapath/midpoint.h"
+#include "modules/datapath/rectangle.h"
+#include "modules/datapath/tessellate.h"
+#include "modules/datapath/transform.h"
+
+namespace tessera {
+
+using namespace datapath;  // this file is the datapath, strung together
+
+namespace {
+
+// The tables as arrays: a layout of one "byte" per entry turns the datapath's addresses into indices.
+TableLayout as_indices(const TableLayout& layout) {
+    return {0, layout.columns, layout.rows, 1};
+}
+
+/// Apart from evaluate_edge and not inline, as in the unit (normal_test.h): a design without it pays for no register.
+[[gnu::noinline]] void test_for_highlight(TrianglePass& pass, int k, const TestParameters& tests) {
+    EdgeTests& edge = pass.edges[static_cast<std::size_t>(k)];
+    if (highlight_test(pass.edge_begin(k).displaced_normal, pass.edge_end(k).displaced_normal,
+                       edge.displaced_normal, tests))
+        edge.tests |= highlight_bit;
+}
+
+}  // namespace
+
+BareRecursion::BareRecursion(const Setup& setup) : setup_(setup), codes_(setup.map.codes) {
+    const MapGeometry& map = setup.registers.map;
+    const Formats& formats = setup.registers.formats;
+    normals_.reserve(codes_.size());
+    for (std::uint32_t y = 0; y < map.height; ++y)
+        for (std::uint32_t x = 0; x < map.width; ++x)
+            normals_.push_back(pack_normal(
+                tessera::map_normal(setup.map, x, y, setup.height_per_code, setup.texel_size, formats.normal),
+                formats.normal.bits));
+    const bool narrow = formats.summed_height.bits <= 32;
+    const std::size_t columns = std::size_t{map.width} + 1;
+    std::vector<std::uint64_t> sums(columns * (std::size_t{map.height} + 1), 0);
+    for (std::uint32_t y = 0; y < map.height; ++y) {
+        std::uint64_t along = 0;
+        for (std::uint32_t x = 0; x < map.width; ++x) {
+            along += setup.map.code(x, y);
+            sums[(y + 1) * columns + x + 1] = sums[y * columns + x + 1] + along;
+        }
+    }
+    if (narrow)
+        sums_.assign(sums.begin(), sums.end());
+    else
+        wide_sums_ = std::move(sums);
+}
+
+std::uint64_t BareRecursion::sum_around(const TexCoord& t, const RectangleSize& size) const {
+    const Registers& r = setup_.registers;
+    const Rectangle rectangle = centred_rectangle(t, size, r.map, r.formats);
+    const TableLayout table = as_indices(r.summed_height_table);
+    if (!sums_.empty())
+        return rectangle_sum(rectangle, r.map, table, r.formats,
+                             [&](std::uint64_t index) { return std::uint64_t{sums_[index]}; });
+    return rectangle_sum(rectangle, r.map, table, r.formats,
+                         [&](std::uint64_t index) { return wide_sums_[index]; });
+}
+
+Direction BareRecursion::map_normal_at(const TexCoord& t) const {
+    const Registers& r = setup_.registers;
+    return unpack_normal(normals_[texel_address(t, as_indices(r.normal_map), r.map, r.formats)],
+                         r.formats.normal.bits);
+}
+
+std::uint32_t BareRecursion::code_at(const TexCoord& t) const {
+    const Registers& r = setup_.registers;
+    return codes_[texel_address(t, as_indices(r.displacement_map), r.map, r.formats)];
+}
+
+void BareRecursion::complete_base(Triangle& triangle) {
+    const Registers& r = setup_.registers;
+    for (Vertex& v : triangle.vertices) {
+        v.displaced =
+            displace(v.position, v.normal, code_at(v.texture), r.displacement, r.formats, saturations_);
+        v.screen = transform(v.displaced, r.transform, r.formats, saturations_);
+        v.displaced_normal =
+            bump(v.normal, v.tangent, v.handedness, map_normal_at(v.texture), r.formats, saturations_);
+        v.displaced_known = true;
+    }
+}
+
+void BareRecursion::evaluate_edge(TrianglePass& pass, int k) {
+    const Registers& r = setup_.registers;
+    const Vertex& i = pass.edge_begin(k);
+    const Vertex& j = pass.edge_end(k);
+    NewVertex& made = pass.new_vertex[static_cast<std::size_t>(k)];
+    EdgeTests& edge = pass.edges[static_cast<std::size_t>(k)];
+    made.position = midpoint(i.position, j.position);
+    made.texture = midpoint(i.texture, j.texture);
+    edge.normal = normalise(midpoint(i.normal, j.normal), r.formats, saturations_);
+    edge.tangent = normalise(midpoint(i.tangent, j.tangent), r.formats, saturations_);
+    made.displaced =
+        displace(made.position, edge.normal, code_at(made.texture), r.displacement, r.formats, saturations_);
+    made.screen = transform(made.displaced, r.transform, r.formats, saturations_);
+    edge.displaced_normal = bump(edge.normal, edge.tangent, inserted_handedness(i.handedness, j.handedness),
+                                 map_normal_at(made.texture), r.formats, saturations_);
+
+    unsigned tests = 0;
+    if (r.tests.normal_test &&
+        normal_test(i.displaced_normal, j.displaced_normal, edge.displaced_normal, r.tests))
+        tests |= normal_bit;
+    if (r.tests.summed_height_test) {
+        const RectangleSize size = rectangle_size(i.texture, j.texture, r.map, r.formats);
+        if (summed_height_test(sum_around(i.texture, size), sum_around(j.texture, size),
+                               sum_around(made.texture, size), size, r.tests))
+            tests |= summed_height_bit;
+    }
+    if (!r.tests.view_test || view_test(i.screen, j.screen, r.tests))
+        tests |= view_bit;
+    if (!r.tests.tex_coord_test || tex_coord_test(i.texture, j.texture, made.texture, r.formats))
+        tests |= tex_coord_bit;
+    if (!r.tests.generation_test || generation_test(i.generation, j.generation, r.tests))
+        tests |= generation_bit;
+    edge.tests = static_cast<std::uint8_t>(tests);
+}
+
+std::uint8_t BareRecursion::evaluate(TrianglePass& pass) {
+    unsigned split = 0;
+    unsigned stopped_by = 0;
+    for (int k = 0; k < 3; ++k) {
+        evaluate_edge(pass, k);
+        if (setup_.registers.tests.highlight_test)
+            test_for_highlight(pass, k, setup_.registers.tests);
+        const std::uint8_t tests = pass.edges[static_cast<std::size_t>(k)].tests;
+        if (split_decision(tests))
+            split |= 1u << k;
+        else if ((tests & requesting_tests) != 0)
+            stopped_by |= ~tests & gating_tests;
+    }
+    pass.split = static_cast<std::uint8_t>(split);
+    return static_cast<std::uint8_t>(stopped_by);
+}
+
+std::uint64_t BareRecursion::run(EmittedMesh& mesh, std::uint64_t most_edges) {
+    mesh.triangles.clear();
+    work_.clear();
+    std::uint64_t edges = 0;
+    TrianglePass pass;
+    for (const Triangle& base : setup_.base_triangles) {
+        work_.push_back(base);
+        complete_base(work_.back());
+        while (!work_.empty()) {
+            if (edges >= most_edges)
+                return edges;
+            pass.triangle = work_.back();
+            work_.pop_back();
+            const std::uint8_t stopped_by = evaluate(pass);
+            edges += 3;
+            if (pass.split != 0) {
+                tessellate(pass, setup_.registers.triangulation, setup_.registers.formats, saturations_,
+                           [&](const Triangle& child) { work_.push_back(child); });
+                continue;
+            }
+            Triangle& finished = pass.triangle;
+            finished.stopped_by = stopped_by;
+            for (Vertex& v : finished.vertices)
+                if (!v.screen_normal_known)
+                    v.screen_normal = transform_normal(v.displaced_normal, setup_.registers.transform,
+                                                       setup_.registers.formats, saturations_);
+            mesh.triangles.push_back(EmittedTriangle::from(
+                finished, setup_.registers.back_face_culling &&
+                              faces_away(finished.vertices[0].screen, finished.vertices[1].screen,
+                                         finished.vertices[2].screen)));
+        }
+    }
+    return edges;
+}
+
+}  // namespace tessera

@@ -1,0 +1,48 @@
+#pragma once
+#include <tlm_utils/simple_initiator_socket.h>
+#include <cstdint>
+#include <systemc>
+
+#include "modules/sockets/stream_output.h"
+#include "modules/timing/cycle_scheduler.h"
+#include "testbench/machine/setup.h"
+
+namespace tessera {
+
+/// The host CPU (paper figure 7): fills the three tables through the memories' debug transport before time starts,
+/// then sends the base triangles, one after another, to Get Triangle.
+/// Held back by Get Triangle while the Triangle Queue is at its watermark. In timed mode it offers the next triangle in
+/// the cycle in which the last was taken: the bus is not what is looked at.
+class Host : public sc_core::sc_module, public CycleProcess {
+  public:
+    StreamOutput<datapath::Triangle> to_get_triangle{"to_get_triangle"};
+    tlm_utils::simple_initiator_socket<Host> displacement_map{"displacement_map"};
+    tlm_utils::simple_initiator_socket<Host> normal_map{"normal_map"};
+    tlm_utils::simple_initiator_socket<Host> summed_height_table{"summed_height_table"};
+
+    /// `setup` must outlive the host.
+    Host(const sc_core::sc_module_name& name, const Setup& setup, CycleScheduler& clock);
+
+    /// Sends the base triangles once more when the simulation goes on: another frame of the same job.
+    void send_again();
+
+    bool idle() const { return sent_ == setup_.base_triangles.size() && to_get_triangle.free(); }
+    std::uint64_t sent() const { return sent_; }
+    std::uint64_t total() const { return setup_.base_triangles.size(); }
+
+  private:
+    void start_of_simulation() override;
+    void send_triangles();
+    void step() override;
+    void fill_displacement_map();
+    void fill_normal_map();
+    void fill_summed_height_table();
+
+    const Setup& setup_;
+    CycleScheduler& clock_;
+    datapath::Triangle offered_;
+    sc_core::sc_event again_{"again"};
+    std::uint64_t sent_ = 0;
+};
+
+}  // namespace tessera

@@ -1,0 +1,55 @@
+#include "testbench/machine/host_traffic.h"
+
+#include "modules/datapath/registers.h"
+#include "modules/datapath/widths.h"
+
+namespace tessera {
+
+std::uint64_t base_mesh_bytes(const Setup& setup) {
+    const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
+    return (setup.base_triangles.size() * 3 * widths.base_vertex + 7) / 8;
+}
+
+std::vector<std::uint32_t> register_words(const datapath::Registers& registers) {
+    std::vector<std::uint32_t> words(1);  // the first: switches and choices
+    int choice_bits = 0;
+    datapath::visit_registers(registers, [&](const datapath::Register& field, const auto& values) {
+        for (const std::int64_t value : values) {
+            const auto code = static_cast<std::uint64_t>(value);
+            if (field.kind == datapath::RegisterKind::choice) {
+                words[0] |= static_cast<std::uint32_t>(code << choice_bits);
+                choice_bits += field.bits;
+                continue;
+            }
+            words.push_back(static_cast<std::uint32_t>(code));
+            if (field.bits > 32)
+                words.push_back(static_cast<std::uint32_t>(code >> 32));
+        }
+    });
+    return words;
+}
+
+HostTraffic first_frame_traffic(const Setup& setup) {
+    const datapath::Registers& r = setup.registers;
+    return {base_mesh_bytes(setup), r.displacement_map.bytes(), r.normal_map.bytes(),
+            r.summed_height_table.bytes(), register_words(r).size() * sizeof(std::uint32_t)};
+}
+
+HostTraffic next_frame_traffic(const Setup& before, const Setup& now) {
+    HostTraffic traffic = first_frame_traffic(now);
+    if (before.map.codes == now.map.codes) {
+        traffic.displacement_map = 0;
+        traffic.summed_height_table = 0;
+        // the normals follow from heights and texels' sizes, of which only the quotients matter
+        if (before.height_per_code / before.texel_size == now.height_per_code / now.texel_size)
+            traffic.normal_map = 0;
+    }
+    const std::vector<std::uint32_t> old_words = register_words(before.registers),
+                                     words = register_words(now.registers);
+    traffic.registers = 0;
+    for (std::size_t k = 0; k < words.size(); ++k)
+        traffic.registers += words[k] == old_words[k] ? 0 : sizeof(std::uint32_t);
+    return traffic;
+}
+
+}  // namespace tessera

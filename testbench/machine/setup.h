@@ -1,0 +1,63 @@
+#pragma once
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "modules/datapath/parameters.h"
+#include "modules/datapath/vertex.h"
+#include "modules/pipeline.h"
+#include "testbench/machine/quantised_map.h"
+#include "testbench/job/job.h"
+#include "testbench/input/mesh/base_mesh.h"
+
+namespace tessera {
+
+/// From the model's units to the machine's world and back: world = scale * (model - centre), scale a power of two, so
+/// that undoing it costs no precision.
+struct ModelScale {
+    double scale = 1;
+    glm::dvec3 centre{0};
+
+    glm::dvec3 to_world(const glm::dvec3& model) const { return (model - centre) * scale; }
+    glm::dvec3 to_model(const glm::dvec3& world) const { return world / scale + centre; }
+};
+
+/// What of the host's own values did not fit its format and was set to the nearest value that does. fit()
+/// leaves room, so that nothing should.
+struct InputSaturations {
+    std::uint64_t position = 0;   ///< components of base vertices
+    std::uint64_t normal = 0;     ///< components of base vertices' normals and tangents
+    std::uint64_t registers = 0;  ///< displacement's scale and bias, directions of view and light
+};
+
+/// A job made ready for the machine: everything rounded to the hardware's formats. What the simulation, the golden
+/// model and the reports all start from.
+struct Setup {
+    datapath::Registers registers;
+    Design design;
+    QuantisedMap map;
+    std::vector<datapath::Triangle> base_triangles;
+    ModelScale model_scale;
+
+    double height_per_code = 0;   ///< world units: S * code / 2^bits, S as rounded
+    glm::dvec2 texel_size{1, 1};  ///< world size of a texel along u and v
+
+    std::uint64_t largest_rectangle_sum = 0;  ///< bound on any rectangle's sum over this mesh, in codes
+    bool summed_height_bits_chosen = false;   ///< by `auto`
+    std::uint64_t base_dropped = 0;           ///< triangles that rounding made name one vertex twice
+    std::uint64_t texture_clamped = 0;        ///< vertices whose u or v lay outside a clamped map
+    InputSaturations input_saturations;
+    std::vector<std::string> remarks;  ///< one sentence each, for the report
+};
+
+/// Rounds mesh, map, camera, thresholds to the formats. The job must be resolved (resolve_job.h). Errors: InputError
+/// where something cannot fit and no repair keeps the meaning (a table entry too narrow for the largest
+/// rectangle, an eye too far away, a texture coordinate beyond the format, a threshold beyond its register or
+/// below its step), with value, limit and what to do.
+Setup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& map);
+
+/// The tests' part of it alone: the registers a job's [tests] are rounded to. InputError as above.
+datapath::TestParameters make_tests(const Job& job, const datapath::Formats& formats);
+
+}  // namespace tessera

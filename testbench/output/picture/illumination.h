@@ -1,0 +1,58 @@
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "testbench/output/picture/ray_scene.h"
+#include "testbench/output/picture/shading_point.h"
+#include "testbench/output/picture/style.h"
+#include "testbench/output/picture/view.h"
+
+namespace tessera {
+
+/// Sub-pixel samples; each sees its own share of the lights, all of them together see all.
+inline constexpr std::size_t samples_per_pixel = 16;
+
+/// What arrives at a point in linear light: a white surface squarely in full light has about 1.
+struct Light {
+    glm::dvec3 diffuse{0};
+    double highlight = 0;
+};
+
+/// A key light with a soft edge, a weak fill light without shadow, and a sky that is brightest overhead. The
+/// directions are fixed and the same at every pixel: no noise, no dependence on order.
+class Illumination {
+  public:
+    Illumination(const View& view, const Style& style, const RayScene& scene);
+
+    /// What light() uses, kept for its memory: one a thread.
+    struct Scratch {
+        std::vector<Ray> rays;
+        std::vector<std::size_t> facing;  // points on the lamp's side
+        std::vector<std::uint8_t> traced, occluded;
+    };
+
+    /// The light at points that share a sub-pixel position; quick if they are neighbours. Where the first
+    /// `probes` of them all see a direction, or none does, so it is for the others.
+    void light(std::size_t sample, const std::vector<ShadingPoint>& points, std::size_t probes,
+               std::vector<Light>& lights, Scratch& scratch) const;
+
+  private:
+    struct Lamp {
+        glm::dvec3 direction;   ///< towards it
+        glm::dvec3 diffuse{0};  ///< times the cosine
+        double highlight = 0;
+        glm::dvec3 half{0};  ///< between it and the viewer
+    };
+
+    void trace(const Lamp& lamp, const std::vector<ShadingPoint>& points, std::size_t first, std::size_t end,
+               Scratch& scratch) const;
+    void add(const Lamp& lamp, const std::vector<ShadingPoint>& points, std::size_t probes,
+             std::vector<Light>& lights, Scratch& scratch) const;
+
+    const RayScene& scene_;
+    glm::dvec3 eye_;  ///< direction towards the viewer, good enough for highlights
+    glm::dvec3 fill_;
+    std::vector<Lamp> lamps_[samples_per_pixel];
+};
+
+}  // namespace tessera

@@ -1,0 +1,35 @@
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "testbench/output/picture/style.h"
+
+namespace tessera {
+
+// What pictures may be, in pixels: room for a legend, and no more than a few minutes and a gigabyte.
+inline constexpr int least_picture_side = 64;
+inline constexpr int most_picture_side = 16384;
+inline constexpr std::int64_t most_picture_pixels = 33'554'432;  // of all views together
+
+/// A close-up: the point that is to be the middle, from the left (0..1) and the top (0..1) of the picture without
+/// zoom, and how many times larger everything becomes.
+struct Zoom {
+    double across = 0.5, down = 0.5;
+    double factor = 1;
+};
+
+struct PictureOptions {
+    int width = 1600;
+    int height = 0;               ///< 0: what the mesh's proportions ask for, 0.3 to 1.3 times the width
+    bool whole_viewport = false;  ///< all the camera saw; else what there is of the mesh, as large as it fits
+    Zoom zoom;
+    double line_width = 0;  ///< pixels; 0: suits the picture's size
+    std::string caption;    ///< below the picture; in capitals, characters the font lacks are left blank
+    ErrorScale errors;      ///< for PictureView::error
+    bool linear = false;    ///< linear light, too
+};
+
+/// The line width of these options in pixels: theirs, or what suits the width of a surface `width` pixels wide.
+double line_width(const PictureOptions& options, int width);
+
+}  // namespace tessera

@@ -1,0 +1,46 @@
+#include "testbench/output/picture/picture_view.h"
+
+namespace tessera {
+namespace {
+
+constexpr double softer = 0.6;  // light and shadow, where a colour stands for a number
+
+}  // namespace
+
+std::string_view name_of(PictureView view) {
+    switch (view) {
+        case PictureView::overview:
+            return "overview";
+        case PictureView::shaded:
+            return "shaded";
+        case PictureView::wireframe:
+            return "wireframe";
+        case PictureView::generation:
+            return "generation";
+        case PictureView::test:
+            return "test";
+        case PictureView::stopped:
+            return "stopped";
+        case PictureView::error:
+            break;
+    }
+    return "error";
+}
+
+Style style_of(PictureView view) {
+    Style style;
+    style.wireframe = view != PictureView::shaded && view != PictureView::error;
+    if (view == PictureView::generation) {
+        style.colour_by = ColourBy::generation;
+    } else if (view == PictureView::test) {
+        style.colour_by = ColourBy::deciding_test;
+    } else if (view == PictureView::stopped) {
+        style.colour_by = ColourBy::stopped_by;
+    } else if (view == PictureView::error) {
+        style.colour_by = ColourBy::error;
+        style.relief = softer;
+    }
+    return style;
+}
+
+}  // namespace tessera

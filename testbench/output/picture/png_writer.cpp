@@ -1,0 +1,13 @@
+#include "testbench/output/picture/png_writer.h"
+
+#include <png.h>
+
+#include "testbench/input/map/png_encoder.h"
+
+namespace tessera {
+
+std::vector<std::uint8_t> encode_png(const Image& image) {
+    return encode_png_samples(image.width, image.height, PNG_FORMAT_RGB, image.bytes.data());
+}
+
+}  // namespace tessera

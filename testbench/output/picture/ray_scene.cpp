@@ -1,0 +1,142 @@
+#include "testbench/output/picture/ray_scene.h"
+
+#include <embree3/rtcore.h>
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "testbench/common/error.h"
+
+namespace tessera {
+namespace {
+
+constexpr std::size_t packet = 8;
+
+struct ReleaseDevice {
+    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct ReleaseScene {
+    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+struct ReleaseGeometry {
+    void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+};
+
+void check(RTCDevice device, std::size_t triangles) {
+    const RTCError error = rtcGetDeviceError(device);
+    if (error == RTC_ERROR_OUT_OF_MEMORY)
+        throw ResourceError(
+            fmt::format("picture: no memory left for the ray hierarchy of {} triangles; set "
+                        "output.picture = false or make fewer",
+                        triangles));
+    if (error != RTC_ERROR_NONE)
+        throw std::runtime_error(fmt::format("picture: Embree reports error {}", static_cast<int>(error)));
+}
+
+void put(const Ray& ray, std::size_t lane, RTCRay8& to) {
+    to.org_x[lane] = static_cast<float>(ray.origin.x);
+    to.org_y[lane] = static_cast<float>(ray.origin.y);
+    to.org_z[lane] = static_cast<float>(ray.origin.z);
+    to.dir_x[lane] = static_cast<float>(ray.direction.x);
+    to.dir_y[lane] = static_cast<float>(ray.direction.y);
+    to.dir_z[lane] = static_cast<float>(ray.direction.z);
+    to.tnear[lane] = static_cast<float>(ray.near);
+    to.tfar[lane] = std::numeric_limits<float>::infinity();
+    to.time[lane] = 0;
+    to.mask[lane] = ~0u;
+    to.id[lane] = 0;
+    to.flags[lane] = 0;
+}
+
+/// Calls trace(first, count, valid) for each packet of a batch.
+template <typename Trace>
+void for_each_packet(std::size_t rays, const Trace& trace) {
+    for (std::size_t first = 0; first < rays; first += packet) {
+        const std::size_t count = std::min(packet, rays - first);
+        alignas(32) int valid[packet];
+        for (std::size_t lane = 0; lane < packet; ++lane)
+            valid[lane] = lane < count ? -1 : 0;
+        trace(first, count, valid);
+    }
+}
+
+RTCIntersectContext coherent_context() {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    return context;
+}
+
+}  // namespace
+
+struct RayScene::Handles {
+    std::unique_ptr<RTCDeviceTy, ReleaseDevice> device;
+    std::unique_ptr<RTCSceneTy, ReleaseScene> scene;
+};
+
+RayScene::RayScene(const RenderMesh& mesh) : handles_(std::make_unique<Handles>()) {
+    handles_->device.reset(rtcNewDevice("threads=1"));
+    RTCDevice device = handles_->device.get();
+    if (!device)
+        check(nullptr, mesh.triangles.size());
+    handles_->scene.reset(rtcNewScene(device));
+    RTCScene scene = handles_->scene.get();
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
+    const std::unique_ptr<RTCGeometryTy, ReleaseGeometry> geometry(
+        rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
+    // Copies: Embree reads up to 16 bytes at a buffer's last element, beyond the end of a vector.
+    auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
+                                                                  RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                                                  mesh.positions.size()));
+    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0,
+                                                                   RTC_FORMAT_UINT3, 3 * sizeof(unsigned),
+                                                                   mesh.triangles.size()));
+    check(device, mesh.triangles.size());
+    if (!mesh.triangles.empty()) {
+        for (const glm::vec3& p : mesh.positions)
+            for (int k = 0; k < 3; ++k)
+                *positions++ = p[k];
+        for (const RenderMesh::Triangle& triangle : mesh.triangles)
+            indices = std::copy(triangle.vertices.begin(), triangle.vertices.end(), indices);
+    }
+    rtcCommitGeometry(geometry.get());
+    rtcAttachGeometry(scene, geometry.get());
+    rtcCommitScene(scene);
+    check(device, mesh.triangles.size());
+}
+
+RayScene::~RayScene() = default;
+
+void RayScene::first_hits(const std::vector<Ray>& rays, std::vector<std::uint32_t>& triangles) const {
+    triangles.resize(rays.size());
+    RTCIntersectContext context = coherent_context();
+    for_each_packet(rays.size(), [&](std::size_t first, std::size_t count, const int* valid) {
+        RTCRayHit8 hits;
+        for (std::size_t lane = 0; lane < count; ++lane) {
+            put(rays[first + lane], lane, hits.ray);
+            hits.hit.primID[lane] = hits.hit.geomID[lane] = hits.hit.instID[0][lane] =
+                RTC_INVALID_GEOMETRY_ID;
+        }
+        rtcIntersect8(valid, handles_->scene.get(), &context, &hits);
+        for (std::size_t lane = 0; lane < count; ++lane)
+            triangles[first + lane] =
+                hits.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID ? nothing : hits.hit.primID[lane];
+    });
+}
+
+void RayScene::occlusions(const std::vector<Ray>& rays, std::vector<std::uint8_t>& occluded) const {
+    occluded.resize(rays.size());
+    RTCIntersectContext context = coherent_context();
+    for_each_packet(rays.size(), [&](std::size_t first, std::size_t count, const int* valid) {
+        RTCRay8 packed;
+        for (std::size_t lane = 0; lane < count; ++lane)
+            put(rays[first + lane], lane, packed);
+        rtcOccluded8(valid, handles_->scene.get(), &context, &packed);
+        for (std::size_t lane = 0; lane < count; ++lane)
+            occluded[first + lane] = packed.tfar[lane] < 0;
+    });
+}
+
+}  // namespace tessera

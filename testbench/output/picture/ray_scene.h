@@ -1,0 +1,39 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <vector>
+
+#include "testbench/output/picture/render_mesh.h"
+
+namespace tessera {
+
+/// From the mesh's origin, not from 0.
+struct Ray {
+    glm::dvec3 origin, direction;
+    double near = 0;  ///< in lengths of direction
+};
+
+/// The mesh made ready for rays. Several threads may ask at once; an answer depends on the mesh and the batch alone.
+/// Embree's single precision only picks the triangle: where it is hit is the caller's to compute.
+class RayScene {
+  public:
+    static constexpr std::uint32_t nothing = UINT32_MAX;
+
+    /// `mesh` must outlive the scene. Throws ResourceError when memory runs out.
+    explicit RayScene(const RenderMesh& mesh);
+    ~RayScene();
+
+    /// Per ray the first triangle, or nothing. Quick if neighbours in the batch are neighbours in space.
+    void first_hits(const std::vector<Ray>& rays, std::vector<std::uint32_t>& triangles) const;
+
+    /// Per ray 1 if a triangle is in its way, else 0.
+    void occlusions(const std::vector<Ray>& rays, std::vector<std::uint8_t>& occluded) const;
+
+  private:
+    struct Handles;
+    std::unique_ptr<Handles> handles_;
+};
+
+}  // namespace tessera

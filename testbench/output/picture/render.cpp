@@ -1,0 +1,346 @@
+#include "testbench/output/picture/render.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "testbench/common/parallel.h"
+#include "testbench/output/picture/illumination.h"
+#include "testbench/output/picture/legend.h"
+#include "testbench/output/picture/palette.h"
+#include "testbench/output/picture/ray_scene.h"
+#include "testbench/output/picture/wireframe.h"
+
+namespace tessera {
+namespace {
+
+constexpr int tile_side = 8;
+constexpr double least_flat = 0.9;   // cosine between normals in a tile
+constexpr double line_shade = 0.16;  // of the surface's colour
+constexpr double far_in_sizes = 50;  // an eye further from the mesh than that many of its sizes is far away
+
+/// 4 x 4 strata; no two samples share a row or a column of 16, so edges along the axes are smooth too.
+glm::dvec2 sample_position(std::size_t sample) {
+    const std::size_t place = sample % 4;
+    const std::size_t line = sample / 4;
+    const auto column = static_cast<double>(place);
+    const auto row = static_cast<double>(line);
+    return {(column + (row + 0.5) / 4) / 4, (row + (column + 0.5) / 4) / 4};
+}
+
+/// Calls at(x, y): for the first pixel of each square of 2 x 2, then for the second ones, and so on.
+template <class At>
+void for_each_pixel(int left, int top, int right, int bottom, const At& at) {
+    for (int k = 0; k < 4; ++k)
+        for (int y = top + k / 2; y < bottom; y += 2)
+            for (int x = left + k % 2; x < right; x += 2)
+                at(x, y);
+}
+
+/// A style with its colours in linear light.
+class Paint {
+  public:
+    Paint(const Style& style, const RenderMesh& mesh)
+        : style_(style),
+          mesh_(mesh),
+          background_(to_linear(style.background)),
+          surface_(to_linear(style.surface)) {
+        for (unsigned g = 0; g < generations_.size(); ++g)
+            generations_[g] = to_linear(generation_colour(g));
+        for (unsigned t = 0; t < tests_.size(); ++t)
+            tests_[t] = to_linear(deciding_test_colour(static_cast<DecidingTest>(t)));
+        for (unsigned s = 0; s < stops; ++s)
+            stops_[s] = to_linear(stop_colour(static_cast<Stop>(s)));
+        if (style.colour_by == ColourBy::error)
+            for (std::size_t e = 0; e < error_steps; ++e)
+                errors_[e] = to_linear(error_colour(static_cast<double>(e) / (error_steps - 1)));
+    }
+
+    bool has_lines() const { return style_.wireframe; }
+    const glm::dvec3& background() const { return background_; }
+
+    glm::dvec3 colour(const ShadingPoint& point, const Light& light, const Wireframe* lines,
+                      const glm::dvec2& at) const {
+        const glm::dvec3 paint = paint_at(point);
+        glm::dvec3 lit = paint * light.diffuse + light.highlight;
+        if (style_.relief < 1)
+            lit = glm::mix(paint, lit, style_.relief);
+        if (!lines)
+            return lit;
+        return glm::mix(lit, paint * line_shade * (0.4 + 0.6 * light.diffuse), lines->coverage(at.x, at.y));
+    }
+
+  private:
+    static constexpr std::size_t error_steps = 1024;
+
+    glm::dvec3 paint_at(const ShadingPoint& point) const {
+        const RenderMesh::Triangle& triangle = mesh_.triangles[point.triangle];
+        switch (style_.colour_by) {
+            case ColourBy::generation:
+                return generations_[std::min<std::size_t>(triangle.generation, generations_.size() - 1)];
+            case ColourBy::deciding_test:
+                return tests_[static_cast<std::size_t>(triangle.deciding_test)];
+            case ColourBy::stopped_by:
+                return stops_[static_cast<std::size_t>(stop_of(triangle.stopped_by))];
+            case ColourBy::error:
+                return error_paint(point);
+            case ColourBy::none:
+                break;
+        }
+        return surface_;
+    }
+
+    const glm::dvec3& error_paint(const ShadingPoint& point) const {
+        double error = 0;
+        if (!mesh_.triangle_errors.empty())
+            error = static_cast<double>(mesh_.triangle_errors[point.triangle]);
+        else if (!mesh_.vertex_errors.empty())
+            for (int k = 0; k < 3; ++k)
+                error += point.weights[k] *
+                         static_cast<double>(mesh_.vertex_errors[mesh_.triangles[point.triangle]
+                                                                     .vertices[static_cast<std::size_t>(k)]]);
+        const double fraction = style_.errors.largest > 0 ? error / style_.errors.largest : 0;
+        return errors_[static_cast<std::size_t>(
+            std::lround(std::clamp(fraction, 0.0, 1.0) * (error_steps - 1)))];
+    }
+
+    const Style& style_;
+    const RenderMesh& mesh_;
+    glm::dvec3 background_, surface_;
+    std::array<glm::dvec3, 16> generations_;
+    std::array<glm::dvec3, deciding_tests> tests_;
+    std::array<glm::dvec3, stops> stops_;
+    std::vector<glm::dvec3> errors_ = std::vector<glm::dvec3>(error_steps, glm::dvec3(0));
+};
+
+class Renderer {
+  public:
+    Renderer(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles, bool linear)
+        : mesh_(mesh), view_(view), scene_(mesh), illumination_(view, styles.front(), scene_) {
+        for (const Style& style : styles) {
+            paints_.emplace_back(style, mesh);
+            pictures_.push_back(plain_picture(view.width, view.height, style.background, linear));
+            if (style.wireframe)
+                line_width_ = style.line_width;
+        }
+        glm::dvec3 low(0), high(0);
+        for (const glm::vec3& p : mesh.positions) {
+            low = glm::min(low, glm::dvec3(p));
+            high = glm::max(high, glm::dvec3(p));
+        }
+        const double size = glm::length(high - low);
+        clearance_ = 3e-6 * size;
+        const double distance = -glm::dot((low + high) / 2.0 + mesh.origin - view.eye, view.backward);
+        if (distance > far_in_sizes * size)
+            start_ = distance - size;
+    }
+
+    std::vector<Picture> run() {
+        const int rows = (view_.height + tile_side - 1) / tile_side;
+        std::vector<std::uint8_t> in_sight(static_cast<std::size_t>(rows), 0);
+        for_each_chunk(in_sight.size(), [&] {
+            return [&, tile = Tile()](std::size_t row) mutable {
+                const int y = static_cast<int>(row) * tile_side;
+                for (int x = 0; x < view_.width; x += tile_side)
+                    if (render_tile(tile, x, y, std::min(x + tile_side, view_.width),
+                                    std::min(y + tile_side, view_.height)))
+                        in_sight[row] = 1;
+            };
+        });
+        const bool any = std::find(in_sight.begin(), in_sight.end(), 1) != in_sight.end();
+        for (Picture& picture : pictures_)
+            picture.mesh_in_sight = any;
+        return std::move(pictures_);
+    }
+
+  private:
+    /// What a tile in work needs, kept for its memory: one a thread.
+    struct Tile {
+        std::vector<Ray> rays;
+        std::vector<glm::dvec2> at;
+        std::vector<std::uint32_t> hits;
+        std::vector<ShadingPoint> points;
+        std::vector<Light> lights;
+        std::vector<glm::dvec3> sums;  // linear light, one plane per style
+        Illumination::Scratch scratch;
+        /// Lines of triangles met, each in the place its number gives it: neighbours meet the same ones.
+        struct Lines {
+            std::uint32_t triangle = RayScene::nothing;
+            Wireframe lines;
+        };
+        std::array<Lines, 256> lines;
+    };
+
+    /// False if the mesh is not to be seen in it.
+    bool render_tile(Tile& tile, int left, int top, int right, int bottom) {
+        const std::size_t pixels = static_cast<std::size_t>((right - left) * (bottom - top));
+        tile.sums.assign(pixels * paints_.size(), glm::dvec3(0));
+        bool anything = false;
+        for (std::size_t sample = 0; sample < samples_per_pixel; ++sample)
+            anything = add_sample(tile, sample, left, top, right, bottom) || anything;
+        if (!anything)
+            return false;
+        for (std::size_t s = 0; s < paints_.size(); ++s) {
+            const glm::dvec3* sum = &tile.sums[s * pixels];
+            for_each_pixel(left, top, right, bottom, [&](int x, int y) {
+                set_pixel(pictures_[s], x, y, *sum++ / static_cast<double>(samples_per_pixel));
+            });
+        }
+        return true;
+    }
+
+    static void set_pixel(Picture& picture, int x, int y, const glm::dvec3& light) {
+        picture.image.set(x, y, to_srgb(light));
+        if (picture.linear.values.empty())
+            return;
+        float* const values = &picture.linear.values[picture.linear.offset(x, y)];
+        for (int k = 0; k < 3; ++k)
+            values[k] = static_cast<float>(light[k]);
+    }
+
+    /// Adds one sample of every pixel in the tile to the sums; false if none met the mesh.
+    bool add_sample(Tile& tile, std::size_t sample, int left, int top, int right, int bottom) const {
+        auto& [rays, at, hits, points, lights, sums, scratch, lines_met] = tile;
+        const glm::dvec2 offset = sample_position(sample);
+        rays.clear();
+        at.clear();
+        for_each_pixel(left, top, right, bottom, [&](int x, int y) {
+            tile.at.push_back({x + offset.x, y + offset.y});
+            const glm::dvec3 direction = view_.ray(tile.at.back().x, tile.at.back().y);
+            tile.rays.push_back({view_.eye - mesh_.origin + start_ * direction, direction,
+                                 std::max(0.0, view_.near_plane - start_)});
+        });
+        scene_.first_hits(rays, hits);
+        points.clear();
+        for (std::size_t i = 0; i < rays.size(); ++i)
+            if (hits[i] != RayScene::nothing)
+                points.push_back(shading_point(rays[i], hits[i]));
+        illumination_.light(sample, points, probes(points, rays.size()), lights, scratch);
+
+        std::size_t point = 0;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            if (hits[i] == RayScene::nothing) {
+                for (std::size_t s = 0; s < paints_.size(); ++s)
+                    sums[s * rays.size() + i] += paints_[s].background();
+                continue;
+            }
+            const Wireframe* lines = nullptr;
+            if (line_width_ > 0) {
+                Tile::Lines& place = lines_met[hits[i] % lines_met.size()];
+                if (place.triangle != hits[i])
+                    place = {hits[i], wireframe_of(hits[i])};
+                lines = &place.lines;
+            }
+            for (std::size_t s = 0; s < paints_.size(); ++s)
+                sums[s * rays.size() + i] += paints_[s].colour(
+                    points[point], lights[point], paints_[s].has_lines() ? lines : nullptr, at[i]);
+            ++point;
+        }
+        return !points.empty();
+    }
+
+    /// How many points tell for all which directions they see: the first quarter, a pixel of each square of
+    /// 2 x 2, where the mesh covers the tile and is nearly flat in it.
+    static std::size_t probes(const std::vector<ShadingPoint>& points, std::size_t rays) {
+        if (points.size() < rays)
+            return points.size();
+        for (const ShadingPoint& point : points)
+            if (glm::dot(point.normal, points.front().normal) < least_flat)
+                return points.size();
+        return (points.size() + 3) / 4;
+    }
+
+    ShadingPoint shading_point(const Ray& ray, std::uint32_t index) const {
+        std::array<glm::dvec3, 3> p, n;
+        for (std::size_t k = 0; k < 3; ++k) {
+            p[k] = mesh_.positions[mesh_.triangles[index].vertices[k]];
+            n[k] = mesh_.normals[mesh_.triangles[index].vertices[k]];
+        }
+        const glm::dvec3 across = glm::cross(p[1] - p[0], p[2] - p[0]);
+        const double facing = -glm::dot(across, ray.direction);
+        const glm::dvec3 flat = glm::normalize(facing < 0 ? -across : across);
+
+        // Möller and Trumbore's barycentric coordinates, kept inside: Embree's own rounding may be a little
+        // out.
+        const glm::dvec3 from = ray.origin - p[0];
+        const glm::dvec3 turned = glm::cross(from, ray.direction);
+        const double scale = facing == 0 ? 0 : 1 / facing;  // edge-on to the last bit: any corner will do
+        double b1 = std::clamp(glm::dot(p[2] - p[0], turned) * scale, 0.0, 1.0);
+        double b2 = std::clamp(-glm::dot(p[1] - p[0], turned) * scale, 0.0, 1.0);
+        if (b1 + b2 > 1) {
+            const double sum = b1 + b2;
+            b1 /= sum;
+            b2 /= sum;
+        }
+        const std::array<double, 3> b{1 - b1 - b2, b1, b2};
+
+        ShadingPoint result;
+        result.triangle = index;
+        result.weights = {b[0], b[1], b[2]};
+        glm::dvec3 normal(0);
+        for (std::size_t k = 0; k < 3; ++k) {
+            result.position += b[k] * p[k];
+            normal += b[k] * n[k];
+        }
+        const double side = glm::dot(normal, flat) < 0 ? -1 : 1;
+        const double length = glm::length(normal);
+        result.normal = length > 0.01 ? normal * (side / length) : flat;
+
+        // Hanika, Hacking the Shadow Terminator (Ray Tracing Gems II, 4).
+        glm::dvec3 lifted = result.position;
+        for (std::size_t k = 0; k < 3; ++k)
+            lifted -= b[k] * std::min(0.0, glm::dot(result.position - p[k], side * n[k])) * side * n[k];
+        result.ray_origin = lifted + clearance_ * flat;
+        return result;
+    }
+
+    Wireframe wireframe_of(std::uint32_t triangle) const {
+        std::array<glm::dvec3, 3> corners;
+        for (std::size_t k = 0; k < 3; ++k)
+            corners[k] = view_.project(mesh_.origin +
+                                       glm::dvec3(mesh_.positions[mesh_.triangles[triangle].vertices[k]]));
+        return {corners, line_width_};
+    }
+
+    const RenderMesh& mesh_;
+    const View& view_;
+    RayScene scene_;
+    Illumination illumination_;
+    std::vector<Paint> paints_;
+    std::vector<Picture> pictures_;
+    double line_width_ = 0;  // all wireframes'; 0: there are none
+    double start_ =
+        0;  // of the rays, along the view direction: single precision sees nothing from too far away
+    double clearance_ =
+        0;  // of the rays to the lights above the surface, against single precision's rounding
+};
+
+}  // namespace
+
+std::vector<Picture> render_pictures(const RenderMesh& mesh, const View& view,
+                                     const std::vector<Style>& styles, bool linear) {
+    if (styles.empty())
+        return {};
+    std::vector<Picture> pictures = Renderer(mesh, view, styles, linear).run();
+    for (std::size_t s = 0; s < styles.size(); ++s)
+        if (styles[s].legend) {
+            draw_legend(pictures[s].image, 16, view.height - 16 - legend_descent, mesh, styles[s]);
+            take_over_annotations(pictures[s]);
+        }
+    return pictures;
+}
+
+std::vector<Image> render_styles(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles) {
+    std::vector<Image> images;
+    for (Picture& picture : render_pictures(mesh, view, styles, false))
+        images.push_back(std::move(picture.image));
+    return images;
+}
+
+Image render(const RenderMesh& mesh, const View& view, const Style& style) {
+    return render_styles(mesh, view, {style}).front();
+}
+
+}  // namespace tessera

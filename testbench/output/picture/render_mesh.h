@@ -1,0 +1,41 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "testbench/machine/deciding_test.h"
+#include "testbench/machine/emitted_mesh.h"
+#include "testbench/machine/setup.h"
+#include "testbench/run_folder/recorded_mesh.h"
+
+namespace tessera {
+
+/// A run's displaced surface, indexed, in model units.
+struct RenderMesh {
+    struct Triangle {
+        std::array<std::uint32_t, 3> vertices{};
+        std::uint8_t generation = 0;  ///< the highest of its corners'
+        DecidingTest deciding_test = DecidingTest::base;
+        std::uint8_t stopped_by = 0;  ///< sum of 4 View, 8 Tex Coord, 16 Generation: what kept an edge whole
+    };
+
+    glm::dvec3 origin{0};              ///< positions count from here: a mesh far from 0 keeps its precision
+    std::vector<glm::vec3> positions;  ///< P'
+    std::vector<glm::vec3> normals;    ///< N', about unit length; zero where the hardware had none
+    std::vector<Triangle> triangles;
+    /// Distance to a reference, model units: per vertex, interpolated, or per triangle, which goes first;
+    /// empty: unknown.
+    std::vector<float> vertex_errors, triangle_errors;
+    std::uint64_t base_triangles = 0;  ///< how many these descend from, for the caption; 0: unknown
+};
+
+/// What a run emitted. Culled triangles are left out, as they are of mesh.ply: the picture of a run and one made of its
+/// folder are the same. Vertices are shared where position and normal agree, in the order of their first use.
+RenderMesh make_render_mesh(const EmittedMesh& mesh, const Setup& setup);
+
+/// The same from a run's mesh.ply: equal in every number if the emitted mesh had the file's order
+/// (EmittedMesh::sort()).
+RenderMesh make_render_mesh(const RecordedMesh& mesh);
+
+}  // namespace tessera

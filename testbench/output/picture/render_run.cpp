@@ -1,0 +1,18 @@
+#include "testbench/output/picture/render_run.h"
+
+#include <string>
+
+#include "testbench/common/atomic_file.h"
+#include "testbench/output/picture/overview.h"
+#include "testbench/output/picture/png_writer.h"
+
+namespace tessera {
+
+void write_picture(const std::filesystem::path& path, const EmittedMesh& mesh, const Setup& setup,
+                   const Job& job) {
+    const Picture picture = render_overview(make_render_mesh(mesh, setup), make_view(job.camera));
+    const std::vector<std::uint8_t> file = encode_png(picture.image);
+    write_file(path, std::string(file.begin(), file.end()));
+}
+
+}  // namespace tessera

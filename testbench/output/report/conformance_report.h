@@ -1,0 +1,47 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "testbench/check/conformance_result.h"
+#include "testbench/check/end_to_end.h"
+#include "testbench/check/invariants.h"
+#include "testbench/check/read_check.h"
+#include "testbench/check/setup_check.h"
+#include "testbench/check/work_check.h"
+#include "testbench/prove/faults/fault_report.h"
+
+namespace tessera {
+
+/// What was checked of a run and how it came out; a part that the job switched off is absent.
+struct Checks {
+    std::optional<SetupResult> setup;
+    std::optional<ConformanceResult> conformance;
+    std::optional<EndToEndResult> end_to_end;
+    std::optional<InvariantResult> invariants;
+    std::optional<WorkResult> work;
+    std::optional<ReadResult> reads;
+    std::optional<FaultReport> fault;  ///< one was injected
+    double allowed_flips = 0.5;        ///< percent of edges
+    std::vector<std::string> remarks;  ///< what was mended or is odd in mesh and map; one sentence each
+    std::string texel_borders;         ///< a warning, see texel_borders.h; empty: none
+
+    /// A run with a fault never passes.
+    bool passed() const {
+        return !fault && (!setup || setup->passed()) &&
+               (!conformance || conformance->passed(allowed_flips)) &&
+               (!end_to_end || end_to_end->passed()) && (!invariants || invariants->passed()) &&
+               (!work || work->passed()) && (!reads || reads->passed());
+    }
+};
+
+/// The conformance report of a run, to be read.
+std::string conformance_text(const Checks& checks);
+
+/// "fault injected: ..." and who caught it, a line each.
+std::string fault_text(const FaultReport& fault);
+
+/// The same for programs.
+std::string conformance_json(const Checks& checks);
+
+}  // namespace tessera

@@ -1,0 +1,235 @@
+#include "testbench/output/report/error_report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace tessera {
+
+namespace {
+
+std::string why_whole(unsigned stopped_by) {
+    std::string text;
+    const auto add = [&](unsigned bit, const char* name) {
+        if ((stopped_by & bit) != 0)
+            text += (text.empty() ? "" : ", ") + std::string(name);
+    };
+    add(4, "View Test");
+    add(8, "Tex Coord Test");
+    add(16, "Generation Test");
+    return text.empty() ? "no edge with Normal Test or Summed Height Test" : text;
+}
+
+class Figures {
+  public:
+    void group(std::string name) { group_ = std::move(name); }
+    template <class Value>
+    void add(const std::string& name, const Value& value, const char* unit, std::string description) {
+        Figure figure{group_, name, {}, unit, std::move(description)};
+        if constexpr (std::is_floating_point_v<Value>)
+            figure.value = value;
+        else if constexpr (std::is_integral_v<Value>)
+            figure.value = static_cast<std::uint64_t>(value);
+        else
+            figure.value = std::string(value);
+        figures_.push_back(std::move(figure));
+    }
+    std::vector<Figure> take() { return std::move(figures_); }
+
+  private:
+    std::string group_;
+    std::vector<Figure> figures_;
+};
+
+void add_direction(Figures& figures, const std::string& name, const char* words, const DirectedError& error,
+                   double texel) {
+    figures.add(name + "_max", error.max, "model unit", fmt::format("largest distance from {}", words));
+    figures.add(name + "_rms", error.rms, "model unit",
+                fmt::format("root mean square of the distance from {}, weighted by area", words));
+    figures.add(name + "_max_texels", error.max / texel, "texel", "the largest, in texels");
+    figures.add(name + "_rms_texels", error.rms / texel, "texel", "the root mean square, in texels");
+    figures.add(name + "_samples", error.samples, "sample", "points measured");
+}
+
+void add_surface(Figures& figures, const char* group, const SurfaceError& error, double texel) {
+    figures.group(group);
+    add_direction(figures, "reference_to_mesh", "the reference surface to the emitted mesh",
+                  error.reference_to_mesh, texel);
+    add_direction(figures, "mesh_to_reference", "the emitted mesh to the reference surface",
+                  error.mesh_to_reference, texel);
+    figures.add("hausdorff", error.hausdorff(), "model unit", "the larger of the two largest distances");
+    figures.add("hausdorff_texels", error.hausdorff() / texel, "texel", "the same, in texels");
+}
+
+void add_place(Figures& figures, const glm::dvec3& position) {
+    figures.add("x", position.x, "model unit", "where, on the surface measured from");
+    figures.add("y", position.y, "model unit", "likewise");
+    figures.add("z", position.z, "model unit", "likewise");
+}
+
+void add_triangle(Figures& figures, std::uint64_t number, const RecordedMesh::Triangle& triangle) {
+    figures.add("triangle", number, "-", "the emitted triangle there, by its place in mesh.ply");
+    figures.add("base", triangle.base, "-", "its base triangle");
+    figures.add("generation", triangle.generation, "-", "its generation");
+    figures.add("split_by", triangle.split_by, "-",
+                triangle.split_by < 32
+                    ? "tests that split its parent: 1 Normal, 2 Summed Height, 3 both, 0 base"
+                    : "tests that split its parent: 32 Highlight, plus 1 Normal, 2 Summed Height, 3 both");
+    figures.add("stopped_by", triangle.stopped_by, "-",
+                "what kept an edge of it whole: sum of 4 View Test, 8 Tex Coord Test, 16 Generation Test");
+    figures.add("why_whole", why_whole(triangle.stopped_by), "-",
+                "the same in words; without such an edge neither Normal Test nor Summed Height Test asked "
+                "for a split");
+}
+
+void add_worst(Figures& figures, const char* group, const RecordedMesh& mesh, const DirectedError& error) {
+    if (!error.worst)
+        return;
+    figures.group(group);
+    figures.add("distance", error.max, "model unit", "the largest distance");
+    add_place(figures, error.worst->position);
+    figures.add("s", error.worst->texture.x, "-", "texture coordinate, 0..1 spans the map");
+    figures.add("t", error.worst->texture.y, "-", "likewise; 0 is the bottom row");
+    add_triangle(figures, error.worst->triangle, mesh.triangles[error.worst->triangle]);
+}
+
+void add_vertical(Figures& figures, const RecordedMesh& mesh, const MeshError& error) {
+    figures.group("vertical");
+    if (!error.vertical) {
+        figures.add("none", error.no_vertical, "-", "why this is no height field");
+        return;
+    }
+    const VerticalError& vertical = *error.vertical;
+    figures.add("grid_points", vertical.grid_points, "texel", "texel centres on the base mesh");
+    figures.add("covered", vertical.covered, "texel",
+                "those of them that the emitted mesh lies over; only they count");
+    figures.add("max", vertical.max, "model unit", "largest difference of heights at a grid point");
+    figures.add("rms", vertical.rms, "model unit",
+                "its root mean square, every grid point weighing the same");
+    if (vertical.map_unit > 0) {
+        figures.add("max_map", vertical.max / vertical.map_unit, "map unit",
+                    "the largest, in the units of the map's file (PGM, PNG: its integers)");
+        figures.add("rms_map", vertical.rms / vertical.map_unit, "map unit", "the root mean square likewise");
+    }
+    if (vertical.covered == 0)
+        return;
+    figures.group("worst_vertical");
+    figures.add("distance", vertical.max, "model unit", "the largest difference");
+    add_place(figures, vertical.worst_position);
+    figures.add("u", vertical.worst_texel.x, "texel", "the grid point");
+    figures.add("v", vertical.worst_texel.y, "texel", "likewise; row 0 is the bottom row");
+    add_triangle(figures, vertical.worst_triangle, mesh.triangles[vertical.worst_triangle]);
+}
+
+std::string row(const char* name, const std::string& value) {
+    return fmt::format("  {:<34}{}\n", name, value);
+}
+
+std::string number(double value) {
+    return std::isfinite(value) ? fmt::format("{:.4g}", value) : "no mesh";
+}
+
+std::string figures_heading(const char* other_unit) {
+    return row("", fmt::format("{:>17}{:>17}{:>16}{:>16}", "max, model units", "RMS, model units",
+                               fmt::format("max, {}", other_unit), fmt::format("RMS, {}", other_unit)));
+}
+
+/// Maximum and RMS in model units and in another.
+std::string figures_row(const char* name, double max, double rms, double unit) {
+    const auto other = [&](double value) { return unit > 0 ? number(value / unit) : std::string("-"); };
+    return row(name,
+               fmt::format("{:>17}{:>17}{:>16}{:>16}", number(max), number(rms), other(max), other(rms)));
+}
+
+std::string density_text(double density, const char* per) {
+    return fmt::format("{:.3g} per {}{}", density, per,
+                       density < 1 ? " (fewer than one: what lies between is not measured)" : "");
+}
+
+std::string triangle_text(std::uint64_t number, const RecordedMesh::Triangle& triangle) {
+    return fmt::format("triangle {} of base triangle {}, generation {}, kept whole by: {}", number,
+                       triangle.base, triangle.generation, why_whole(triangle.stopped_by));
+}
+
+std::string place_text(const glm::dvec3& position) {
+    return fmt::format("({:.6g}, {:.6g}, {:.6g})", position.x, position.y, position.z);
+}
+
+std::string worst_rows(const char* name, const RecordedMesh& mesh, const DirectedError& error) {
+    if (!error.worst)
+        return {};
+    const WorstSpot& spot = *error.worst;
+    return row(name, fmt::format("at {}, s t ({:.6g}, {:.6g})", place_text(spot.position), spot.texture.x,
+                                 spot.texture.y)) +
+           row("", triangle_text(spot.triangle, mesh.triangles[spot.triangle]));
+}
+
+std::string surface_rows(const char* name, const SurfaceError& error, double texel) {
+    return fmt::format("  {}\n", name) +
+           figures_row("  reference to mesh", error.reference_to_mesh.max, error.reference_to_mesh.rms,
+                       texel) +
+           figures_row("  mesh to reference", error.mesh_to_reference.max, error.mesh_to_reference.rms,
+                       texel);
+}
+
+}  // namespace
+
+std::vector<Figure> error_figures(const RecordedMesh& mesh, const MeshError& error) {
+    Figures figures;
+    figures.group("measurement");
+    figures.add("triangles", mesh.triangles.size(), "triangle", "of the emitted mesh, mesh.ply");
+    figures.add("texel", error.texel, "model unit",
+                "a texel's length: mean over both axes of its area-weighted mean on the base surface");
+    figures.add(
+        "reference_density", error.reference_density, "sample/texel",
+        "samples of the reference along each axis, at least; 4 unless the limit of samples lowered it");
+    figures.add(
+        "mesh_density", error.mesh_density, "sample/texel",
+        "samples of the emitted mesh along each edge, at least; 1 unless the limit of samples lowered it");
+    add_surface(figures, "interpolated", error.interpolated, error.texel);
+    add_surface(figures, "nearest_texel", error.nearest_texel, error.texel);
+    add_worst(figures, "worst_reference_to_mesh", mesh, error.interpolated.reference_to_mesh);
+    add_worst(figures, "worst_mesh_to_reference", mesh, error.interpolated.mesh_to_reference);
+    add_vertical(figures, mesh, error);
+    return figures.take();
+}
+
+std::string error_text(const Job& job, const RecordedMesh& mesh, const MeshError& error) {
+    std::string text = fmt::format("Error of the emitted mesh, {} triangles, against the displaced surface\n",
+                                   mesh.triangles.size());
+    text += row("texel", fmt::format("{:.6g} model units", error.texel));
+    text += row(
+        "samples",
+        fmt::format("reference {}, {}; mesh {}, {}", error.interpolated.reference_to_mesh.samples,
+                    density_text(error.reference_density, "texel and axis"),
+                    error.interpolated.mesh_to_reference.samples, density_text(error.mesh_density, "texel")));
+    text += "\n" + figures_heading("texels");
+    text += surface_rows("map interpolated (the headline)", error.interpolated, error.texel);
+    text += surface_rows("map as the hardware reads it", error.nearest_texel, error.texel);
+    text += "\n";
+    text += worst_rows("worst, reference to mesh", mesh, error.interpolated.reference_to_mesh);
+    text += worst_rows("worst, mesh to reference", mesh, error.interpolated.mesh_to_reference);
+    text += "\n";
+    if (error.vertical) {
+        const VerticalError& vertical = *error.vertical;
+        text += figures_heading("map units");
+        text += figures_row("vertical, at grid points", vertical.max, vertical.rms, vertical.map_unit);
+        text += row("", fmt::format("{} grid points, {} covered by the mesh", vertical.grid_points,
+                                    vertical.covered));
+        if (vertical.covered > 0) {
+            text += row("worst, vertical",
+                        fmt::format("at {}, texel ({}, {})", place_text(vertical.worst_position),
+                                    vertical.worst_texel.x, vertical.worst_texel.y));
+            text += row("", triangle_text(vertical.worst_triangle, mesh.triangles[vertical.worst_triangle]));
+        }
+    } else {
+        text += row("vertical, at grid points", "none: " + error.no_vertical);
+    }
+    if (job.hardware.culling == Culling::back)
+        text +=
+            "\n  hardware.culling = \"back\": what was culled is not in mesh.ply; reference to mesh measures "
+            "the hole\n";
+    return text;
+}
+
+}  // namespace tessera

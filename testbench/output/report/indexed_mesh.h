@@ -1,0 +1,34 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "testbench/machine/emitted_mesh.h"
+
+namespace tessera {
+
+/// The triangles of an emitted mesh that were not culled, with shared vertices, as a file holds them. Numbers
+/// only; the mesh itself is not copied.
+struct IndexedMesh {
+    /// A vertex: a triangle's corner. Two corners are one vertex if they agree in P, P', N' and t. In the
+    /// order of their first use.
+    struct Vertex {
+        std::uint32_t triangle;
+        std::uint32_t corner;
+    };
+    struct Triangle {
+        std::uint32_t triangle;  ///< its index in the emitted mesh
+        std::array<std::uint32_t, 3> vertices;
+    };
+    std::vector<Vertex> vertices;
+    std::vector<Triangle> triangles;
+
+    /// ResourceError beyond 700 million triangles.
+    static IndexedMesh from(const EmittedMesh& mesh);
+};
+
+/// The generation of a triangle: that of its youngest vertex.
+std::uint8_t triangle_generation(const EmittedTriangle& triangle);
+
+}  // namespace tessera

@@ -1,0 +1,55 @@
+#include "testbench/output/report/mesh_counts.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "testbench/common/distinct_table.h"
+
+namespace tessera {
+
+namespace {
+
+/// Its lowest bit: the vertex was inserted.
+std::uint64_t vertex_hash(const EmittedTriangle::Corner& c) {
+    std::uint64_t hash = 0;
+    for (const std::int32_t word :
+         {static_cast<std::int32_t>(c.texture.u), static_cast<std::int32_t>(c.texture.v), c.displaced.x,
+          c.displaced.y, c.displaced.z, c.displaced_normal.x, c.displaced_normal.y, c.displaced_normal.z})
+        hash = mix_hash(hash, static_cast<std::uint32_t>(word));
+    return (hash & ~std::uint64_t{1}) | (c.generation > 0 ? 1 : 0);
+}
+
+void keep_distinct(std::vector<std::uint64_t>& hashes) {
+    std::sort(hashes.begin(), hashes.end());
+    hashes.erase(std::unique(hashes.begin(), hashes.end()), hashes.end());
+}
+
+}  // namespace
+
+MeshCounts count_mesh(const EmittedMesh& mesh) {
+    MeshCounts counts;
+    std::vector<std::uint64_t> hashes;
+    hashes.reserve(3 * mesh.triangles.size());
+    for (const EmittedTriangle& triangle : mesh.triangles)
+        for (const EmittedTriangle::Corner& corner : triangle.corners)
+            hashes.push_back(vertex_hash(corner));
+    keep_distinct(hashes);
+    counts.vertices = hashes.size();
+    counts.inserted_vertices = static_cast<std::uint64_t>(
+        std::count_if(hashes.begin(), hashes.end(), [](std::uint64_t hash) { return (hash & 1) != 0; }));
+
+    hashes.clear();
+    for (const EmittedTriangle& triangle : mesh.triangles) {
+        const std::uint64_t corners[] = {vertex_hash(triangle.corners[0]), vertex_hash(triangle.corners[1]),
+                                         vertex_hash(triangle.corners[2])};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto [low, high] = std::minmax(corners[k], corners[(k + 1) % 3]);
+            hashes.push_back(mix_hash(mix_hash(0, low), high));
+        }
+    }
+    keep_distinct(hashes);
+    counts.edges = hashes.size();
+    return counts;
+}
+
+}  // namespace tessera

@@ -1,0 +1,25 @@
+#pragma once
+#include <cstdint>
+
+#include "testbench/machine/emitted_mesh.h"
+
+namespace tessera {
+
+/// What a finished mesh consists of, culled triangles included; what triangles share is counted once. A vertex is known
+/// by t, P' and N', an edge by its two ends: on a texture seam or a crease each side has its own.
+struct MeshCounts {
+    std::uint64_t vertices = 0;
+    std::uint64_t inserted_vertices =
+        0;  ///< of these, not of the base mesh: one for each distinct edge that was split
+    std::uint64_t edges = 0;
+
+    /// Distinct edges the machine tested: those of the mesh, and those that were split on the way to it. Vertices that
+    /// rounding makes one count once.
+    std::uint64_t tested_edges() const { return edges + inserted_vertices; }
+};
+
+/// Counts by 64 bit hashes: 24 bytes a triangle while it counts. Of a million vertices two collide in one of
+/// 10^7 meshes.
+MeshCounts count_mesh(const EmittedMesh& mesh);
+
+}  // namespace tessera

@@ -1,0 +1,333 @@
+#include "testbench/output/report/statistics.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "modules/datapath/reciprocal.h"
+#include "modules/datapath/widths.h"
+#include "testbench/machine/host_traffic.h"
+#include "testbench/output/report/saturation_figures.h"
+#include "testbench/output/report/timing_statistics.h"
+
+namespace tessera {
+
+namespace {
+
+class Collector {
+  public:
+    explicit Collector(std::string group) : group_(std::move(group)) {}
+
+    template <class Value>
+    Collector& add(const char* name, Value value, const char* unit, const char* description) {
+        Figure figure{group_, name, {}, unit, description};
+        if constexpr (std::is_floating_point_v<Value>)
+            figure.value = static_cast<double>(value);
+        else if constexpr (std::is_signed_v<Value>)
+            figure.value = static_cast<std::int64_t>(value);
+        else if constexpr (std::is_arithmetic_v<Value>)
+            figure.value = static_cast<std::uint64_t>(value);
+        else
+            figure.value = std::string(value);
+        figures.push_back(std::move(figure));
+        return *this;
+    }
+
+    std::vector<Figure> figures;
+
+  private:
+    std::string group_;
+};
+
+double ratio(double part, double whole) {
+    return whole > 0 ? part / whole : 0;
+}
+
+Collector format_figures(const Setup& setup) {
+    const datapath::Formats& formats = setup.registers.formats;
+    const datapath::Widths widths = datapath::stream_widths(formats);
+    Collector c("formats");
+    c.add("position_bits", formats.position.bits, "bit", "P, P', one component");
+    c.add("position_fraction", formats.position.fraction, "bit", "of which behind the point");
+    c.add("model_scale", setup.model_scale.scale, "world/model",
+          "world unit of the machine per unit of the model");
+    c.add("normal_bits", formats.normal.bits, "bit", "N, T, N', N's, normal map, one component");
+    c.add("texture_bits", formats.texture.bits, "bit", "u or v, the border bit included");
+    c.add("displacement_bits", formats.displacement.bits, "bit", "d");
+    c.add("summed_height_bits", formats.summed_height.bits, "bit",
+          setup.summed_height_bits_chosen ? "SAT entry, chosen for this mesh" : "SAT entry, as configured");
+    c.add("largest_rectangle_sum", setup.largest_rectangle_sum, "code",
+          "bound on any rectangle's sum over this mesh: what the SAT entry must hold");
+    c.add("summed_height_bits_needed",
+          setup.largest_rectangle_sum == 0 ? 1 : 64 - datapath::leading_zeros(setup.largest_rectangle_sum),
+          "bit", "narrowest SAT entry that holds that sum");
+    c.add("view_distance_fraction", formats.view_distance.fraction, "bit", "of w, as wide as a position");
+    c.add("screen_bits", formats.screen.bits, "bit", "P's, x or y");
+    c.add("queue_entry", widths.triangle, "bit", "one triangle in the Triangle Queue");
+    c.add("lighting_vertex", widths.emitted_vertex, "bit", "one vertex to Lighting");
+    return c;
+}
+
+/// Wires of each stream: one item, its tag included, annotations not.
+Collector stream_figures(const Setup& setup) {
+    const int tag = tag_bits(setup.design);
+    Collector c("streams");
+    c.add("tag", tag, "bit", "names a triangle between Get Triangle and Pass or Tessellate");
+    StreamItems::for_each([&](auto type) {
+        using Item = typename decltype(type)::Item;
+        std::string name = DescriptionOf<Item>::Type::name;
+        std::replace(name.begin(), name.end(), ' ', '_');
+        c.add(name.c_str(), item_bits<Item>(setup.registers.formats, tag), "bit",
+              "one item of that stream: modules/sockets/README.md");
+    });
+    return c;
+}
+
+Collector memory_figures(const char* name, const datapath::TableLayout& table, std::uint64_t reads,
+                         double edges) {
+    Collector c(name);
+    c.add("size", table.bytes(), "byte", "the whole table");
+    c.add("entry", table.entry_bytes, "byte", "one entry");
+    c.add("reads", reads, "entry", "entries read");
+    c.add("bytes_read", reads * table.entry_bytes, "byte", "bytes read");
+    c.add("reads_per_edge", ratio(static_cast<double>(reads), edges), "entry/edge",
+          "entries read per edge tested");
+    return c;
+}
+
+Collector host_figures(const Setup& setup, std::uint64_t finished, std::uint64_t vertices) {
+    const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
+    const auto bytes = [](std::uint64_t bits) { return (bits + 7) / 8; };
+    const std::uint64_t base = base_mesh_bytes(setup);
+    const std::uint64_t tables = setup.registers.displacement_map.bytes() +
+                                 setup.registers.normal_map.bytes() +
+                                 setup.registers.summed_height_table.bytes();
+    const std::uint64_t whole = bytes(finished * 3 * widths.finished_vertex);
+    const std::uint64_t indexed = bytes(vertices * widths.finished_vertex) + finished * 3 * 4;
+    Collector c("host");
+    c.add("base_triangles", setup.base_triangles.size(), "triangle", "sent to Get Triangle");
+    c.add("base_triangles_dropped", setup.base_dropped, "triangle", "collapsed when rounded to the formats");
+    c.add("mesh_bytes", base, "byte", "base mesh: three vertices of P, N, T, t per triangle; every frame");
+    c.add("table_bytes", tables, "byte",
+          "displacement map, normal map, Summed Height Table; once, the normal map again when the scale "
+          "changes");
+    c.add("register_bytes", register_words(setup.registers).size() * sizeof(std::uint32_t), "byte",
+          "registers, as 32 bit words; once, later those that change");
+    c.add("tessellated_vertices", vertices, "vertex",
+          "distinct vertices of the finished mesh, by t, P' and N'");
+    c.add("tessellated_mesh_bytes", indexed, "byte",
+          "the same mesh sent whole and indexed: distinct vertices of P', N', t, three 32 bit indices per "
+          "triangle; every frame");
+    c.add("tessellated_mesh_bytes_unindexed", whole, "byte",
+          "likewise, three vertices per triangle as the base mesh is sent");
+    c.add("bandwidth_saving", ratio(static_cast<double>(indexed), static_cast<double>(base)), "times",
+          "tessellated mesh, indexed, over base mesh, per frame; tables left out");
+    c.add("frames_to_pay_for_tables",
+          indexed > base ? ratio(static_cast<double>(tables), static_cast<double>(indexed - base)) : 0.0,
+          "frame", "after so many frames the tables' bytes are saved; 0: never");
+    return c;
+}
+
+/// What the machine does over and over, beside what the mesh needs of it.
+Collector useful_work_figures(const Pipeline& p, std::uint64_t base_triangles, const MeshCounts& mesh) {
+    const std::uint64_t made = p.transform.positions(), normals = p.transform.normals(),
+                        tested = p.edges_tested();
+    const auto per = [](std::uint64_t done, std::uint64_t needed) {
+        return ratio(static_cast<double>(done), static_cast<double>(needed));
+    };
+    Collector c("useful_work");
+    c.add("vertices", mesh.vertices, "vertex",
+          "distinct vertices of the finished mesh, by t, P' and N', culled triangles included");
+    c.add("vertices_made", made, "vertex",
+          "displaced and transformed: three a base triangle, and the midpoint of each edge tested");
+    c.add("vertices_thrown_away", thrown_away_vertices(p, base_triangles), "vertex",
+          "of these: midpoints of edges that were not split");
+    c.add("made_per_vertex", per(made, mesh.vertices), "times", "vertices made per distinct vertex");
+    c.add("normals_transformed", normals, "normal",
+          "N's: a vertex's again in each triangle whose parent did not have it");
+    c.add("normals_per_vertex", per(normals, mesh.vertices), "times",
+          "normals transformed per distinct vertex");
+    c.add(
+        "edges", mesh.tested_edges(), "edge",
+        "distinct edges that were tested, by their two vertices: those of the finished mesh, and those that "
+        "were split");
+    c.add("edge_tests", tested, "edge", "edges tested: one of a triangle, in each pass");
+    c.add("tests_per_edge", per(tested, mesh.tested_edges()), "times", "edge tests per distinct edge");
+    return c;
+}
+
+Collector mesh_figures(const EmittedMesh& mesh) {
+    std::array<std::uint64_t, 256> by_generation{};
+    std::size_t last = 0;
+    for (const EmittedTriangle& triangle : mesh.triangles) {
+        const auto& v = triangle.corners;
+        const std::size_t generation = std::max({v[0].generation, v[1].generation, v[2].generation});
+        ++by_generation[generation];
+        last = std::max(last, generation);
+    }
+    Collector c("mesh");
+    c.add("triangles", mesh.triangles.size(), "triangle", "finished, culled ones included");
+    for (std::size_t generation = 0; generation <= last; ++generation)
+        c.add(fmt::format("generation_{}", generation).c_str(), by_generation[generation], "triangle",
+              "finished triangles whose youngest vertex is of this generation");
+    return c;
+}
+
+}  // namespace
+
+std::uint64_t thrown_away_vertices(const Pipeline& pipeline, std::uint64_t base_triangles) {
+    return pipeline.transform.positions() - 3 * base_triangles -
+           pipeline.pass_or_tessellate.counts().edges_split;
+}
+
+std::vector<Figure> collect_statistics(const Setup& setup, const Simulation& simulation,
+                                       const MeshCounts& mesh) {
+    const Pipeline& p = simulation.pipeline;
+    const PassOrTessellate::Counts& counts = p.pass_or_tessellate.counts();
+    const std::uint64_t edges = p.edges_tested();
+    const auto edges_real = static_cast<double>(edges);
+    std::vector<Figure> all;
+    const auto take = [&](Collector c) {
+        all.insert(all.end(), std::make_move_iterator(c.figures.begin()),
+                   std::make_move_iterator(c.figures.end()));
+    };
+
+    Collector run("run");
+    const bool timed = setup.design.transport == Transport::non_blocking;
+    run.add("mode", timed ? "timed" : "functional", "",
+            timed ? "timed: non-blocking transport, to the cycle"
+                  : "functional: blocking transport, not timed; no cycles are claimed");
+    run.add("edges_tested", edges, "edge", "edges that went through Tessellation Tests");
+    run.add("edges_split", counts.edges_split, "edge", "of which split");
+    run.add("triangles_finished", counts.finished, "triangle", "left the machine, culled ones included");
+    run.add("edges_per_triangle", ratio(edges_real, static_cast<double>(counts.finished)), "edge/triangle",
+            "edges tested per finished triangle");
+    take(std::move(run));
+    take(format_figures(setup));
+    take(stream_figures(setup));
+    take(useful_work_figures(p, setup.base_triangles.size(), mesh));
+    take(host_figures(setup, counts.finished, mesh.vertices));
+
+    Collector get("get_triangle");
+    get.add("host_triangles", p.get_triangle.host_triangles(), "triangle", "taken from the host");
+    get.add("queue_triangles", p.get_triangle.queue_triangles(), "triangle", "taken from the Triangle Queue");
+    take(std::move(get));
+
+    Collector transform("transform");
+    transform.add("positions", p.transform.positions(), "vertex", "positions transformed");
+    transform.add("normals", p.transform.normals(), "normal", "normals transformed");
+    take(std::move(transform));
+
+    Collector decide("pass_or_tessellate");
+    decide.add("passes", counts.passes, "triangle", "triangles that went through the tests");
+    decide.add("normal_passes", counts.normal_passes, "triangle",
+               "went round once more for normals on the screen");
+    decide.add("split_by_normal", counts.split_by_normal, "edge",
+               "split by the Normal Test, while the Summed Height Test was false");
+    decide.add("split_by_summed_height", counts.split_by_summed_height, "edge",
+               "split by the Summed Height Test, while the Normal Test was false");
+    decide.add("split_by_both", counts.split_by_both, "edge", "split by both");
+    if (setup.registers.tests.highlight_test) {
+        decide.add("split_by_highlight", counts.split_by_highlight, "edge",
+                   "split by neither, but by the Highlight Test alone");
+        decide.add("split_in_highlight", counts.split_in_highlight, "edge",
+                   "split while the Highlight Test was true, whatever the others said");
+    }
+    decide.add("stopped_by_view", counts.stopped_by_view, "edge",
+               "kept whole by the View Test (perhaps among others)");
+    decide.add("stopped_by_tex_coord", counts.stopped_by_tex_coord, "edge", "likewise the Tex Coord Test");
+    decide.add("stopped_by_generation", counts.stopped_by_generation, "edge", "likewise the Generation Test");
+    const char* const alone =
+        "kept whole by this test alone: had it been true, the edge would have been split";
+    decide.add("stopped_by_view_alone", counts.stopped_by_view_alone, "edge", alone);
+    decide.add("stopped_by_tex_coord_alone", counts.stopped_by_tex_coord_alone, "edge", alone);
+    decide.add("stopped_by_generation_alone", counts.stopped_by_generation_alone, "edge", alone);
+    decide.add("stopped_by_several", counts.stopped_by_several, "edge",
+               "kept whole by two or three of these tests, so that none of them decided");
+    decide.add("culled", counts.culled, "triangle", "finished triangles that face away");
+    take(std::move(decide));
+
+    Collector tessellation("tessellation");
+    const auto& made = p.tessellation.made_into();
+    tessellation.add("made_into_2", made[2], "triangle", "one edge split");
+    tessellation.add("made_into_3", made[3], "triangle", "two edges split");
+    tessellation.add("made_into_4", made[4], "triangle", "three edges split");
+    tessellation.add("passed_unchanged", made[1], "triangle",
+                     "finished base triangles on their way to fetch normals");
+    take(std::move(tessellation));
+
+    Collector queue("triangle_queue");
+    queue.add("taken", p.triangle_queue.taken(), "triangle", "triangles put in");
+    queue.add("high_water_mark", p.triangle_queue.high_water_mark(), "triangle", "most that ever waited");
+    queue.add(
+        "high_water_bytes",
+        (p.triangle_queue.high_water_mark() * datapath::stream_widths(setup.registers.formats).triangle + 7) /
+            8,
+        "byte", "memory that takes");
+    take(std::move(queue));
+
+    Collector lighting("lighting");
+    lighting.add("triangles", simulation.rasteriser.triangles(), "triangle",
+                 "lit and sent to the rasteriser");
+    take(std::move(lighting));
+
+    take(memory_figures("displacement_map", setup.registers.displacement_map, p.displacement_map_reads(),
+                        edges_real));
+    take(memory_figures("normal_map", setup.registers.normal_map, p.normal_map_reads(), edges_real));
+    take(memory_figures("summed_height_table", setup.registers.summed_height_table,
+                        p.summed_height_table_reads(), edges_real));
+
+    Collector saturated("saturations");
+    for (const SaturationFigure& figure : saturation_figures(setup, p.saturations()))
+        saturated.add(figure.name, figure.count, figure.unit, figure.description);
+    take(std::move(saturated));
+
+    take(mesh_figures(simulation.monitor.mesh));
+    if (timed) {
+        std::vector<Figure> figures = timing_figures(simulation);
+        all.insert(all.end(), std::make_move_iterator(figures.begin()),
+                   std::make_move_iterator(figures.end()));
+    }
+    return all;
+}
+
+std::string statistics_json(const std::vector<Figure>& figures) {
+    nlohmann::ordered_json json;
+    for (const Figure& figure : figures) {
+        nlohmann::ordered_json entry;
+        std::visit([&](const auto& value) { entry["value"] = value; }, figure.value);
+        entry["unit"] = figure.unit;
+        entry["description"] = figure.description;
+        json[figure.group][figure.name] = std::move(entry);
+    }
+    return json.dump(2) + "\n";
+}
+
+namespace {
+
+/// RFC 4180: words with a comma or a quotation mark stand in quotation marks.
+std::string csv_cell(const std::string& value) {
+    if (value.find_first_of(",\"\n") == std::string::npos)
+        return value;
+    std::string cell = "\"";
+    for (const char c : value)
+        cell += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return cell + "\"";
+}
+
+}  // namespace
+
+std::string statistics_csv(const std::vector<Figure>& figures) {
+    std::string text = "name,value,unit,description\n";
+    for (const Figure& figure : figures) {
+        const std::string value =
+            std::visit([](const auto& held) { return fmt::format("{}", held); }, figure.value);
+        text += fmt::format("{}.{},{},{},{}\n", figure.group, figure.name, csv_cell(value),
+                            csv_cell(figure.unit), csv_cell(figure.description));
+    }
+    return text;
+}
+
+}  // namespace tessera

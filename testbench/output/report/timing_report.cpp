@@ -1,0 +1,251 @@
+#include "testbench/output/report/timing_report.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace tessera {
+
+namespace {
+
+double ratio(std::uint64_t part, std::uint64_t whole) {
+    return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+double state_percent(const Unit& unit, State state, std::uint64_t cycles) {
+    return 100 * ratio(unit.activity().cycles_in(state), cycles);
+}
+
+bool is_memory(const Unit& unit) {
+    return dynamic_cast<const MemoryServer*>(&unit) != nullptr;
+}
+
+/// The largest share of a state that names somebody: who blocks, is waited for or lacks.
+const Activity::Share* largest_share(const Unit& unit, State state) {
+    const Activity::Share* largest = nullptr;
+    for (const Activity::Share& share : unit.activity().shares()) {
+        if (share.by != nullptr && share.state == state &&
+            (largest == nullptr || share.cycles > largest->cycles))
+            largest = &share;
+    }
+    return largest;
+}
+
+std::string whom(const Unit& unit) {
+    std::string text;
+    for (const State state : {State::blocked, State::waiting_for_memory, State::starved}) {
+        const Activity::Share* share = largest_share(unit, state);
+        if (share == nullptr || share->cycles == 0)
+            continue;
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ",
+                            state == State::blocked              ? "blocked by"
+                            : state == State::waiting_for_memory ? "waits for"
+                                                                 : "lacks",
+                            unit_name(*share->by));
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string unit_name(const sc_core::sc_object& unit) {
+    const std::string name = unit.name();
+    const std::size_t dot = name.find('.');
+    return dot == std::string::npos ? name : name.substr(dot + 1);
+}
+
+double utilisation(const Unit& unit, std::uint64_t cycles) {
+    // The last item's interval may reach beyond the run's end.
+    return ratio(std::min(unit.occupied_cycles(), cycles), cycles);
+}
+
+bool is_queue_or_wire(const Unit& unit) {
+    return dynamic_cast<const TriangleQueue*>(&unit) != nullptr ||
+           dynamic_cast<const CollectTests*>(&unit) != nullptr;
+}
+
+std::string Limit::names() const {
+    std::string text;
+    for (std::size_t k = 0; k < units.size(); ++k)
+        text += (k == 0 ? "" : k + 1 == units.size() ? " and " : ", ") + unit_name(*units[k]);
+    return text;
+}
+
+double Bottleneck::bound() const {
+    const double remaining = binding ? next.utilisation : first.utilisation;
+    return remaining > 0 ? 1 / remaining : 0;
+}
+
+Bottleneck find_bottleneck(const Pipeline& pipeline, std::uint64_t cycles) {
+    std::vector<const Unit*> left;
+    for (const Unit* unit : pipeline.units())
+        if (utilisation(*unit, cycles) > 0)
+            left.push_back(unit);
+    const auto take_highest = [&] {
+        Limit limit;
+        for (const Unit* unit : left)
+            limit.utilisation = std::max(limit.utilisation, utilisation(*unit, cycles));
+        const auto ties = [&](const Unit* unit) {
+            return utilisation(*unit, cycles) >= 0.99 * limit.utilisation;
+        };
+        std::copy_if(left.begin(), left.end(), std::back_inserter(limit.units), ties);
+        left.erase(std::remove_if(left.begin(), left.end(), ties), left.end());
+        return limit;
+    };
+    Bottleneck found;
+    found.first = take_highest();
+    found.next = take_highest();
+    found.binding = found.first.utilisation >= binding_utilisation;
+    return found;
+}
+
+namespace {
+
+/// Who was held up longest by `by`, and for how many cycles.
+std::pair<const Unit*, std::uint64_t> longest_wait(const Pipeline& pipeline, const Unit* by) {
+    std::pair<const Unit*, std::uint64_t> longest{nullptr, 0};
+    for (const Unit* unit : pipeline.units()) {
+        for (const Activity::Share& share : unit->activity().shares()) {
+            if (share.by == by && share.cycles > longest.second)
+                longest = {unit, share.cycles};
+        }
+    }
+    return longest;
+}
+
+std::string binding_text(const Pipeline& pipeline, std::uint64_t cycles, const Bottleneck& found) {
+    const bool several = found.first.units.size() > 1;
+    std::string text = found.first.names();
+    if (several)
+        text +=
+            fmt::format(", which tie: {:.1f} % of their throughput is used", 100 * found.first.utilisation);
+    else
+        text += fmt::format(
+            ": {:.1f} % of {}", 100 * found.first.utilisation,
+            is_memory(*found.first.units[0]) ? "its port slots are taken" : "its throughput is used");
+    const auto [waiting, most] = longest_wait(pipeline, found.first.units[0]);
+    if (waiting != nullptr)
+        text += fmt::format("; {} is held up by {} in {:.1f} % of all cycles", unit_name(*waiting),
+                            several ? unit_name(*found.first.units[0]) : "it", 100 * ratio(most, cycles));
+    if (found.bound() > 0)
+        text +=
+            fmt::format("; without {} at most {:.1f} times faster, bounded by {}, {} {:.1f} %",
+                        several ? "them" : "it", found.bound(), found.next.names(),
+                        found.next.units.size() > 1 ? "which tie at" : "at", 100 * found.next.utilisation);
+    return text;
+}
+
+double mean_stay(const Unit& unit) {
+    return ratio(unit.activity().item_cycles(), unit.activity().items_out());
+}
+
+/// The pipeline stage in which an item stays longest: not one that waits for others by its nature.
+const Unit& longest_stay(const Pipeline& pipeline) {
+    const Unit* longest = &pipeline.transform;
+    for (const Unit* unit : pipeline.units()) {
+        const bool waits =
+            is_queue_or_wire(*unit) || unit == &pipeline.get_triangle || unit == &pipeline.pass_or_tessellate;
+        if (!waits && mean_stay(*unit) > mean_stay(*longest))
+            longest = unit;
+    }
+    return *longest;
+}
+
+std::string latency_text(const Pipeline& pipeline, std::uint64_t cycles, const Bottleneck& found) {
+    const Unit& get = pipeline.get_triangle;
+    const double starved = state_percent(get, State::starved, cycles),
+                 blocked = state_percent(get, State::blocked, cycles);
+    const std::string held_up =
+        starved > blocked
+            ? fmt::format(
+                  "get_triangle is starved {:.1f} %: more base triangles, a higher "
+                  "hardware.queue_watermark",
+                  starved)
+            : fmt::format("get_triangle is blocked {:.1f} %: larger buffers, timing.*_buffer", blocked);
+    const Unit& longest = longest_stay(pipeline);
+    return fmt::format(
+        "none: bound by latency; of the busiest ({}) {:.1f} % of the throughput is used; at most {:.1f} "
+        "times "
+        "faster "
+        "with more triangles in flight ({}) or shorter latencies (an item stays {:.1f} cycles in {})",
+        found.first.names(), 100 * found.first.utilisation, found.bound(), held_up, mean_stay(longest),
+        unit_name(longest));
+}
+
+std::string without_trailing_blanks(std::string line) {
+    line.erase(line.find_last_not_of(' ') + 1);
+    return line + "\n";
+}
+
+std::string unit_line(const Unit& unit, std::uint64_t cycles) {
+    const Activity& activity = unit.activity();
+    return without_trailing_blanks(
+        fmt::format("{:<40}{:>10}{:>9.2f}{:>8.2f}{:>9.2f}{:>9.2f}{:>13.2f}{:>12.2f}{:>9.3f}{:>6}  {}",
+                    unit_name(unit), activity.items_in(), state_percent(unit, State::busy, cycles),
+                    state_percent(unit, State::waiting_for_memory, cycles),
+                    state_percent(unit, State::blocked, cycles), state_percent(unit, State::starved, cycles),
+                    100 * utilisation(unit, cycles), 1000 * ratio(activity.items_in(), cycles),
+                    ratio(activity.item_cycles(), cycles), activity.high_water_mark(), whom(unit)));
+}
+
+std::string queue_line(const Unit& unit, std::uint64_t cycles) {
+    const Activity& activity = unit.activity();
+    return fmt::format("{:<40}{:>10}{:>12.2f}{:>12.3f}{:>10}\n", unit_name(unit), activity.items_in(),
+                       1000 * ratio(activity.items_in(), cycles), ratio(activity.item_cycles(), cycles),
+                       activity.high_water_mark());
+}
+
+}  // namespace
+
+std::string bottleneck_text(const Pipeline& pipeline, std::uint64_t cycles) {
+    const Bottleneck found = find_bottleneck(pipeline, cycles);
+    if (found.first.units.empty())
+        return "nothing was done";
+    return found.binding ? binding_text(pipeline, cycles, found) : latency_text(pipeline, cycles, found);
+}
+
+std::string timing_tables(const Pipeline& pipeline, std::uint64_t cycles) {
+    std::string text =
+        fmt::format("{:<40}{:>10}{:>9}{:>8}{:>9}{:>9}{:>13}{:>12}{:>9}{:>6}  {}\n", "unit", "items", "busy",
+                    "memory", "blocked", "starved", "utilisation", "items/kcyc", "occup.", "most", "by whom");
+    std::string queues = fmt::format("{:<40}{:>10}{:>12}{:>12}{:>10}\n", "queue or wire", "items",
+                                     "items/kcyc", "mean level", "most");
+    for (const Unit* unit : pipeline.units()) {
+        if (is_queue_or_wire(*unit))
+            queues += queue_line(*unit, cycles);
+        else
+            text += unit_line(*unit, cycles);
+    }
+    return text + "\n" + queues;
+}
+
+std::string timing_text(const Pipeline& pipeline, std::uint64_t cycles) {
+    return fmt::format(
+               "{} cycles. In each a unit is in one state, the first of these that applies, in per cent of "
+               "all cycles:\n"
+               "  blocked  a finished item is not taken\n"
+               "  busy     an item is worked on that has all it needs; in a memory: a request is being "
+               "answered\n"
+               "  memory   table entries have been asked for and have not come\n"
+               "  starved  nothing to work on, or the other branch's results are still to come\n"
+               "utilisation: items times initiation interval (in a memory: port slots taken), in per cent of "
+               "all "
+               "cycles; 100 is\nthe most the unit can do. items: taken; in a memory, requests. items/kcyc: "
+               "in "
+               "1000 cycles. occup.: items in the\nunit, on average; most: at a time. by whom: who held it "
+               "up "
+               "longest in each state. Queues and wires do no work:\nthey have a rate and a level.\n\n",
+               cycles) +
+           timing_tables(pipeline, cycles) + "\nbottleneck: " + bottleneck_text(pipeline, cycles) + "\n";
+}
+
+std::string queue_levels_csv(const LevelHistory& history) {
+    std::string text = "first_cycle,highest_level\n";
+    for (std::size_t k = 0; k < history.highest().size(); ++k)
+        text += fmt::format("{},{}\n", k * history.stretch(), history.highest()[k]);
+    return text;
+}
+
+}  // namespace tessera

@@ -1,0 +1,97 @@
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <systemc>
+#include <vector>
+
+#include "modules/pipeline.h"
+#include "modules/stage/signals.h"
+#include "modules/timing/activity.h"
+#include "modules/timing/cycle_scheduler.h"
+#include "testbench/output/trace/timeline_writer.h"
+#include "testbench/output/trace/trace_window.h"
+#include "testbench/output/trace/vcd_writer.h"
+
+namespace tessera {
+
+/// Shows a pipeline in timed mode to the writers of waveforms and of the timeline, each optional.
+///
+/// Waveforms: the signals of the chosen units (Unit::trace_signals), at the end of each cycle in which they were called; and the
+/// cycle (tessera.clock.cycle) and the passes under way. Timeline: a track per unit with its states, by whom it is
+/// blocked, for whom it waits or who it lacks, and the item it has begun on last; the Triangle Queue's level. A flow
+/// leads from unit to unit, in the order of time, through the intervals in which each began on a triangle: from Get
+/// Triangle to Tessellation, to Lighting, or if it is culled to Pass or Tessellate.
+/// Cost: none before and after the window, when the clock and the units are not observed. What is simulated does not
+/// depend on it.
+class Recorder : public CycleObserver {
+  public:
+    /// Before the simulation begins. vcd, timeline: may be null; their windows are this one. units: those whose signals
+    /// are wanted.
+    Recorder(Pipeline& pipeline, VcdWriter* vcd, TimelineWriter* timeline, TraceWindow window,
+             const std::vector<const Unit*>& units);
+    ~Recorder() override;
+
+    /// After the run and the units' Activity::finish, which `cycles`, at least 1, is the length of.
+    void finish(std::uint64_t cycles);
+
+  private:
+    struct TracedUnit {
+        const Unit* unit;
+        std::uint64_t bit;
+        Signals signals;
+    };
+    using FlowStep = TimelineWriter::FlowStep;
+    /// Hands a unit's stretches on, up to the one that reaches the window's end.
+    struct Track : ActivityObserver {
+        Track(Unit& its_unit, TimelineWriter& its_timeline, TimelineWriter::Track its_number,
+              std::uint64_t last_cycle)
+            : unit(its_unit), timeline(its_timeline), number(its_number), last(last_cycle) {}
+        void stretch(State state, const sc_core::sc_object* by, std::uint64_t begin,
+                     std::uint64_t end) override;
+
+        Unit& unit;
+        TimelineWriter& timeline;
+        TimelineWriter::Track number;
+        std::uint64_t last;
+        std::uint64_t count = 0;       // items begun on
+        std::optional<Begun> item;     // the last of them, if it is known
+        bool named = false;            // the present stretch is about it
+        std::optional<FlowStep> step;  // and this is what a flow does there
+    };
+
+    void begin(std::uint64_t cycle) override;
+    void end_of_cycle(std::uint64_t cycle, std::uint64_t called) override;
+    void show_all();
+    void show_called(std::uint64_t called);
+    void end_cycles_before(std::uint64_t cycle);
+    std::uint64_t end_of_window() const {
+        return window_.last == UINT64_MAX ? window_.last : window_.last + 1;
+    }
+    void show_queue_level(std::uint64_t cycle);
+    void enter_window();
+    void name_items(std::uint64_t cycle, std::uint64_t called);
+    FlowStep step_at(const Track& track);
+
+    Pipeline& pipeline_;
+    VcdWriter* vcd_;
+    TimelineWriter* timeline_;
+    TraceWindow window_;
+    bool show_every_unit_;
+    UnitNumbers numbers_;
+    VcdWriter::Signal cycle_signal_ = 0;
+    VcdWriter::Signal passes_signal_ = 0;
+    std::vector<TracedUnit> traced_;
+    std::deque<Track> tracks_;
+    std::uint64_t culled_ = 0;
+    std::optional<std::uint32_t> first_flow_;  // triangles before it were under way when the window began
+    std::size_t shown_level_ = 0;
+    bool began_ = false;
+    std::uint64_t next_cycle_ = 0;  // the first whose waveforms are not complete
+};
+
+/// In words as the timeline has them and waveforms/states.txt: "busy", "waiting for memory", ...
+const char* state_name(State state);
+
+}  // namespace tessera

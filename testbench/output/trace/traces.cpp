@@ -1,0 +1,211 @@
+#include "testbench/output/trace/traces.h"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <exception>
+#include <optional>
+#include <ostream>
+#include <streambuf>
+#include <string_view>
+#include <system_error>
+
+#include "testbench/common/atomic_file.h"
+#include "testbench/common/error.h"
+#include "testbench/output/trace/recorder.h"
+
+namespace tessera {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A stream into an AtomicFile. An error stops the simulation and is kept: an exception through SystemC would lose its
+/// type.
+class AtomicStream : private std::streambuf, public std::ostream {
+  public:
+    explicit AtomicStream(const fs::path& path) : std::ostream(nullptr), file_(path) { rdbuf(this); }
+
+    void check() const {
+        if (error_)
+            std::rethrow_exception(error_);
+    }
+    void commit() {
+        check();
+        file_.commit();
+    }
+
+  private:
+    std::streamsize xsputn(const char* bytes, std::streamsize count) override {
+        if (!error_) {
+            try {
+                file_.write({bytes, static_cast<std::size_t>(count)});
+                return count;
+            } catch (...) {
+                error_ = std::current_exception();
+                sc_core::sc_stop();
+            }
+        }
+        return 0;
+    }
+    std::streambuf::int_type overflow(std::streambuf::int_type c) override {
+        const char byte = std::streambuf::traits_type::to_char_type(c);
+        return xsputn(&byte, 1) == 1 ? c : std::streambuf::traits_type::eof();
+    }
+
+    AtomicFile file_;
+    std::exception_ptr error_;
+};
+
+TraceWindow window_of(const Job& job) {
+    return {static_cast<std::uint64_t>(job.output.trace_from),
+            static_cast<std::uint64_t>(job.output.trace_to)};
+}
+
+std::string_view name_in_pipeline(const Unit& unit, const Pipeline& pipeline) {
+    return std::string_view(unit.name()).substr(std::string_view(pipeline.name()).size() + 1);
+}
+
+}  // namespace
+
+std::vector<const Unit*> units_to_trace(const std::string& words, const Pipeline& pipeline) {
+    constexpr const char* separators = " ,\t\n";
+    std::vector<const Unit*> chosen;
+    const auto choose = [&](std::string_view word) {
+        bool found = false;
+        for (const Unit* unit : pipeline.units()) {
+            if (name_in_pipeline(*unit, pipeline).find(word) == std::string_view::npos)
+                continue;
+            found = true;
+            if (std::find(chosen.begin(), chosen.end(), unit) == chosen.end())
+                chosen.push_back(unit);
+        }
+        if (found)
+            return;
+        std::string names;
+        for (const Unit* unit : pipeline.units())
+            names += fmt::format("{}{}", names.empty() ? "" : ", ", name_in_pipeline(*unit, pipeline));
+        throw InputError(
+            fmt::format("output.trace_units = \"{}\": no unit's name contains \"{}\"; the units are {}",
+                        words, word, names));
+    };
+    for (std::size_t begin = words.find_first_not_of(separators); begin != std::string::npos;) {
+        const std::size_t end = std::min(words.find_first_of(separators, begin), words.size());
+        choose(std::string_view(words).substr(begin, end - begin));
+        begin = words.find_first_not_of(separators, end);
+    }
+    if (chosen.empty())
+        chosen.assign(pipeline.units().begin(), pipeline.units().end());
+    return chosen;
+}
+
+struct Traces::Files {
+    Files(const Job& job, const fs::path& folder, Simulation& simulation,
+          const std::vector<const Unit*>& units) {
+        const std::uint64_t period = simulation.setup.design.timing.cycle_picoseconds;
+        if (job.output.vcd) {
+            vcd_file.emplace(folder / "trace.vcd");
+            vcd.emplace(*vcd_file, period, window_of(job));
+        }
+        if (job.output.timeline) {
+            // A cycle is a microsecond there, the format's unit: viewers add times in floating point, and whole numbers
+            // alone stay exact. Otherwise intervals overlap by a rounding error, which they show as nested or not at all.
+            constexpr std::uint64_t shown_cycle = 1'000'000;
+            timeline_file.emplace(folder / "timeline.json");
+            timeline.emplace(*timeline_file, shown_cycle, window_of(job));
+        }
+        recorder.emplace(simulation.pipeline, vcd ? &*vcd : nullptr, timeline ? &*timeline : nullptr,
+                         window_of(job), units);
+    }
+
+    std::optional<AtomicStream> vcd_file;
+    std::optional<AtomicStream> timeline_file;
+    std::optional<VcdWriter> vcd;
+    std::optional<TimelineWriter> timeline;
+    std::optional<Recorder> recorder;
+};
+
+Traces::Traces(const Job& job, const fs::path& folder, Simulation& simulation,
+               const std::vector<const Unit*>& units)
+    : files_(std::make_unique<Files>(job, folder, simulation, units)),
+      simulation_(simulation),
+      window_(window_of(job)) {}
+
+Traces::~Traces() = default;
+
+void Traces::check() const {
+    if (files_->vcd_file)
+        files_->vcd_file->check();
+    if (files_->timeline_file)
+        files_->timeline_file->check();
+}
+
+void Traces::finish() {
+    check();
+    files_->recorder->finish(simulation_.cycles());
+    check();
+    if (files_->vcd_file)
+        files_->vcd_file->commit();
+    if (files_->timeline_file)
+        files_->timeline_file->commit();
+}
+
+std::uint64_t Traces::changes() const {
+    return files_->vcd ? files_->vcd->changes() : 0;
+}
+
+std::vector<std::string> Traces::text() const {
+    const std::uint64_t cycles = simulation_.cycles();
+    const std::string window =
+        window_.first >= cycles
+            ? fmt::format("the run ended after {} cycles, before cycle {}: only its end", cycles,
+                          window_.first)
+            : fmt::format("cycles {} to {}", window_.first, std::min(window_.last, cycles - 1));
+    std::vector<std::string> text;
+    if (files_->vcd)
+        text.push_back(fmt::format("trace.vcd: {}, {} value changes", window, files_->vcd->changes()));
+    if (files_->timeline)
+        text.push_back(fmt::format("timeline.json: {}", window));
+    return text;
+}
+
+std::string make_fst(const fs::path& folder, AtomicSet& files) {
+    const std::string vcd = files.waiting(folder / "trace.vcd").string();
+    const std::string unfinished = (folder / fmt::format(".tessera-{}.fst.part", ::getpid())).string();
+    const Unfinished looked_after(unfinished);
+    std::string program = "vcd2fst";
+    std::string from = vcd, to = unfinished;
+    char* const arguments[] = {program.data(), from.data(), to.data(), nullptr};
+    posix_spawn_file_actions_t actions;
+    ::posix_spawn_file_actions_init(&actions);
+    ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    pid_t child = 0;
+    const int error = ::posix_spawnp(&child, arguments[0], &actions, nullptr, arguments, environ);
+    ::posix_spawn_file_actions_destroy(&actions);
+    if (error == ENOENT)
+        return "no trace.fst: vcd2fst is not installed; it is in the package gtkwave (apt-get install "
+               "gtkwave)";
+    if (error != 0)
+        return fmt::format("no trace.fst: vcd2fst cannot be started: {}",
+                           std::generic_category().message(error));
+    int status = 0;
+    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    std::error_code problem;
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+        fs::remove(unfinished, problem);
+        return WIFEXITED(status) && WEXITSTATUS(status) == 127
+                   ? "no trace.fst: vcd2fst is not installed; it is in the package gtkwave (apt-get install "
+                     "gtkwave)"
+                   : fmt::format("no trace.fst: vcd2fst failed on {}", (folder / "trace.vcd").string());
+    }
+    files.add(unfinished, folder / "trace.fst");
+    return {};
+}
+
+}  // namespace tessera

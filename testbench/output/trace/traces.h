@@ -1,0 +1,53 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "testbench/common/atomic_set.h"
+#include "testbench/machine/simulation.h"
+#include "testbench/job/job.h"
+#include "testbench/output/trace/trace_window.h"
+
+namespace tessera {
+
+/// The units whose signals output.trace_units asks for: those whose name contains one of its words; all if there is
+/// none. Throws InputError on a word that no name contains.
+std::vector<const Unit*> units_to_trace(const std::string& words, const Pipeline& pipeline);
+
+/// What a job asks for of trace.vcd and timeline.json, written into the run's folder while the simulation runs, under
+/// their names only when complete (AtomicFile, AtomicSet). Without finish() nothing is left.
+class Traces {
+  public:
+    static bool wanted(const Job& job) { return job.output.vcd || job.output.timeline; }
+
+    /// Before the simulation runs. The folder is there.
+    Traces(const Job& job, const std::filesystem::path& folder, Simulation& simulation,
+           const std::vector<const Unit*>& units);
+    ~Traces();
+
+    /// Throws what went wrong in writing, as AtomicFile does; the simulation was stopped by it.
+    void check() const;
+
+    /// When the simulation has ended, in whatever way. Throws like check().
+    void finish();
+
+    /// Value changes written, not counting those the file begins with.
+    std::uint64_t changes() const;
+
+    /// For the summary: what was written, and of which cycles. One line each.
+    std::vector<std::string> text() const;
+
+  private:
+    struct Files;
+    std::unique_ptr<Files> files_;
+    Simulation& simulation_;
+    TraceWindow window_;
+};
+
+/// Makes trace.fst of trace.vcd, which waits in the set of files, and adds it. Returns what went wrong, in words for the
+/// user; empty: nothing.
+std::string make_fst(const std::filesystem::path& folder, AtomicSet& files);
+
+}  // namespace tessera

@@ -1,0 +1,51 @@
+#include <string>
+
+#include "testbench/common/error.h"
+#include "testbench/prove/fuzz/fuzz_target.h"
+#include "testbench/job/dump_job.h"
+#include "testbench/job/job_keys.h"
+#include "testbench/job/read_job.h"
+#include "testbench/job/toml_text.h"
+#include "testbench/job/validate_job.h"
+
+namespace tessera::fuzz {
+
+namespace {
+
+/// The first line, as --set has it.
+void check_setting(std::string_view setting) {
+    Job job;
+    try {
+        apply_setting(job, setting);
+    } catch (const InputError& error) {
+        promise_message(error.what(), "--set " + printable(setting));
+        promise(same_settings(job, Job{}), "a setting that was refused left a trace");
+    }
+}
+
+}  // namespace
+
+void check_toml(std::string_view bytes) {
+    check_setting(bytes.substr(0, bytes.find('\n')));
+    const std::string name = "fuzzed.toml";
+    try {
+        const Job job = parse_job(bytes, name);
+        // Each key alone is in its range by now.
+        for (const KeyTable& table : job_tables())
+            for (const Key& key : table.keys)
+                promise(complaint(key, key.get(job)).empty(), key.name + " is out of its range");
+        const std::string dump = dump_job(job);
+        const Job again = parse_job(dump, "dumped.toml");
+        promise(same_settings(again, job), "a dumped job is another job");
+        promise(dump_job(again) == dump, "a dumped job dumps other bytes");
+        try {
+            validate(job);
+        } catch (const InputError& error) {
+            promise(*error.what() != '\0', "a job is refused without a word");
+        }
+    } catch (const InputError& error) {
+        promise_message(error.what(), name);
+    }
+}
+
+}  // namespace tessera::fuzz

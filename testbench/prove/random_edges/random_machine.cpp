@@ -1,0 +1,172 @@
+#include "testbench/prove/random_edges/random_machine.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace tessera {
+
+namespace {
+
+using datapath::Format, datapath::Formats, datapath::Direction;
+
+Formats any_formats(Random& random, FormatWidths widths) {
+    Formats formats;
+    if (widths == FormatWidths::usual)
+        return formats;
+    const auto bits = [&](int low, int high) {
+        const int third = (high - low) / 3;
+        return widths == FormatWidths::narrow ? random.integer32(low, low + third)
+               : widths == FormatWidths::wide ? random.integer32(high - third, high)
+                                              : random.integer32(low, high);
+    };
+    const int position = bits(8, 32), screen = bits(8, 31), normal = bits(6, 18);
+    formats.position = Format::make_signed(position, random.integer32(0, position - 1));
+    formats.view_distance = Format::make_signed(position, formats.position.fraction - random.integer32(0, 3));
+    formats.normal =
+        Format::make_signed(normal, random.chance(70) ? normal - 2 : random.integer32(0, normal - 2));
+    const int fraction = bits(0, 12);
+    formats.texture = Format::make_unsigned(bits(6, 12) + fraction + 1, fraction);
+    const int displacement = bits(1, 16);
+    formats.displacement = Format::make_unsigned(displacement, displacement);
+    formats.screen = Format::make_signed(screen, random.integer32(0, screen - 1));
+    return formats;
+}
+
+Direction any_unit(Random& random, const Formats& formats) {
+    datapath::Saturations unused;
+    const auto component = [&] { return random.integer32(-999, 999); };
+    const Direction any{component(), component(), component()};
+    return normalise(any, formats, unused);
+}
+
+std::vector<std::uint32_t> any_codes(Random& random, std::size_t texels, std::uint32_t highest) {
+    std::vector<std::uint32_t> codes;
+    const auto kind = random.integer(0, 3);
+    std::uint32_t step = 0;
+    for (std::size_t k = 0; k < texels; ++k) {
+        if (kind == 0)
+            codes.push_back(random.coin() ? highest : 0);
+        else if (kind == 1)
+            codes.push_back(step = random.chance(5) ? random.natural(0, highest) : step);
+        else
+            codes.push_back(random.natural(0, highest));
+    }
+    return codes;
+}
+
+datapath::TestParameters any_tests(Random& random, const Formats& formats) {
+    datapath::TestParameters tests;
+    const auto on = [&] { return random.chance(95); };
+    tests.normal_test = on();
+    tests.summed_height_test = on();
+    tests.view_test = on();
+    tests.tex_coord_test = on();
+    tests.generation_test = on();
+    tests.highlight_test = random.coin();
+    tests.summed_height_unit =
+        random.coin() ? datapath::SummedHeightUnit::sum : datapath::SummedHeightUnit::area;
+    tests.generation_limit = random.natural(0, 15);
+    const Direction half = any_unit(random, formats);
+    tests.half_vector = {half.x, half.y, half.z};
+    return tests;
+}
+
+datapath::TransformParameters any_transform(Random& random, const Formats& formats) {
+    datapath::TransformParameters transform;
+    constexpr std::int64_t one = std::int64_t{1} << datapath::TransformParameters::matrix_fraction;
+    // As far as the mesh is large: the products' scale.
+    const std::int64_t reach = one << std::min(formats.position.bits - 1, 31);
+    const auto row = [&](std::int64_t offset) {
+        return std::array<std::int64_t, 4>{random.integer(-one, one), random.integer(-one, one),
+                                           random.integer(-one, one), offset};
+    };
+    transform.row_x = row(random.any_size(reach));
+    transform.row_y = row(random.any_size(reach));
+    transform.row_w = row(random.integer(-reach / 2, 4 * reach));
+    transform.exponent = random.integer32(0, 14);
+    transform.near_plane = std::max<std::int64_t>(1, random.integer(0, reach / 64));
+    return transform;
+}
+
+}  // namespace
+
+RandomMachine make_random_machine(Random& random, FormatWidths widths) {
+    datapath::Registers registers;
+    registers.formats = any_formats(random, widths);
+    Formats& formats = registers.formats;
+    const auto mode = [&] {
+        return random.coin() ? datapath::AddressMode::repeat : datapath::AddressMode::clamp;
+    };
+    const std::uint32_t most = 1U << std::min(6, formats.texture.bits - 1 - formats.texture.fraction);
+    registers.map.width = random.chance(12) ? 1 : random.natural(1, most);
+    registers.map.height = random.chance(12) ? 1 : random.natural(1, most);
+    registers.map.address_u = mode();
+    registers.map.address_v = mode();
+    const std::size_t texels = std::size_t{registers.map.width} * registers.map.height;
+    // The narrowest table that holds a rectangle as large as the map, or a wider one.
+    int bits = 8;
+    while (static_cast<std::uint64_t>(formats.displacement.highest) * texels >> bits != 0)
+        ++bits;
+    formats.summed_height = Format::make_unsigned(random.coin() ? bits : random.integer32(bits, 48), 0);
+
+    std::vector<std::uint32_t> codes =
+        any_codes(random, texels, static_cast<std::uint32_t>(formats.displacement.highest));
+    std::vector<Direction> normals;
+    for (std::size_t k = 0; k < texels; ++k)
+        normals.push_back(any_unit(random, formats));
+    Tables tables = make_tables(registers, codes, normals);
+    registers.tests = any_tests(random, formats);
+    registers.displacement = {static_cast<std::int32_t>(random.any_size(formats.position.highest)),
+                              static_cast<std::int32_t>(random.any_size(formats.position.highest))};
+    registers.transform = any_transform(random, formats);
+    return {Machine(registers, std::move(tables)),
+            DirectMap(registers.map, std::move(codes), std::move(normals))};
+}
+
+datapath::Vertex make_random_vertex(Random& random, Machine& machine, const datapath::Vertex* near) {
+    const datapath::MapGeometry& map = machine.registers.map;
+    const Formats& formats = machine.registers.formats;
+    const int fraction = formats.texture.fraction;
+    const std::uint32_t most = 1U << (formats.texture.bits - 1 - fraction);  // texels that the format holds
+    const auto coordinate = [&](std::uint32_t size, datapath::AddressMode mode, std::uint32_t other) {
+        const std::uint32_t periods =
+            mode == datapath::AddressMode::repeat ? std::max(1U, std::min(3U, most / size)) : 1U;
+        const std::uint32_t border = periods * size << fraction;
+        const auto choice = random.integer(0, 15);
+        if (choice == 0)
+            return border;
+        if (choice == 1)
+            return std::uint32_t{0};
+        if (near == nullptr || choice == 2)
+            return random.natural(0, border);
+        return static_cast<std::uint32_t>(std::clamp<std::int64_t>(
+            std::int64_t{other} + random.any_size(std::int64_t{6} << fraction), 0, border));
+    };
+    datapath::Vertex v;
+    v.texture.u = coordinate(map.width, map.address_u, near != nullptr ? near->texture.u : 0);
+    v.texture.v = coordinate(map.height, map.address_v, near != nullptr ? near->texture.v : 0);
+    const auto position = [&](std::int32_t other) {
+        const std::int64_t reach = formats.position.highest / 2;
+        const std::int64_t value = near != nullptr && random.chance(70)
+                                       ? other + random.any_size(reach / 16 + 1)
+                                       : random.any_size(reach);
+        return static_cast<std::int32_t>(
+            std::clamp(value, formats.position.lowest, formats.position.highest));
+    };
+    const datapath::Position other = near != nullptr ? near->position : datapath::Position{};
+    v.position.x = position(other.x);
+    v.position.y = position(other.y);
+    v.position.z = position(other.z);
+    // One in 32 is the other end's turned round: the mean has no direction, or only rounding's.
+    const bool against = near != nullptr && random.chance(3);
+    v.normal =
+        against ? Direction{-near->normal.x, -near->normal.y, -near->normal.z} : any_unit(random, formats);
+    v.tangent = any_unit(random, formats);
+    v.handedness = random.chance(80) ? std::int8_t{1} : std::int8_t{-1};
+    v.generation = static_cast<std::uint8_t>(random.integer(0, 10));
+    machine.complete(v);
+    return v;
+}
+
+}  // namespace tessera

@@ -1,0 +1,141 @@
+#include "testbench/prove/random_machines/case_run.h"
+
+#include <fmt/core.h>
+
+#include "testbench/machine/bare_recursion.h"
+#include "testbench/check/invariants.h"
+#include "testbench/check/scoreboard.h"
+#include "testbench/check/setup_check.h"
+#include "testbench/machine/simulation.h"
+#include "testbench/prove/random_machines/lineage_check.h"
+
+namespace tessera {
+
+namespace {
+
+class Digest {
+  public:
+    void add(std::int64_t value) {
+        hash_ ^= static_cast<std::uint64_t>(value);
+        hash_ = (hash_ ^ (hash_ >> 30)) * 0xbf58476d1ce4e5b9U;
+        hash_ = (hash_ ^ (hash_ >> 27)) * 0x94d049bb133111ebU;
+        hash_ ^= hash_ >> 31;
+    }
+    std::uint64_t value() const { return hash_; }
+
+  private:
+    std::uint64_t hash_ = 0x9e3779b97f4a7c15U;
+};
+
+/// The sum over the triangles: the same in any order. The bare recursion and the machine set `culled` alike.
+std::uint64_t digest_of(const EmittedMesh& mesh) {
+    std::uint64_t sum = 0;
+    for (const EmittedTriangle& triangle : mesh.triangles) {
+        Digest digest;
+        for (const auto& c : triangle.corners)
+            for (const std::int64_t value :
+                 {std::int64_t{c.position.x}, std::int64_t{c.position.y}, std::int64_t{c.position.z},
+                  std::int64_t{c.displaced.x}, std::int64_t{c.displaced.y}, std::int64_t{c.displaced.z},
+                  std::int64_t{c.displaced_normal.x}, std::int64_t{c.displaced_normal.y},
+                  std::int64_t{c.displaced_normal.z}, std::int64_t{c.texture.u}, std::int64_t{c.texture.v},
+                  std::int64_t{c.generation}})
+                digest.add(value);
+        for (const std::int64_t value : {std::int64_t{triangle.base}, std::int64_t{triangle.split_by},
+                                         std::int64_t{triangle.stopped_by}, std::int64_t{triangle.culled}})
+            digest.add(value);
+        sum += digest.value();
+    }
+    return sum;
+}
+
+}  // namespace
+
+void CaseFigures::add(const CaseFigures& other) {
+    runs += other.runs;
+    base_triangles += other.base_triangles;
+    triangles += other.triangles;
+    edges += other.edges;
+    cracks += other.cracks;
+    t_vertices += other.t_vertices;
+    other_violations += other.other_violations;
+    collapsed += other.collapsed;
+    turned_over += other.turned_over;
+    open_input_edges += other.open_input_edges;
+    flips += other.flips;
+    mismatches += other.mismatches;
+    spilled += other.spilled;
+    cycles += other.cycles;
+}
+
+CaseResult run_case(const RandomCase& random_case, Mode mode) {
+    RandomCase with_mode = random_case;
+    with_mode.job.mode = mode;
+    const BaseMesh base_mesh = with_mode.base_mesh();
+    const HeightMap height_map = with_mode.height_map();
+    const Setup setup = make_setup(with_mode.job, base_mesh, height_map);
+    const GoldenInputs golden(setup);
+    Simulation simulation(setup, RandomCase::most_edges,
+                          static_cast<std::uint64_t>(with_mode.job.limits.cycles_without_progress));
+    Scoreboard scoreboard(setup.registers, golden);
+    simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
+
+    CaseResult result;
+    const auto fail = [&](const std::string& what) {
+        result.failure += (result.failure.empty() ? "" : "\n") + what;
+    };
+    if (const std::string stuck = simulation.run(); !stuck.empty())
+        fail(stuck);
+
+    const EmittedMesh& mesh = simulation.monitor.mesh;
+    const InvariantResult invariants = check_invariants(mesh, setup.base_triangles, setup.registers);
+    if (!invariants.passed())
+        fail(fmt::format("{} violations of the invariants: {}", invariants.violations(),
+                         invariants.first_violation));
+    const SetupResult checked_setup =
+        check_setup(setup, GoldenJob(with_mode.job, base_mesh, height_map, setup.model_scale), simulation);
+    if (!checked_setup.passed())
+        fail(fmt::format("the set-up: {}", checked_setup.first_wrong));
+    const ConformanceResult conformance = scoreboard.result();
+    if (conformance.mismatches > 0)
+        fail(fmt::format("{} mismatches: {}", conformance.mismatches, conformance.first_mismatch));
+
+    EmittedMesh bare_mesh;
+    const std::uint64_t bare_edges = BareRecursion(setup).run(bare_mesh);
+    result.mesh_digest = digest_of(mesh);
+    if (simulation.pipeline.edges_tested() != bare_edges || conformance.edges != bare_edges)
+        fail(
+            fmt::format("the machine tested {} edges, the scoreboard saw {}, the datapath by itself needs {}",
+                        simulation.pipeline.edges_tested(), conformance.edges, bare_edges));
+    if (result.mesh_digest != digest_of(bare_mesh))
+        fail(fmt::format("the {} triangles are not the {} of the datapath by itself", mesh.triangles.size(),
+                         bare_mesh.triangles.size()));
+
+    // The same for both modes, which leave the same mesh.
+    const LineageResult lineage = mode == Mode::functional ? check_lineage(setup) : LineageResult{};
+    if (!lineage.passed())
+        fail("by descent: " + lineage.first_fault);
+    if (mode == Mode::functional &&
+        (lineage.edges != bare_edges || lineage.triangles != bare_mesh.triangles.size()))
+        fail(fmt::format(
+            "by descent there are {} edges and {} triangles, the datapath by itself has {} and {}",
+            lineage.edges, lineage.triangles, bare_edges, bare_mesh.triangles.size()));
+
+    CaseFigures& figures = result.figures;
+    figures.runs = 1;
+    figures.base_triangles = setup.base_triangles.size();
+    figures.triangles = mesh.triangles.size();
+    figures.edges = conformance.edges;
+    figures.cracks = invariants.cracks + lineage.cracks + lineage.unlike_vertices;
+    figures.t_vertices = invariants.t_vertices + lineage.t_vertices;
+    figures.other_violations = invariants.violations() - invariants.cracks - invariants.t_vertices;
+    figures.collapsed = invariants.collapsed_explained;
+    figures.turned_over = invariants.turned_over_explained;
+    figures.open_input_edges = invariants.open_texture_seam_edges + invariants.open_crease_edges;
+    figures.flips = conformance.flipped_edges;
+    figures.mismatches = conformance.mismatches;
+    figures.spilled = simulation.pipeline.triangle_queue.spilled();
+    figures.cycles = simulation.cycles();
+    return result;
+}
+
+}  // namespace tessera

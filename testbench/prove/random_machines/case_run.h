@@ -1,0 +1,41 @@
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "testbench/prove/random_machines/random_case.h"
+
+namespace tessera {
+
+/// What one run of one case came to.
+struct CaseFigures {
+    std::uint64_t runs = 0;
+    std::uint64_t base_triangles = 0;
+    std::uint64_t triangles = 0;
+    std::uint64_t edges = 0;  ///< evaluated
+    std::uint64_t cracks = 0;
+    std::uint64_t t_vertices = 0;
+    std::uint64_t other_violations =
+        0;  ///< of the invariants, collapsed and turned over triangles not explained included
+    std::uint64_t collapsed = 0;         ///< explained: rounding's, or the input's own
+    std::uint64_t turned_over = 0;       ///< likewise
+    std::uint64_t open_input_edges = 0;  ///< at texture seams and creases of the input
+    std::uint64_t flips = 0;       ///< edges, allowed: golden within the formats' bound of its threshold
+    std::uint64_t mismatches = 0;  ///< with the golden model
+    std::uint64_t spilled = 0;     ///< triangles that went off chip
+    std::uint64_t cycles = 0;
+
+    void add(const CaseFigures& other);
+};
+
+struct CaseResult {
+    CaseFigures figures;
+    /// Of the emitted triangles, all there is of each, in any order.
+    std::uint64_t mesh_digest = 0;
+    /// Empty: invariants and conformance hold, the run ended, and the mesh is that of the datapath by itself.
+    std::string failure;
+};
+
+/// Runs a case in this process, which must not have elaborated anything before (SystemC can do so once).
+CaseResult run_case(const RandomCase& random_case, Mode mode);
+
+}  // namespace tessera

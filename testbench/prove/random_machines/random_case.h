@@ -1,0 +1,41 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "testbench/machine/setup.h"
+#include "testbench/job/job.h"
+#include "testbench/input/map/height_map.h"
+#include "testbench/input/mesh/base_mesh.h"
+#include "testbench/prove/random_machines/random_map.h"
+#include "testbench/prove/random_machines/random_mesh.h"
+
+namespace tessera {
+
+/// A whole input of the machine that follows from its seed and nothing else: mesh, map and job, as files hold them.
+struct RandomCase {
+    /// Edges that the mesh may take, evaluated: thresholds and the generation limit are raised and lowered until it
+    /// does, and, of four cases in five, as far as that helps, until it takes `wanted_edges`.
+    static constexpr std::uint64_t most_edges = 40000;
+    static constexpr std::uint64_t wanted_edges = 4000;
+
+    std::uint64_t seed = 0;
+    int redrawn = 0;  ///< draws that the host refused (a texture coordinate beyond its format, ...)
+    Job job;          ///< mesh.file and map.file are the names write() gives them
+    RandomMesh mesh;
+    RandomMap map;
+
+    /// One line: what kind of mesh, map and design.
+    std::string summary() const;
+
+    BaseMesh base_mesh() const;
+    HeightMap height_map() const { return map.height_map(); }
+    Setup setup() const;
+
+    /// Writes job.toml, mesh.obj and map.pgm: `tessera run FOLDER/job.toml` runs the same case. Makes the folder.
+    void write(const std::filesystem::path& folder, Mode mode) const;
+};
+
+RandomCase make_random_case(std::uint64_t seed);
+
+}  // namespace tessera
