@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "golden/golden_model.h"
+#include "testbench/check/conformance/golden_inputs.h"
 #include "testbench/machine/bare_recursion.h"
-#include "testbench/check/golden_inputs.h"
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/simulation.h"
 

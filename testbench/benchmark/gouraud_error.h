@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-#include "testbench/check/golden_inputs.h"
+#include "testbench/check/conformance/golden_inputs.h"
 #include "testbench/machine/emitted_mesh.h"
 #include "testbench/machine/setup.h"
 

@@ -5,11 +5,11 @@
 #include <string>
 #include <systemc>
 
-#include "testbench/machine/bare_recursion.h"
 #include "testbench/benchmark/gouraud_error.h"
-#include "testbench/machine/inputs.h"
 #include "testbench/job/read_job.h"
 #include "testbench/job/validate_job.h"
+#include "testbench/machine/bare_recursion.h"
+#include "testbench/machine/inputs.h"
 
 // What the Highlight Test buys where lighting is per vertex: a job's mesh without it, with it, and without it
 // at a Normal Test threshold that gives as many triangles. One Markdown table on standard output.

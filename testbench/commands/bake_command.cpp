@@ -4,18 +4,18 @@
 
 #include <algorithm>
 
-#include "testbench/common/atomic_file.h"
-#include "testbench/common/atomic_set.h"
-#include "testbench/machine/inputs.h"
-#include "testbench/job/dump_job.h"
-#include "testbench/job/job_paths.h"
-#include "testbench/job/toml_text.h"
-#include "testbench/job/validate_job.h"
 #include "testbench/commands/load_job.h"
 #include "testbench/commands/output_folder.h"
 #include "testbench/commands/progress.h"
 #include "testbench/commands/run_files.h"
+#include "testbench/common/atomic_file.h"
+#include "testbench/common/atomic_set.h"
 #include "testbench/input/surface/bake.h"
+#include "testbench/job/dump_job.h"
+#include "testbench/job/job_paths.h"
+#include "testbench/job/toml_text.h"
+#include "testbench/job/validate_job.h"
+#include "testbench/machine/inputs.h"
 
 namespace tessera {
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cctype>
 
-#include "testbench/input/map/height_map.h"
 #include "testbench/commands/side_text.h"
+#include "testbench/input/map/height_map.h"
 
 namespace tessera {
 

@@ -5,11 +5,11 @@
 #include <CLI/CLI.hpp>
 #include <cstdlib>
 
-#include "testbench/common/error.h"
 #include "testbench/commands/bake_options.h"
 #include "testbench/commands/render_options.h"
 #include "testbench/commands/tune_options.h"
 #include "testbench/commands/widths_options.h"
+#include "testbench/common/error.h"
 
 namespace tessera {
 

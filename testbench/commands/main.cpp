@@ -9,9 +9,6 @@
 #include <system_error>
 #include <systemc>
 
-#include "testbench/common/error.h"
-#include "testbench/common/interruption.h"
-#include "testbench/job/document_keys.h"
 #include "testbench/commands/bake_command.h"
 #include "testbench/commands/command_line.h"
 #include "testbench/commands/compare_run.h"
@@ -19,6 +16,9 @@
 #include "testbench/commands/run_job.h"
 #include "testbench/commands/tune_command.h"
 #include "testbench/commands/widths_command.h"
+#include "testbench/common/error.h"
+#include "testbench/common/interruption.h"
+#include "testbench/job/document_keys.h"
 
 namespace {
 

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cctype>
 
-#include "testbench/common/atomic_file.h"
-#include "testbench/common/atomic_set.h"
-#include "testbench/job/validate_job.h"
 #include "testbench/commands/output_folder.h"
 #include "testbench/commands/progress.h"
 #include "testbench/commands/run_error.h"
+#include "testbench/common/atomic_file.h"
+#include "testbench/common/atomic_set.h"
+#include "testbench/job/validate_job.h"
 #include "testbench/output/picture/error_range.h"
 #include "testbench/output/picture/overview.h"
 #include "testbench/output/picture/png_writer.h"

@@ -5,8 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "testbench/input/map/stroke_font.h"
 #include "testbench/commands/side_text.h"
+#include "testbench/input/map/stroke_font.h"
 
 namespace tessera {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "testbench/machine/inputs.h"
 #include "testbench/check/surface_error/measure_error.h"
+#include "testbench/machine/inputs.h"
 
 namespace tessera {
 

@@ -9,12 +9,12 @@
 #include <system_error>
 #include <vector>
 
+#include "testbench/commands/render_command.h"
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/error.h"
 #include "testbench/job/dump_job.h"
 #include "testbench/job/frame_job.h"
 #include "testbench/job/job_paths.h"
-#include "testbench/commands/render_command.h"
 
 namespace tessera {
 

@@ -14,18 +14,18 @@
 #include <system_error>
 #include <vector>
 
-#include "testbench/common/atomic_file.h"
-#include "testbench/common/atomic_set.h"
-#include "testbench/common/interruption.h"
-#include "testbench/machine/inputs.h"
-#include "testbench/machine/setup.h"
-#include "testbench/job/dump_job.h"
-#include "testbench/job/frame_job.h"
-#include "testbench/job/validate_job.h"
 #include "testbench/commands/frame_table.h"
 #include "testbench/commands/output_folder.h"
 #include "testbench/commands/progress.h"
 #include "testbench/commands/summary.h"
+#include "testbench/common/atomic_file.h"
+#include "testbench/common/atomic_set.h"
+#include "testbench/common/interruption.h"
+#include "testbench/job/dump_job.h"
+#include "testbench/job/frame_job.h"
+#include "testbench/job/validate_job.h"
+#include "testbench/machine/inputs.h"
+#include "testbench/machine/setup.h"
 
 namespace tessera {
 

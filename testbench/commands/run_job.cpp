@@ -10,23 +10,21 @@
 #include <string>
 #include <vector>
 
-#include "testbench/check/conservation.h"
-#include "testbench/check/scoreboard.h"
-#include "testbench/check/texel_borders.h"
-#include "testbench/common/atomic_file.h"
-#include "testbench/common/atomic_set.h"
-#include "testbench/prove/faults/checked_run.h"
-#include "testbench/prove/faults/faultless_run.h"
-#include "testbench/machine/fingerprint.h"
-#include "testbench/machine/inputs.h"
-#include "testbench/machine/simulation.h"
-#include "testbench/job/dump_job.h"
+#include "testbench/check/conformance/scoreboard.h"
+#include "testbench/check/conformance/texel_borders.h"
+#include "testbench/check/transport/conservation.h"
 #include "testbench/commands/load_job.h"
 #include "testbench/commands/output_folder.h"
 #include "testbench/commands/progress.h"
 #include "testbench/commands/run_files.h"
 #include "testbench/commands/run_frames.h"
 #include "testbench/commands/summary.h"
+#include "testbench/common/atomic_file.h"
+#include "testbench/common/atomic_set.h"
+#include "testbench/job/dump_job.h"
+#include "testbench/machine/fingerprint.h"
+#include "testbench/machine/inputs.h"
+#include "testbench/machine/simulation.h"
 #include "testbench/output/picture/render_run.h"
 #include "testbench/output/report/conformance_report.h"
 #include "testbench/output/report/obj_writer.h"
@@ -34,6 +32,8 @@
 #include "testbench/output/report/statistics.h"
 #include "testbench/output/report/timing_report.h"
 #include "testbench/output/trace/traces.h"
+#include "testbench/prove/faults/checked_run.h"
+#include "testbench/prove/faults/faultless_run.h"
 
 namespace tessera {
 

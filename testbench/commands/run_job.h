@@ -1,6 +1,6 @@
 #pragma once
-#include "testbench/common/error.h"
 #include "testbench/commands/command_line.h"
+#include "testbench/common/error.h"
 
 namespace tessera {
 

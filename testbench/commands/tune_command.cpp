@@ -6,20 +6,20 @@
 #include <cctype>
 #include <fstream>
 
-#include "testbench/machine/bare_recursion.h"
-#include "testbench/common/atomic_file.h"
-#include "testbench/common/atomic_set.h"
-#include "testbench/machine/inputs.h"
-#include "testbench/machine/simulation.h"
-#include "testbench/job/dump_job.h"
-#include "testbench/job/job_choices.h"
-#include "testbench/job/job_paths.h"
 #include "testbench/commands/load_job.h"
 #include "testbench/commands/output_folder.h"
 #include "testbench/commands/progress.h"
 #include "testbench/commands/run_files.h"
+#include "testbench/common/atomic_file.h"
+#include "testbench/common/atomic_set.h"
 #include "testbench/explore/thresholds/tune.h"
 #include "testbench/explore/thresholds/tune_report.h"
+#include "testbench/job/dump_job.h"
+#include "testbench/job/job_choices.h"
+#include "testbench/job/job_paths.h"
+#include "testbench/machine/bare_recursion.h"
+#include "testbench/machine/inputs.h"
+#include "testbench/machine/simulation.h"
 
 namespace tessera {
 

@@ -4,16 +4,16 @@
 
 #include <system_error>
 
-#include "testbench/common/atomic_file.h"
-#include "testbench/common/atomic_set.h"
-#include "testbench/machine/inputs.h"
-#include "testbench/job/job_choices.h"
-#include "testbench/job/nearest_name.h"
 #include "testbench/commands/load_job.h"
 #include "testbench/commands/output_folder.h"
 #include "testbench/commands/progress.h"
 #include "testbench/commands/run_files.h"
+#include "testbench/common/atomic_file.h"
+#include "testbench/common/atomic_set.h"
 #include "testbench/explore/widths/widths_report.h"
+#include "testbench/job/job_choices.h"
+#include "testbench/job/nearest_name.h"
+#include "testbench/machine/inputs.h"
 
 namespace tessera {
 

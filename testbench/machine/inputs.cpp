@@ -1,12 +1,12 @@
 #include "testbench/machine/inputs.h"
 
-#include "testbench/machine/fingerprint.h"
-#include "testbench/job/job_paths.h"
-#include "testbench/job/validate_job.h"
 #include "testbench/input/map/built_in_maps.h"
 #include "testbench/input/map/map_displacement.h"
 #include "testbench/input/map/read_height_map.h"
 #include "testbench/input/mesh/make_base_mesh.h"
+#include "testbench/job/job_paths.h"
+#include "testbench/job/validate_job.h"
+#include "testbench/machine/fingerprint.h"
 
 namespace tessera {
 

@@ -1,10 +1,10 @@
 #pragma once
 #include <filesystem>
 
-#include "testbench/machine/resolve_job.h"
-#include "testbench/job/job.h"
 #include "testbench/input/map/height_map.h"
 #include "testbench/input/mesh/base_mesh.h"
+#include "testbench/job/job.h"
+#include "testbench/machine/resolve_job.h"
 
 namespace tessera {
 

@@ -9,10 +9,10 @@
 #include <stdexcept>
 
 #include "testbench/common/error.h"
-#include "testbench/machine/unit_vector.h"
+#include "testbench/input/map/map_displacement.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/job/toml_text.h"
-#include "testbench/input/map/map_displacement.h"
+#include "testbench/machine/unit_vector.h"
 
 namespace tessera {
 

@@ -2,9 +2,9 @@
 #include <string>
 #include <vector>
 
-#include "testbench/job/job.h"
 #include "testbench/input/map/height_map.h"
 #include "testbench/input/mesh/base_mesh.h"
+#include "testbench/job/job.h"
 
 namespace tessera {
 

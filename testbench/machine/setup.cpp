@@ -11,10 +11,10 @@
 #include "modules/datapath/map_entry.h"
 #include "modules/datapath/registers.h"
 #include "testbench/common/error.h"
-#include "testbench/machine/resolve_job.h"
-#include "testbench/machine/unit_vector.h"
 #include "testbench/input/map/map_displacement.h"
 #include "testbench/input/mesh/whole_periods.h"
+#include "testbench/machine/resolve_job.h"
+#include "testbench/machine/unit_vector.h"
 
 namespace tessera {
 

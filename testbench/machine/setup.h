@@ -7,9 +7,9 @@
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/vertex.h"
 #include "modules/pipeline.h"
-#include "testbench/machine/quantised_map.h"
-#include "testbench/job/job.h"
 #include "testbench/input/mesh/base_mesh.h"
+#include "testbench/job/job.h"
+#include "testbench/machine/quantised_map.h"
 
 namespace tessera {
 

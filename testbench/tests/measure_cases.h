@@ -6,11 +6,11 @@
 #include <limits>
 #include <random>
 
-#include "testbench/check/nearest_triangle.h"
-#include "testbench/input/map/height_map.h"
 #include "testbench/check/surface_error/measure_error.h"
 #include "testbench/check/surface_error/mesh_samples.h"
 #include "testbench/check/surface_error/reference_lattice.h"
+#include "testbench/geometry/nearest_triangle.h"
+#include "testbench/input/map/height_map.h"
 #include "testbench/input/mesh/base_mesh.h"
 
 namespace tessera {

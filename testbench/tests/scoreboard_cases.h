@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "modules/datapath/parameters.h"
-#include "testbench/check/golden_inputs.h"
-#include "testbench/check/scoreboard.h"
+#include "testbench/check/conformance/golden_inputs.h"
+#include "testbench/check/conformance/scoreboard.h"
 #include "testbench/machine/setup.h"
 #include "testbench/tests/datapath_edge.h"
 #include "testbench/tests/datapath_random.h"

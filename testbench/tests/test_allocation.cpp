@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "testbench/check/scoreboard.h"
+#include "testbench/check/conformance/scoreboard.h"
 #include "testbench/machine/simulation.h"
 #include "testbench/tests/count_allocations.h"
 #include "testbench/tests/timed_checks.h"

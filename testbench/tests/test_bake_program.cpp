@@ -111,10 +111,11 @@ TEST_CASE("bake: the job fits the domain and finds its files from its own folder
 TEST_CASE("bake: overlapping base triangles are told of") {
     const TestFolder here;
     write_all(here.path() / "ball.toml", "[quadric]\nshape = \"sphere\"\nradius = 6\n");
-    CHECK_THAT(baked({"ball.toml", "--mesh", (source_folder() / "testbench/examples/jobs/teapot.toml").string(),
-                      "--output", "ball.pgm"},
-                     here.path()),
-               Contains("note: 6") && Contains("lie in several base triangles"));
+    CHECK_THAT(
+        baked({"ball.toml", "--mesh", (source_folder() / "testbench/examples/jobs/teapot.toml").string(),
+               "--output", "ball.pgm"},
+              here.path()),
+        Contains("note: 6") && Contains("lie in several base triangles"));
 }
 
 TEST_CASE("bake: hostile arguments are refused in one line") {

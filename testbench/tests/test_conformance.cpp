@@ -3,14 +3,14 @@
 #include <filesystem>
 #include <string>
 
-#include "testbench/check/end_to_end.h"
-#include "testbench/check/scoreboard.h"
-#include "testbench/check/setup_check.h"
-#include "testbench/machine/resolve_job.h"
-#include "testbench/machine/simulation.h"
+#include "testbench/check/conformance/end_to_end.h"
+#include "testbench/check/conformance/scoreboard.h"
+#include "testbench/check/conformance/setup_check.h"
 #include "testbench/input/map/built_in_maps.h"
 #include "testbench/input/map/read_height_map.h"
 #include "testbench/input/mesh/make_base_mesh.h"
+#include "testbench/machine/resolve_job.h"
+#include "testbench/machine/simulation.h"
 
 using namespace tessera;
 

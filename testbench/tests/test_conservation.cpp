@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "testbench/check/conservation.h"
+#include "testbench/check/transport/conservation.h"
 #include "testbench/tests/timed_checks.h"
 
 // Each equation of conservation.cpp: what its sides are in a run that can be counted by hand, and that each side counts

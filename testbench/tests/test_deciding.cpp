@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "testbench/check/golden_inputs.h"
-#include "testbench/check/scoreboard.h"
-#include "testbench/check/texel_borders.h"
+#include "testbench/check/conformance/golden_inputs.h"
+#include "testbench/check/conformance/scoreboard.h"
+#include "testbench/check/conformance/texel_borders.h"
 #include "testbench/tests/timed_checks.h"
 
 using namespace tessera;

@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "testbench/check/end_to_end.h"
-#include "testbench/check/surface_distance.h"
+#include "testbench/check/conformance/end_to_end.h"
 #include "testbench/common/parallel.h"
-#include "testbench/machine/resolve_job.h"
+#include "testbench/geometry/surface_distance.h"
 #include "testbench/input/map/built_in_maps.h"
 #include "testbench/input/mesh/built_in.h"
+#include "testbench/machine/resolve_job.h"
 #include "testbench/tests/scoreboard_cases.h"
 
 using namespace tessera;

@@ -14,10 +14,10 @@
 #include <utility>
 #include <vector>
 
-#include "testbench/check/conservation.h"
+#include "testbench/check/transport/conservation.h"
 #include "testbench/common/leave_process.h"
-#include "testbench/prove/faults/checked_run.h"
 #include "testbench/job/job_choices.h"
+#include "testbench/prove/faults/checked_run.h"
 #include "testbench/tests/timed_checks.h"
 
 // Every kind of fault at every place in both modes: who catches it. What nobody catches must have changed nothing.
@@ -312,7 +312,9 @@ void compare_with_document(const std::string& heading, const std::string& found)
         std::ofstream(path) << document;
         return;
     }
-    INFO("testbench/prove/faults/CATCHERS.md says something else; TESSERA_WRITE_CATCHERS=1 has the test write it");
+    INFO(
+        "testbench/prove/faults/CATCHERS.md says something else; TESSERA_WRITE_CATCHERS=1 has the test write "
+        "it");
     CHECK(document.substr(from, to - from) == found);
 }
 

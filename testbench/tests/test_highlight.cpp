@@ -1,10 +1,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "testbench/machine/bare_recursion.h"
 #include "testbench/benchmark/gouraud_error.h"
-#include "testbench/check/invariants.h"
-#include "testbench/check/scoreboard.h"
+#include "testbench/check/conformance/scoreboard.h"
+#include "testbench/check/mesh/invariants.h"
+#include "testbench/machine/bare_recursion.h"
 #include "testbench/tests/timed_checks.h"
 
 // The whole machine with a Highlight Test: its meshes, its cycles, and what it is for.

@@ -4,7 +4,7 @@
 #include <random>
 #include <string>
 
-#include "testbench/check/invariants.h"
+#include "testbench/check/mesh/invariants.h"
 #include "testbench/tests/emitted_mesh_maker.h"
 
 namespace tessera {

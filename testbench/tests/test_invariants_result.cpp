@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "testbench/check/invariants.h"
+#include "testbench/check/mesh/invariants.h"
 
 using namespace tessera;
 

@@ -1,9 +1,9 @@
 #include <catch2/catch.hpp>
 
-#include "testbench/machine/bare_recursion.h"
-#include "testbench/check/invariants.h"
-#include "testbench/check/scoreboard.h"
+#include "testbench/check/conformance/scoreboard.h"
+#include "testbench/check/mesh/invariants.h"
 #include "testbench/common/error.h"
+#include "testbench/machine/bare_recursion.h"
 #include "testbench/tests/timed_checks.h"
 
 // Designs at the ends of what a job may ask for: each emits the bare datapath's mesh, decided as the golden model

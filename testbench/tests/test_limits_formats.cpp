@@ -1,12 +1,12 @@
 #include <catch2/catch.hpp>
 
-#include "testbench/machine/bare_recursion.h"
 #include "testbench/common/error.h"
-#include "testbench/machine/resolve_job.h"
+#include "testbench/explore/widths/width_run.h"
 #include "testbench/job/validate_job.h"
+#include "testbench/machine/bare_recursion.h"
+#include "testbench/machine/resolve_job.h"
 #include "testbench/tests/datapath_random.h"
 #include "testbench/tests/timed_checks.h"
-#include "testbench/explore/widths/width_run.h"
 
 // The same machine with the narrowest and the widest formats, and with odd ones: no decision or value beyond its bound,
 // a closed mesh, and one mesh from both modes and from the bare datapath.

@@ -3,11 +3,11 @@
 #include <limits>
 
 #include "testbench/common/error.h"
-#include "testbench/machine/inputs.h"
+#include "testbench/explore/widths/width_run.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/job/read_job.h"
 #include "testbench/job/validate_job.h"
-#include "testbench/explore/widths/width_run.h"
+#include "testbench/machine/inputs.h"
 
 // Every key of a job at the ends of its range, beyond them, and at what no number should be: a message that
 // names it, or a mesh like any other.

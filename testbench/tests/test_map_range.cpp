@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "testbench/machine/resolve_job.h"
-#include "testbench/machine/setup.h"
 #include "testbench/input/map/built_in_maps.h"
 #include "testbench/input/map/map_displacement.h"
 #include "testbench/input/mesh/built_in.h"
+#include "testbench/machine/resolve_job.h"
+#include "testbench/machine/setup.h"
 
 // map.range on a map of 2 x 2 texels of 16-bit metres, 1000 to 1600 of 65535.
 

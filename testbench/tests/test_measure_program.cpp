@@ -152,7 +152,8 @@ TEST_CASE("compare refuses what is no run, and leaves nothing then") {
 TEST_CASE("compare tells Crater Lake's error in metres") {
     const TestFolder here;
     const auto run = [&](const std::string& name, const std::vector<std::string>& more) {
-        std::vector<std::string> arguments{(source_folder() / "testbench/examples/jobs" / (name + ".toml")).string()};
+        std::vector<std::string> arguments{
+            (source_folder() / "testbench/examples/jobs" / (name + ".toml")).string()};
         arguments.insert(arguments.end(), more.begin(), more.end());
         run_job(here.path(), arguments);
         return compare(here.path(), "runs/" + name);

@@ -3,10 +3,10 @@
 #include <tuple>
 #include <vector>
 
-#include "testbench/machine/bare_recursion.h"
-#include "testbench/check/invariants.h"
-#include "testbench/check/scoreboard.h"
+#include "testbench/check/conformance/scoreboard.h"
+#include "testbench/check/mesh/invariants.h"
 #include "testbench/common/error.h"
+#include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/simulation.h"
 #include "testbench/tests/mesh_keys.h"

@@ -268,7 +268,8 @@ TEST_CASE("the teapot's donuts take a second map") {
     const TestFolder here;
     const auto teapot = [&](const std::string& name, std::vector<std::string> settings) {
         std::vector<std::string> arguments = arguments_of(settings);
-        arguments.insert(arguments.begin() + 1, (source_folder() / "testbench/examples/jobs/teapot.toml").string());
+        arguments.insert(arguments.begin() + 1,
+                         (source_folder() / "testbench/examples/jobs/teapot.toml").string());
         arguments.insert(arguments.end(), {"--set", "output.folder=runs/" + name, "--set",
                                            "check.end_to_end=false", "--set", "output.obj=false"});
         const ProgramEnd end = run_tessera(arguments, here.path());

@@ -3,11 +3,11 @@
 #include <set>
 #include <string>
 
+#include "testbench/check/mesh/invariants.h"
+#include "testbench/job/read_job.h"
 #include "testbench/machine/bare_recursion.h"
-#include "testbench/check/invariants.h"
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/resolve_job.h"
-#include "testbench/job/read_job.h"
 #include "testbench/prove/random_machines/lineage_check.h"
 #include "testbench/prove/random_machines/random_case.h"
 #include "testbench/tests/program_runner.h"

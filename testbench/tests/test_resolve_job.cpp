@@ -3,14 +3,14 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
-#include "testbench/check/golden_job.h"
+#include "testbench/check/conformance/golden_job.h"
 #include "testbench/common/error.h"
-#include "testbench/machine/resolve_job.h"
-#include "testbench/machine/setup.h"
-#include "testbench/job/job_keys.h"
 #include "testbench/input/map/built_in_maps.h"
 #include "testbench/input/mesh/built_in.h"
 #include "testbench/input/mesh/obj_reader.h"
+#include "testbench/job/job_keys.h"
+#include "testbench/machine/resolve_job.h"
+#include "testbench/machine/setup.h"
 
 // What a job leaves to the program, by values derived by hand.
 

@@ -3,12 +3,12 @@
 
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/error.h"
-#include "testbench/machine/host_traffic.h"
-#include "testbench/job/dump_job.h"
-#include "testbench/job/frame_job.h"
 #include "testbench/input/map/built_in_maps.h"
 #include "testbench/input/mesh/built_in.h"
 #include "testbench/input/mesh/run_mesh.h"
+#include "testbench/job/dump_job.h"
+#include "testbench/job/frame_job.h"
+#include "testbench/machine/host_traffic.h"
 #include "testbench/output/report/ply_writer.h"
 #include "testbench/tests/program_runner.h"
 

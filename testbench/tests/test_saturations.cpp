@@ -2,8 +2,8 @@
 #include <cmath>
 #include <functional>
 
-#include "testbench/machine/bare_recursion.h"
 #include "testbench/common/error.h"
+#include "testbench/machine/bare_recursion.h"
 #include "testbench/output/report/saturation_figures.h"
 #include "testbench/tests/datapath_reference.h"
 #include "testbench/tests/timed_checks.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "modules/datapath/rectangle.h"
-#include "testbench/check/scoreboard.h"
+#include "testbench/check/conformance/scoreboard.h"
 #include "testbench/tests/scoreboard_cases.h"
 
 using namespace tessera;

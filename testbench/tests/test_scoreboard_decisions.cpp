@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "testbench/check/scoreboard.h"
+#include "testbench/check/conformance/scoreboard.h"
 #include "testbench/tests/scoreboard_cases.h"
 
 using namespace tessera;

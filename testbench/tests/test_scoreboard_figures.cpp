@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "testbench/check/scoreboard.h"
+#include "testbench/check/conformance/scoreboard.h"
 #include "testbench/tests/scoreboard_cases.h"
 
 using namespace tessera;

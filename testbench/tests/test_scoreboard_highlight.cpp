@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "testbench/check/error_bounds.h"
+#include "testbench/check/conformance/error_bounds.h"
 #include "testbench/tests/scoreboard_cases.h"
 
 // The scoreboard on the Highlight Test: what it lets pass, what it catches, and the bound it goes by.

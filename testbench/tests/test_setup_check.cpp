@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "modules/datapath/map_entry.h"
-#include "testbench/check/end_to_end.h"
-#include "testbench/check/setup_check.h"
+#include "testbench/check/conformance/end_to_end.h"
+#include "testbench/check/conformance/setup_check.h"
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/simulation.h"
 #include "testbench/output/report/conformance_report.h"

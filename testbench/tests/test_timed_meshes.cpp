@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "testbench/check/conformance/scoreboard.h"
 #include "testbench/machine/bare_recursion.h"
-#include "testbench/check/scoreboard.h"
 #include "testbench/tests/timed_checks.h"
 
 // Two modes, one mesh: whatever the timing, the stalls, the buffers and the queue's order, timed mode emits the bare

@@ -6,14 +6,14 @@
 #include <set>
 #include <tuple>
 
-#include "testbench/machine/bare_recursion.h"
-#include "testbench/common/error.h"
-#include "testbench/machine/inputs.h"
 #include "testbench/check/surface_error/height_field.h"
-#include "testbench/input/mesh/obj_reader.h"
+#include "testbench/common/error.h"
 #include "testbench/explore/thresholds/threshold_level.h"
 #include "testbench/explore/thresholds/tune.h"
 #include "testbench/explore/thresholds/tune_report.h"
+#include "testbench/input/mesh/obj_reader.h"
+#include "testbench/machine/bare_recursion.h"
+#include "testbench/machine/inputs.h"
 
 using namespace tessera;
 using Catch::Contains;

@@ -5,9 +5,9 @@
 #include <regex>
 #include <set>
 
+#include "testbench/output/trace/recorder.h"
 #include "testbench/tests/program_runner.h"
 #include "testbench/tests/vcd_file.h"
-#include "testbench/output/trace/recorder.h"
 
 using namespace tessera;
 using Catch::Contains;

@@ -2,12 +2,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "testbench/check/end_to_end.h"
-#include "testbench/check/invariants.h"
-#include "testbench/check/scoreboard.h"
+#include "testbench/check/conformance/end_to_end.h"
+#include "testbench/check/conformance/scoreboard.h"
+#include "testbench/check/mesh/invariants.h"
 #include "testbench/common/error.h"
-#include "testbench/tests/timed_checks.h"
 #include "testbench/explore/widths/widths_report.h"
+#include "testbench/tests/timed_checks.h"
 
 using namespace tessera;
 using namespace tessera::testing;

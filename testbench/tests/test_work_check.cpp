@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "testbench/check/conservation.h"
+#include "testbench/check/transport/conservation.h"
 #include "testbench/tests/timed_checks.h"
 
 // The work check over whole runs: nothing is lost, doubled or altered, down to what the rasteriser gets.

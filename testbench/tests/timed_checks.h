@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "testbench/check/conservation.h"
+#include "testbench/check/transport/conservation.h"
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/simulation.h"
 #include "testbench/tests/mesh_keys.h"

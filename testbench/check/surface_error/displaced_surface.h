@@ -4,9 +4,9 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "testbench/job/job.h"
 #include "testbench/input/map/map_displacement.h"
 #include "testbench/input/mesh/base_mesh.h"
+#include "testbench/job/job.h"
 
 namespace tessera {
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "testbench/common/error.h"
 #include "testbench/check/surface_error/texel_centres.h"
+#include "testbench/common/error.h"
 
 namespace tessera {
 namespace {

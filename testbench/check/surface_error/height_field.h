@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "testbench/input/map/height_map.h"
 #include "testbench/check/surface_error/displaced_surface.h"
+#include "testbench/input/map/height_map.h"
 #include "testbench/input/mesh/base_mesh.h"
 #include "testbench/run_folder/recorded_mesh.h"
 

@@ -10,13 +10,13 @@
 #include <optional>
 #include <thread>
 
-#include "testbench/check/nearest_triangle.h"
-#include "testbench/common/error.h"
-#include "testbench/common/parallel.h"
 #include "testbench/check/surface_error/mesh_samples.h"
 #include "testbench/check/surface_error/reference_lattice.h"
 #include "testbench/check/surface_error/reference_nearest.h"
 #include "testbench/check/surface_error/reference_to_mesh.h"
+#include "testbench/common/error.h"
+#include "testbench/common/parallel.h"
+#include "testbench/geometry/nearest_triangle.h"
 
 namespace tessera {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "testbench/check/nearest_triangle.h"
+#include "testbench/geometry/nearest_triangle.h"
 
 namespace tessera {
 namespace {

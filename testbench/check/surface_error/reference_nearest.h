@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "testbench/check/box_hierarchy.h"
 #include "testbench/check/surface_error/reference_lattice.h"
+#include "testbench/geometry/box_hierarchy.h"
 
 namespace tessera {
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
-#include "testbench/check/nearest_triangle.h"
 #include "testbench/check/surface_error/reference_lattice.h"
+#include "testbench/geometry/nearest_triangle.h"
 
 namespace tessera {
 

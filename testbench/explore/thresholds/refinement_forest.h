@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "modules/datapath/parameters.h"
+#include "testbench/explore/thresholds/texel_error.h"
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/emitted_mesh.h"
 #include "testbench/machine/setup.h"
-#include "testbench/explore/thresholds/texel_error.h"
 
 namespace tessera {
 

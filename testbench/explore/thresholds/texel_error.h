@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "modules/datapath/vertex.h"
-#include "testbench/machine/setup.h"
-#include "testbench/input/map/height_map.h"
 #include "testbench/check/surface_error/displaced_surface.h"
+#include "testbench/input/map/height_map.h"
+#include "testbench/machine/setup.h"
 #include "testbench/output/report/mesh_units.h"
 
 namespace tessera {

@@ -7,9 +7,9 @@
 #include <tuple>
 #include <vector>
 
-#include "testbench/machine/setup.h"
-#include "testbench/job/job.h"
 #include "testbench/explore/thresholds/refinement_forest.h"
+#include "testbench/job/job.h"
+#include "testbench/machine/setup.h"
 
 namespace tessera {
 

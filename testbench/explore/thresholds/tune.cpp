@@ -13,10 +13,10 @@
 #include <utility>
 
 #include "testbench/common/error.h"
-#include "testbench/machine/inputs.h"
-#include "testbench/input/mesh/obj_reader.h"
 #include "testbench/explore/thresholds/texel_error.h"
 #include "testbench/explore/thresholds/tuned_figures.h"
+#include "testbench/input/mesh/obj_reader.h"
+#include "testbench/machine/inputs.h"
 
 namespace tessera {
 

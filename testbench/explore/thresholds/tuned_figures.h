@@ -2,10 +2,10 @@
 #include <cstdint>
 #include <string>
 
-#include "testbench/machine/emitted_mesh.h"
-#include "testbench/machine/setup.h"
 #include "testbench/input/map/height_map.h"
 #include "testbench/input/mesh/base_mesh.h"
+#include "testbench/machine/emitted_mesh.h"
+#include "testbench/machine/setup.h"
 #include "testbench/run_folder/recorded_mesh.h"
 
 namespace tessera {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "testbench/check/golden_inputs.h"
+#include "testbench/check/conformance/golden_inputs.h"
 #include "testbench/input/map/map_displacement.h"
 #include "testbench/input/mesh/whole_periods.h"
 

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "golden/golden_model.h"
-#include "testbench/machine/setup.h"
-#include "testbench/job/job.h"
 #include "testbench/input/map/height_map.h"
 #include "testbench/input/mesh/base_mesh.h"
+#include "testbench/job/job.h"
+#include "testbench/machine/setup.h"
 
 namespace tessera {
 

@@ -13,9 +13,9 @@
 #include "modules/datapath/midpoint.h"
 #include "modules/datapath/tessellate.h"
 #include "modules/datapath/transform.h"
-#include "testbench/machine/bare_recursion.h"
-#include "testbench/check/scoreboard.h"
+#include "testbench/check/conformance/scoreboard.h"
 #include "testbench/common/error.h"
+#include "testbench/machine/bare_recursion.h"
 
 namespace tessera {
 

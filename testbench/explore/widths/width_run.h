@@ -2,12 +2,12 @@
 #include <array>
 #include <cstdint>
 
-#include "testbench/check/conformance_result.h"
-#include "testbench/check/end_to_end.h"
-#include "testbench/check/invariants.h"
-#include "testbench/check/texel_borders.h"
-#include "testbench/machine/setup.h"
+#include "testbench/check/conformance/conformance_result.h"
+#include "testbench/check/conformance/end_to_end.h"
+#include "testbench/check/conformance/texel_borders.h"
+#include "testbench/check/mesh/invariants.h"
 #include "testbench/explore/widths/exact_model.h"
+#include "testbench/machine/setup.h"
 
 namespace tessera {
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <algorithm>
 
-#include "testbench/job/job.h"
 #include "testbench/input/map/height_map.h"
+#include "testbench/job/job.h"
 
 namespace tessera {
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
-#include "testbench/job/job.h"
 #include "testbench/input/mesh/base_mesh.h"
+#include "testbench/job/job.h"
 
 namespace tessera {
 

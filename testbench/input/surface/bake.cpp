@@ -7,9 +7,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "testbench/common/error.h"
 #include "testbench/check/surface_error/displaced_surface.h"
 #include "testbench/check/surface_error/texel_centres.h"
+#include "testbench/common/error.h"
 #include "testbench/input/mesh/triangle_geometry.h"
 
 namespace tessera {

@@ -2,9 +2,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "testbench/job/job.h"
 #include "testbench/input/mesh/base_mesh.h"
 #include "testbench/input/surface/surface_file.h"
+#include "testbench/job/job.h"
 
 namespace tessera {
 

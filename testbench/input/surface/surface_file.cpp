@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "testbench/common/error.h"
-#include "testbench/job/toml_text.h"
 #include "testbench/input/surface/toml_fields.h"
+#include "testbench/job/toml_text.h"
 
 namespace tessera {
 namespace {

@@ -1,9 +1,9 @@
 #pragma once
 #include <filesystem>
 
+#include "testbench/job/job.h"
 #include "testbench/machine/emitted_mesh.h"
 #include "testbench/machine/setup.h"
-#include "testbench/job/job.h"
 
 namespace tessera {
 

@@ -3,12 +3,12 @@
 #include <string>
 #include <vector>
 
-#include "testbench/check/conformance_result.h"
-#include "testbench/check/end_to_end.h"
-#include "testbench/check/invariants.h"
-#include "testbench/check/read_check.h"
-#include "testbench/check/setup_check.h"
-#include "testbench/check/work_check.h"
+#include "testbench/check/conformance/conformance_result.h"
+#include "testbench/check/conformance/end_to_end.h"
+#include "testbench/check/conformance/setup_check.h"
+#include "testbench/check/mesh/invariants.h"
+#include "testbench/check/transport/read_check.h"
+#include "testbench/check/transport/work_check.h"
 #include "testbench/prove/faults/fault_report.h"
 
 namespace tessera {

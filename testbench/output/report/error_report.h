@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
-#include "testbench/job/job.h"
 #include "testbench/check/surface_error/measure_error.h"
+#include "testbench/job/job.h"
 #include "testbench/output/report/statistics.h"
 
 namespace tessera {

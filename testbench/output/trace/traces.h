@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "testbench/common/atomic_set.h"
-#include "testbench/machine/simulation.h"
 #include "testbench/job/job.h"
+#include "testbench/machine/simulation.h"
 #include "testbench/output/trace/trace_window.h"
 
 namespace tessera {

@@ -3,13 +3,13 @@
 #include <string>
 #include <vector>
 
-#include "testbench/check/invariants.h"
-#include "testbench/check/scoreboard.h"
-#include "testbench/check/work_check.h"
+#include "testbench/check/conformance/scoreboard.h"
+#include "testbench/check/mesh/invariants.h"
+#include "testbench/check/transport/work_check.h"
 #include "testbench/common/error.h"
+#include "testbench/machine/simulation.h"
 #include "testbench/prove/faults/checked_units.h"
 #include "testbench/prove/faults/fault_report.h"
-#include "testbench/machine/simulation.h"
 
 namespace tessera {
 

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include "testbench/common/error.h"
-#include "testbench/prove/faults/memory_fault.h"
-#include "testbench/prove/faults/stream_fault.h"
 #include "testbench/job/job_choices.h"
 #include "testbench/job/nearest_name.h"
+#include "testbench/prove/faults/memory_fault.h"
+#include "testbench/prove/faults/stream_fault.h"
 
 namespace tessera {
 

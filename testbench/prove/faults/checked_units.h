@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "modules/unit_factory.h"
-#include "testbench/check/read_check.h"
+#include "testbench/check/transport/read_check.h"
 #include "testbench/prove/faults/fault_trigger.h"
 
 namespace tessera {

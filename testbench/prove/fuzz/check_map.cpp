@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "testbench/common/error.h"
+#include "testbench/input/map/read_height_map.h"
 #include "testbench/prove/fuzz/fuzz_target.h"
 #include "testbench/prove/fuzz/memory_file.h"
-#include "testbench/input/map/read_height_map.h"
 
 namespace tessera::fuzz {
 

@@ -2,9 +2,9 @@
 #include <string>
 
 #include "testbench/common/error.h"
-#include "testbench/prove/fuzz/fuzz_target.h"
 #include "testbench/input/surface/bake.h"
 #include "testbench/input/surface/surface_file.h"
+#include "testbench/prove/fuzz/fuzz_target.h"
 
 namespace tessera::fuzz {
 

@@ -1,12 +1,12 @@
 #include <string>
 
 #include "testbench/common/error.h"
-#include "testbench/prove/fuzz/fuzz_target.h"
 #include "testbench/job/dump_job.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/job/read_job.h"
 #include "testbench/job/toml_text.h"
 #include "testbench/job/validate_job.h"
+#include "testbench/prove/fuzz/fuzz_target.h"
 
 namespace tessera::fuzz {
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <string>
 
-#include "testbench/prove/fuzz/byte_source.h"
-#include "testbench/prove/fuzz/fuzz_target.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/job/validate_job.h"
+#include "testbench/prove/fuzz/byte_source.h"
+#include "testbench/prove/fuzz/fuzz_target.h"
 
 namespace tessera::fuzz {
 

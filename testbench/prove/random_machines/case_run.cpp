@@ -2,10 +2,10 @@
 
 #include <fmt/core.h>
 
+#include "testbench/check/conformance/scoreboard.h"
+#include "testbench/check/conformance/setup_check.h"
+#include "testbench/check/mesh/invariants.h"
 #include "testbench/machine/bare_recursion.h"
-#include "testbench/check/invariants.h"
-#include "testbench/check/scoreboard.h"
-#include "testbench/check/setup_check.h"
 #include "testbench/machine/simulation.h"
 #include "testbench/prove/random_machines/lineage_check.h"
 

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "testbench/machine/bare_recursion.h"
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/error.h"
 #include "testbench/common/random.h"
+#include "testbench/input/mesh/obj_reader.h"
 #include "testbench/job/dump_job.h"
 #include "testbench/job/validate_job.h"
-#include "testbench/input/mesh/obj_reader.h"
+#include "testbench/machine/bare_recursion.h"
 #include "testbench/prove/random_machines/random_job.h"
 
 namespace tessera {

@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <string>
 
-#include "testbench/machine/setup.h"
-#include "testbench/job/job.h"
 #include "testbench/input/map/height_map.h"
 #include "testbench/input/mesh/base_mesh.h"
+#include "testbench/job/job.h"
+#include "testbench/machine/setup.h"
 #include "testbench/prove/random_machines/random_map.h"
 #include "testbench/prove/random_machines/random_mesh.h"
 

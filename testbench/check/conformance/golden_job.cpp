@@ -1,0 +1,115 @@
+#include "testbench/check/conformance/golden_job.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "testbench/machine/resolve_job.h"
+
+namespace tessera {
+
+namespace {
+
+glm::dvec3 vector(const std::array<double, 3>& a) {
+    return {a[0], a[1], a[2]};
+}
+
+/// The map values that displacement.scale spans, by map.range.
+std::array<double, 2> span_of(const Job& job, const HeightMap& map) {
+    if (job.map.range.kind == MapRange::Kind::full)
+        return {0, 1};
+    if (job.map.range.kind == MapRange::Kind::given)
+        return {job.map.range.low / map.source_units, job.map.range.high / map.source_units};
+    const auto [low, high] = std::minmax_element(map.values.begin(), map.values.end());
+    return {*low, *high};
+}
+
+/// The displacement in model units that a map value means.
+double displacement_of(double value, const Job& job, const HeightMap& map) {
+    const auto [low, high] = span_of(job, map);
+    const double part = high > low ? (value - low) / (high - low) : 0;
+    return job.displacement.bias + job.displacement.scale * part;
+}
+
+golden::Scene make_scene(const Job& job, const HeightMap& map, const ModelScale& model_scale) {
+    golden::Scene scene;
+    const Job::Camera& camera = job.camera;
+    scene.camera = {vector(camera.eye), vector(camera.target),
+                    vector(camera.up),  camera.field_of_view,
+                    camera.near_plane,  {camera.viewport_width, camera.viewport_height}};
+    scene.placement = {model_scale.centre, model_scale.scale};
+    scene.lowest = displacement_of(map.range_low, job, map);
+    scene.highest = displacement_of(map.range_high, job, map);
+    scene.highest_code = std::ldexp(1.0, static_cast<int>(job.formats.displacement_bits)) - 1;
+
+    const Job::Tests& tests = job.tests;
+    scene.normal_threshold = tests.normal_threshold;
+    scene.summed_height_threshold = tests.summed_height_threshold;
+    scene.area = tests.summed_height_unit == SummedHeightUnit::area;
+    scene.view_threshold = tests.view_threshold;
+    scene.generation_limit = static_cast<int>(tests.generation_limit);
+    scene.highlight_angle = tests.highlight_angle;
+    scene.highlight_normal_threshold = tests.highlight_normal_threshold;
+    scene.enabled = {tests.normal,    tests.summed_height, tests.view,
+                     tests.tex_coord, tests.generation,    tests.highlight};
+    scene.diagonal = job.hardware.triangulation == Triangulation::first    ? golden::Diagonal::first
+                     : job.hardware.triangulation == Triangulation::second ? golden::Diagonal::second
+                                                                           : golden::Diagonal::shorter;
+    scene.light = vector(job.hardware.light);
+    return scene;
+}
+
+golden::AddressMode address_mode(Addressing mode) {
+    return mode == Addressing::repeat ? golden::AddressMode::repeat : golden::AddressMode::clamp;
+}
+
+double code_at(std::size_t texel, const HeightMap& map, const golden::Scene& scene) {
+    return golden::code_of(map.values[texel], map.range_low, map.range_high, scene.highest_code);
+}
+
+golden::Map make_map(const Job& job, const HeightMap& height_map, const BaseMesh& mesh,
+                     const golden::Scene& scene, double scale_per_code) {
+    std::vector<double> codes;
+    codes.reserve(height_map.values.size());
+    for (std::size_t texel = 0; texel < height_map.values.size(); ++texel)
+        codes.push_back(std::floor(code_at(texel, height_map, scene) + 0.5));
+    golden::Map map(height_map.width, height_map.height, address_mode(job.map.address_u),
+                    address_mode(job.map.address_v), codes);
+    const glm::dvec2 map_size(mesh.texture_scale.mean_u, mesh.texture_scale.mean_v);
+    map.derive_normals(scale_per_code,
+                       scene.placement.scale * map_size / glm::dvec2(height_map.width, height_map.height));
+    return map;
+}
+
+const Job& resolved(const Job& job) {
+    require_resolved(job, "GoldenJob");
+    return job;
+}
+
+}  // namespace
+
+GoldenJob::GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& height_map,
+                     const ModelScale& model_scale)
+    : job_(resolved(job)),
+      mesh_(mesh),
+      height_map_(height_map),
+      scene_(make_scene(job_, height_map, model_scale)),
+      parameters_(golden::make_parameters(scene_)),
+      map_(make_map(job_, height_map, mesh, scene_, parameters_.scale)) {}
+
+golden::Vertex GoldenJob::vertex(std::uint32_t index) const {
+    const BaseVertex& given = mesh_.vertices[index];
+    golden::Vertex vertex;
+    vertex.position = given.position;
+    vertex.normal = given.normal;
+    vertex.tangent = given.tangent;
+    vertex.handedness = given.handedness < 0 ? -1 : 1;
+    return golden::place_vertex(vertex, given.texture, scene_.placement, map_);
+}
+
+double GoldenJob::unrounded_code(std::size_t texel) const {
+    return code_at(texel, height_map_, scene_);
+}
+
+}  // namespace tessera

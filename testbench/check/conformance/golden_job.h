@@ -1,0 +1,46 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+#include "golden/golden_setup.h"
+#include "testbench/input/map/height_map.h"
+#include "testbench/input/mesh/base_mesh.h"
+#include "testbench/job/job.h"
+#include "testbench/machine/setup.h"
+
+namespace tessera {
+
+/// A job, its mesh and its map as the golden model is told of them: field by field, nothing of the host's but where it
+/// puts the model in the world (ModelScale), which is its own to choose. What the host made of the same job is judged
+/// against this (setup_check.h), and golden's own run starts here (end_to_end.h).
+///
+/// The map's codes are golden's own, of the width that the job asks for: what that width costs is for
+/// `tessera widths` to say. Memory: 12 bytes per texel.
+class GoldenJob {
+  public:
+    /// `job` must be resolved (resolve_job.h), `mesh` and `height_map` must outlive this.
+    GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& height_map,
+              const ModelScale& model_scale);
+
+    const Job& job() const { return job_; }
+    const BaseMesh& mesh() const { return mesh_; }
+    const golden::Scene& scene() const { return scene_; }
+    const golden::Parameters& parameters() const { return parameters_; }
+    const golden::Map& map() const { return map_; }
+
+    /// A vertex of the base mesh, placed: the first five members.
+    golden::Vertex vertex(std::uint32_t index) const;
+
+    /// The code of a texel of the map, before it is rounded.
+    double unrounded_code(std::size_t texel) const;
+
+  private:
+    Job job_;
+    const BaseMesh& mesh_;
+    const HeightMap& height_map_;
+    golden::Scene scene_;
+    golden::Parameters parameters_;
+    golden::Map map_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,87 @@
+#pragma once
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "modules/datapath/format.h"
+#include "testbench/check/conformance/setup_check.h"
+
+/// For setup_check.cpp and setup_tables.cpp alone.
+namespace tessera::setup_check {
+
+/// Where hardware minus golden must lie, in LSB.
+struct Bound {
+    double low, high;
+    bool low_allowed = true;
+};
+inline constexpr Bound exact{0, 0};
+inline constexpr Bound to_nearest{-0.5, 0.5};
+inline constexpr Bound rounded_down{-1, 0, false};
+
+/// Relative to the terms of a sum in double precision.
+inline constexpr double double_rounding = 0x1p-48;
+
+class Judge {
+  public:
+    Judge(SetupResult& result, const char* name, const char* description)
+        : result_(result), part_(result.parts.size()) {
+        result.parts.push_back({name, description});
+    }
+
+    /// `golden` in LSB; `leeway`: what golden itself may be off by. `name()` is called for the first that is wrong.
+    template <typename Name>
+    void judge(Name name, double hardware, double golden, const Bound& bound, double leeway = 0) {
+        SetupResult::Part& part = result_.parts[part_];
+        ++part.compared;
+        const double error = hardware - golden;
+        if (const double most = std::max(-bound.low, bound.high) + leeway; most > 0)
+            part.worst_ratio = std::max(part.worst_ratio, std::abs(error) / most);
+        if ((bound.low_allowed ? error >= bound.low - leeway : error > bound.low - leeway) &&
+            error <= bound.high + leeway)
+            return;
+        ++part.wrong;
+        if (result_.first_wrong.empty())
+            result_.first_wrong =
+                fmt::format("{}: {} = {:.17g}, golden has {:.17g}, allowed is {}{:.17g} to {:.17g}",
+                            part.name, name(), hardware, golden, bound.low_allowed ? "" : "above ",
+                            golden + bound.low - leeway, golden + bound.high + leeway);
+    }
+    void judge(const char* name, double hardware, double golden, const Bound& bound, double leeway = 0) {
+        judge([&] { return name; }, hardware, golden, bound, leeway);
+    }
+    /// Soundness of something that the host chooses.
+    template <typename Text>
+    void require(bool sound, Text text) {
+        SetupResult::Part& part = result_.parts[part_];
+        ++part.compared;
+        if (sound)
+            return;
+        ++part.wrong;
+        if (result_.first_wrong.empty())
+            result_.first_wrong = fmt::format("{}: {}", part.name, text());
+    }
+
+  private:
+    SetupResult& result_;
+    std::size_t part_;
+};
+
+inline double number(bool value) {
+    return value ? 1 : 0;
+}
+
+template <typename Integer>
+double number(Integer value) {
+    return static_cast<double>(value);
+}
+
+inline double lsb_per_unit(const datapath::Format& format) {
+    return std::ldexp(1.0, format.fraction);
+}
+
+/// Every entry of the three tables.
+void check_tables(const Setup& setup, const GoldenJob& golden, Host& host, SetupResult& result);
+
+}  // namespace tessera::setup_check

@@ -1,0 +1,162 @@
+#include <cmath>
+#include <vector>
+
+#include "modules/datapath/map_entry.h"
+#include "testbench/check/conformance/setup_judge.h"
+
+namespace tessera::setup_check {
+
+namespace {
+
+using datapath::Format;
+using datapath::Registers;
+using datapath::TableLayout;
+
+using Socket = tlm_utils::simple_initiator_socket<Host>;
+
+/// A table as its memory holds it, row by row.
+class TableReader {
+  public:
+    TableReader(Socket& socket, const TableLayout& layout)
+        : socket_(socket), layout_(layout), bytes_(std::size_t{layout.columns} * layout.entry_bytes) {}
+
+    bool read_row(std::uint32_t row) {
+        tlm::tlm_generic_payload payload;
+        payload.set_command(tlm::TLM_READ_COMMAND);
+        payload.set_address(layout_.address(0, row));
+        payload.set_data_ptr(bytes_.data());
+        payload.set_data_length(static_cast<unsigned>(bytes_.size()));
+        payload.set_streaming_width(payload.get_data_length());
+        return socket_->transport_dbg(payload) == bytes_.size();
+    }
+    std::uint64_t entry(std::uint32_t column) const {
+        std::uint64_t value = 0;
+        for (std::uint32_t k = layout_.entry_bytes; k-- > 0;)
+            value = value << 8 | bytes_[std::size_t{column} * layout_.entry_bytes + k];
+        return value;
+    }
+
+  private:
+    Socket& socket_;
+    const TableLayout& layout_;
+    std::vector<unsigned char> bytes_;
+};
+
+class TableCheck {
+  public:
+    TableCheck(const Setup& setup, const GoldenJob& golden, Host& host, SetupResult& result)
+        : registers_(setup.registers), golden_(golden), host_(host), result_(result) {}
+
+    void run() {
+        check_displacement_map();
+        check_normal_map();
+        check_summed_height_table();
+    }
+
+  private:
+    template <typename Check>
+    void each_entry(Judge& judge, Socket& socket, const TableLayout& layout, int columns, int rows,
+                    Check check) {
+        // Another layout has been found wrong with the registers.
+        if (layout.columns != number(columns) || layout.rows != number(rows) || layout.entry_bytes > 8)
+            return;
+        TableReader table(socket, layout);
+        for (std::uint32_t y = 0; y < layout.rows; ++y) {
+            const bool there = table.read_row(y);
+            if (!there) {
+                judge.require(false, [&] { return fmt::format("row {} is not in the memory", y); });
+                return;
+            }
+            for (std::uint32_t x = 0; x < layout.columns; ++x)
+                check(x, y, table.entry(x));
+        }
+    }
+
+    std::size_t texel_of(std::uint32_t x, std::uint32_t y) const {
+        return std::size_t{y} * static_cast<std::size_t>(golden_.map().width()) + x;
+    }
+
+    void check_displacement_map() {
+        Judge judge(result_, "displacement map", "every code, to nearest");
+        const golden::Map& map = golden_.map();
+        each_entry(judge, host_.displacement_map, registers_.displacement_map, map.width(), map.height(),
+                   [&](std::uint32_t x, std::uint32_t y, std::uint64_t code) {
+                       const double golden = golden_.unrounded_code(texel_of(x, y));
+                       judge.judge([&] { return fmt::format("({}, {})", x, y); }, number(code), golden,
+                                   to_nearest, double_rounding * golden);
+                   });
+    }
+
+    void check_normal_map() {
+        Judge judge(result_, "normal map",
+                    "every component; slopes within the rounding of S, then to nearest");
+        const golden::Map& map = golden_.map();
+        const Format& format = registers_.formats.normal;
+        const double lsb = lsb_per_unit(format);
+        const double full = std::abs(golden_.parameters().scale) * (golden_.scene().highest_code + 1) *
+                            lsb_per_unit(registers_.formats.position);
+        const double slope_error = (full > 0 ? 0.5 / full : 0) + double_rounding;
+        each_entry(judge, host_.normal_map, registers_.normal_map, map.width(), map.height(),
+                   [&](std::uint32_t x, std::uint32_t y, std::uint64_t entry) {
+                       const glm::dvec2 slope = map.slope(texel_of(x, y));
+                       const datapath::Direction n = datapath::unpack_normal(entry, format.bits);
+                       const NormalRange range(slope, slope_error);
+                       const auto component = [&](const char* name, double hardware, double low,
+                                                  double high) {
+                           const double middle = (low + high) / 2 * lsb, half = (high - low) / 2 * lsb;
+                           judge.judge([&] { return fmt::format("({}, {}).{}", x, y, name); }, hardware,
+                                       middle, {-0.5 - half, 0.5 + half}, double_rounding * lsb);
+                       };
+                       component("x", n.x, range.low.x, range.high.x);
+                       component("y", n.y, range.low.y, range.high.y);
+                       component("z", n.z, range.low.z, range.high.z);
+                   });
+    }
+
+    /// The components of normalise(-a, -b, 1) where a and b are off by up to `error` of themselves. The first
+    /// falls with a and shrinks with |b|; the second likewise; the third shrinks with both.
+    struct NormalRange {
+        NormalRange(const glm::dvec2& slope, double error) {
+            const glm::dvec2 least = glm::abs(slope) * (1 - error), most = glm::abs(slope) * (1 + error);
+            const auto part = [](double along, double across) {
+                return along / std::sqrt(1 + along * along + across * across);
+            };
+            const auto signed_range = [&](double s, double least_along, double most_along,
+                                          double least_across, double most_across, double& from, double& to) {
+                const double small = part(std::max(least_along, 0.0), most_across);
+                const double large = part(most_along, std::max(least_across, 0.0));
+                from = s > 0 ? -large : small;
+                to = s > 0 ? -small : large;
+            };
+            signed_range(slope.x, least.x, most.x, least.y, most.y, low.x, high.x);
+            signed_range(slope.y, least.y, most.y, least.x, most.x, low.y, high.y);
+            low.z = 1 / std::sqrt(1 + glm::dot(most, most));
+            high.z = 1 / std::sqrt(1 + glm::dot(least, least));
+        }
+        glm::dvec3 low{0}, high{0};
+    };
+
+    void check_summed_height_table() {
+        Judge judge(result_, "summed height table", "every sum of codes, exact modulo 2^bits");
+        const golden::Map& map = golden_.map();
+        const auto mask = static_cast<std::uint64_t>(registers_.formats.summed_height.highest);
+        each_entry(judge, host_.summed_height_table, registers_.summed_height_table, map.width() + 1,
+                   map.height() + 1, [&](std::uint32_t x, std::uint32_t y, std::uint64_t sum) {
+                       judge.judge([&] { return fmt::format("({}, {})", x, y); }, number(sum),
+                                   number(map.sum({0, 0, x, y}) & mask), exact);
+                   });
+    }
+
+    const Registers& registers_;
+    const GoldenJob& golden_;
+    Host& host_;
+    SetupResult& result_;
+};
+
+}  // namespace
+
+void check_tables(const Setup& setup, const GoldenJob& golden, Host& host, SetupResult& result) {
+    TableCheck(setup, golden, host, result).run();
+}
+
+}  // namespace tessera::setup_check

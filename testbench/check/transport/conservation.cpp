@@ -1,0 +1,152 @@
+#include "testbench/check/transport/conservation.h"
+
+#include <string>
+#include <utility>
+
+namespace tessera {
+
+namespace {
+
+class Equations {
+  public:
+    void add(std::string name, std::uint64_t left, std::uint64_t right) {
+        list_.push_back({std::move(name), left, right});
+    }
+    std::vector<Conservation> take() { return std::move(list_); }
+
+  private:
+    std::vector<Conservation> list_;
+};
+
+std::uint64_t items(const Unit& unit) {
+    return unit.activity().items_in();
+}
+
+/// Of the Tessellation Tests units, however many: what `figure` says of each, summed.
+template <class Figure>
+std::uint64_t sum_over_tests(const Pipeline& pipeline, Figure figure) {
+    std::uint64_t sum = 0;
+    for (const TessellationTests& tests : pipeline.tessellation_tests)
+        sum += figure(tests);
+    return sum;
+}
+
+void add_triangles(Equations& list, const Simulation& simulation) {
+    const Pipeline& p = simulation.pipeline;
+    const auto& counts = p.pass_or_tessellate.counts();
+    const auto& made = p.tessellation.made_into();
+    const std::uint64_t rounds = counts.passes + counts.normal_passes;
+    const std::uint64_t cut = made[1] + made[2] + made[3] + made[4];
+    list.add("triangles taken by get_triangle = decided",
+             p.get_triangle.host_triangles() + p.get_triangle.queue_triangles(), rounds);
+    list.add("triangles taken by get_triangle from the host = base triangles",
+             p.get_triangle.host_triangles(), simulation.host.sent());
+    list.add("children of tessellation = taken by triangle_queue", p.tessellation.children(),
+             p.triangle_queue.taken());
+    list.add("taken by triangle_queue = by get_triangle from it", p.triangle_queue.taken(),
+             p.get_triangle.queue_triangles());
+    list.add("triangles cut by tessellation + finished = decided", cut + counts.finished, rounds);
+    list.add("triangles sent round for normals = decided for normals", made[1], counts.normal_passes);
+    list.add("finished = base triangles + edges split", counts.finished,
+             p.get_triangle.host_triangles() + counts.edges_split);
+    list.add("finished = emitted", counts.finished, simulation.monitor.mesh.triangles.size());
+    list.add("taken by the rasteriser = finished - culled", simulation.rasteriser.triangles(),
+             counts.finished - counts.culled);
+}
+
+/// Vertices that go to Tessellation Tests: of three units, each takes those that its edge joins.
+std::uint64_t bumps(const Pipeline& p, std::uint64_t vertices) {
+    return p.tessellation_tests.size() == 1 ? vertices : 2 * vertices;
+}
+
+void add_reads(Equations& list, const Pipeline& p, std::uint64_t vertices, std::uint64_t edges) {
+    list.add("reads of displace_vertex = vertices and edges", p.displacement_map_reads(), vertices + edges);
+    list.add("reads of normal_test = vertices and edges", p.normal_map_reads(), bumps(p, vertices) + edges);
+    list.add("positions of transform = vertices and edges", p.transform.positions(), vertices + edges);
+}
+
+void add_timed(Equations& list, const Simulation& simulation, std::uint64_t vertices, std::uint64_t edges) {
+    const Pipeline& p = simulation.pipeline;
+    const auto& counts = p.pass_or_tessellate.counts();
+    const std::uint64_t rounds = counts.passes + counts.normal_passes;
+    list.add("triangles in get_triangle = decided", items(p.get_triangle), rounds);
+    list.add("triangles in pass_or_tessellate = decided", items(p.pass_or_tessellate), rounds);
+    list.add("triangles in triangle_queue = taken by it", items(p.triangle_queue), p.triangle_queue.taken());
+    list.add("triangles in lighting = finished - culled", items(p.lighting), counts.finished - counts.culled);
+
+    // along the geometry branch: a base triangle's vertices, all edges, each new vertex' normal
+    const std::uint64_t parts = p.get_triangle.parts_sent();
+    list.add("parts in calculate_new_p = sent by get_triangle", items(p.calculate_new_p), parts);
+    list.add("parts in displace_vertex = sent by get_triangle", items(p.displace_vertex), parts);
+    list.add("parts in transform = sent by get_triangle", items(p.transform), parts);
+    list.add("parts taken from transform = sent by get_triangle", p.pass_or_tessellate.from_transform.taken(),
+             parts);
+    list.add("positions and normals of transform = parts", p.transform.positions() + p.transform.normals(),
+             parts);
+
+    // along the tests: vertices end in the Normal Test
+    const auto tests = [&](auto figure) { return sum_over_tests(p, figure); };
+    list.add("parts in calculate_new_u = vertices and edges",
+             tests([](const auto& t) { return items(t.calculate_new_u); }), bumps(p, vertices) + edges);
+    list.add("parts in normal_test = vertices and edges",
+             tests([](const auto& t) { return items(t.normal_test); }), bumps(p, vertices) + edges);
+    list.add("edges in tex_coord_test = edges", tests([](const auto& t) { return items(t.tex_coord_test); }),
+             edges);
+    list.add("edges in summed_height_test = edges",
+             tests([](const auto& t) { return items(t.summed_height_test); }), edges);
+    list.add("edges in view_test = edges", tests([](const auto& t) { return items(t.view_test); }), edges);
+    list.add("vertices taken by view_test = vertices, once a unit",
+             tests([](const auto& t) { return t.view_test.from_transform.taken(); }),
+             vertices * p.tessellation_tests.size());
+    std::uint64_t joined = 0;
+    for (const StreamInput<TestedEdge>& input : p.pass_or_tessellate.from_tessellation_tests)
+        joined += input.taken();
+    list.add("edges taken from collect_tests = edges", joined, edges);
+    list.add("edges in collect_tests = edges", tests([](const auto& t) { return items(t.collect_tests); }),
+             edges);
+
+    list.add("entries of displacement_map = read by displace_vertex", p.displacement_map.transactions(),
+             p.displacement_map_reads());
+    list.add("entries of normal_map = read by normal_test", p.normal_map.transactions(),
+             p.normal_map_reads());
+    list.add("entries of summed_height_table = read by summed_height_test",
+             p.summed_height_table.transactions(), p.summed_height_table_reads());
+    list.add("requests to displacement_map = vertices and edges", items(p.displacement_map),
+             vertices + edges);
+    list.add("requests to normal_map = vertices and edges", items(p.normal_map), bumps(p, vertices) + edges);
+    list.add("requests to summed_height_table = three an edge, if it tests", items(p.summed_height_table),
+             simulation.setup.registers.tests.summed_height_test ? 3 * edges : 0);
+
+    list.add("triangles spilled = come back", p.triangle_queue.spilled(), p.triangle_queue.refilled());
+    list.add("requests to off_chip_memory = out and back", items(p.off_chip_memory),
+             2 * p.triangle_queue.spilled());
+    list.add("bytes read from off_chip_memory = written", p.off_chip_memory.bytes_read(),
+             p.off_chip_memory.bytes_written());
+}
+
+}  // namespace
+
+std::vector<Conservation> conservation(const Simulation& simulation) {
+    Equations list;
+    const Pipeline& p = simulation.pipeline;
+    const std::uint64_t edges = 3 * p.pass_or_tessellate.counts().passes;
+    const std::uint64_t vertices = 3 * p.get_triangle.host_triangles();
+    add_triangles(list, simulation);
+    add_reads(list, p, vertices, edges);
+    if (simulation.setup.design.transport == Transport::non_blocking)
+        add_timed(list, simulation, vertices, edges);
+    return list.take();
+}
+
+WorkResult work_result(const WorkCheck& check, const Simulation& simulation) {
+    WorkResult result = check.result();
+    for (const Conservation& equation : conservation(simulation)) {
+        ++result.equations;
+        if (!equation.holds() && result.violations++ == 0)
+            result.first_violation = equation.name + ": " + std::to_string(equation.left) + " and " +
+                                     std::to_string(equation.right);
+    }
+    return result;
+}
+
+}  // namespace tessera

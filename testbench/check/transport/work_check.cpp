@@ -1,0 +1,170 @@
+#include "testbench/check/transport/work_check.h"
+
+#include <fmt/core.h>
+
+#include "modules/datapath/cull.h"
+#include "modules/datapath/light.h"
+#include "modules/datapath/tessellate.h"
+#include "modules/datapath/transform.h"
+
+namespace tessera {
+
+namespace {
+
+class Hash {
+  public:
+    void add(std::uint64_t word) {
+        state_ = (state_ ^ word) * 0x9e3779b97f4a7c15u;
+        state_ ^= state_ >> 32;
+    }
+    void add(std::int32_t high, std::int32_t low) {
+        add(std::uint64_t{static_cast<std::uint32_t>(high)} << 32 | static_cast<std::uint32_t>(low));
+    }
+    std::uint64_t value() const { return state_; }
+
+  private:
+    std::uint64_t state_ = 0x243f6a8885a308d3u;
+};
+
+void add_screen(Hash& hash, const datapath::ScreenPosition& screen) {
+    hash.add(screen.x, screen.y);
+    hash.add(screen.w, screen.in_front ? 1 : 0);
+}
+
+/// known: P', N', P's count, too. N's is checked when the triangle is finished.
+void add_vertex(Hash& hash, const datapath::Vertex& v, bool known) {
+    hash.add(v.position.x, v.position.y);
+    hash.add(v.position.z, v.handedness);
+    hash.add(v.normal.x, v.normal.y);
+    hash.add(v.normal.z, v.tangent.x);
+    hash.add(v.tangent.y, v.tangent.z);
+    hash.add(std::uint64_t{v.texture.u} << 32 | v.texture.v);
+    hash.add(v.generation, known ? 1 : 0);
+    if (!known)
+        return;
+    hash.add(v.displaced.x, v.displaced.y);
+    hash.add(v.displaced.z, v.displaced_normal.x);
+    hash.add(v.displaced_normal.y, v.displaced_normal.z);
+    add_screen(hash, v.screen);
+}
+
+/// As it comes to be decided: `stopped_by` is yet to be found.
+std::uint64_t hash_to_decide(const datapath::Triangle& triangle, unsigned unknown_vertices) {
+    Hash hash;
+    for (unsigned k = 0; k < 3; ++k)
+        add_vertex(hash, triangle.vertices[k], (unknown_vertices >> k & 1u) == 0);
+    hash.add(triangle.base);
+    hash.add(triangle.split_by);
+    return hash.value();
+}
+
+std::uint64_t hash_to_finish(const datapath::Triangle& triangle) {
+    Hash hash;
+    for (const datapath::Vertex& vertex : triangle.vertices)
+        add_vertex(hash, vertex, true);
+    hash.add(triangle.base);
+    hash.add(std::uint64_t{triangle.split_by} << 8 | triangle.stopped_by);
+    return hash.value();
+}
+
+std::uint64_t hash_lit(const LitTriangle& triangle) {
+    Hash hash;
+    for (const LitTriangle::Corner& corner : triangle.corners) {
+        add_screen(hash, corner.screen);
+        hash.add(std::uint64_t{corner.texture.u} << 32 | corner.texture.v);
+        hash.add(corner.intensity);
+    }
+    return hash.value();
+}
+
+unsigned unknown_vertices(const datapath::Triangle& triangle) {
+    unsigned unknown = 0;
+    for (unsigned k = 0; k < 3; ++k)
+        unknown |= triangle.vertices[k].displaced_known ? 0u : 1u << k;
+    return unknown;
+}
+
+}  // namespace
+
+WorkCheck::WorkCheck(const datapath::Registers& registers,
+                     const std::vector<datapath::Triangle>& base_triangles)
+    : registers_(registers), bases_(base_triangles.size()) {
+    for (const datapath::Triangle& triangle : base_triangles)
+        base_of(triangle.base).decided.expect(hash_to_decide(triangle, unknown_vertices(triangle)));
+}
+
+WorkCheck::Base& WorkCheck::base_of(std::uint32_t base) {
+    return base < bases_.size() ? bases_[base] : foreign_;
+}
+
+void WorkCheck::finding(const std::string& what) {
+    if (result_.violations++ == 0)
+        result_.first_violation = what;
+}
+
+void WorkCheck::write(const datapath::TrianglePass& pass) {
+    ++result_.triangles;
+    Base& base = base_of(pass.triangle.base);
+    base.decided.come(hash_to_decide(pass.triangle, pass.new_vertices));
+    if (pass.split == 0)
+        base.finished.expect(hash_to_finish(pass.triangle));
+    else
+        datapath::tessellate(pass, registers_.triangulation, registers_.formats, counted_by_the_unit_,
+                             [&](const datapath::Triangle& child) {
+                                 base.decided.expect(hash_to_decide(child, unknown_vertices(child)));
+                             });
+}
+
+void WorkCheck::write(const datapath::Triangle& finished) {
+    base_of(finished.base).finished.come(hash_to_finish(finished));
+    LitTriangle lit;
+    for (unsigned k = 0; k < 3; ++k) {
+        const datapath::Vertex& vertex = finished.vertices[k];
+        datapath::Saturations saturations;
+        const datapath::Direction normal = datapath::transform_normal(
+            vertex.displaced_normal, registers_.transform, registers_.formats, saturations);
+        if (!(normal == vertex.screen_normal))
+            finding(
+                fmt::format("base triangle {}: a finished triangle's vertex {} has N's ({}, {}, {}); its N' "
+                            "transforms to ({}, {}, {})",
+                            finished.base, k, vertex.screen_normal.x, vertex.screen_normal.y,
+                            vertex.screen_normal.z, normal.x, normal.y, normal.z));
+        lit.corners[k] = {
+            vertex.screen, vertex.texture,
+            datapath::light(normal, registers_.light, registers_.formats, counted_by_the_unit_)};
+    }
+    const auto& v = finished.vertices;
+    if (!registers_.back_face_culling || !datapath::faces_away(v[0].screen, v[1].screen, v[2].screen))
+        lit_.expect(hash_lit(lit));
+}
+
+void WorkCheck::write(const LitTriangle& lit) {
+    lit_.come(hash_lit(lit));
+}
+
+WorkResult WorkCheck::result() const {
+    WorkResult result = result_;
+    const auto judge = [&](const Balance& balance, const std::string& whose, const char* what) {
+        if (balance.even())
+            return;
+        std::string text = whose + ": ";
+        if (balance.count > 0)
+            text += fmt::format("{} triangles that were to be {} never were", balance.count, what);
+        else if (balance.count < 0)
+            text += fmt::format("{} triangles more were {} than were to be", -balance.count, what);
+        else
+            text += fmt::format("as many triangles were {} as were to be, but not the same", what);
+        if (result.violations++ == 0)
+            result.first_violation = text;
+    };
+    for (std::size_t k = 0; k < bases_.size(); ++k) {
+        judge(bases_[k].decided, fmt::format("base triangle {}", k), "decided");
+        judge(bases_[k].finished, fmt::format("base triangle {}", k), "finished");
+    }
+    judge(foreign_.decided, "no base triangle", "decided");
+    judge(foreign_.finished, "no base triangle", "finished");
+    judge(lit_, "all base triangles", "lit");
+    return result;
+}
+
+}  // namespace tessera

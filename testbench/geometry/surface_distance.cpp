@@ -1,0 +1,138 @@
+#include "testbench/geometry/surface_distance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "testbench/common/distinct_table.h"
+#include "testbench/common/parallel.h"
+#include "testbench/common/random.h"
+
+namespace tessera {
+namespace {
+
+constexpr std::size_t chunk_points = 256;
+constexpr std::uint64_t usual_looks = 32;  // at a point in no more than a few boxes
+constexpr std::size_t pilot_points = 256;
+
+/// Every vertex once, in the order of its first use, then every centroid.
+class Points {
+  public:
+    explicit Points(const TriangleSoup& soup) : soup_(soup) {
+        DistinctTable table;
+        for (std::size_t corner = 0; corner < 3 * soup.size(); ++corner) {
+            const glm::dvec3& p = position(corner);
+            const std::uint32_t number = table.number_of(
+                hash(p), [&](std::uint32_t v) { return vertex(v) == p; },
+                [&](std::uint32_t v) { return hash(vertex(v)); });
+            if (number == vertices_.size())
+                vertices_.push_back(static_cast<std::uint32_t>(corner));
+        }
+    }
+
+    std::size_t size() const { return vertices_.size() + soup_.size(); }
+
+    glm::dvec3 operator[](std::size_t index) const {
+        if (index < vertices_.size())
+            return vertex(index);
+        const auto& t = soup_[index - vertices_.size()];
+        return (t[0] + t[1] + t[2]) / 3.0;
+    }
+
+  private:
+    /// Of the bits; -0 and 0 are equal and have the same.
+    static std::uint64_t hash(const glm::dvec3& p) {
+        std::uint64_t result = 0;
+        for (int k = 0; k < 3; ++k) {
+            const double number = p[k] + 0.0;
+            std::uint64_t bits;
+            std::memcpy(&bits, &number, sizeof bits);
+            result = mix_hash(result, bits);
+        }
+        return result;
+    }
+
+    const glm::dvec3& position(std::size_t corner) const { return soup_[corner / 3][corner % 3]; }
+    const glm::dvec3& vertex(std::size_t number) const { return position(vertices_[number]); }
+
+    const TriangleSoup& soup_;
+    std::vector<std::uint32_t> vertices_;  // each by a corner that it is
+};
+
+/// Which of `all` points is measured as number k of `chosen`.
+std::size_t choice(std::size_t k, std::size_t chosen, std::size_t all) {
+    if (chosen == all)
+        return k;
+    const double place = static_cast<double>(k) + Random(k).real(0, 1);
+    return std::min(all - 1,
+                    static_cast<std::size_t>(place / static_cast<double>(chosen) * static_cast<double>(all)));
+}
+
+/// All points, or a power of two.
+std::size_t affordable(const Points& points, const NearestTriangle& nearest, std::uint64_t most) {
+    const std::size_t pilots = std::min(pilot_points, points.size());
+    std::uint64_t boxes = 0;
+    for (std::size_t k = 0; k < pilots; ++k)
+        boxes += nearest.boxes_around(points[choice(k, pilots, points.size())]);
+    const std::uint64_t count = most / (usual_looks + boxes / pilots);
+    if (points.size() <= count)
+        return points.size();
+    std::size_t power = 1;
+    while (2 * power <= count)
+        power *= 2;
+    return power;
+}
+
+}  // namespace
+
+// Were a part q of the points farther away, the n that were measured would all have missed it with a probability of at
+// most (1 - q)^n: of n equal parts, each holding q_i, it is the product of 1 - q_i, largest where all q_i are q.
+double SurfaceDistance::unseen(double confidence) const {
+    if (measured >= points)
+        return 0;
+    return -std::expm1(std::log1p(-confidence) / static_cast<double>(measured));
+}
+
+SurfaceDistance distance_between(const TriangleSoup& from, const TriangleSoup& to, std::uint64_t most,
+                                 double near) {
+    SurfaceDistance result;
+    if (from.empty())
+        return result;
+    const Points points(from);
+    result.points = points.size();
+    if (to.empty()) {
+        result.max = result.rms = std::numeric_limits<double>::infinity();
+        return result;
+    }
+    const NearestTriangle nearest(to);
+    result.measured = affordable(points, nearest, most);
+    struct Part {
+        double largest = 0, squares = 0;
+        std::uint64_t farther = 0;
+    };
+    std::vector<Part> parts((result.measured + chunk_points - 1) / chunk_points);
+    for_each_chunk(parts.size(), [&] {
+        return [&](std::size_t chunk) {
+            NearestTriangle::Guess guess;
+            const std::size_t end = std::min<std::size_t>((chunk + 1) * chunk_points, result.measured);
+            for (std::size_t k = chunk * chunk_points; k < end; ++k) {
+                const double squared =
+                    nearest.nearest(points[choice(k, result.measured, points.size())], guess).squared;
+                parts[chunk].largest = std::max(parts[chunk].largest, squared);
+                parts[chunk].squares += squared;
+                parts[chunk].farther += squared > near * near ? 1U : 0U;
+            }
+        };
+    });
+    double squares = 0;
+    for (const Part& part : parts) {
+        result.max = std::max(result.max, std::sqrt(part.largest));
+        squares += part.squares;
+        result.farther += part.farther;
+    }
+    result.rms = std::sqrt(squares / static_cast<double>(result.measured));
+    return result;
+}
+
+}  // namespace tessera
