@@ -26,7 +26,7 @@ Job benchmark_job() {
     return job;
 }
 
-Setup benchmark_setup() {
+MachineSetup benchmark_setup() {
     const Inputs inputs = load_inputs(benchmark_job(), {});
     return make_setup(inputs.resolved.job, inputs.mesh, inputs.map);
 }
@@ -37,7 +37,7 @@ void report(benchmark::State& state, std::uint64_t edges, std::size_t triangles)
     state.counters["triangles"] = static_cast<double>(triangles);
 }
 
-void golden_model(benchmark::State& state, const Setup& setup) {
+void golden_model(benchmark::State& state, const MachineSetup& setup) {
     const GoldenInputs inputs(setup);
     const std::vector<std::array<golden::Vertex, 3>> base = golden_base_triangles(setup);
     std::uint64_t edges = 0;
@@ -80,7 +80,7 @@ void one_frame(benchmark::State& state, Simulation& simulation) {
             benchmark::Counter(static_cast<double>(cycles), benchmark::Counter::kAvgIterations);
 }
 
-Setup in_timed_mode(Setup setup) {
+MachineSetup in_timed_mode(MachineSetup setup) {
     setup.design.transport = Transport::non_blocking;
     return setup;
 }
@@ -90,12 +90,12 @@ Setup in_timed_mode(Setup setup) {
 
 int sc_main(int argc, char** argv) {
     benchmark::Initialize(&argc, argv);
-    const tessera::Setup setup = tessera::benchmark_setup();
+    const tessera::MachineSetup setup = tessera::benchmark_setup();
     tessera::BareRecursion bare(setup);
     tessera::Simulation simulation(setup, std::uint64_t{1} << 40);
     // Both simulations are of one elaboration; names that exist get a number.
     sc_core::sc_report_handler::set_actions(sc_core::SC_ID_INSTANCE_EXISTS_, sc_core::SC_DO_NOTHING);
-    const tessera::Setup timed_setup = tessera::in_timed_mode(setup);
+    const tessera::MachineSetup timed_setup = tessera::in_timed_mode(setup);
     tessera::Simulation timed_simulation(timed_setup, std::uint64_t{1} << 40);
     simulation.run();
     benchmark::RegisterBenchmark("golden_model", [&](benchmark::State& state) {

@@ -58,7 +58,7 @@ class TextureTriangle {
 /// What one base triangle's texels are lit by.
 class TrueNormals {
   public:
-    TrueNormals(const Setup& setup, const GoldenInputs& inputs)
+    TrueNormals(const MachineSetup& setup, const GoldenInputs& inputs)
         : setup_(setup), inputs_(inputs), dequantise_(setup.registers.formats) {}
 
     glm::dvec3 at(std::uint32_t base, const glm::dvec2& t) const {
@@ -78,14 +78,14 @@ class TrueNormals {
     }
 
   private:
-    const Setup& setup_;
+    const MachineSetup& setup_;
     const GoldenInputs& inputs_;
     Dequantise dequantise_;
 };
 
 }  // namespace
 
-GouraudError measure_gouraud(const EmittedMesh& mesh, const Setup& setup, const GoldenInputs& inputs,
+GouraudError measure_gouraud(const EmittedMesh& mesh, const MachineSetup& setup, const GoldenInputs& inputs,
                              const Highlight& highlight) {
     constexpr double degree = 3.14159265358979323846 / 180;
     const double border = std::cos(highlight.angle * degree);

@@ -4,7 +4,7 @@
 
 #include "testbench/check/conformance/golden_inputs.h"
 #include "testbench/machine/emitted_mesh.h"
-#include "testbench/machine/setup.h"
+#include "testbench/machine/machine_setup.h"
 
 namespace tessera {
 
@@ -29,7 +29,7 @@ struct GouraudError {
 
 /// Texel centres on the border of two triangles count in both; a triangle without a texel centre counts nowhere.
 /// The true normal: base normal and tangent interpolated over the base triangle, bumped in double precision.
-GouraudError measure_gouraud(const EmittedMesh& mesh, const Setup& setup, const GoldenInputs& inputs,
+GouraudError measure_gouraud(const EmittedMesh& mesh, const MachineSetup& setup, const GoldenInputs& inputs,
                              const Highlight& highlight);
 
 }  // namespace tessera

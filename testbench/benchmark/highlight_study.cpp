@@ -29,7 +29,7 @@ class Study {
   public:
     Study(const Job& job, const std::filesystem::path& data)
         : mesh_(load_mesh(job, data)), map_(load_map(job, data)), job_(resolve_job(job, mesh_, map_).job) {
-        const Setup setup = setup_of(true, job_.tests.normal_threshold);
+        const MachineSetup setup = setup_of(true, job_.tests.normal_threshold);
         const auto& half = setup.registers.tests.half_vector;
         highlight_.half_vector =
             glm::normalize(Dequantise(setup.registers.formats).direction({half[0], half[1], half[2]}));
@@ -37,7 +37,7 @@ class Study {
     }
 
     Row run(bool highlight_test, double normal_threshold) const {
-        const Setup setup = setup_of(highlight_test, normal_threshold);
+        const MachineSetup setup = setup_of(highlight_test, normal_threshold);
         BareRecursion bare(setup);
         EmittedMesh mesh;
         bare.run(mesh);
@@ -59,7 +59,7 @@ class Study {
     int exponent() const { return highlight_.exponent; }
 
   private:
-    Setup setup_of(bool highlight_test, double normal_threshold) const {
+    MachineSetup setup_of(bool highlight_test, double normal_threshold) const {
         Job job = job_;
         job.tests.highlight = highlight_test;
         job.tests.normal_threshold = normal_threshold;

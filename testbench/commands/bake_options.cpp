@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "testbench/commands/side_text.h"
+#include "testbench/commands/parse_side.h"
 #include "testbench/input/map/height_map.h"
 
 namespace tessera {

@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "testbench/commands/side_text.h"
+#include "testbench/commands/parse_side.h"
 #include "testbench/input/map/stroke_font.h"
 
 namespace tessera {

@@ -25,7 +25,7 @@
 #include "testbench/job/frame_job.h"
 #include "testbench/job/validate_job.h"
 #include "testbench/machine/inputs.h"
-#include "testbench/machine/setup.h"
+#include "testbench/machine/machine_setup.h"
 
 namespace tessera {
 
@@ -40,7 +40,7 @@ struct Frame {
     std::string text() const { return fmt::format("{} (displacement.scale = {})", row.name, row.scale); }
 };
 
-Setup set_up(const Frame& frame, const BaseMesh& mesh, const HeightMap& map) {
+MachineSetup set_up(const Frame& frame, const BaseMesh& mesh, const HeightMap& map) {
     try {
         validate(frame.job);
         return make_setup(frame.job, mesh, map);
@@ -57,7 +57,7 @@ std::vector<Frame> plan_frames(const Job& asked, const fs::path& data_folder, Re
     resolved_job = resolved;
     const Job& job = resolved_job.job;
     std::vector<Frame> frames;
-    std::optional<Setup> before;
+    std::optional<MachineSetup> before;
     for (std::int64_t k = 0; k < job.frames.count; ++k) {
         progress.show("making the frames ready",
                       static_cast<double>(k) / static_cast<double>(job.frames.count));
@@ -66,7 +66,7 @@ std::vector<Frame> plan_frames(const Job& asked, const fs::path& data_folder, Re
         frame.row.name = frame_name(k);
         frame.row.scale = frame.job.displacement.scale;
         check_output_folder(frame.job.output.folder);
-        Setup setup = set_up(frame, mesh, map);
+        MachineSetup setup = set_up(frame, mesh, map);
         frame.row.sent = before ? next_frame_traffic(*before, setup) : first_frame_traffic(setup);
         before = std::move(setup);
         frames.push_back(std::move(frame));

@@ -42,7 +42,7 @@ namespace {
 /// A job's mesh and map, and what the host makes of them.
 struct Loaded {
     Inputs inputs;
-    Setup setup;
+    MachineSetup setup;
 };
 
 /// What was mended in the job's mesh and map on the way in joins the setup's own remarks.
@@ -69,7 +69,7 @@ class Stopwatch {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-void write_run_folder(const std::filesystem::path& folder, const Job& job, const Setup& setup,
+void write_run_folder(const std::filesystem::path& folder, const Job& job, const MachineSetup& setup,
                       const Simulation& simulation, const MeshCounts& counts, const Checks& checks,
                       Progress& progress) {
     progress.show("writing reports", 0.85);
@@ -134,15 +134,15 @@ struct CheckedFaultRun {
     static const T* if_there(const std::optional<T>& part) {
         return part ? &*part : nullptr;
     }
-    std::vector<Caught> noticed(const CheckedUnits& units) const {
+    std::vector<Caught> detected(const CheckedUnits& units) const {
         return who_noticed(units, run, if_there(checks.conformance), if_there(checks.work),
                            if_there(checks.invariants));
     }
 };
 
-CheckedFaultRun check_fault_run(const Job& job, const Setup& setup, Simulation& simulation,
+CheckedFaultRun check_fault_run(const Job& job, const MachineSetup& setup, Simulation& simulation,
                                 const CheckedUnits& units, const Scoreboard* scoreboard,
-                                const WorkCheck* work) {
+                                const TransportCheck* work) {
     CheckedFaultRun result;
     result.run = run_with_fault(simulation);
     Checks& checks = result.checks;
@@ -159,12 +159,12 @@ CheckedFaultRun check_fault_run(const Job& job, const Setup& setup, Simulation& 
 }
 
 /// A run with a fault leaves its conformance report and its job, and no mesh that anyone could take for a result.
-Ending run_faulty(const Job& job, const Setup& setup, Simulation& simulation, CheckedUnits& units,
-                  const Scoreboard* scoreboard, const WorkCheck* work, Progress& progress) {
+Ending run_faulty(const Job& job, const MachineSetup& setup, Simulation& simulation, CheckedUnits& units,
+                  const Scoreboard* scoreboard, const TransportCheck* work, Progress& progress) {
     progress.show("running without the fault", 0);
     require_sound_without_fault([&] {
         units.disarm();
-        return check_fault_run(job, setup, simulation, units, scoreboard, work).noticed(units);
+        return check_fault_run(job, setup, simulation, units, scoreboard, work).detected(units);
     });
     progress.show("running with the fault", 0.5);
     auto [run, checks] = check_fault_run(job, setup, simulation, units, scoreboard, work);
@@ -202,7 +202,7 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
     progress.show("reading mesh and map", 0);
     const Loaded loaded = load(asked, command.data_folder);
     const Inputs& inputs = loaded.inputs;
-    const Setup& setup = loaded.setup;
+    const MachineSetup& setup = loaded.setup;
     const Job& job = inputs.resolved.job;
 
     std::optional<CheckedUnits> checked_units;
@@ -220,9 +220,9 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
         scoreboard = std::make_unique<Scoreboard>(setup.registers, *golden);
         simulation.pipeline.pass_or_tessellate.decided.bind(*scoreboard);
     }
-    std::unique_ptr<WorkCheck> work;
+    std::unique_ptr<TransportCheck> work;
     if (job.check.work) {
-        work = std::make_unique<WorkCheck>(setup.registers, setup.base_triangles);
+        work = std::make_unique<TransportCheck>(setup.registers, setup.base_triangles);
         simulation.pipeline.pass_or_tessellate.decided.bind(*work);
         simulation.pipeline.pass_or_tessellate.finished.bind(*work);
         simulation.rasteriser.taken.bind(*work);

@@ -138,7 +138,7 @@ std::string found_text(const std::vector<FoundValue>& found) {
     return text;
 }
 
-std::string summary(const Setup& setup, const Simulation& simulation, const MeshCounts& mesh,
+std::string summary(const MachineSetup& setup, const Simulation& simulation, const MeshCounts& mesh,
                     const Checks& checks, double seconds) {
     const Pipeline& p = simulation.pipeline;
     const auto& counts = p.pass_or_tessellate.counts();

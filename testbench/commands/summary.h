@@ -13,7 +13,7 @@ std::string found_text(const std::vector<FoundValue>& found);
 
 /// The table a run prints: what came out, what it cost, what was checked.
 /// mesh: of the simulation's. seconds: the run took.
-std::string summary(const Setup& setup, const Simulation& simulation, const MeshCounts& mesh,
+std::string summary(const MachineSetup& setup, const Simulation& simulation, const MeshCounts& mesh,
                     const Checks& checks, double seconds);
 
 }  // namespace tessera

@@ -230,7 +230,7 @@ ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
                       [&](const std::string& what, double part) { progress.show(what, 0.95 * part); });
         const BaseMesh base = base_mesh_of(result.job, request.bases[result.base], map, data_folder);
         unit = error_unit(result.job, base, map);
-        const Setup setup = make_setup(result.job, base, map);
+        const MachineSetup setup = make_setup(result.job, base, map);
         EmittedMesh mesh;
         BareRecursion(setup).run(mesh);
         mesh.sort();
@@ -254,7 +254,7 @@ ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
     Job functional = job;
     functional.mode = Mode::functional;
     const BaseMesh base = base_mesh_of(job, request.bases[result.base], map, data_folder);
-    const Setup setup = make_setup(functional, base, map);
+    const MachineSetup setup = make_setup(functional, base, map);
     Simulation simulation(setup, static_cast<std::uint64_t>(job.limits.triangles));
     if (const std::string stuck = simulation.run(); !stuck.empty())
         throw std::runtime_error("functional mode did not finish: " + stuck);

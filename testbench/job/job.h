@@ -18,7 +18,7 @@ enum class Culling { none, back };
 enum class SummedHeightUnit { sum, area };
 enum class Overflow { spill, stall, error };
 enum class Mode { functional, timed };
-/// What a fault does to one transaction: testbench/prove/faults/CATCHERS.md.
+/// What a fault does to one transaction: testbench/prove/faults/FAULT_COVERAGE.md.
 enum class FaultKind {
     none,
     bit_flip,

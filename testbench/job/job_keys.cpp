@@ -413,7 +413,7 @@ std::vector<KeyTable> declare_keys() {
         key.add("work", &Check::work, "No triangle is lost, doubled or altered on its way through the machine, and what goes into a unit comes out of another");
         key.add("reads", &Check::reads, "Every table read against what the memory holds; in functional mode reads then go by transaction, which is slow");
     });
-    list.table("fault", &Job::fault, "For tests of tessera's own checks: one transaction is broken on purpose, and the run says what noticed (testbench/prove/faults/CATCHERS.md).", [](const auto& key) {
+    list.table("fault", &Job::fault, "For tests of tessera's own checks: one transaction is broken on purpose, and the run says which checks detect it (testbench/prove/faults/FAULT_COVERAGE.md).", [](const auto& key) {
         using Fault = Job::Fault;
         key.add("kind", &Fault::kind, "What is done to the transaction; none: nothing is in the way of any");
         key.add("place", &Fault::place, KeyKind::text, "Where: an output or a memory port of a unit, such as displace_vertex.to_transform; a wrong name is answered with all that there are");

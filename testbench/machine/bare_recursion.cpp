@@ -32,7 +32,7 @@ TableLayout as_indices(const TableLayout& layout) {
 
 }  // namespace
 
-BareRecursion::BareRecursion(const Setup& setup) : setup_(setup), codes_(setup.map.codes) {
+BareRecursion::BareRecursion(const MachineSetup& setup) : setup_(setup), codes_(setup.map.codes) {
     const MapGeometry& map = setup.registers.map;
     const Formats& formats = setup.registers.formats;
     normals_.reserve(codes_.size());

@@ -4,7 +4,7 @@
 
 #include "modules/datapath/parameters.h"
 #include "testbench/machine/emitted_mesh.h"
-#include "testbench/machine/setup.h"
+#include "testbench/machine/machine_setup.h"
 
 namespace tessera {
 
@@ -13,7 +13,7 @@ namespace tessera {
 class BareRecursion {
   public:
     /// `setup` must outlive it.
-    explicit BareRecursion(const Setup& setup);
+    explicit BareRecursion(const MachineSetup& setup);
 
     /// So far. The machine normalises N_ij in two units and counts there twice; Lighting is not part of this.
     const datapath::Saturations& saturations() const { return saturations_; }
@@ -35,7 +35,7 @@ class BareRecursion {
     datapath::Direction map_normal_at(const datapath::TexCoord& t) const;
     std::uint32_t code_at(const datapath::TexCoord& t) const;
 
-    const Setup& setup_;
+    const MachineSetup& setup_;
     std::vector<std::uint16_t> codes_;
     std::vector<std::uint64_t> normals_;  // packed as the normal map's entries
     std::vector<std::uint32_t> sums_;     // narrow tables; else wide_sums_

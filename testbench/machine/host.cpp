@@ -40,7 +40,7 @@ class TableRow {
 
 }  // namespace
 
-Host::Host(const sc_core::sc_module_name& name, const Setup& setup, CycleScheduler& clock)
+Host::Host(const sc_core::sc_module_name& name, const MachineSetup& setup, CycleScheduler& clock)
     : sc_module(name), setup_(setup), clock_(clock) {
     clock.attach(*this);
     to_get_triangle.clocked_by(clock, *this);

@@ -5,7 +5,7 @@
 
 #include "modules/sockets/stream_output.h"
 #include "modules/timing/cycle_scheduler.h"
-#include "testbench/machine/setup.h"
+#include "testbench/machine/machine_setup.h"
 
 namespace tessera {
 
@@ -21,7 +21,7 @@ class Host : public sc_core::sc_module, public CycleProcess {
     tlm_utils::simple_initiator_socket<Host> summed_height_table{"summed_height_table"};
 
     /// `setup` must outlive the host.
-    Host(const sc_core::sc_module_name& name, const Setup& setup, CycleScheduler& clock);
+    Host(const sc_core::sc_module_name& name, const MachineSetup& setup, CycleScheduler& clock);
 
     /// Sends the base triangles once more when the simulation goes on: another frame of the same job.
     void send_again();
@@ -38,7 +38,7 @@ class Host : public sc_core::sc_module, public CycleProcess {
     void fill_normal_map();
     void fill_summed_height_table();
 
-    const Setup& setup_;
+    const MachineSetup& setup_;
     CycleScheduler& clock_;
     datapath::Triangle offered_;
     sc_core::sc_event again_{"again"};

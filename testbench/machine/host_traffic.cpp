@@ -5,7 +5,7 @@
 
 namespace tessera {
 
-std::uint64_t base_mesh_bytes(const Setup& setup) {
+std::uint64_t base_mesh_bytes(const MachineSetup& setup) {
     const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
     return (setup.base_triangles.size() * 3 * widths.base_vertex + 7) / 8;
 }
@@ -29,13 +29,13 @@ std::vector<std::uint32_t> register_words(const datapath::Registers& registers) 
     return words;
 }
 
-HostTraffic first_frame_traffic(const Setup& setup) {
+HostTraffic first_frame_traffic(const MachineSetup& setup) {
     const datapath::Registers& r = setup.registers;
     return {base_mesh_bytes(setup), r.displacement_map.bytes(), r.normal_map.bytes(),
             r.summed_height_table.bytes(), register_words(r).size() * sizeof(std::uint32_t)};
 }
 
-HostTraffic next_frame_traffic(const Setup& before, const Setup& now) {
+HostTraffic next_frame_traffic(const MachineSetup& before, const MachineSetup& now) {
     HostTraffic traffic = first_frame_traffic(now);
     if (before.map.codes == now.map.codes) {
         traffic.displacement_map = 0;

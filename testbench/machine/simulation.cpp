@@ -9,7 +9,7 @@
 
 namespace tessera {
 
-Simulation::Simulation(const Setup& its_setup, std::uint64_t triangle_limit,
+Simulation::Simulation(const MachineSetup& its_setup, std::uint64_t triangle_limit,
                        std::uint64_t cycles_without_progress, UnitFactory* units)
     : setup(its_setup),
       pipeline("tessera", setup.registers, setup.design, units),

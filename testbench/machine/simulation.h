@@ -13,7 +13,7 @@ struct Simulation {
     /// `setup` must outlive the simulation. triangle_limit: see MeshMonitor. cycles_without_progress: timed mode, how
     /// long no triangle may be decided; 0: for ever.
     /// units: see Pipeline; null: the machine's own.
-    Simulation(const Setup& setup, std::uint64_t triangle_limit, std::uint64_t cycles_without_progress = 0,
+    Simulation(const MachineSetup& setup, std::uint64_t triangle_limit, std::uint64_t cycles_without_progress = 0,
                UnitFactory* units = nullptr);
 
     /// Runs until nothing is left to do. Empty: everything drained. Else a deadlock or livelock: what
@@ -24,7 +24,7 @@ struct Simulation {
     /// Timed mode: cycles from the first to the end of the last in which anything happened.
     std::uint64_t cycles() const { return cycles_; }
 
-    const Setup& setup;
+    const MachineSetup& setup;
     Pipeline pipeline;
     Host host;
     Rasteriser rasteriser;

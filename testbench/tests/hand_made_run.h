@@ -18,7 +18,7 @@ namespace tessera::testing {
 ///   vertices made 33, thrown away 33 - 17; normals 3 * 5; children 2 + 2 * 3 + 4 * 4 = 24, all waiting
 class HandMadeRun {
   public:
-    Setup setup = make();
+    MachineSetup setup = make();
     Simulation simulation{setup, 1000};
 
     HandMadeRun() {
@@ -41,13 +41,13 @@ class HandMadeRun {
     }
 
   private:
-    static Setup make() {
+    static MachineSetup make() {
         Job job;
         job.mode = Mode::functional;
         job.map.width = job.map.height = 8;
         job.tests.highlight = true;
         job.hardware.culling = Culling::back;
-        Setup setup = setup_of(job);
+        MachineSetup setup = setup_of(job);
         setup.base_triangles.clear();
         return setup;
     }

@@ -24,7 +24,7 @@ struct NamedMachine : sc_core::sc_module {
     std::vector<sc_core::sc_time> drained;  ///< when its event fired
 
     /// `setup` must outlive the machine.
-    NamedMachine(const sc_core::sc_module_name& name, const Setup& setup, UnitFactory* units = nullptr)
+    NamedMachine(const sc_core::sc_module_name& name, const MachineSetup& setup, UnitFactory* units = nullptr)
         : sc_module(name),
           pipeline("pipeline", setup.registers, setup.design, units),
           host("host", setup, pipeline.clock),
@@ -50,7 +50,7 @@ struct NamedMachine : sc_core::sc_module {
     void note_drained() { drained.push_back(sc_core::sc_time_stamp()); }
 };
 
-inline EmittedMesh bare_mesh(const Setup& setup) {
+inline EmittedMesh bare_mesh(const MachineSetup& setup) {
     BareRecursion bare(setup);
     EmittedMesh mesh;
     bare.run(mesh);
@@ -64,7 +64,7 @@ struct AloneResult {
 };
 
 /// Runs one in another process, since SystemC elaborates once a process. To be called before anything is built.
-inline AloneResult run_alone(const Setup& setup) {
+inline AloneResult run_alone(const MachineSetup& setup) {
     int ends[2];
     REQUIRE(pipe(ends) == 0);
     const pid_t child = fork();

@@ -12,7 +12,7 @@
 #include "modules/datapath/parameters.h"
 #include "testbench/check/conformance/golden_inputs.h"
 #include "testbench/check/conformance/scoreboard.h"
-#include "testbench/machine/setup.h"
+#include "testbench/machine/machine_setup.h"
 #include "testbench/tests/datapath_edge.h"
 #include "testbench/tests/datapath_random.h"
 
@@ -76,13 +76,13 @@ enum class Manner {
 
 /// A design with map, view and everything that works on it.
 struct Case {
-    Setup setup;
+    MachineSetup setup;
     GoldenInputs inputs;
     Machine machine;
     Manner manner;
 
-    static Setup make_setup(Random& random, const datapath::Formats& formats, Manner manner) {
-        Setup setup;
+    static MachineSetup make_setup(Random& random, const datapath::Formats& formats, Manner manner) {
+        MachineSetup setup;
         datapath::Registers& registers = setup.registers;
         registers.formats = formats;
         const auto mode = [&] {
@@ -145,12 +145,12 @@ struct Case {
         transform.near_plane = static_cast<std::int64_t>(std::ldexp(world * 0.001, fraction + position));
     }
 
-    Case(const Setup& made, Manner how)
+    Case(const MachineSetup& made, Manner how)
         : setup(made), inputs(setup), machine(make_machine(setup)), manner(how) {}
     Case(Random& random, const datapath::Formats& formats, Manner how)
         : Case(make_setup(random, formats, how), how) {}
 
-    static Machine make_machine(Setup& setup) {
+    static Machine make_machine(MachineSetup& setup) {
         std::vector<datapath::Direction> normals;
         for (std::uint32_t y = 0; y < setup.map.geometry.height; ++y)
             for (std::uint32_t x = 0; x < setup.map.geometry.width; ++x)

@@ -12,7 +12,7 @@ using tessera::testing::setup_of;
 
 namespace {
 
-void expect_no_allocation(const Setup& setup, Simulation& simulation) {
+void expect_no_allocation(const MachineSetup& setup, Simulation& simulation) {
     REQUIRE(simulation.run().empty());
     const std::uint64_t edges = simulation.pipeline.edges_tested();
     REQUIRE(edges > 50'000);
@@ -28,7 +28,7 @@ void expect_no_allocation(const Setup& setup, Simulation& simulation) {
 }
 
 void expect_no_allocation_checked(const Job& job) {
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);
     const GoldenInputs golden(setup);
     Scoreboard scoreboard(setup.registers, golden);
@@ -41,7 +41,7 @@ void expect_no_allocation_checked(const Job& job) {
 TEST_CASE("functional mode allocates nothing per edge") {
     Job job;
     job.mode = Mode::functional;
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);
     expect_no_allocation(setup, simulation);
 }
@@ -62,7 +62,7 @@ TEST_CASE("functional mode with a Highlight Test and the scoreboard allocates no
 TEST_CASE("timed mode allocates nothing per edge") {
     Job job;
     job.mode = Mode::timed;
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);
     expect_no_allocation(setup, simulation);
 }
@@ -73,7 +73,7 @@ TEST_CASE("timed mode with three tests units, stalls and a queue that spills all
     job.hardware.tests_units = 3;
     job.hardware.queue_capacity = 100;
     job.timing.stalls = {1, 100, 16};
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);
     expect_no_allocation(setup, simulation);
     CHECK(simulation.pipeline.triangle_queue.spilled() > 1000);

@@ -69,7 +69,7 @@ struct BridgedMachine {
     Rasteriser rasteriser;
     MeshMonitor monitor;
 
-    BridgedMachine(const Setup& setup, Maker make)
+    BridgedMachine(const MachineSetup& setup, Maker make)
         : units(setup.design.timing, std::move(make)),
           pipeline("bridged", setup.registers, setup.design, &units),
           host("bridged_host", setup, pipeline.clock),
@@ -91,7 +91,7 @@ struct BridgedMachine {
     }
 };
 
-void expect_bare_mesh(const Setup& setup, const EmittedMesh& machines) {
+void expect_bare_mesh(const MachineSetup& setup, const EmittedMesh& machines) {
     BareRecursion bare(setup);
     EmittedMesh mesh;
     bare.run(mesh);
@@ -104,7 +104,7 @@ std::unique_ptr<sc_core::sc_module> blocking_5_ns(BaseProtocolBridge& bridge, co
 
 /// Both machines at once, and the same cycles. The bridged memories have the latencies of the machine's own.
 void expect_same_cycles(const Job& job) {
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     const Timing& timing = setup.design.timing;
     Simulation simulation(setup, 1'000'000, 0);
     BridgedMachine bridged(setup, [&](BaseProtocolBridge& bridge, const std::string& name) {
@@ -126,7 +126,7 @@ void expect_same_cycles(const Job& job) {
 }  // namespace
 
 TEST_CASE("bridged machine: blocking memories of 5 ns, the same mesh and the same cycles") {
-    const Setup setup = setup_of(timed_job());
+    const MachineSetup setup = setup_of(timed_job());
     BridgedMachine machine(setup, blocking_5_ns);
     sc_core::sc_start();
     machine.require_drained();
@@ -142,7 +142,7 @@ TEST_CASE("bridged machine: blocking memories of 5 ns, the same mesh and the sam
 TEST_CASE("bridged machine: functional mode, the same mesh") {
     Job job;
     job.mode = Mode::functional;
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     BridgedMachine machine(setup, blocking_5_ns);
     sc_core::sc_start();
     machine.require_drained();

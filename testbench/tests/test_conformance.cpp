@@ -23,7 +23,7 @@ const std::filesystem::path jobs = TESSERA_SOURCE_DIR "/testbench/examples/jobs"
 void expect_conformance(const Job& asked, const HeightMap& map) {
     const BaseMesh mesh = make_base_mesh(asked.mesh, (jobs / asked.mesh.file).string());
     const Job job = resolve_job(asked, mesh, map).job;
-    const Setup setup = make_setup(job, mesh, map);
+    const MachineSetup setup = make_setup(job, mesh, map);
     const GoldenInputs inputs(setup);
     Scoreboard scoreboard(setup.registers, inputs);
     Simulation simulation(setup, 1000000);

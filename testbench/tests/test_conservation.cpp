@@ -48,7 +48,7 @@ void expect_change(const std::string& what, const Simulation& simulation, Act&& 
 
 /// Two base triangles, each split into four: 2 * 3 vertices, 10 passes of 3 edges. The children lack all three normals:
 /// parts = 6 + 30 + 8 * 3. No rectangle wraps: four entries each.
-Setup two_triangles_split_once() {
+MachineSetup two_triangles_split_once() {
     return setup_of(full_split_job(1, 1));
 }
 
@@ -143,14 +143,14 @@ void read_directly(MemoryPort& port, std::uint64_t address) {
 TEST_CASE("conservation: the sides of every equation, functional mode, by hand") {
     Job job = full_split_job(1, 1);
     job.mode = Mode::functional;
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1000);
     REQUIRE(simulation.run().empty());
     CHECK(sides_of(simulation) == two_triangles_functional);
 }
 
 TEST_CASE("conservation: the sides of every equation, timed mode, by hand") {
-    const Setup setup = two_triangles_split_once();
+    const MachineSetup setup = two_triangles_split_once();
     Simulation simulation(setup, 1000);
     run_timed(simulation);
     CHECK(sides_of(simulation) == two_triangles_timed());
@@ -162,7 +162,7 @@ TEST_CASE("conservation: triangles sent round for normals, and culled ones") {
     job.mesh.columns = job.mesh.rows = 1;
     job.map.source = MapSource::constant;
     job.hardware.culling = Culling::back;
-    Setup setup = setup_of(job);
+    MachineSetup setup = setup_of(job);
     setup.base_triangles.resize(1);
     std::swap(setup.base_triangles[0].vertices[1], setup.base_triangles[0].vertices[2]);  // turned away
     Simulation simulation(setup, 1000);
@@ -176,7 +176,7 @@ TEST_CASE("conservation: triangles sent round for normals, and culled ones") {
 }
 
 TEST_CASE("conservation: an item too many in a unit breaks its equation and no other") {
-    const Setup setup = two_triangles_split_once();
+    const MachineSetup setup = two_triangles_split_once();
     Simulation simulation(setup, 1000);
     run_timed(simulation);
     Pipeline& p = simulation.pipeline;
@@ -206,7 +206,7 @@ TEST_CASE("conservation: an item too many in a unit breaks its equation and no o
 }
 
 TEST_CASE("conservation: an item too many on a stream") {
-    const Setup setup = two_triangles_split_once();
+    const MachineSetup setup = two_triangles_split_once();
     Simulation simulation(setup, 1000);
     run_timed(simulation);
     Pipeline& p = simulation.pipeline;
@@ -236,7 +236,7 @@ TEST_CASE("conservation: an item too many on a stream") {
 }
 
 TEST_CASE("conservation: a read too many") {
-    const Setup setup = two_triangles_split_once();
+    const MachineSetup setup = two_triangles_split_once();
     Simulation simulation(setup, 1000);
     run_timed(simulation);
     Pipeline& p = simulation.pipeline;
@@ -273,7 +273,7 @@ TEST_CASE("conservation: a read too many") {
 
 // By blocking transport, which does the whole work at once.
 TEST_CASE("conservation: a vertex transformed, and triangles decided, too many") {
-    const Setup setup = two_triangles_split_once();
+    const MachineSetup setup = two_triangles_split_once();
     Simulation simulation(setup, 1000);
     run_timed(simulation);
     Pipeline& p = simulation.pipeline;
@@ -364,7 +364,7 @@ TEST_CASE("conservation: a vertex transformed, and triangles decided, too many")
 TEST_CASE("conservation: triangles that are off chip have not come back") {
     Job job = full_split_job(1, 3);
     job.hardware.queue_capacity = 2;
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 10'000);
     TriangleQueue& queue = simulation.pipeline.triangle_queue;
     sc_core::sc_start(sc_core::SC_ZERO_TIME);
@@ -393,9 +393,9 @@ TEST_CASE("conservation: triangles that are off chip have not come back") {
 }
 
 TEST_CASE("work check: an equation that does not hold is a violation, named with both its sides") {
-    const Setup setup = two_triangles_split_once();
+    const MachineSetup setup = two_triangles_split_once();
     Simulation simulation(setup, 1000);
-    WorkCheck work(setup.registers, setup.base_triangles);
+    TransportCheck work(setup.registers, setup.base_triangles);
     simulation.pipeline.pass_or_tessellate.decided.bind(work);
     simulation.pipeline.pass_or_tessellate.finished.bind(work);
     simulation.rasteriser.taken.bind(work);

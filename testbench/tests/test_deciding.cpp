@@ -30,7 +30,7 @@ Job one_quad() {
 }
 
 PassOrTessellate::Counts counts_of(const Job& job) {
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);
     REQUIRE(simulation.run().empty());
     return simulation.pipeline.pass_or_tessellate.counts();
@@ -55,7 +55,7 @@ void expect_stopped(const PassOrTessellate::Counts& c, std::uint64_t view, std::
 /// What the counters should say, counted over the golden model's evaluations of the edges that the machine decided.
 class GoldenCount : public tlm::tlm_analysis_if<datapath::TrianglePass> {
   public:
-    explicit GoldenCount(const Setup& setup) : inputs_(setup), dequantise_(setup.registers.formats) {}
+    explicit GoldenCount(const MachineSetup& setup) : inputs_(setup), dequantise_(setup.registers.formats) {}
 
     void write(const datapath::TrianglePass& pass) override {
         for (int k = 0; k < 3; ++k) {
@@ -156,7 +156,7 @@ TEST_CASE("deciding: the counters are those of the golden model's evaluations") 
     job.map.width = job.map.height = 96;
     job.tests.generation_limit = 8;
     job.tests.highlight = true;
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);
     GoldenCount golden(setup);
     const GoldenInputs inputs(setup);

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "testbench/check/transport/conservation.h"
-#include "testbench/common/leave_process.h"
+#include "testbench/common/exit_process.h"
 #include "testbench/job/job_choices.h"
 #include "testbench/prove/faults/checked_run.h"
 #include "testbench/tests/timed_checks.h"
@@ -60,14 +60,14 @@ Job small_job(Mode mode) {
 }
 
 Outcome run_here(const Job& job) {
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     const GoldenInputs golden(setup);
     std::optional<CheckedUnits> units;
     if (CheckedUnits::wanted(job))
         units.emplace(job, setup.registers.formats, tag_bits_in_use(setup.design));
     Simulation simulation(setup, 5000, 5000, units ? &*units : nullptr);
     Scoreboard scoreboard(setup.registers, golden);
-    WorkCheck work(setup.registers, setup.base_triangles);
+    TransportCheck work(setup.registers, setup.base_triangles);
     simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
     simulation.pipeline.pass_or_tessellate.decided.bind(work);
     simulation.pipeline.pass_or_tessellate.finished.bind(work);
@@ -118,7 +118,7 @@ Outcome run(const Job& job) {
         }
         const std::string all = outcome.catchers + "\n" + outcome.mesh + "\n" + outcome.text;
         const bool written = write(ends[1], all.data(), all.size()) == static_cast<ssize_t>(all.size());
-        leave_process(written ? 0 : 1);
+        exit_process(written ? 0 : 1);
     }
     close(ends[1]);
     std::string all;
@@ -161,7 +161,7 @@ struct FieldFinder {
 
 template <class Item>
 int bit_of(const char* name, const char* component, Mode mode) {
-    const Setup setup = setup_of(small_job(mode));
+    const MachineSetup setup = setup_of(small_job(mode));
     FieldFinder finder{name, component};
     const Item item{};
     describe_item(finder, item, setup.registers.formats, tag_bits_in_use(setup.design));
@@ -297,9 +297,9 @@ std::string table(Mode mode, const Places& places, const Kinds& kinds, bool memo
     return text;
 }
 
-/// The part of testbench/prove/faults/CATCHERS.md under a heading. TESSERA_WRITE_CATCHERS: written anew instead.
+/// The part of testbench/prove/faults/FAULT_COVERAGE.md under a heading. TESSERA_WRITE_FAULT_COVERAGE: written anew instead.
 void compare_with_document(const std::string& heading, const std::string& found) {
-    const std::string path = TESSERA_SOURCE_DIR "/testbench/prove/faults/CATCHERS.md";
+    const std::string path = TESSERA_SOURCE_DIR "/testbench/prove/faults/FAULT_COVERAGE.md";
     std::stringstream stream;
     stream << std::ifstream(path).rdbuf();
     std::string document = stream.str();
@@ -307,13 +307,13 @@ void compare_with_document(const std::string& heading, const std::string& found)
     REQUIRE(begin != std::string::npos);
     const std::size_t from = begin + heading.size() + 5;
     const std::size_t to = std::min(document.find("\n\n", from), document.size() - 1) + 1;
-    if (std::getenv("TESSERA_WRITE_CATCHERS") != nullptr) {
+    if (std::getenv("TESSERA_WRITE_FAULT_COVERAGE") != nullptr) {
         document.replace(from, to - from, found);
         std::ofstream(path) << document;
         return;
     }
     INFO(
-        "testbench/prove/faults/CATCHERS.md says something else; TESSERA_WRITE_CATCHERS=1 has the test write "
+        "testbench/prove/faults/FAULT_COVERAGE.md says something else; TESSERA_WRITE_FAULT_COVERAGE=1 has the test write "
         "it");
     CHECK(document.substr(from, to - from) == found);
 }

@@ -38,7 +38,7 @@ Job noisy_sphere_job() {
     return job;
 }
 
-EmittedMesh bare_mesh(const Setup& setup) {
+EmittedMesh bare_mesh(const MachineSetup& setup) {
     BareRecursion bare(setup);
     EmittedMesh mesh;
     bare.run(mesh);
@@ -47,7 +47,7 @@ EmittedMesh bare_mesh(const Setup& setup) {
 
 /// The bare recursion's mesh, no edge that the golden model does not explain, and some edges split by HT alone.
 void expect_conforming_mesh(const Job& job) {
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     const GoldenInputs golden(setup);
     Simulation simulation(setup, 1'000'000, 100'000);
     Scoreboard scoreboard(setup.registers, golden);
@@ -75,18 +75,18 @@ void expect_conforming_mesh(const Job& job) {
           counts.edges_split);
 }
 
-std::uint64_t cycles_of(const Setup& setup) {
+std::uint64_t cycles_of(const MachineSetup& setup) {
     Simulation simulation(setup, 1'000'000, 100'000);
     run_timed(simulation);
     return simulation.cycles();
 }
 
-Setup one_triangle(unsigned highlight_test_latency) {
+MachineSetup one_triangle(unsigned highlight_test_latency) {
     Job job = with_highlight(timed_job());
     job.mesh.columns = job.mesh.rows = 1;
     job.map.source = MapSource::constant;
     job.timing.highlight_test_latency = highlight_test_latency;
-    Setup setup = setup_of(job);
+    MachineSetup setup = setup_of(job);
     setup.base_triangles.resize(1);
     return setup;
 }
@@ -121,7 +121,7 @@ TEST_CASE("Highlight Test: one triangle takes 86 cycles, as without") {
 }
 // Two ports: the Summed Height Test is through in 41, the Normal Test in 43: 43 + 38, and the cycle numbered 0.
 TEST_CASE("Highlight Test: one triangle, two ports: one cycle more than the 81 without") {
-    Setup setup = one_triangle(1);
+    MachineSetup setup = one_triangle(1);
     setup.design.timing.summed_height_table.ports = 2;
     CHECK(cycles_of(setup) == 43 + 38 + 1);
 }
@@ -135,7 +135,7 @@ TEST_CASE("Highlight Test: one triangle, 300 cycles for it") {
 TEST_CASE("Highlight Test: the paper's design is as fast with it") {
     Job job = with_highlight(full_split_job(3, 4));
     job.tests.highlight_normal_threshold = 0;
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);
     run_timed(simulation);
     CHECK(simulation.pipeline.pass_or_tessellate.counts().passes == 6138);
@@ -150,7 +150,7 @@ TEST_CASE("Highlight Test: registers follow from the light and the camera") {
     job.camera.target = {0, 0, 0};
     job.tests.highlight_angle = 60;
     job.tests.highlight_normal_threshold = 0.25;
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     const datapath::TestParameters& tests = setup.registers.tests;
     CHECK(tests.highlight_test);
     CHECK(setup.registers.formats.highlight_tag);
@@ -162,20 +162,20 @@ TEST_CASE("Highlight Test: registers follow from the light and the camera") {
 
     job.camera.eye = {0, 0, -3};  // against the light
     job.camera.up = {0, 1, 0};
-    const Setup against = setup_of(job);
+    const MachineSetup against = setup_of(job);
     CHECK(against.registers.tests.half_vector == std::array<std::int32_t, 3>{});
     REQUIRE(against.remarks.size() == 1);
     CHECK(against.remarks.front().find("hardware.light") != std::string::npos);
 
     job.tests.highlight = false;
-    const Setup off = setup_of(job);
+    const MachineSetup off = setup_of(job);
     CHECK_FALSE(off.registers.tests.highlight_test);
     CHECK_FALSE(off.registers.formats.highlight_tag);
     CHECK(off.registers.tests.half_vector == std::array<std::int32_t, 3>{});
 }
 
 TEST_CASE("Highlight Test: splits in the highlight, and there only") {
-    const Setup with = setup_of(with_highlight(functional_job()));
+    const MachineSetup with = setup_of(with_highlight(functional_job()));
     const auto cosine = [&](const datapath::Direction& n) {
         const auto& h = with.registers.tests.half_vector;
         return std::int64_t{n.x} * h[0] + std::int64_t{n.y} * h[1] + std::int64_t{n.z} * h[2];
@@ -199,11 +199,11 @@ TEST_CASE("Highlight Test: splits in the highlight, and there only") {
 TEST_CASE(
     "Highlight Test: per-vertex highlights are better than those of a finer mesh of as many triangles") {
     Job job = functional_job();
-    const Setup with = setup_of(with_highlight(job));
-    const Setup without = setup_of(job);
+    const MachineSetup with = setup_of(with_highlight(job));
+    const MachineSetup without = setup_of(job);
     const EmittedMesh highlighted = bare_mesh(with);
     job.tests.normal_threshold = 0.1;
-    const Setup finer = setup_of(job);
+    const MachineSetup finer = setup_of(job);
     const EmittedMesh finer_mesh = bare_mesh(finer);
     CHECK(finer_mesh.triangles.size() >= highlighted.triangles.size());
 
@@ -229,7 +229,7 @@ TEST_CASE("per-vertex against per-texel light: a flat mesh has no error, a coars
     Job job = functional_job();
     job.map.source = MapSource::constant;
     job.map.width = job.map.height = 32;
-    const Setup flat = setup_of(job);
+    const MachineSetup flat = setup_of(job);
     Highlight highlight;
     const GouraudError none = measure_gouraud(bare_mesh(flat), flat, GoldenInputs(flat), highlight);
     CHECK(none.texels >= 32 * 32);

@@ -60,7 +60,7 @@ class PassThroughUnits : public UnitFactory {
     std::unique_ptr<PassThrough> pass_through_;
 };
 
-void expect_mesh(const NamedMachine& machine, const Setup& setup) {
+void expect_mesh(const NamedMachine& machine, const MachineSetup& setup) {
     INFO(machine.name());
     CHECK(machine.finished());
     CHECK((keys(machine.monitor.mesh) == keys(bare_mesh(setup))));
@@ -96,7 +96,7 @@ TEST_CASE("pass-through: one triangle, 92 cycles instead of 86") {
     Job job = timed_job();
     job.mesh.columns = job.mesh.rows = 1;
     job.map.source = MapSource::constant;
-    Setup setup = setup_of(job);
+    MachineSetup setup = setup_of(job);
     setup.base_triangles.resize(1);
     PassThroughUnits units;
     NamedMachine own("own", setup);
@@ -113,7 +113,7 @@ TEST_CASE("pass-through: one triangle, 92 cycles instead of 86") {
 // The Summed Height Table binds (test_timed_throughput.cpp): 5 + 3 + 36 a pass + 9. The 3 are its only pause, for the
 // first triangle's third edge, which waits for Transform: 6 now. The last pass needs no normals: no more at the end.
 TEST_CASE("pass-through: the default job, three cycles more") {
-    const Setup setup = setup_of(timed_job());
+    const MachineSetup setup = setup_of(timed_job());
     PassThroughUnits units;
     NamedMachine machine("machine", setup, &units);
     sc_core::sc_start();
@@ -125,10 +125,10 @@ TEST_CASE("pass-through: the default job, three cycles more") {
 }
 
 TEST_CASE("pass-through: the same mesh in both modes") {
-    const Setup timed_setup = setup_of(full_split_job(2, 2));
+    const MachineSetup timed_setup = setup_of(full_split_job(2, 2));
     Job job = full_split_job(2, 2);
     job.mode = Mode::functional;
-    const Setup functional_setup = setup_of(job);
+    const MachineSetup functional_setup = setup_of(job);
     PassThroughUnits timed_units, functional_units;
     NamedMachine timed("timed", timed_setup, &timed_units);
     NamedMachine functional("functional", functional_setup, &functional_units);

@@ -26,7 +26,7 @@ Job small_job() {
 
 /// Runs in timed mode; everything that must hold of any run. Gives its cycles.
 std::uint64_t expect_whole_run(const Job& job, bool splits = true) {
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     const GoldenInputs golden(setup);
     Scoreboard scoreboard(setup.registers, golden);
     Simulation simulation(setup, 1'000'000, 100'000'000);

@@ -121,7 +121,7 @@ void check(const WidthRun& run) {
 void expect_one_mesh(const Job& job) {
     validate(job);
     const auto [mesh, map, resolved] = load_inputs(job, {});
-    const Setup setup = make_setup(resolved.job, mesh, map);
+    const MachineSetup setup = make_setup(resolved.job, mesh, map);
     CHECK(setup.input_saturations.position == 0);
     CHECK(setup.input_saturations.normal == 0);
     check(run_widths(setup, ExactModel(resolved.job, mesh, map), 1'000'000));
@@ -240,7 +240,7 @@ TEST_CASE("formats: any that a job may have, on any small job: within the bounds
         try {
             validate(job);
             const auto [mesh, map, resolved] = load_inputs(job, {});
-            const Setup setup = make_setup(resolved.job, mesh, map);
+            const MachineSetup setup = make_setup(resolved.job, mesh, map);
             check(run_widths(setup, ExactModel(resolved.job, mesh, map), 1'000'000));
             ++ran;
         } catch (const InputError& error) {

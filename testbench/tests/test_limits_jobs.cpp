@@ -70,7 +70,7 @@ std::string outcome_of(const Job& job) {
     try {
         validate(job);
         const auto [mesh, map, resolved] = load_inputs(job, {});
-        const Setup setup = make_setup(resolved.job, mesh, map);
+        const MachineSetup setup = make_setup(resolved.job, mesh, map);
         const WidthRun run = run_widths(setup, ExactModel(resolved.job, mesh, map), 300'000);
         INFO(run.conformance.first_mismatch);
         INFO(run.invariants.first_violation);

@@ -5,7 +5,7 @@
 #include "testbench/input/map/map_displacement.h"
 #include "testbench/input/mesh/built_in.h"
 #include "testbench/machine/resolve_job.h"
-#include "testbench/machine/setup.h"
+#include "testbench/machine/machine_setup.h"
 
 // map.range on a map of 2 x 2 texels of 16-bit metres, 1000 to 1600 of 65535.
 
@@ -33,13 +33,13 @@ std::vector<double> displacements(const HeightMap& map) {
 }
 
 /// The same, from the codes and registers the machine has.
-std::vector<double> machine_displacements(HeightMap map, const MapRange& range, Setup* out = nullptr) {
+std::vector<double> machine_displacements(HeightMap map, const MapRange& range, MachineSetup* out = nullptr) {
     Job job;
     job.displacement = {3, 10};
     job.map.range = range;
     span_values(map, range);
     const BaseMesh mesh = make_plane(1, 1, 20, 20);
-    const Setup setup = make_setup(resolve_job(job, mesh, map).job, mesh, map);
+    const MachineSetup setup = make_setup(resolve_job(job, mesh, map).job, mesh, map);
     const double position =
         std::ldexp(1.0, -setup.registers.formats.position.fraction) / setup.model_scale.scale;
     std::vector<double> result;
@@ -64,7 +64,7 @@ TEST_CASE("full: the scale spans what the source can hold") {
     const std::vector<double> expected{10 + 3 * 1000 / 65535., 10 + 3 * 1200 / 65535., 10 + 3 * 1500 / 65535.,
                                        10 + 3 * 1600 / 65535.};
     check_equal(displacements(metres()), expected, 1e-6);
-    Setup setup;
+    MachineSetup setup;
     check_equal(machine_displacements(metres(), {}, &setup), expected, 2e-3);
     CHECK(setup.map.codes == std::vector<std::uint16_t>{1000, 1200, 1500, 1600});
     REQUIRE(setup.remarks.size() == 1);
@@ -78,7 +78,7 @@ TEST_CASE("data: the scale spans the values that occur, and so do the codes") {
     HeightMap map = metres();
     span_values(map, range);
     check_equal(displacements(map), {10, 11, 12.5, 13}, 1e-5);
-    Setup setup;
+    MachineSetup setup;
     check_equal(machine_displacements(metres(), range, &setup), {10, 11, 12.5, 13}, 1e-3);
     CHECK(setup.map.codes ==
           std::vector<std::uint16_t>{0, 21845, 54613, 65535});  // thirds and sixths of 65535
@@ -90,7 +90,7 @@ TEST_CASE("two ends: in the map's own units, and beyond them in proportion") {
     HeightMap map = metres();
     span_values(map, range);
     check_equal(displacements(map), {8, 10, 13, 14}, 1e-5);
-    Setup setup;
+    MachineSetup setup;
     check_equal(machine_displacements(metres(), range, &setup), {8, 10, 13, 14}, 1e-3);
     CHECK(setup.map.codes == std::vector<std::uint16_t>{0, 21845, 54613, 65535});
     CHECK(setup.remarks.empty());

@@ -20,13 +20,13 @@ using tessera::testing::keys;
 namespace {
 
 /// In functional mode; test_timed_*.cpp have the other.
-Setup setup_of(Job job) {
+MachineSetup setup_of(Job job) {
     job.mode = Mode::functional;
     const Inputs inputs = load_inputs(job, {});
     return make_setup(inputs.resolved.job, inputs.mesh, inputs.map);
 }
 
-void check_run(const Setup& setup, Simulation& simulation) {
+void check_run(const MachineSetup& setup, Simulation& simulation) {
     GoldenInputs golden(setup);
     Scoreboard scoreboard(setup.registers, golden);
     simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
@@ -56,7 +56,7 @@ void check_run(const Setup& setup, Simulation& simulation) {
     CHECK(invariants.open_texture_seam_edges == 0);
 }
 
-void expect_bare_mesh(const Setup& setup) {
+void expect_bare_mesh(const MachineSetup& setup) {
     Simulation simulation(setup, 1'000'000);
     check_run(setup, simulation);
     BareRecursion bare(setup);
@@ -78,7 +78,7 @@ void expect_whole(Job job, double value) {
     job.map.height = 61;
     job.tests.summed_height_threshold = 0;
     job.tests.view_threshold = 0;
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);
     REQUIRE(simulation.run().empty());
     CHECK(simulation.monitor.mesh.triangles.size() == setup.base_triangles.size());
@@ -105,7 +105,7 @@ TEST_CASE("half donut: the pipeline's mesh is the bare datapath's, bit for bit")
 }
 
 TEST_CASE("half donut, every item through its packed form: the same mesh") {
-    Setup setup = setup_of(Job{});
+    MachineSetup setup = setup_of(Job{});
     setup.design.packed_streams = true;
     expect_bare_mesh(setup);
 }
@@ -131,7 +131,7 @@ TEST_CASE("half donut, memories read by transactions: the same mesh, reads and t
 TEST_CASE("reads through DMI and by transactions are counted alike") {
     Job job;
     job.hardware.direct_memory = false;
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);
     REQUIRE(simulation.run().empty());
     const Pipeline& p = simulation.pipeline;
@@ -158,7 +158,7 @@ TEST_CASE("half donut, culling: Lighting gets fewer, the mesh stays whole") {
     Job job;
     job.hardware.culling = Culling::back;
     job.camera.eye = {0, -4, 0.6};
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);
     check_run(setup, simulation);
     CHECK(simulation.pipeline.pass_or_tessellate.counts().culled > 0);
@@ -185,7 +185,7 @@ TEST_CASE("cylinder in repeat: the seam stays closed") {
     job.map.address_u = Addressing::repeat;
     job.displacement.scale = 0.1;
     job.tests.view_threshold = 8;
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);
     check_run(setup, simulation);
     CHECK(simulation.monitor.mesh.triangles.size() > 1000);
@@ -280,7 +280,7 @@ struct Detours : UnitFactory {
 TEST_CASE("functional mode: triangles may overtake one another on every stream, and the mesh is the same") {
     Job job;
     job.hardware.queue_watermark = 1000;  // so that the host sends while the queue does
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Detours detours;
     Simulation simulation(setup, 1'000'000, 0, &detours);
     check_run(setup, simulation);
@@ -294,7 +294,7 @@ TEST_CASE("functional mode: triangles may overtake one another on every stream, 
 
 TEST_CASE("the triangle limit ends a run with a message that names its key") {
     Job job;
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 500);
     CHECK_THROWS_AS(simulation.run(), ResourceError);
     CHECK(simulation.monitor.mesh.triangles.size() == 500);
@@ -303,7 +303,7 @@ TEST_CASE("the triangle limit ends a run with a message that names its key") {
 TEST_CASE("a machine that is stopped with triangles in its queue is not idle") {
     Job job;
     job.mesh.columns = job.mesh.rows = 1;  // a base triangle that makes more than go without a pause
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 500);
     CHECK(simulation.pipeline.idle());
     CHECK_THROWS_AS(simulation.run(), ResourceError);
@@ -314,7 +314,7 @@ TEST_CASE("a machine that is stopped with triangles in its queue is not idle") {
 TEST_CASE("a read outside a table is an error that names the reader") {
     Job job;
     job.hardware.direct_memory = false;
-    Setup setup = setup_of(job);
+    MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);
     setup.registers.map.height *= 2;  // the units now take the map to be larger than its memory
     try {
@@ -330,7 +330,7 @@ TEST_CASE("a base triangle's View Test waits for its corners' screen positions")
     Job job;
     job.mesh.columns = job.mesh.rows = 1;
     job.map.source = MapSource::constant;
-    Setup setup = setup_of(job);
+    MachineSetup setup = setup_of(job);
     setup.base_triangles.resize(1);
     setup.design.timing.transform.latency = 500;  // far more than the tests take
     Simulation simulation(setup, 1'000'000);
@@ -349,7 +349,7 @@ TEST_CASE("time joins at the later branch, also for what follows the join") {
     job.tests.normal_threshold = 0;
     job.tests.view_threshold = 0;
     job.tests.generation_limit = 1;
-    Setup setup = setup_of(job);
+    MachineSetup setup = setup_of(job);
     setup.base_triangles.resize(1);
     setup.design.timing.transform.latency = 500;
     Simulation simulation(setup, 1'000'000);
@@ -362,7 +362,7 @@ TEST_CASE("time joins at the later branch, also for what follows the join") {
 }
 
 TEST_CASE("a second frame gives the same triangles again") {
-    const Setup setup = setup_of(Job{});
+    const MachineSetup setup = setup_of(Job{});
     Simulation simulation(setup, 1'000'000);
     REQUIRE(simulation.run().empty());
     const auto first = keys(simulation.monitor.mesh);

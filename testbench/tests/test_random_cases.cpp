@@ -44,7 +44,7 @@ TEST_CASE("random case: from its files it is the same as from memory") {
         const RandomCase made = make_random_case(seed);
         made.write(here.path(), Mode::functional);
         const Job job = read_job((here.path() / "job.toml").string());
-        const Setup written = make_setup(job, load_mesh(job, {}), load_map(job, {})), kept = made.setup();
+        const MachineSetup written = make_setup(job, load_mesh(job, {}), load_map(job, {})), kept = made.setup();
         INFO("seed " << seed);
         CHECK(job.mode == Mode::functional);
         CHECK(written.map.codes == kept.map.codes);
@@ -75,7 +75,7 @@ TEST_CASE("random cases: meshes of every kind, most of them split") {
     for (std::uint64_t seed = 1; seed <= cases; ++seed) {
         const RandomCase made = make_random_case(seed);
         kinds.insert(made.mesh.kind);
-        const Setup setup = made.setup();
+        const MachineSetup setup = made.setup();
         EmittedMesh mesh;
         CHECK(BareRecursion(setup).run(mesh) < RandomCase::most_edges);
         split += mesh.triangles.size() > 2 * setup.base_triangles.size() ? 1U : 0U;
@@ -92,7 +92,7 @@ TEST_CASE("invariants: what rounding puts into one place of a folded patch is no
     for (const std::uint64_t seed :
          {141U, 149U, 240U, 403U, 610U, 673U, 729U, 791U, 809U, 898U, 940U, 978U, 987U}) {
         const RandomCase made = make_random_case(seed);
-        const Setup setup = made.setup();
+        const MachineSetup setup = made.setup();
         EmittedMesh mesh;
         BareRecursion(setup).run(mesh);
         const InvariantResult result = check_invariants(mesh, setup.base_triangles, setup.registers);
@@ -116,7 +116,7 @@ TEST_CASE("lineage: two triangles close along their edge, and with an end that d
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0.4\nvt 0 0\nvt 1 0\nvt 0 1\nvt 1 1\n"
         "f 1/1 2/2 3/3\nf 2/2 4/4 3/3\n";
     made.job = resolve_job(made.job, made.base_mesh(), made.height_map()).job;
-    const Setup setup = made.setup();
+    const MachineSetup setup = made.setup();
     const LineageResult whole = check_lineage(setup);
     INFO(whole.first_fault);
     CHECK(whole.passed());
@@ -124,7 +124,7 @@ TEST_CASE("lineage: two triangles close along their edge, and with an end that d
     CHECK(whole.triangles > 100);
 
     // One copy of a shared vertex is of the last generation: its triangle keeps the common edge whole.
-    Setup older = setup;
+    MachineSetup older = setup;
     older.base_triangles[1].vertices[0].generation =
         static_cast<std::uint8_t>(setup.registers.tests.generation_limit);
     const LineageResult unlike = check_lineage(older);
@@ -134,7 +134,7 @@ TEST_CASE("lineage: two triangles close along their edge, and with an end that d
     CHECK_THAT(unlike.first_fault, Contains("a vertex comes out differently from two sides"));
 
     // Of a base triangle that is there twice each edge is wanted twice, and found twice.
-    Setup twice = setup;
+    MachineSetup twice = setup;
     twice.base_triangles.push_back(setup.base_triangles[0]);
     CHECK(check_lineage(twice).passed());
 }

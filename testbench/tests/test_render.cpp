@@ -303,7 +303,7 @@ TEST_CASE("Over a sheet the key light stands low, else it comes over the viewer'
 }
 
 TEST_CASE("A run's mesh comes back in model units, each vertex once") {
-    Setup setup;
+    MachineSetup setup;
     setup.model_scale = {4, {10, 20, 30}};
     const auto at = [](int x, int y) {
         EmittedTriangle::Corner corner;

@@ -11,8 +11,8 @@ using namespace tessera;
 
 namespace {
 
-Setup some_setup(const glm::dvec3& centre, double scale) {
-    Setup setup;
+MachineSetup some_setup(const glm::dvec3& centre, double scale) {
+    MachineSetup setup;
     setup.model_scale = {scale, centre};
     setup.registers.map.width = 64;
     setup.registers.map.height = 64;
@@ -59,7 +59,7 @@ TEST_CASE("render: a mesh read back from mesh.ply is the run's own, number for n
          {glm::dvec3(0), glm::dvec3(0.1, -7.3, 1e-3), glm::dvec3(1e6, 1.0 / 3, -12345.678)})
         for (const double scale : {1.0, 1.0 / 64, 4096.0}) {
             CAPTURE(centre.x, scale);
-            const Setup setup = some_setup(centre, scale);
+            const MachineSetup setup = some_setup(centre, scale);
             const EmittedMesh run = some_mesh();
             const RenderMesh made = make_render_mesh(run, setup);
             write_ply(here.path() / "mesh.ply", run,
@@ -82,7 +82,7 @@ TEST_CASE("render: a mesh read back from mesh.ply is the run's own, number for n
 }
 
 TEST_CASE("render: positions keep single precision's best wherever the model lies") {
-    const Setup setup = some_setup({1e6, -3e6, 2e6}, 1);
+    const MachineSetup setup = some_setup({1e6, -3e6, 2e6}, 1);
     const EmittedMesh run = some_mesh();
     const RenderMesh mesh = make_render_mesh(run, setup);
     std::size_t drawn = 0;
@@ -103,7 +103,7 @@ TEST_CASE("render: positions keep single precision's best wherever the model lie
 }
 
 TEST_CASE("render: a run without triangles gives an empty mesh") {
-    const Setup setup = some_setup({1, 2, 3}, 1);
+    const MachineSetup setup = some_setup({1, 2, 3}, 1);
     EmittedMesh run = some_mesh();
     for (EmittedTriangle& triangle : run.triangles)
         triangle.culled = true;

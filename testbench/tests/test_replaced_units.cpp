@@ -279,7 +279,7 @@ void expect_mesh(const NamedMachine& machine, const EmittedMesh& mesh) {
 }
 
 /// With which the machine's own Summed Height Test decides as the halved one.
-Setup equal_to_halved(Setup setup) {
+MachineSetup equal_to_halved(MachineSetup setup) {
     std::uint64_t& threshold = setup.registers.tests.summed_height_threshold;
     threshold = 2 * threshold + 1;
     return setup;
@@ -287,8 +287,8 @@ Setup equal_to_halved(Setup setup) {
 
 /// The halved test's machine beside one of equal registers.
 void expect_halved_test(const Job& job) {
-    const Setup setup = setup_of(job);
-    const Setup equal = equal_to_halved(setup);
+    const MachineSetup setup = setup_of(job);
+    const MachineSetup equal = equal_to_halved(setup);
     HalvedHeights units;
     NamedMachine halved("halved", setup, &units);
     NamedMachine own("own", equal);
@@ -313,7 +313,7 @@ void expect_halved_test(const Job& job) {
 }
 
 /// Returns for how many cycles the packed unit was blocked.
-std::uint64_t expect_same_as_packed(const Setup& setup) {
+std::uint64_t expect_same_as_packed(const MachineSetup& setup) {
     PackedDisplaceVertices units;
     NamedMachine packed("packed", setup, &units);
     NamedMachine own("own", setup);
@@ -341,9 +341,9 @@ Job packed_streams_job(Mode mode) {
 }
 
 void expect_same_through_packed_streams(Mode mode) {
-    Setup plain = setup_of(packed_streams_job(mode));
+    MachineSetup plain = setup_of(packed_streams_job(mode));
     plain.design.packed_streams = false;
-    Setup packed = plain;
+    MachineSetup packed = plain;
     packed.design.packed_streams = true;
     NamedMachine plain_machine("plain", plain);
     NamedMachine packed_machine("packed", packed);
@@ -359,7 +359,7 @@ void expect_same_through_packed_streams(Mode mode) {
 }
 
 void expect_error_through_packed_streams(Mode mode) {
-    Setup setup = setup_of(packed_streams_job(mode));
+    MachineSetup setup = setup_of(packed_streams_job(mode));
     setup.design.packed_streams = true;
     WideUnits units;
     NamedMachine machine("wide", setup, &units);
@@ -401,7 +401,7 @@ TEST_CASE(
     job.formats.normal_bits = 13;
     job.formats.normal_fraction = 11;
     job.timing.displacement_map.latency = 5;
-    Setup setup = setup_of(job);
+    MachineSetup setup = setup_of(job);
     setup.design.timing.displace_vertex.buffer = 3;
     setup.design.timing.transform = {20, 40, 1};
     CHECK(expect_same_as_packed(setup) > 0);
@@ -424,9 +424,9 @@ TEST_CASE("packed streams: a value beyond its field is an error that names the s
 }
 
 TEST_CASE("packed streams: without them the same value passes") {
-    std::array<Setup, 2> setups{setup_of(packed_streams_job(Mode::timed)),
+    std::array<MachineSetup, 2> setups{setup_of(packed_streams_job(Mode::timed)),
                                 setup_of(packed_streams_job(Mode::functional))};
-    for (Setup& setup : setups)
+    for (MachineSetup& setup : setups)
         setup.design.packed_streams = false;
     WideUnits units;
     NamedMachine timed("timed", setups[0], &units);
@@ -438,8 +438,8 @@ TEST_CASE("packed streams: without them the same value passes") {
 }
 
 TEST_CASE("replaced unit: the same in another context, with other registers") {
-    const Setup setup = setup_of(in_mode(Mode::functional));
-    const Setup equal = equal_to_halved(setup);
+    const MachineSetup setup = setup_of(in_mode(Mode::functional));
+    const MachineSetup equal = equal_to_halved(setup);
     OtherThreshold units(equal.registers);
     NamedMachine machine("machine", setup, &units);
     sc_core::sc_start();
@@ -447,7 +447,7 @@ TEST_CASE("replaced unit: the same in another context, with other registers") {
 }
 
 TEST_CASE("replaced unit: the same in another context, stalls for it alone or another latency") {
-    const Setup setup = setup_of(full_split_job(2, 3));
+    const MachineSetup setup = setup_of(full_split_job(2, 3));
     StalledHeights stalled_units;
     SlowCalculateNewP slow_units;
     NamedMachine own("own", setup);
@@ -462,8 +462,8 @@ TEST_CASE("replaced unit: the same in another context, stalls for it alone or an
 }
 
 TEST_CASE("a unit interposed on a stream: half the light, as many cycles more as its latency") {
-    const Setup timed_setup = setup_of(full_split_job(2, 2));
-    const Setup functional_setup = setup_of(in_mode(Mode::functional, full_split_job(2, 2)));
+    const MachineSetup timed_setup = setup_of(full_split_job(2, 2));
+    const MachineSetup functional_setup = setup_of(in_mode(Mode::functional, full_split_job(2, 2)));
     HalfLitUnits timed_units, functional_units;
     NamedMachine own("own", timed_setup);
     NamedMachine timed("timed", timed_setup, &timed_units);

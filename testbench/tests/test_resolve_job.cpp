@@ -10,7 +10,7 @@
 #include "testbench/input/mesh/obj_reader.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/machine/resolve_job.h"
-#include "testbench/machine/setup.h"
+#include "testbench/machine/machine_setup.h"
 
 // What a job leaves to the program, by values derived by hand.
 
@@ -221,7 +221,7 @@ TEST_CASE("set-up and golden model refuse a job that is not resolved: a mistake 
     const BaseMesh plane = make_plane(3, 3, 2, 2);
     const HeightMap map = half_donut_map(8, 8);
     Job job = resolve_job({}, plane, map).job;
-    const Setup setup = make_setup(job, plane, map);
+    const MachineSetup setup = make_setup(job, plane, map);
     CHECK_NOTHROW(GoldenJob(job, plane, map, setup.model_scale));
     job.camera.up = automatic_vector;
     CHECK_THROWS_WITH(make_setup(job, plane, map),

@@ -68,7 +68,7 @@ bool repaired(const BaseMesh& mesh, const std::string& words) {
 }
 
 /// The default job's, with this displacement scale.
-Setup setup_of(double scale) {
+MachineSetup setup_of(double scale) {
     Job job = without_automatic({});
     job.displacement.scale = scale;
     return make_setup(job, make_plane(3, 3, 2, 2), half_donut_map(64, 64));
@@ -182,7 +182,7 @@ TEST_CASE("frame k of n: its scale, its folder, and nothing else") {
 }
 
 TEST_CASE("another scale: what the host sends again is the normal map, S and the base mesh") {
-    const Setup low = setup_of(0.2), high = setup_of(0.25);
+    const MachineSetup low = setup_of(0.2), high = setup_of(0.25);
     REQUIRE(low.model_scale.scale == high.model_scale.scale);
     // what makes it true: the machine holds nothing else that depends on S
     CHECK(low.map.codes == high.map.codes);
@@ -208,8 +208,8 @@ TEST_CASE("another scale: what the host sends again is the normal map, S and the
 }
 
 TEST_CASE("the point of w and the Highlight Test's values are registers that the host sends") {
-    const Setup before = setup_of(0.2);
-    Setup now = before;
+    const MachineSetup before = setup_of(0.2);
+    MachineSetup now = before;
     --now.registers.formats.view_distance.fraction;
     CHECK(next_frame_traffic(before, now).registers == 4);
     now = before;
@@ -221,7 +221,7 @@ TEST_CASE("the point of w and the Highlight Test's values are registers that the
 }
 
 TEST_CASE("a scale that makes the model's own change sends Transform's matrix again") {
-    const Setup low = setup_of(0.2), high = setup_of(5);
+    const MachineSetup low = setup_of(0.2), high = setup_of(5);
     REQUIRE(low.model_scale.scale != high.model_scale.scale);
     const HostTraffic later = next_frame_traffic(low, high);
     CHECK(later.displacement_map == 0);

@@ -27,7 +27,7 @@ class Watcher : public tlm::tlm_analysis_if<TrianglePass> {
     std::function<void(const TrianglePass&)> look_;
 };
 
-Saturations run_watched(const Setup& setup, const std::function<void(const TrianglePass&)>& look) {
+Saturations run_watched(const MachineSetup& setup, const std::function<void(const TrianglePass&)>& look) {
     Simulation simulation(setup, 1'000'000, 100'000);
     Watcher watcher(look);
     simulation.pipeline.pass_or_tessellate.decided.bind(watcher);
@@ -65,7 +65,7 @@ void for_each_displaced(const TrianglePass& pass, Look&& look) {
 }  // namespace
 
 TEST_CASE("saturations: the default job has none, of any quantity") {
-    const Setup setup = setup_of(timed_job());
+    const MachineSetup setup = setup_of(timed_job());
     Simulation simulation(setup, 1'000'000, 100'000);
     REQUIRE(simulation.run().empty());
     const auto figures = saturation_figures(setup, simulation.pipeline.saturations());
@@ -79,7 +79,7 @@ TEST_CASE("saturations: the default job has none, of any quantity") {
 }
 
 TEST_CASE("saturations: displaced positions, as 128 bit integers count them") {
-    Setup setup = setup_of(small_job());
+    MachineSetup setup = setup_of(small_job());
     datapath::Registers& r = setup.registers;
     r.displacement.bias = static_cast<std::int32_t>(r.formats.position.highest / 5 * 4);
     r.displacement.scale = static_cast<std::int32_t>(r.formats.position.highest / 3);
@@ -115,7 +115,7 @@ TEST_CASE("saturations: screen positions, as a division in doubles counts them")
     job.formats.screen_bits = 13;
     job.formats.screen_fraction = 2;
     job.camera.eye = {0.2, -0.5, 0.4};
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     const datapath::TransformParameters& transform = setup.registers.transform;
     const datapath::Format& screen = setup.registers.formats.screen;
     std::uint64_t certain = 0, possible = 0;
@@ -150,7 +150,7 @@ TEST_CASE("saturations: screen positions, as a division in doubles counts them")
 }
 
 TEST_CASE("saturations: view distances, as 128 bit integers count them") {
-    Setup setup = setup_of(small_job());
+    MachineSetup setup = setup_of(small_job());
     datapath::Format& format = setup.registers.formats.view_distance;
     format.fraction += 6;  // more than the host would choose
     const auto& row = setup.registers.transform.row_w;
@@ -171,7 +171,7 @@ TEST_CASE("saturations: view distances, as 128 bit integers count them") {
 TEST_CASE("saturations: normals of one integer bit, where a plane's own do not fit") {
     Job job = small_job();
     job.map.source = MapSource::constant;
-    Setup setup = setup_of(job);
+    MachineSetup setup = setup_of(job);
     datapath::Formats& formats = setup.registers.formats;
     formats.normal = datapath::Format::make_signed(16, 15);
     for (datapath::Triangle& triangle : setup.base_triangles)
@@ -192,7 +192,7 @@ TEST_CASE("saturations: normals of one integer bit, where a plane's own do not f
 }
 
 TEST_CASE("saturations: opposite normals leave zero vectors, counted") {
-    Setup setup = setup_of(small_job());
+    MachineSetup setup = setup_of(small_job());
     for (datapath::Triangle& triangle : setup.base_triangles) {
         datapath::Direction& n = triangle.vertices[1].normal;
         n = {-n.x, -n.y, -n.z};
@@ -230,7 +230,7 @@ TEST_CASE("saturations: generations beyond their field, with the Generation Test
     job.tests.generation_limit = 3;
     job.formats.generation_bits = 2;
     job.hardware.queue_capacity = 4;  // spilled triangles are packed: what is in them fits their fields
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     std::uint64_t expected = 0;
     int deepest = 0;
     Simulation simulation(setup, 100'000, 100'000);
@@ -261,7 +261,7 @@ TEST_CASE("saturations: vertices that face the light fully") {
     job.camera.eye = {0, -3, 0};
     job.camera.target = {0, 0, 0};
     job.hardware.light = {0, 0, 1};
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000, 100'000);
     REQUIRE(simulation.run().empty());
     const Saturations counted = simulation.pipeline.saturations();
@@ -290,7 +290,7 @@ TEST_CASE(
     BaseMesh mesh = load_mesh(job, {});
     mesh.vertices.front().texture.x = -0.25;
     const HeightMap map = load_map(job, {});
-    const Setup setup = make_setup(resolve_job(job, mesh, map).job, mesh, map);
+    const MachineSetup setup = make_setup(resolve_job(job, mesh, map).job, mesh, map);
     const auto figures = saturation_figures(setup, {});
     CHECK(saturations_text(figures) == "input texture 1");
     CHECK(saturation_warnings(figures).empty());
@@ -308,7 +308,7 @@ TEST_CASE("saturations: what the host rounds is counted too") {
     job.displacement.scale = 1;
     job.displacement.bias = -0.5;
     job.mesh.width = job.mesh.depth = 0.5;
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     CHECK(setup.registers.displacement.scale == setup.registers.formats.position.highest);
     CHECK(setup.input_saturations.registers == 1);
     CHECK(setup.input_saturations.position == 0);

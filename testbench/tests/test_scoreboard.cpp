@@ -239,7 +239,7 @@ TEST_CASE("an allowed flip of NT excuses the split that follows from it and no o
 
 TEST_CASE("broken arithmetic is caught") {
     Random random(6);
-    Setup setup = Case::make_setup(random, datapath::Formats{}, Manner::tame);
+    MachineSetup setup = Case::make_setup(random, datapath::Formats{}, Manner::tame);
     setup.registers.map = {90, 70, datapath::AddressMode::clamp, datapath::AddressMode::repeat};
     setup.map.geometry = setup.registers.map;
     setup.map.codes.clear();
@@ -385,7 +385,7 @@ TEST_CASE("broken arithmetic is caught") {
 
 TEST_CASE("another diagonal is caught") {
     Random random(7);
-    Setup setup = Case::make_setup(random, datapath::Formats{}, Manner::tame);
+    MachineSetup setup = Case::make_setup(random, datapath::Formats{}, Manner::tame);
     setup.registers.triangulation = datapath::Triangulation::shorter;
     Case c(setup, Manner::tame);
     datapath::Registers broken = c.setup.registers;
@@ -408,7 +408,7 @@ TEST_CASE("another diagonal is caught") {
 TEST_CASE("a constant map never splits by height, and conforms") {
     Random random(8);
     for (const datapath::Formats& formats : many_formats()) {
-        Setup setup = Case::make_setup(random, formats, Manner::tame);
+        MachineSetup setup = Case::make_setup(random, formats, Manner::tame);
         setup.map.codes.assign(setup.map.codes.size(), static_cast<std::uint16_t>(setup.map.highest_code()));
         setup.registers.tests.summed_height_threshold = 0;
         Case c(setup, Manner::tame);
@@ -429,7 +429,7 @@ TEST_CASE("near the near plane the two may differ only within rounding of w") {
     Random random(9);
     std::uint64_t flips = 0, flipped_edges = 0, in_front = 0, behind = 0;
     for (int design = 0; design < 400; ++design) {
-        Setup setup = Case::make_setup(random, make_formats(20, 8, 8, 6, 8, 12, 24, 8), Manner::tame);
+        MachineSetup setup = Case::make_setup(random, make_formats(20, 8, 8, 6, 8, 12, 24, 8), Manner::tame);
         // Looking along +x from the origin, the near plane amid the midpoints.
         const std::int64_t one = std::int64_t{1} << datapath::TransformParameters::matrix_fraction;
         const std::int32_t near = 5000;
@@ -465,7 +465,7 @@ TEST_CASE("near the near plane the two may differ only within rounding of w") {
 
 TEST_CASE("a vertex not in front has no screen position") {
     Random random(10);
-    Setup setup = Case::make_setup(random, datapath::Formats{}, Manner::tame);
+    MachineSetup setup = Case::make_setup(random, datapath::Formats{}, Manner::tame);
     setup.registers.transform.near_plane = std::int64_t{1} << 60;
     Case c(setup, Manner::tame);
     datapath::TrianglePass pass = c.pass(random);
@@ -530,7 +530,7 @@ TEST_CASE("normals and tangents of length zero stay zero on both sides") {
 
 TEST_CASE("a saturated value is compared with the saturated golden value") {
     Random random(12);
-    Setup setup = Case::make_setup(random, datapath::Formats{}, Manner::tame);
+    MachineSetup setup = Case::make_setup(random, datapath::Formats{}, Manner::tame);
     const datapath::Format& position = setup.registers.formats.position;
     setup.registers.displacement = {0, static_cast<std::int32_t>(position.highest)};
     Case c(setup, Manner::tame);

@@ -21,7 +21,7 @@ TEST_CASE("another diagonal than golden's is caught for each pair of split edges
     Random random(8);
     std::map<std::pair<unsigned, bool>, int> seen;
     for (int design = 0; design < 60; ++design) {
-        Setup setup = Case::make_setup(random, datapath::Formats{}, Manner::tame);
+        MachineSetup setup = Case::make_setup(random, datapath::Formats{}, Manner::tame);
         setup.registers.triangulation = Triangulation::shorter;
         for (bool datapath::TestParameters::*test :
              {&datapath::TestParameters::summed_height_test, &datapath::TestParameters::view_test,

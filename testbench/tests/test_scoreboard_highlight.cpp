@@ -14,7 +14,7 @@ using namespace tessera::testing;
 namespace {
 
 Case case_with_highlight(Random& random, const datapath::Formats& formats, Manner manner) {
-    Setup setup = Case::make_setup(random, formats, manner);
+    MachineSetup setup = Case::make_setup(random, formats, manner);
     const int fraction = formats.normal.fraction;
     datapath::TestParameters& tests = setup.registers.tests;
     tests.highlight_test = true;

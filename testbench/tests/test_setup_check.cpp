@@ -40,7 +40,7 @@ struct CheckedRun {
     SetupResult check() { return check_setup(setup, golden, simulation); }
 
     /// The verdict on another set-up, with the memories as they are.
-    void require_noticed(const Setup& wrong, const std::string& name) {
+    void require_noticed(const MachineSetup& wrong, const std::string& name) {
         const SetupResult result = check_setup(wrong, golden, simulation);
         INFO(name << ": " << result.first_wrong);
         CHECK(result.wrong() > 0);
@@ -54,14 +54,14 @@ struct CheckedRun {
     BaseMesh mesh;
     HeightMap map;
     Job resolved;
-    Setup setup;
+    MachineSetup setup;
     GoldenJob golden;
     Simulation simulation;
 };
 
 struct Mistake {
     std::string name;  // as the check names it
-    std::function<void(Setup&)> make;
+    std::function<void(MachineSetup&)> make;
 };
 
 /// One mistake for each register of the default job, by one LSB where it is a number.
@@ -69,12 +69,12 @@ std::vector<Mistake> register_mistakes() {
     using datapath::AddressMode;
     std::vector<Mistake> list;
     const auto add = [&](const std::string& name, auto member) {
-        list.push_back({name, [member](Setup& setup) { ++member(setup.registers); }});
-        list.push_back({name, [member](Setup& setup) { --member(setup.registers); }});
+        list.push_back({name, [member](MachineSetup& setup) { ++member(setup.registers); }});
+        list.push_back({name, [member](MachineSetup& setup) { --member(setup.registers); }});
     };
     const auto turn = [&](const std::string& name, auto member) {
         list.push_back(
-            {name, [member](Setup& setup) { member(setup.registers) = !member(setup.registers); }});
+            {name, [member](MachineSetup& setup) { member(setup.registers) = !member(setup.registers); }});
     };
     const auto format = [&](const std::string& name, datapath::Format datapath::Formats::*it) {
         add(
@@ -108,8 +108,8 @@ std::vector<Mistake> register_mistakes() {
         "map.width", [](auto& r) -> auto& { return r.map.width; });
     add(
         "map.height", [](auto& r) -> auto& { return r.map.height; });
-    list.push_back({"map.address_u", [](Setup& s) { s.registers.map.address_u = AddressMode::repeat; }});
-    list.push_back({"map.address_v", [](Setup& s) { s.registers.map.address_v = AddressMode::repeat; }});
+    list.push_back({"map.address_u", [](MachineSetup& s) { s.registers.map.address_u = AddressMode::repeat; }});
+    list.push_back({"map.address_v", [](MachineSetup& s) { s.registers.map.address_v = AddressMode::repeat; }});
     const auto table = [&](const std::string& name, datapath::TableLayout datapath::Registers::*it) {
         add(
             name + ".columns", [it](auto& r) -> auto& { return (r.*it).columns; });
@@ -122,7 +122,7 @@ std::vector<Mistake> register_mistakes() {
     table("normal_map", &datapath::Registers::normal_map);
     table("summed_height_table", &datapath::Registers::summed_height_table);
     list.push_back(
-        {"overlap", [](Setup& s) { s.registers.normal_map.base = s.registers.displacement_map.base + 2; }});
+        {"overlap", [](MachineSetup& s) { s.registers.normal_map.base = s.registers.displacement_map.base + 2; }});
 
     turn(
         "tests.normal_test", [](auto& r) -> auto& { return r.tests.normal_test; });
@@ -140,7 +140,7 @@ std::vector<Mistake> register_mistakes() {
         "tests.normal_threshold", [](auto& r) -> auto& { return r.tests.normal_threshold; });
     add(
         "tests.summed_height_threshold", [](auto& r) -> auto& { return r.tests.summed_height_threshold; });
-    list.push_back({"tests.summed_height_unit", [](Setup& s) {
+    list.push_back({"tests.summed_height_unit", [](MachineSetup& s) {
                         s.registers.tests.summed_height_unit = datapath::SummedHeightUnit::area;
                     }});
     add(
@@ -164,7 +164,7 @@ std::vector<Mistake> register_mistakes() {
         const auto row = [&](const std::string& name, auto member) {
             for (const std::int64_t error : {step, -step})
                 list.push_back({"transform." + name + "[" + std::to_string(k) + "]",
-                                [=](Setup& s) { (s.registers.transform.*member)[k] += error; }});
+                                [=](MachineSetup& s) { (s.registers.transform.*member)[k] += error; }});
         };
         row("row_x", &datapath::TransformParameters::row_x);
         row("row_y", &datapath::TransformParameters::row_y);
@@ -188,7 +188,7 @@ std::vector<Mistake> register_mistakes() {
     add(
         "light.ambient", [](auto& r) -> auto& { return r.light.ambient; });
     list.push_back(
-        {"triangulation", [](Setup& s) { s.registers.triangulation = datapath::Triangulation::first; }});
+        {"triangulation", [](MachineSetup& s) { s.registers.triangulation = datapath::Triangulation::first; }});
     turn(
         "back_face_culling", [](auto& r) -> auto& { return r.back_face_culling; });
     return list;
@@ -200,7 +200,7 @@ std::vector<Mistake> vertex_mistakes() {
     const auto add = [&](const std::string& field, auto member) {
         for (const std::size_t k : {std::size_t{0}, std::size_t{1}, std::size_t{2}})
             list.push_back({"triangle 7, vertex " + std::to_string(k) + ", " + field,
-                            [member, k](Setup& s) { ++member(s.base_triangles[7].vertices[k]); }});
+                            [member, k](MachineSetup& s) { ++member(s.base_triangles[7].vertices[k]); }});
     };
     add(
         "position.x", [](auto& v) -> auto& { return v.position.x; });
@@ -231,17 +231,17 @@ std::vector<Mistake> vertex_mistakes() {
     for (const std::size_t k : {std::size_t{0}, std::size_t{1}, std::size_t{2}}) {
         const std::string vertex = "triangle 7, vertex " + std::to_string(k) + ", ";
         list.push_back({vertex + "displaced_known",
-                        [k](Setup& s) { s.base_triangles[7].vertices[k].displaced_known = true; }});
+                        [k](MachineSetup& s) { s.base_triangles[7].vertices[k].displaced_known = true; }});
         list.push_back({vertex + "screen_normal_known",
-                        [k](Setup& s) { s.base_triangles[7].vertices[k].screen_normal_known = true; }});
+                        [k](MachineSetup& s) { s.base_triangles[7].vertices[k].screen_normal_known = true; }});
     }
-    list.push_back({"triangle 7, split_by", [](Setup& s) { ++s.base_triangles[7].split_by; }});
-    list.push_back({"triangle 7, stopped_by", [](Setup& s) { ++s.base_triangles[7].stopped_by; }});
-    list.push_back({"triangle 7, finished", [](Setup& s) { s.base_triangles[7].finished = true; }});
-    list.push_back({"triangle 7, base", [](Setup& s) { ++s.base_triangles[7].base; }});
-    list.push_back({"triangle 17 of the mesh is missing", [](Setup& s) { s.base_triangles.pop_back(); }});
+    list.push_back({"triangle 7, split_by", [](MachineSetup& s) { ++s.base_triangles[7].split_by; }});
+    list.push_back({"triangle 7, stopped_by", [](MachineSetup& s) { ++s.base_triangles[7].stopped_by; }});
+    list.push_back({"triangle 7, finished", [](MachineSetup& s) { s.base_triangles[7].finished = true; }});
+    list.push_back({"triangle 7, base", [](MachineSetup& s) { ++s.base_triangles[7].base; }});
+    list.push_back({"triangle 17 of the mesh is missing", [](MachineSetup& s) { s.base_triangles.pop_back(); }});
     list.push_back(
-        {"19 base triangles", [](Setup& s) { s.base_triangles.push_back(s.base_triangles.back()); }});
+        {"19 base triangles", [](MachineSetup& s) { s.base_triangles.push_back(s.base_triangles.back()); }});
     return list;
 }
 
@@ -275,7 +275,7 @@ TEST_CASE("one wrong register, base vertex or table entry fails the default job"
 
     for (const auto& list : {register_mistakes(), vertex_mistakes()})
         for (const Mistake& mistake : list) {
-            Setup wrong = run.setup;
+            MachineSetup wrong = run.setup;
             mistake.make(wrong);
             run.require_noticed(wrong, mistake.name);
         }
@@ -330,7 +330,7 @@ TEST_CASE("the set-up of a job of other formats, with bias, highlight and a map 
     INFO(result.first_wrong);
     CHECK(result.passed());
 
-    Setup wrong = run.setup;
+    MachineSetup wrong = run.setup;
     ++wrong.registers.tests.highlight_cosine;
     run.require_noticed(wrong, "tests.highlight_cosine");
     wrong = run.setup;

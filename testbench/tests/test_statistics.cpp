@@ -62,11 +62,11 @@ Figures figures_of(const Simulation& simulation) {
     return Figures(collect_statistics(simulation.setup, simulation, count_mesh(simulation.monitor.mesh)));
 }
 
-Setup one_triangle() {
+MachineSetup one_triangle() {
     Job job = timed_job();
     job.mesh.columns = job.mesh.rows = 1;
     job.map.source = MapSource::constant;
-    Setup setup = setup_of(job);
+    MachineSetup setup = setup_of(job);
     setup.base_triangles.resize(1);
     return setup;
 }
@@ -86,7 +86,7 @@ EmittedTriangle::Corner corner(std::uint32_t u, std::uint32_t v, std::int32_t z,
 TEST_CASE("statistics: two triangles split once, by hand") {
     Job job = full_split_job(1, 1);
     job.map.width = job.map.height = 8;
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1000);
     run_timed(simulation);
     const Figures f = figures_of(simulation);
@@ -210,7 +210,7 @@ TEST_CASE("statistics: what every test stopped stands in the emitted triangle, t
 // Second round: taken in 50, three normals, which read nothing, in Displace Vertex from 52, in Transform from
 // 58; joined in 80, lit in 81, out in 85.
 TEST_CASE("statistics: one triangle's cycles, unit by unit, by hand") {
-    const Setup setup = one_triangle();
+    const MachineSetup setup = one_triangle();
     Simulation simulation(setup, 1000);
     run_timed(simulation);
     const Figures f = figures_of(simulation);
@@ -289,7 +289,7 @@ TEST_CASE("statistics: one triangle's cycles, unit by unit, by hand") {
 TEST_CASE("statistics: what is spilled comes back, in whole records") {
     Job job = full_split_job(1, 2);
     job.hardware.queue_capacity = 2;
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1000);
     run_timed(simulation);
     const double spilled = static_cast<double>(simulation.pipeline.triangle_queue.spilled());

@@ -187,7 +187,7 @@ TEST_CASE("summary: a timed run of one triangle") {
     Job job = timed_job();
     job.mesh.columns = job.mesh.rows = 1;
     job.map.source = MapSource::constant;
-    Setup setup = setup_of(job);
+    MachineSetup setup = setup_of(job);
     setup.base_triangles.resize(1);
     Simulation simulation(setup, 1000);
     run_timed(simulation);
@@ -212,7 +212,7 @@ TEST_CASE("summary: a timed run of one triangle") {
 TEST_CASE("summary: a queue that spills") {
     Job job = full_split_job(1, 1);
     job.hardware.queue_capacity = 2;
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1000);
     run_timed(simulation);
     const TriangleQueue& queue = simulation.pipeline.triangle_queue;

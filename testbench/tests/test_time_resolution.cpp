@@ -34,7 +34,7 @@ TEST_CASE("time resolution 1 ns: a machine refuses the period, in its own name")
     sc_core::sc_set_time_resolution(1, sc_core::SC_NS);
     Job job = full_split_job(1, 1);
     job.timing.cycle_picoseconds = 2500;
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     CHECK_THAT(error_of([&] { const Pipeline pipeline("machine", setup.registers, setup.design); }),
                Contains("machine: a clock period of 2500 ps"));
 }
@@ -43,7 +43,7 @@ namespace {
 
 void expect_time(double resolution, sc_core::sc_time_unit unit) {
     sc_core::sc_set_time_resolution(resolution, unit);
-    const Setup setup = setup_of(full_split_job(1, 2));
+    const MachineSetup setup = setup_of(full_split_job(1, 2));
     Simulation simulation(setup, 1'000'000);
     CHECK(simulation.run().empty());
     CHECK(simulation.cycles() > 1000);

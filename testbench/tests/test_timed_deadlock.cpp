@@ -40,7 +40,7 @@ Job full_queue_job(Overflow overflow) {
 // triangle whose parts nobody takes; and the queue's first triangle waits for Get Triangle: the ring is
 // closed.
 TEST_CASE("a full queue that stalls is a deadlock, told unit by unit") {
-    const Setup setup = setup_of(full_queue_job(Overflow::stall));
+    const MachineSetup setup = setup_of(full_queue_job(Overflow::stall));
     Simulation simulation(setup, 1'000'000, 1'000'000);
     const std::string report = simulation.run();
     INFO(report);
@@ -63,14 +63,14 @@ TEST_CASE("a full queue that stalls is a deadlock, told unit by unit") {
 }
 
 TEST_CASE("the same queue that spills is none") {
-    const Setup setup = setup_of(full_queue_job(Overflow::spill));
+    const MachineSetup setup = setup_of(full_queue_job(Overflow::spill));
     Simulation simulation(setup, 1'000'000, 1'000'000);
     run_timed(simulation);
     CHECK(simulation.pipeline.triangle_queue.spilled() > 0);
 }
 
 TEST_CASE("the same queue that may not overflow ends the run with the key's name") {
-    const Setup setup = setup_of(full_queue_job(Overflow::error));
+    const MachineSetup setup = setup_of(full_queue_job(Overflow::error));
     Simulation simulation(setup, 1'000'000, 1'000'000);
     try {
         simulation.run();
@@ -86,7 +86,7 @@ TEST_CASE("a full queue, last in first out, with stalls: a deadlock too, not a c
     job.hardware.queue_order = QueueOrder::lifo;
     job.hardware.queue_capacity = 1;
     job.timing.stalls = {7, 300, 16};
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000, 1'000'000);
     const std::string report = simulation.run();
     CHECK_THAT(report, Catch::StartsWith("deadlock: ") && Contains("tessera.triangle_queue"));
@@ -95,7 +95,7 @@ TEST_CASE("a full queue, last in first out, with stalls: a deadlock too, not a c
 
 // The first decision takes 86 cycles, and in more than 20 of them something is called.
 TEST_CASE("a machine that works and decides nothing within the bound is a livelock") {
-    const Setup setup = setup_of(timed_job());
+    const MachineSetup setup = setup_of(timed_job());
     Simulation simulation(setup, 1'000'000, 20);
     const std::string report = simulation.run();
     INFO(report);
@@ -110,7 +110,7 @@ TEST_CASE("a machine that waits for a million cycles is none") {
     job.mesh.columns = job.mesh.rows = 1;
     job.map.source = MapSource::constant;
     job.timing.stalls = {1, 1000, 1'000'000};
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000, 500);
     run_timed(simulation);
     CHECK(simulation.cycles() > 1'000'000);
@@ -119,7 +119,7 @@ TEST_CASE("a machine that waits for a million cycles is none") {
 // First in first out: all of a generation is decided before any of the next, so the first triangle is lit after
 // 18 * (1 + 4 + 16 + 64) passes of 36 cycles.
 TEST_CASE("a triangle decided is progress, though none is lit for long") {
-    const Setup setup = setup_of(full_split_job(3, 4));
+    const MachineSetup setup = setup_of(full_split_job(3, 4));
     Simulation simulation(setup, 1'000'000, 1000);
     run_timed(simulation);
     CHECK(simulation.cycles() > 1530 * 36);
@@ -128,7 +128,7 @@ TEST_CASE("a triangle decided is progress, though none is lit for long") {
 // Lighting, one triangle in 500 cycles, has places for all that wait for it: most are lit when the last has
 // long been decided, and each takes more than one cycle in which something is called.
 TEST_CASE("a triangle lit is progress, though none is decided any more") {
-    Setup setup = setup_of(full_split_job(2, 2));
+    MachineSetup setup = setup_of(full_split_job(2, 2));
     setup.design.timing.lighting = {4, 500, 128};
     Simulation simulation(setup, 1'000'000, 100);
     run_timed(simulation);
@@ -140,7 +140,7 @@ TEST_CASE("the bound on progress does not end a run that just keeps it") {
     Job job = timed_job();
     job.mesh.columns = job.mesh.rows = 1;
     job.map.source = MapSource::constant;
-    Setup setup = setup_of(job);
+    MachineSetup setup = setup_of(job);
     setup.base_triangles.resize(1);
     Simulation simulation(setup, 1'000'000, 46);
     run_timed(simulation);
@@ -162,7 +162,7 @@ struct Wall : sc_core::sc_module, CycleProcess {
 
 // Behind a rasteriser that takes one triangle and no other, units fill up one behind the other, up to the host.
 TEST_CASE("a rasteriser that takes nothing is a deadlock that begins at Lighting") {
-    const Setup setup = setup_of(full_split_job(3, 2));
+    const MachineSetup setup = setup_of(full_split_job(3, 2));
     Pipeline pipeline("tessera", setup.registers, setup.design);
     Host host("host", setup, pipeline.clock);
     Wall wall("wall", pipeline.clock);

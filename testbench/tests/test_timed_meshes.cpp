@@ -14,7 +14,7 @@ using namespace tessera::testing;
 namespace {
 
 /// A timed run against the bare recursion on the same setup.
-void expect_bare_mesh(const Setup& setup) {
+void expect_bare_mesh(const MachineSetup& setup) {
     Simulation simulation(setup, 1'000'000, 100'000);
     run_timed(simulation);
     BareRecursion bare(setup);
@@ -61,7 +61,7 @@ void set_queue(Job& job, QueueOrder order, std::int64_t capacity, Overflow overf
 }
 
 void expect_spilled(const Job& job, std::size_t highest) {
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000, 100'000);
     run_timed(simulation);
     BareRecursion bare(setup);
@@ -86,7 +86,7 @@ TEST_CASE("timed mesh: half donut through the scoreboard, every decision as the 
     job.hardware.tests_units = 3;
     job.timing.summed_height_table.ports = 4;
     stall(job, 3, 200);
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     const GoldenInputs golden(setup);
     Simulation simulation(setup, 1'000'000);
     Scoreboard scoreboard(setup.registers, golden);
@@ -104,7 +104,7 @@ TEST_CASE("timed mesh: every item through its packed form, three tests units, a 
     Job job = small_job();
     job.hardware.tests_units = 3;
     job.tests.highlight = true;
-    Setup setup = setup_of(job);
+    MachineSetup setup = setup_of(job);
     setup.design.packed_streams = true;
     expect_bare_mesh(setup);
 }
@@ -146,7 +146,7 @@ TEST_CASE("timed mesh: four ports, two banks, narrow") {
 
 TEST_CASE("timed mesh: a cylinder in repeat, whose rectangles wrap") {
     Job job = cylinder_job();
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000, 100'000);
     run_timed(simulation);
     BareRecursion bare(setup);
@@ -170,7 +170,7 @@ TEST_CASE("timed mesh: culling") {
     job.hardware.culling = Culling::back;
     job.camera.eye = {0, -4, 0.6};
     stall(job, 6, 100);
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000, 100'000);
     run_timed(simulation);
     CHECK(simulation.pipeline.pass_or_tessellate.counts().culled > 0);
@@ -316,7 +316,7 @@ TEST_CASE("timed mesh: last in first out, 64 places are enough: nothing is spill
     // passes under way besides, and their children
     Job job = small_job();
     set_queue(job, QueueOrder::lifo, 64);
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000, 100'000);
     run_timed(simulation);
     CHECK(simulation.pipeline.triangle_queue.spilled() == 0);
@@ -332,7 +332,7 @@ TEST_CASE("timed mesh: a queue large enough never overflows, whatever happens be
 TEST_CASE("timed mesh: the watermark lets host triangles in while fewer wait") {
     Job job = small_job();
     job.hardware.queue_watermark = 40;
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000, 100'000);
     run_timed(simulation);
     BareRecursion bare(setup);
@@ -345,7 +345,7 @@ TEST_CASE("timed mesh: stalls cost cycles and nothing else") {
     // the same counts as without; only time differs
     Job job = small_job();
     stall(job, 31, 300);
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000, 100'000);
     run_timed(simulation);
     const Pipeline& p = simulation.pipeline;

@@ -47,8 +47,8 @@ Job one_triangle_job() {
     return job;
 }
 
-Setup one_triangle(const Timing& timing) {
-    Setup setup = setup_of(one_triangle_job());
+MachineSetup one_triangle(const Timing& timing) {
+    MachineSetup setup = setup_of(one_triangle_job());
     setup.base_triangles.resize(1);
     setup.design.timing = timing;
     return setup;
@@ -75,7 +75,7 @@ std::uint64_t derived_cycles(const Timing& t) {
 }
 
 void expect_derived(const Timing& timing, std::uint64_t by_hand) {
-    const Setup setup = one_triangle(timing);
+    const MachineSetup setup = one_triangle(timing);
     Simulation simulation(setup, 1000);
     run_timed(simulation);
     CHECK(derived_cycles(timing) == by_hand);
@@ -225,7 +225,7 @@ TEST_CASE("one triangle, every latency another") {
     timing.tessellation.latency = 10;
     timing.triangle_queue.latency = 12;
     timing.lighting.latency = 14;
-    const Setup setup = one_triangle(timing);
+    const MachineSetup setup = one_triangle(timing);
     Simulation simulation(setup, 1000);
     run_timed(simulation);
     CHECK(derived_cycles(timing) == 105 + 113 + 1);
@@ -255,7 +255,7 @@ TEST_CASE("one triangle, every latency another") {
 // port, in 2 to 7; the last has come in 8: edges read in 8 to 10 at the latest, are through in 20. View 32,
 // geometry 34. J = 43, then 38.
 TEST_CASE("one triangle, three tests units: 82 cycles") {
-    Setup setup = one_triangle({});
+    MachineSetup setup = one_triangle({});
     setup.design.tests_units = 3;
     Simulation simulation(setup, 1000);
     run_timed(simulation);
@@ -265,7 +265,7 @@ TEST_CASE("one triangle, three tests units: 82 cycles") {
 
 // Nine gathers of one cycle each: last address 4 + 8 = 12, data 13, test 16: the last edge's geometry is later, in 34.
 TEST_CASE("one triangle, three tests units and four ports: the tests are hidden behind Transform") {
-    Setup setup = one_triangle({});
+    MachineSetup setup = one_triangle({});
     setup.design.tests_units = 3;
     setup.design.timing.summed_height_table.ports = 4;
     Simulation simulation(setup, 1000);
@@ -275,7 +275,7 @@ TEST_CASE("one triangle, three tests units and four ports: the tests are hidden 
 
 // Normals only take part in the second round: three parts, read nothing, and skip the tests. Six parts in the first.
 TEST_CASE("one triangle: its parts and reads") {
-    const Setup setup = one_triangle({});
+    const MachineSetup setup = one_triangle({});
     Simulation simulation(setup, 1000);
     run_timed(simulation);
     const Pipeline& p = simulation.pipeline;
@@ -301,7 +301,7 @@ TEST_CASE("one triangle: its parts and reads") {
 TEST_CASE("one triangle: cycles do not depend on the clock's period, time does") {
     Timing timing;
     timing.cycle_picoseconds = 1234;
-    const Setup setup = one_triangle(timing);
+    const MachineSetup setup = one_triangle(timing);
     Simulation simulation(setup, 1000);
     run_timed(simulation);
     CHECK(simulation.cycles() == 86);
@@ -312,7 +312,7 @@ TEST_CASE("one triangle: cycles do not depend on the clock's period, time does")
 // the screen in 29, 33, 37 = V; edges in 41, 45, 49. W = 38, S = 38, J = max(49, 38 + 15) = 53. Second round:
 // normals enter Transform 4 apart: 2 normals later 8 instead of 2: 38 + 6.
 TEST_CASE("one triangle, Transform every 4 cycles") {
-    Setup setup = one_triangle({});
+    MachineSetup setup = one_triangle({});
     setup.design.timing.transform.interval = 4;
     Simulation simulation(setup, 1000);
     run_timed(simulation);
@@ -322,7 +322,7 @@ TEST_CASE("one triangle, Transform every 4 cycles") {
 // Two pipelines that take turns, each every 4 cycles: starts in 9, 10, 13: V = 33, W = 34, edges 34, 37, 38.
 // J = 34 + 15. Normals: the third starts 4 after the first: 38 + 2.
 TEST_CASE("one triangle, two Transform pipelines every 4 cycles") {
-    Setup setup = one_triangle({});
+    MachineSetup setup = one_triangle({});
     setup.design.timing.transform.interval = 4;
     setup.design.transform_pipelines = 2;
     Simulation simulation(setup, 1000);

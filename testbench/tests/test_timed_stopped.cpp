@@ -23,7 +23,7 @@ bool is_well_formed(const std::string& text) {
 }
 
 /// Runs the machine cycle by cycle. All that its units said they held, with digits as #.
-Texts texts_of_every_cycle(const Setup& setup) {
+Texts texts_of_every_cycle(const MachineSetup& setup) {
     Simulation simulation(setup, 1'000'000, 1'000'000);
     Pipeline& pipeline = simulation.pipeline;
     Texts texts;
@@ -90,7 +90,7 @@ struct DrainedWatch : sc_core::sc_module {
 
 /// Two frames of 8 base triangles. Returns the notifications.
 unsigned expect_drained_when_empty(const Job& job) {
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);
     DrainedWatch watch(simulation);
     REQUIRE(simulation.run().empty());
@@ -123,7 +123,7 @@ TEST_CASE("stopped anywhere: every unit slower to begin than to end, a queue of 
     Job job = full_split_job(2, 2);
     job.hardware.queue_capacity = 3;
     job.hardware.queue_order = QueueOrder::lifo;
-    Setup setup = setup_of(job);
+    MachineSetup setup = setup_of(job);
     set_every_unit(setup.design.timing, {1, 7, 1});
     // A triangle's nine edges take the tests some sixty cycles: each of these then waits for the one behind it.
     setup.design.timing.pass_or_tessellate = {1, 100, 8};
@@ -141,7 +141,7 @@ TEST_CASE("stopped anywhere: three tests units, a slow Transform, host triangles
     job.hardware.tests_units = 3;
     job.hardware.queue_watermark = 1000;
     job.timing.summed_height_table.ports = 12;
-    Setup setup = setup_of(job);
+    MachineSetup setup = setup_of(job);
     setup.design.timing.transform = {300, 90, 1};
     const Texts texts = texts_of_every_cycle(setup);
     CHECK(any_contains(texts, "pass_or_tessellate", "waiting for Transform"));
@@ -150,7 +150,7 @@ TEST_CASE("stopped anywhere: three tests units, a slow Transform, host triangles
 
 TEST_CASE("stopped anywhere: a queue without bound that takes a triangle every forty cycles") {
     Job job = full_split_job(2, 2);
-    Setup setup = setup_of(job);
+    MachineSetup setup = setup_of(job);
     setup.design.timing.triangle_queue = {50, 40, 1};
     const Texts texts = texts_of_every_cycle(setup);
     CHECK(any_contains(texts, "triangle_queue", "of them on the way out"));
@@ -172,7 +172,7 @@ TEST_CASE("drained: a machine in a deadlock is not") {
     Job job = timed_job();
     job.hardware.queue_capacity = 8;
     job.hardware.queue_overflow = Overflow::stall;
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);
     DrainedWatch watch(simulation);
     CHECK_THAT(simulation.run(), Catch::StartsWith("deadlock: "));

@@ -32,7 +32,7 @@ constexpr std::uint64_t drain = 9;
 // that the View Test, waiting for one, can keep its edges from the other tests.
 constexpr std::uint64_t until_on_screen = 31;
 
-Setup full_split() {
+MachineSetup full_split() {
     return setup_of(full_split_job(3, 4));
 }
 
@@ -56,7 +56,7 @@ void require_sole_bottleneck(const Simulation& simulation, const Unit* unit) {
 // first triangle's third edge comes in cycle 32 (test_timed_pipeline.cpp), 3 after the first two's 24 entries
 // have been read in 5 to 28. From then on the next triangle's edges wait when one is through.
 TEST_CASE("the paper's design is bound by the Summed Height Table: 36 cycles a pass") {
-    const Setup setup = full_split();
+    const MachineSetup setup = full_split();
     Simulation simulation(setup, 1'000'000);
     run_full_split(simulation);
     const Pipeline& p = simulation.pipeline;
@@ -72,7 +72,7 @@ TEST_CASE("the paper's design is bound by the Summed Height Table: 36 cycles a p
 }
 
 TEST_CASE("half donut, the paper's design: 36 cycles a pass") {
-    const Setup setup = setup_of(timed_job());
+    const MachineSetup setup = setup_of(timed_job());
     Simulation simulation(setup, 1'000'000);
     run_timed(simulation);
     const std::uint64_t its_passes = simulation.pipeline.pass_or_tessellate.counts().passes;
@@ -82,7 +82,7 @@ TEST_CASE("half donut, the paper's design: 36 cycles a pass") {
 
 // 18 cycles a pass; the first triangle's first two edges are through in 5 to 16, its third comes in 32.
 TEST_CASE("two ports on the Summed Height Table: 18 cycles a pass") {
-    Setup setup = full_split();
+    MachineSetup setup = full_split();
     setup.design.timing.summed_height_table.ports = 2;
     Simulation simulation(setup, 1'000'000);
     run_full_split(simulation);
@@ -93,7 +93,7 @@ TEST_CASE("two ports on the Summed Height Table: 18 cycles a pass") {
 // 9 cycles a pass: still more than a pass has parts (at most 6). A base triangle's 31 cycles to the screen are now
 // longer than the work on the ones before it, so each of 18 may hold the table up for so long at most.
 TEST_CASE("four ports on the Summed Height Table: 9 cycles a pass, still bound by it") {
-    Setup setup = full_split();
+    MachineSetup setup = full_split();
     setup.design.timing.summed_height_table.ports = 4;
     Simulation simulation(setup, 1'000'000);
     run_full_split(simulation);
@@ -105,7 +105,7 @@ TEST_CASE("four ports on the Summed Height Table: 9 cycles a pass, still bound b
 // Four banks instead: a rectangle's corners lie in banks as they fall, so no better than four ports, and with one port
 // each no worse than one.
 TEST_CASE("four banks of the Summed Height Table are between one port and four") {
-    Setup setup = full_split();
+    MachineSetup setup = full_split();
     setup.design.timing.summed_height_table.banks = 4;
     Simulation simulation(setup, 1'000'000);
     run_full_split(simulation);
@@ -118,7 +118,7 @@ TEST_CASE("four banks of the Summed Height Table are between one port and four")
 // takes Calculate New P 1, the map 1, Displace Vertex 6, Transform 20, Pass or Tessellate 1, Lighting 4 to
 // come out.
 TEST_CASE("with ports to spare a part a cycle is what binds") {
-    Setup setup = full_split();
+    MachineSetup setup = full_split();
     setup.design.timing.summed_height_table.ports = 64;
     Simulation simulation(setup, 1'000'000);
     run_full_split(simulation);
@@ -131,7 +131,7 @@ TEST_CASE("with ports to spare a part a cycle is what binds") {
 // Three Tessellation Tests units share the one port: nothing gained but the first triangle's three cycles and
 // one vertex.
 TEST_CASE("three tests units on one port: 36 cycles a pass as before") {
-    Setup setup = full_split();
+    MachineSetup setup = full_split();
     setup.design.tests_units = 3;
     Simulation simulation(setup, 1'000'000);
     run_full_split(simulation);
@@ -139,7 +139,7 @@ TEST_CASE("three tests units on one port: 36 cycles a pass as before") {
 }
 
 TEST_CASE("three tests units on four ports: 9 cycles a pass") {
-    Setup setup = full_split();
+    MachineSetup setup = full_split();
     setup.design.tests_units = 3;
     setup.design.timing.summed_height_table.ports = 4;
     Simulation simulation(setup, 1'000'000);
@@ -152,7 +152,7 @@ TEST_CASE("three tests units on four ports: 9 cycles a pass") {
 // Displace Vertex 6); the last, 8 * (parts - 1) later, is out 20 later, the triangle decided 1, lit 4 later.
 // The table, with four ports, needs 9 cycles of the 24 and more that three edges take here.
 TEST_CASE("Transform every 8 cycles binds: 8 cycles a part") {
-    Setup setup = full_split();
+    MachineSetup setup = full_split();
     setup.design.timing.summed_height_table.ports = 4;
     setup.design.timing.transform.interval = 8;
     Simulation simulation(setup, 1'000'000);
@@ -165,7 +165,7 @@ TEST_CASE("Transform every 8 cycles binds: 8 cycles a part") {
 
 // Two pipelines: parts 0, 2, 4 ... start in 9, 17, 25 ...; parts 1, 3, 5 ... in 10, 18, 26 ...; the last one is odd.
 TEST_CASE("two Transform pipelines every 8 cycles: 4 cycles a part") {
-    Setup setup = full_split();
+    MachineSetup setup = full_split();
     setup.design.timing.summed_height_table.ports = 4;
     setup.design.timing.transform.interval = 8;
     setup.design.transform_pipelines = 2;
@@ -178,7 +178,7 @@ TEST_CASE("two Transform pipelines every 8 cycles: 4 cycles a part") {
 
 // Tessellation: 6120 children, one every 20 cycles, also from one pass's last to the next one's first.
 TEST_CASE("Tessellation every 20 cycles binds where the tests take less") {
-    Setup setup = full_split();
+    MachineSetup setup = full_split();
     setup.design.timing.summed_height_table.ports = 4;
     setup.design.timing.tessellation.interval = 20;
     Simulation simulation(setup, 1'000'000);
@@ -193,7 +193,7 @@ TEST_CASE("Tessellation every 20 cycles binds where the tests take less") {
 
 // One pass at a time: a latency of 300 before its first child, and the other three in the cycles after it.
 TEST_CASE("Tessellation of latency 300 binds: 303 cycles a split") {
-    Setup setup = full_split();
+    MachineSetup setup = full_split();
     setup.design.timing.summed_height_table.ports = 4;
     setup.design.timing.tessellation.latency = 300;
     Simulation simulation(setup, 1'000'000);
@@ -206,7 +206,7 @@ TEST_CASE("Tessellation of latency 300 binds: 303 cycles a split") {
 }
 
 TEST_CASE("Get Triangle every 100 cycles binds: 100 cycles a part") {
-    Setup setup = full_split();
+    MachineSetup setup = full_split();
     setup.design.timing.get_triangle.interval = 100;
     Simulation simulation(setup, 1'000'000);
     run_full_split(simulation);
@@ -217,7 +217,7 @@ TEST_CASE("Get Triangle every 100 cycles binds: 100 cycles a part") {
 }
 
 TEST_CASE("Get Triangle of latency 200 binds: 200 cycles a pass") {
-    Setup setup = full_split();
+    MachineSetup setup = full_split();
     setup.design.timing.get_triangle.latency = 200;
     Simulation simulation(setup, 1'000'000);
     run_full_split(simulation);
@@ -227,7 +227,7 @@ TEST_CASE("Get Triangle of latency 200 binds: 200 cycles a pass") {
 
 // Eight triangles may be under way at the join, so one a 400 / 8 cycles at most, where the tests take nine.
 TEST_CASE("a Transform of latency 400 is what the join waits for") {
-    Setup setup = full_split();
+    MachineSetup setup = full_split();
     setup.design.timing.summed_height_table.ports = 4;
     setup.design.timing.transform.latency = 400;
     Simulation simulation(setup, 1'000'000);
@@ -242,7 +242,7 @@ TEST_CASE("a Transform of latency 400 is what the join waits for") {
 // As many banks as a row has entries put the corners of a rectangle that lie below one another into one bank: it takes
 // two cycles, and the next one waits when it needs either bank, while nearly all banks idle.
 TEST_CASE("banks in conflict are a bottleneck though their ports idle") {
-    Setup setup = full_split();
+    MachineSetup setup = full_split();
     setup.design.timing.summed_height_table.banks = setup.registers.summed_height_table.columns;
     Simulation simulation(setup, 1'000'000);
     run_full_split(simulation);
@@ -254,7 +254,7 @@ TEST_CASE("banks in conflict are a bottleneck though their ports idle") {
 }
 
 TEST_CASE("an interval that lasts is no lack of work") {
-    Setup setup = full_split();
+    MachineSetup setup = full_split();
     setup.design.timing.displace_vertex = {1, 100, 1};
     setup.design.timing.pass_or_tessellate.interval = 50;
     Simulation simulation(setup, 1'000'000);
@@ -269,7 +269,7 @@ TEST_CASE("an interval that lasts is no lack of work") {
 // Little's law, exactly: where nothing is ever held up, what is in a unit, summed over all cycles, is items
 // times latency: mean occupancy = throughput * latency.
 TEST_CASE("mean occupancy is throughput times latency in units that are never blocked") {
-    const Setup setup = full_split();
+    const MachineSetup setup = full_split();
     Simulation simulation(setup, 1'000'000);
     run_full_split(simulation);
     const Pipeline& p = simulation.pipeline;
@@ -291,7 +291,7 @@ TEST_CASE("mean occupancy is throughput times latency in units that are never bl
 }
 
 TEST_CASE("a second frame takes the same cycles again") {
-    const Setup setup = full_split();
+    const MachineSetup setup = full_split();
     Simulation simulation(setup, 1'000'000);
     run_full_split(simulation);
     const std::uint64_t first = simulation.cycles();

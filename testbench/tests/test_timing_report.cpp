@@ -21,7 +21,7 @@ constexpr std::uint64_t cycles = 1000;
 
 /// A machine whose units have done nothing yet.
 struct Machine {
-    Setup setup = setup_of(timed_job());
+    MachineSetup setup = setup_of(timed_job());
     Simulation simulation{setup, 1000};
     Pipeline& pipeline = simulation.pipeline;
     TessellationTests& tests = pipeline.tessellation_tests[0];
@@ -232,7 +232,7 @@ TEST_CASE("timing.txt of one triangle: latency binds") {
     Job job = timed_job();
     job.mesh.columns = job.mesh.rows = 1;
     job.map.source = MapSource::constant;
-    Setup setup = setup_of(job);
+    MachineSetup setup = setup_of(job);
     setup.base_triangles.resize(1);
     Simulation simulation(setup, 1000);
     run_timed(simulation);

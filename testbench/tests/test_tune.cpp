@@ -47,7 +47,7 @@ struct Ground {
     HeightMap map;
     BaseMesh base;
     Job job;
-    Setup setup;
+    MachineSetup setup;
     TexelError errors;
     RefinementForest forest;
 
@@ -76,7 +76,7 @@ Corners corners_of(const std::array<datapath::Vertex, 3>& vertices) {
     return corners;
 }
 
-std::multiset<Corners> bare_mesh(const Setup& setup) {
+std::multiset<Corners> bare_mesh(const MachineSetup& setup) {
     EmittedMesh mesh;
     BareRecursion(setup).run(mesh);
     std::multiset<Corners> result;
@@ -166,7 +166,7 @@ TEST_CASE("the forest's mesh is the datapath's, whatever the thresholds") {
             tests.view_threshold = between(1, 200);
             tests.generation_limit = 1 + round % 9;
             job.hardware.triangulation = static_cast<Triangulation>(round % 3);
-            const Setup setup = make_setup(job, ground.base, ground.map);
+            const MachineSetup setup = make_setup(job, ground.base, ground.map);
             std::multiset<Corners> mesh;
             for (const auto& vertices :
                  ground.forest.mesh(setup.registers.tests, setup.registers.triangulation))

@@ -14,7 +14,7 @@ using namespace tessera::testing;
 
 namespace {
 
-Setup with_clock(Setup setup, unsigned picoseconds) {
+MachineSetup with_clock(MachineSetup setup, unsigned picoseconds) {
     setup.design.timing.cycle_picoseconds = picoseconds;
     return setup;
 }
@@ -31,7 +31,7 @@ const JobResult& default_result() {
                          [](const JobResult& each) { return std::string(each.name) == "half_donut"; });
 }
 
-void expect_mesh(const NamedMachine& machine, const Setup& setup) {
+void expect_mesh(const NamedMachine& machine, const MachineSetup& setup) {
     INFO(machine.name());
     CHECK(machine.finished());
     CHECK((keys(machine.monitor.mesh) == keys(bare_mesh(setup))));  // not to be printed
@@ -45,7 +45,7 @@ void expect_drained_in_last_cycle(const NamedMachine& machine) {
           machine.pipeline.clock.period() * static_cast<double>(machine.pipeline.clock.last_cycle()));
 }
 
-Setup full_queue_setup(Overflow overflow) {
+MachineSetup full_queue_setup(Overflow overflow) {
     Job job = timed_job();
     job.hardware.queue_capacity = 8;
     job.hardware.queue_overflow = overflow;
@@ -55,11 +55,11 @@ Setup full_queue_setup(Overflow overflow) {
 }  // namespace
 
 TEST_CASE("two machines: a timed one of 5 ns, and a functional one") {
-    const Setup timed_setup = setup_of(timed_job());
+    const MachineSetup timed_setup = setup_of(timed_job());
     Job job;
     job.mode = Mode::functional;
     job.hardware.tests_units = 3;
-    const Setup functional_setup = with_clock(setup_of(job), 3200);
+    const MachineSetup functional_setup = with_clock(setup_of(job), 3200);
     const AloneResult alone = run_alone(functional_setup);
 
     NamedMachine timed("timed", timed_setup);
@@ -76,8 +76,8 @@ TEST_CASE("two machines: a timed one of 5 ns, and a functional one") {
 }
 
 TEST_CASE("two machines: timed ones of 5 ns and of 3.2 ns with three Tessellation Tests units") {
-    const Setup slow_setup = setup_of(timed_job());
-    const Setup fast_setup = with_clock(setup_of(three_tests_units_job()), 3200);
+    const MachineSetup slow_setup = setup_of(timed_job());
+    const MachineSetup fast_setup = with_clock(setup_of(three_tests_units_job()), 3200);
     const AloneResult alone = run_alone(fast_setup);
 
     NamedMachine slow("slow", slow_setup);
@@ -96,9 +96,9 @@ TEST_CASE("two machines: timed ones of 5 ns and of 3.2 ns with three Tessellatio
 }
 
 TEST_CASE("two machines: one whose queue overflows halts alone, one whose queue stalls waits alone") {
-    const Setup overflow_setup = full_queue_setup(Overflow::error);
-    const Setup stall_setup = full_queue_setup(Overflow::stall);
-    const Setup sound_setup = with_clock(setup_of(three_tests_units_job()), 3200);
+    const MachineSetup overflow_setup = full_queue_setup(Overflow::error);
+    const MachineSetup stall_setup = full_queue_setup(Overflow::stall);
+    const MachineSetup sound_setup = with_clock(setup_of(three_tests_units_job()), 3200);
     const AloneResult alone = run_alone(sound_setup);
 
     NamedMachine overflowing("overflowing", overflow_setup);

@@ -27,7 +27,7 @@ Job tiling_job() {
 }
 
 struct Run {
-    Setup setup;
+    MachineSetup setup;
     EmittedMesh mesh;
 
     Run(const Job& job, const BaseMesh& base, const HeightMap& map)

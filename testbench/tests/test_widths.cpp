@@ -54,7 +54,7 @@ WidthRun run_of(const Job& job) {
 /// Every figure that `tessera run` has, too.
 void expect_the_simulation_figures(const Job& job) {
     const WidthRun run = run_of(job);
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     const GoldenInputs golden(setup);
     Scoreboard scoreboard(setup.registers, golden);
     Simulation simulation(setup, 1'000'000);
@@ -290,7 +290,7 @@ TEST_CASE("widths: base triangles that collapse in a narrow format are left out 
     job.formats.position_bits = 8;
     job.formats.position_fraction = 2;
     job.formats.texture_fraction = 0;
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     REQUIRE(setup.base_dropped > 0);
     const auto [mesh, map, resolved] = load_inputs(job, {});
     const ExactModel exact(resolved.job, mesh, map);

@@ -11,7 +11,7 @@
 /// What must hold of every timed run, whatever its job and its timing.
 namespace tessera::testing {
 
-inline Setup setup_of(const Job& job) {
+inline MachineSetup setup_of(const Job& job) {
     const Inputs inputs = load_inputs(job, {});
     return make_setup(inputs.resolved.job, inputs.mesh, inputs.map);
 }

@@ -15,7 +15,7 @@ using BaseTriangles = std::vector<std::array<golden::Vertex, 3>>;
 
 /// `allowed` of the largest generation. Half of the progress is golden's run, which is taken to have as many triangles.
 template <typename AllowedAt>
-EndToEndResult compare(const Setup& setup, const BaseTriangles& base, const golden::Map& map,
+EndToEndResult compare(const MachineSetup& setup, const BaseTriangles& base, const golden::Map& map,
                        golden::Parameters parameters, const EmittedMesh& hardware, AllowedAt allowed,
                        const std::function<void(double)>& progress) {
     parameters.texture_step = std::ldexp(1.0, -setup.registers.formats.texture.fraction);
@@ -96,7 +96,7 @@ bool normals_are_exact(const BaseTriangles& base) {
 }
 
 /// See compare_end_to_end().
-EndToEndResult::Allowed allowed_after(int generations, const Setup& setup, const golden::Scene& scene,
+EndToEndResult::Allowed allowed_after(int generations, const MachineSetup& setup, const golden::Scene& scene,
                                       const BaseTriangles& base, double allowed_triangles) {
     const datapath::Formats& formats = setup.registers.formats;
     const double largest = std::max(std::abs(scene.lowest), std::abs(scene.highest));
@@ -121,7 +121,7 @@ bool EndToEndResult::passed() const {
            rms_model() <= allowed_rms_model();
 }
 
-EndToEndResult compare_end_to_end(const Setup& setup, const GoldenJob& golden,
+EndToEndResult compare_end_to_end(const MachineSetup& setup, const GoldenJob& golden,
                                   const std::vector<std::uint32_t>& base_triangles,
                                   const EmittedMesh& hardware, double allowed_triangles,
                                   const std::function<void(double)>& progress) {
@@ -143,7 +143,7 @@ EndToEndResult compare_end_to_end(const Setup& setup, const GoldenJob& golden,
         progress);
 }
 
-EndToEndResult compare_end_to_end(const Setup& setup, const GoldenInputs& inputs,
+EndToEndResult compare_end_to_end(const MachineSetup& setup, const GoldenInputs& inputs,
                                   const EmittedMesh& hardware) {
     return compare(
         setup, golden_base_triangles(setup), inputs.map, inputs.parameters, hardware,

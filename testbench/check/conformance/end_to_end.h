@@ -7,7 +7,7 @@
 #include "testbench/check/conformance/golden_inputs.h"
 #include "testbench/check/conformance/golden_job.h"
 #include "testbench/machine/emitted_mesh.h"
-#include "testbench/machine/setup.h"
+#include "testbench/machine/machine_setup.h"
 
 namespace tessera {
 
@@ -79,14 +79,14 @@ struct EndToEndResult {
 /// times the largest displacement; nothing by the normals of a plane across an axis, which are exact. h: over
 /// one point of the base surface, |a n - b m| <= |a - b| + |b| |n - m| for displacements a, b along normals
 /// n, m of one base triangle.
-EndToEndResult compare_end_to_end(const Setup& setup, const GoldenJob& golden,
+EndToEndResult compare_end_to_end(const MachineSetup& setup, const GoldenJob& golden,
                                   const std::vector<std::uint32_t>& base_triangles,
                                   const EmittedMesh& hardware, double allowed_triangles,
                                   const std::function<void(double)>& progress = nullptr);
 
 /// Golden from the machine's own registers, tables and base triangles, dequantised. Not judged. Both are
 /// deterministic, on both cores, and take about 300 bytes per triangle of both meshes together.
-EndToEndResult compare_end_to_end(const Setup& setup, const GoldenInputs& inputs,
+EndToEndResult compare_end_to_end(const MachineSetup& setup, const GoldenInputs& inputs,
                                   const EmittedMesh& hardware);
 
 }  // namespace tessera

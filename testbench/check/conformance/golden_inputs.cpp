@@ -22,7 +22,7 @@ golden::Diagonal golden_diagonal(datapath::Triangulation choice) {
     return golden::Diagonal::shorter;
 }
 
-golden::Map golden_map(const Setup& setup) {
+golden::Map golden_map(const MachineSetup& setup) {
     const datapath::MapGeometry& geometry = setup.map.geometry;
     golden::Map map(static_cast<int>(geometry.width), static_cast<int>(geometry.height),
                     golden_mode(geometry.address_u), golden_mode(geometry.address_v),
@@ -80,10 +80,10 @@ golden::Parameters golden_parameters(const datapath::Registers& registers) {
     return result;
 }
 
-GoldenInputs::GoldenInputs(const Setup& setup)
+GoldenInputs::GoldenInputs(const MachineSetup& setup)
     : map(golden_map(setup)), parameters(golden_parameters(setup.registers)) {}
 
-std::vector<std::array<golden::Vertex, 3>> golden_base_triangles(const Setup& setup) {
+std::vector<std::array<golden::Vertex, 3>> golden_base_triangles(const MachineSetup& setup) {
     const Dequantise dequantise(setup.registers.formats);
     std::vector<std::array<golden::Vertex, 3>> result;
     result.reserve(setup.base_triangles.size());

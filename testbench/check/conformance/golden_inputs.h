@@ -7,7 +7,7 @@
 #include "golden/golden_model.h"
 #include "modules/datapath/format.h"
 #include "modules/datapath/vertex.h"
-#include "testbench/machine/setup.h"
+#include "testbench/machine/machine_setup.h"
 
 namespace tessera {
 
@@ -62,10 +62,10 @@ struct GoldenInputs {
     golden::Map map;
     golden::Parameters parameters;
 
-    explicit GoldenInputs(const Setup& setup);
+    explicit GoldenInputs(const MachineSetup& setup);
 };
 
 /// The quantised base triangles, dequantised: the first five members of each vertex.
-std::vector<std::array<golden::Vertex, 3>> golden_base_triangles(const Setup& setup);
+std::vector<std::array<golden::Vertex, 3>> golden_base_triangles(const MachineSetup& setup);
 
 }  // namespace tessera

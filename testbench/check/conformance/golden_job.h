@@ -6,7 +6,7 @@
 #include "testbench/input/map/height_map.h"
 #include "testbench/input/mesh/base_mesh.h"
 #include "testbench/job/job.h"
-#include "testbench/machine/setup.h"
+#include "testbench/machine/machine_setup.h"
 
 namespace tessera {
 

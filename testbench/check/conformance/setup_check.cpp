@@ -23,7 +23,7 @@ std::string indexed(const char* name, std::size_t k) {
 
 class RegisterCheck {
   public:
-    RegisterCheck(const Setup& setup, const GoldenJob& golden, SetupResult& result)
+    RegisterCheck(const MachineSetup& setup, const GoldenJob& golden, SetupResult& result)
         : registers_(setup.registers),
           formats_(setup.registers.formats),
           golden_(golden),
@@ -321,7 +321,7 @@ class RegisterCheck {
 
 class BaseCheck {
   public:
-    BaseCheck(const Setup& setup, const GoldenJob& golden, SetupResult& result)
+    BaseCheck(const MachineSetup& setup, const GoldenJob& golden, SetupResult& result)
         : setup_(setup),
           formats_(setup.registers.formats),
           golden_(golden),
@@ -430,7 +430,7 @@ class BaseCheck {
                      double_rounding * (std::abs(golden) + std::abs(periods) * size) * lsb);
     }
 
-    const Setup& setup_;
+    const MachineSetup& setup_;
     const datapath::Formats& formats_;
     const GoldenJob& golden_;
     SetupResult& result_;
@@ -453,7 +453,7 @@ std::uint64_t SetupResult::wrong() const {
     return sum;
 }
 
-SetupResult check_setup(const Setup& setup, const GoldenJob& golden, Simulation& simulation) {
+SetupResult check_setup(const MachineSetup& setup, const GoldenJob& golden, Simulation& simulation) {
     SetupResult result;
     RegisterCheck(setup, golden, result).run();
     BaseCheck(setup, golden, result).run();

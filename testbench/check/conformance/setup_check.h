@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "testbench/check/conformance/golden_job.h"
-#include "testbench/machine/setup.h"
+#include "testbench/machine/machine_setup.h"
 #include "testbench/machine/simulation.h"
 
 namespace tessera {
@@ -54,6 +54,6 @@ struct SetupResult {
 /// a texture coordinate on an axis that repeats (the same on all three corners of a triangle).
 ///
 /// Reads the memories by debug transport, row by row. 4096 x 4096 texels take about 2 seconds.
-SetupResult check_setup(const Setup& setup, const GoldenJob& golden, Simulation& simulation);
+SetupResult check_setup(const MachineSetup& setup, const GoldenJob& golden, Simulation& simulation);
 
 }  // namespace tessera

@@ -82,6 +82,6 @@ inline double lsb_per_unit(const datapath::Format& format) {
 }
 
 /// Every entry of the three tables.
-void check_tables(const Setup& setup, const GoldenJob& golden, Host& host, SetupResult& result);
+void check_tables(const MachineSetup& setup, const GoldenJob& golden, Host& host, SetupResult& result);
 
 }  // namespace tessera::setup_check

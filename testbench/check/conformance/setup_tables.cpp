@@ -44,7 +44,7 @@ class TableReader {
 
 class TableCheck {
   public:
-    TableCheck(const Setup& setup, const GoldenJob& golden, Host& host, SetupResult& result)
+    TableCheck(const MachineSetup& setup, const GoldenJob& golden, Host& host, SetupResult& result)
         : registers_(setup.registers), golden_(golden), host_(host), result_(result) {}
 
     void run() {
@@ -155,7 +155,7 @@ class TableCheck {
 
 }  // namespace
 
-void check_tables(const Setup& setup, const GoldenJob& golden, Host& host, SetupResult& result) {
+void check_tables(const MachineSetup& setup, const GoldenJob& golden, Host& host, SetupResult& result) {
     TableCheck(setup, golden, host, result).run();
 }
 

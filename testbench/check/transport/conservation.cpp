@@ -138,7 +138,7 @@ std::vector<Conservation> conservation(const Simulation& simulation) {
     return list.take();
 }
 
-WorkResult work_result(const WorkCheck& check, const Simulation& simulation) {
+WorkResult work_result(const TransportCheck& check, const Simulation& simulation) {
     WorkResult result = check.result();
     for (const Conservation& equation : conservation(simulation)) {
         ++result.equations;

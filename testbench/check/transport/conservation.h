@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "testbench/check/transport/work_check.h"
+#include "testbench/check/transport/transport_check.h"
 #include "testbench/machine/simulation.h"
 
 namespace tessera {
@@ -22,6 +22,6 @@ struct Conservation {
 std::vector<Conservation> conservation(const Simulation& simulation);
 
 /// The work check's result, and these equations'.
-WorkResult work_result(const WorkCheck& check, const Simulation& simulation);
+WorkResult work_result(const TransportCheck& check, const Simulation& simulation);
 
 }  // namespace tessera

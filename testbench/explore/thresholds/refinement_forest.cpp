@@ -48,7 +48,7 @@ std::uint32_t pixels(const datapath::ScreenPosition& i, const datapath::ScreenPo
 
 }  // namespace
 
-RefinementForest::RefinementForest(const Setup& setup, const TexelError* errors)
+RefinementForest::RefinementForest(const MachineSetup& setup, const TexelError* errors)
     : datapath_(setup), setup_(setup), errors_(errors) {
     std::unordered_multimap<std::uint64_t, std::uint32_t> known;
     const auto number_of = [&](const Vertex& vertex) {

@@ -8,7 +8,7 @@
 #include "testbench/explore/thresholds/texel_error.h"
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/emitted_mesh.h"
-#include "testbench/machine/setup.h"
+#include "testbench/machine/machine_setup.h"
 
 namespace tessera {
 
@@ -31,7 +31,7 @@ struct Outcome {
 class RefinementForest {
   public:
     /// `setup` must outlive it. `errors`: what measures a triangle; may be null for a forest that only counts.
-    RefinementForest(const Setup& setup, const TexelError* errors);
+    RefinementForest(const MachineSetup& setup, const TexelError* errors);
 
     /// Gives up beyond `limit` triangles.
     Outcome count(const datapath::TestParameters& tests, datapath::Triangulation triangulation,
@@ -75,7 +75,7 @@ class RefinementForest {
     Edge make_edge(const datapath::Vertex& i, const datapath::Vertex& j);
 
     BareRecursion datapath_;
-    const Setup& setup_;
+    const MachineSetup& setup_;
     const TexelError* errors_;
     std::vector<datapath::Vertex> vertices_;
     std::vector<Edge> edges_;

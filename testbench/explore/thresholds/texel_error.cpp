@@ -25,7 +25,7 @@ bool owns(const Point& a, const Point& b) {
 
 }  // namespace
 
-TexelError::TexelError(const Setup& setup, const HeightMap& map, const DisplacementOf& displacement)
+TexelError::TexelError(const MachineSetup& setup, const HeightMap& map, const DisplacementOf& displacement)
     : setup_(setup),
       map_(map),
       displacement_(displacement),

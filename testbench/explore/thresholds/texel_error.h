@@ -7,7 +7,7 @@
 #include "modules/datapath/vertex.h"
 #include "testbench/check/surface_error/displaced_surface.h"
 #include "testbench/input/map/height_map.h"
-#include "testbench/machine/setup.h"
+#include "testbench/machine/machine_setup.h"
 #include "testbench/output/report/mesh_units.h"
 
 namespace tessera {
@@ -31,7 +31,7 @@ class TexelError {
     };
 
     /// `setup` and `map` must outlive it.
-    TexelError(const Setup& setup, const HeightMap& map, const DisplacementOf& displacement);
+    TexelError(const MachineSetup& setup, const HeightMap& map, const DisplacementOf& displacement);
 
     Sum of(const std::array<const datapath::Vertex*, 3>& corners, std::uint32_t base) const;
 
@@ -46,7 +46,7 @@ class TexelError {
 
     Base make_base(const datapath::Triangle& triangle) const;
 
-    const Setup& setup_;
+    const MachineSetup& setup_;
     const HeightMap& map_;
     DisplacementOf displacement_;
     MeshUnits units_;

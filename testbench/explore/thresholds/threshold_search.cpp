@@ -34,7 +34,7 @@ bool better(const TunedPoint& a, const TunedPoint& b, const TuneGoal& goal) {
                                                       : error_a < error_b;
 }
 
-ThresholdSearch::ThresholdSearch(RefinementForest& forest, const Setup& setup, const Job& job,
+ThresholdSearch::ThresholdSearch(RefinementForest& forest, const MachineSetup& setup, const Job& job,
                                  const TuneGoal& goal, const TuneSpace& space,
                                  std::function<void(double)> on_progress)
     : forest_(forest),

@@ -9,7 +9,7 @@
 
 #include "testbench/explore/thresholds/refinement_forest.h"
 #include "testbench/job/job.h"
-#include "testbench/machine/setup.h"
+#include "testbench/machine/machine_setup.h"
 
 namespace tessera {
 
@@ -92,7 +92,7 @@ class ThresholdSearch {
     };
 
     /// All must outlive it. `on_progress` is called after every shape, with an estimate of the work done, 0..1.
-    ThresholdSearch(RefinementForest& forest, const Setup& setup, const Job& job, const TuneGoal& goal,
+    ThresholdSearch(RefinementForest& forest, const MachineSetup& setup, const Job& job, const TuneGoal& goal,
                     const TuneSpace& space, std::function<void(double)> on_progress);
 
     void explore();
@@ -141,7 +141,7 @@ class ThresholdSearch {
     void step_done();
 
     RefinementForest& forest_;
-    const Setup& setup_;
+    const MachineSetup& setup_;
     const Job& job_;
     const TuneGoal& goal_;
     const TuneSpace& space_;

@@ -27,7 +27,7 @@ constexpr std::size_t most_refined = 3;
 /// One base mesh made ready: all evaluations of it share the setup and the forest.
 struct Ground {
     Job job;
-    Setup setup;
+    MachineSetup setup;
     TexelError errors;
     RefinementForest forest;
 

@@ -20,7 +20,7 @@ ErrorUnit error_unit(const Job& job, const BaseMesh& base, const HeightMap& map)
     return unit;
 }
 
-RecordedMesh recorded_mesh(const EmittedMesh& mesh, const Setup& setup) {
+RecordedMesh recorded_mesh(const EmittedMesh& mesh, const MachineSetup& setup) {
     const MeshUnits units{setup.registers.formats, setup.registers.map, setup.model_scale.scale,
                           setup.model_scale.centre};
     const IndexedMesh indexed = IndexedMesh::from(mesh);
@@ -39,7 +39,7 @@ RecordedMesh recorded_mesh(const EmittedMesh& mesh, const Setup& setup) {
     return result;
 }
 
-TunedFigures measure_tuned(const Job& job, const BaseMesh& base, const HeightMap& map, const Setup& setup,
+TunedFigures measure_tuned(const Job& job, const BaseMesh& base, const HeightMap& map, const MachineSetup& setup,
                            const EmittedMesh& mesh) {
     const DisplacementOf displacement = DisplacementOf::from(job, map);
     const RecordedMesh recorded = recorded_mesh(mesh, setup);

@@ -5,7 +5,7 @@
 #include "testbench/input/map/height_map.h"
 #include "testbench/input/mesh/base_mesh.h"
 #include "testbench/machine/emitted_mesh.h"
-#include "testbench/machine/setup.h"
+#include "testbench/machine/machine_setup.h"
 #include "testbench/run_folder/recorded_mesh.h"
 
 namespace tessera {
@@ -30,10 +30,10 @@ struct ErrorUnit {
 ErrorUnit error_unit(const Job& job, const BaseMesh& base, const HeightMap& map);
 
 /// The mesh as a run's mesh.ply would hold it.
-RecordedMesh recorded_mesh(const EmittedMesh& mesh, const Setup& setup);
+RecordedMesh recorded_mesh(const EmittedMesh& mesh, const MachineSetup& setup);
 
 /// `mesh` sorted as a run sorts it. Throws what measuring throws.
-TunedFigures measure_tuned(const Job& job, const BaseMesh& base, const HeightMap& map, const Setup& setup,
+TunedFigures measure_tuned(const Job& job, const BaseMesh& base, const HeightMap& map, const MachineSetup& setup,
                            const EmittedMesh& mesh);
 
 }  // namespace tessera

@@ -52,7 +52,7 @@ glm::dvec2 exact_texels(const glm::dvec2& t) {
     return glm::ceil(t * 0x1p30) * 0x1p-30;
 }
 
-bool within_half_lsb(const golden::Vertex& exact, const datapath::Vertex& rounded, const Setup& setup,
+bool within_half_lsb(const golden::Vertex& exact, const datapath::Vertex& rounded, const MachineSetup& setup,
                      const ModelScale& scale) {
     const Dequantise dequantise(setup.registers.formats);
     constexpr double half = 0.5 + 1e-6;
@@ -69,7 +69,7 @@ bool within_half_lsb(const golden::Vertex& exact, const datapath::Vertex& rounde
 
 ExactModel::ExactModel(const Job& job, const BaseMesh& original, const HeightMap& map)
     : map_(exact_map(job, map)) {
-    const Setup setup = make_setup(with_widest_normals(job), original, map);
+    const MachineSetup setup = make_setup(with_widest_normals(job), original, map);
     model_scale_ = setup.model_scale;
     parameters_ = golden_parameters(setup.registers);  // transform, tests that are on, diagonal
     const double highest = highest_code(map);
@@ -109,7 +109,7 @@ golden::Vertex ExactModel::base_vertex(const BaseVertex& vertex) const {
     return golden::complete_base_vertex(result, map_, parameters_);
 }
 
-std::vector<std::array<golden::Vertex, 3>> ExactModel::corners_of(const Setup& setup) const {
+std::vector<std::array<golden::Vertex, 3>> ExactModel::corners_of(const MachineSetup& setup) const {
     if (setup.base_dropped == 0)
         return base_;
     std::vector<std::array<golden::Vertex, 3>> result;

@@ -7,7 +7,7 @@
 #include "testbench/input/map/height_map.h"
 #include "testbench/input/mesh/base_mesh.h"
 #include "testbench/job/job.h"
-#include "testbench/machine/setup.h"
+#include "testbench/machine/machine_setup.h"
 
 namespace tessera {
 
@@ -26,7 +26,7 @@ class ExactModel {
 
     /// The exact corners of each of the setup's base triangles, complete (golden::complete_base_vertex). A setup leaves
     /// out those of the mesh's triangles that collapse in its formats.
-    std::vector<std::array<golden::Vertex, 3>> corners_of(const Setup& setup) const;
+    std::vector<std::array<golden::Vertex, 3>> corners_of(const MachineSetup& setup) const;
 
     /// Triangles of the whole mesh, by its own decisions; 0: more than `bound`.
     std::uint64_t triangles(std::uint64_t bound) const;

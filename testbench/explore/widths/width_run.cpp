@@ -31,7 +31,7 @@ struct Pair {
 
 class Walk {
   public:
-    Walk(const Setup& setup, const ExactModel& exact, std::uint64_t most_triangles)
+    Walk(const MachineSetup& setup, const ExactModel& exact, std::uint64_t most_triangles)
         : setup_(setup),
           exact_(exact),
           most_triangles_(most_triangles),
@@ -192,7 +192,7 @@ class Walk {
         return std::move(result_);
     }
 
-    const Setup& setup_;
+    const MachineSetup& setup_;
     const ExactModel& exact_;
     std::uint64_t most_triangles_;
     BareRecursion datapath_;
@@ -210,7 +210,7 @@ class Walk {
 
 }  // namespace
 
-WidthRun run_widths(const Setup& setup, const ExactModel& exact, std::uint64_t most_triangles) {
+WidthRun run_widths(const MachineSetup& setup, const ExactModel& exact, std::uint64_t most_triangles) {
     return Walk(setup, exact, most_triangles).run();
 }
 

@@ -7,7 +7,7 @@
 #include "testbench/check/conformance/texel_borders.h"
 #include "testbench/check/mesh/invariants.h"
 #include "testbench/explore/widths/exact_model.h"
-#include "testbench/machine/setup.h"
+#include "testbench/machine/machine_setup.h"
 
 namespace tessera {
 
@@ -48,6 +48,6 @@ struct WidthRun {
 };
 
 /// The datapath on the setup, no simulation: functional mode's results. Throws ResourceError beyond `most_triangles`.
-WidthRun run_widths(const Setup& setup, const ExactModel& exact, std::uint64_t most_triangles);
+WidthRun run_widths(const MachineSetup& setup, const ExactModel& exact, std::uint64_t most_triangles);
 
 }  // namespace tessera

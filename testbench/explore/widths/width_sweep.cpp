@@ -29,7 +29,7 @@ std::string one_line(std::string text) {
 void measure(const Job& job, const BaseMesh& mesh, const HeightMap& map, const ExactModel& exact,
              WidthRow& row) {
     validate(job);
-    const Setup setup = make_setup(job, mesh, map);
+    const MachineSetup setup = make_setup(job, mesh, map);
     row.run = run_widths(setup, exact, static_cast<std::uint64_t>(job.limits.triangles));
     row.saturations = saturation_figures(setup, row.run.saturations);
     for (const SaturationFigure& figure : row.saturations)

@@ -112,7 +112,7 @@ class Bounds {
 
 }  // namespace
 
-RenderMesh make_render_mesh(const EmittedMesh& mesh, const Setup& setup) {
+RenderMesh make_render_mesh(const EmittedMesh& mesh, const MachineSetup& setup) {
     const MeshUnits units{setup.registers.formats, setup.registers.map, setup.model_scale.scale,
                           setup.model_scale.centre};
     Bounds bounds;

@@ -6,7 +6,7 @@
 
 #include "testbench/machine/deciding_test.h"
 #include "testbench/machine/emitted_mesh.h"
-#include "testbench/machine/setup.h"
+#include "testbench/machine/machine_setup.h"
 #include "testbench/run_folder/recorded_mesh.h"
 
 namespace tessera {
@@ -32,7 +32,7 @@ struct RenderMesh {
 
 /// What a run emitted. Culled triangles are left out, as they are of mesh.ply: the picture of a run and one made of its
 /// folder are the same. Vertices are shared where position and normal agree, in the order of their first use.
-RenderMesh make_render_mesh(const EmittedMesh& mesh, const Setup& setup);
+RenderMesh make_render_mesh(const EmittedMesh& mesh, const MachineSetup& setup);
 
 /// The same from a run's mesh.ply: equal in every number if the emitted mesh had the file's order
 /// (EmittedMesh::sort()).

@@ -8,7 +8,7 @@
 
 namespace tessera {
 
-void write_picture(const std::filesystem::path& path, const EmittedMesh& mesh, const Setup& setup,
+void write_picture(const std::filesystem::path& path, const EmittedMesh& mesh, const MachineSetup& setup,
                    const Job& job) {
     const Picture picture = render_overview(make_render_mesh(mesh, setup), make_view(job.camera));
     const std::vector<std::uint8_t> file = encode_png(picture.image);

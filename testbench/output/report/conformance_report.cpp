@@ -184,7 +184,7 @@ std::string fault_text(const FaultReport& fault) {
     for (const Caught& caught : fault.caught)
         text += fmt::format("  caught by: {}: {}\n", caught.by, caught.evidence);
     if (fault.caught.empty())
-        text += "  caught by: NOBODY: no check that ran noticed it (masked, or a check is missing)\n";
+        text += "  caught by: NOBODY: it went undetected (masked, or a check is missing)\n";
     return text;
 }
 

@@ -8,7 +8,7 @@
 #include "testbench/check/conformance/setup_check.h"
 #include "testbench/check/mesh/invariants.h"
 #include "testbench/check/transport/read_check.h"
-#include "testbench/check/transport/work_check.h"
+#include "testbench/check/transport/transport_check.h"
 #include "testbench/prove/faults/fault_report.h"
 
 namespace tessera {

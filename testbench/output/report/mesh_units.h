@@ -7,7 +7,7 @@
 
 namespace tessera {
 
-/// From the machine's integers back to the model: model = world / scale + centre (Setup::model_scale).
+/// From the machine's integers back to the model: model = world / scale + centre (MachineSetup::model_scale).
 ///
 ///     const MeshUnits units{setup.registers.formats, setup.registers.map, setup.model_scale.scale,
 ///                           setup.model_scale.centre};

@@ -18,7 +18,7 @@ std::string spoken(const char* name) {
 
 }  // namespace
 
-std::vector<SaturationFigure> saturation_figures(const Setup& setup,
+std::vector<SaturationFigure> saturation_figures(const MachineSetup& setup,
                                                  const datapath::Saturations& saturations) {
     const InputSaturations& input = setup.input_saturations;
     return {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "modules/datapath/format.h"
-#include "testbench/machine/setup.h"
+#include "testbench/machine/machine_setup.h"
 
 namespace tessera {
 
@@ -19,9 +19,9 @@ struct SaturationFigure {
         nullptr;  ///< where no width helps: what to make of the count; null: the setup remarks on it
 };
 
-/// Of every quantity that can saturate, in the machine (`saturations`) or on its way into it (Setup), in the
+/// Of every quantity that can saturate, in the machine (`saturations`) or on its way into it (MachineSetup), in the
 /// order of the pipeline; those of count 0 too.
-std::vector<SaturationFigure> saturation_figures(const Setup& setup,
+std::vector<SaturationFigure> saturation_figures(const MachineSetup& setup,
                                                  const datapath::Saturations& saturations);
 
 /// "normal 3, screen position 12", or "none".

@@ -45,7 +45,7 @@ double ratio(double part, double whole) {
     return whole > 0 ? part / whole : 0;
 }
 
-Collector format_figures(const Setup& setup) {
+Collector format_figures(const MachineSetup& setup) {
     const datapath::Formats& formats = setup.registers.formats;
     const datapath::Widths widths = datapath::stream_widths(formats);
     Collector c("formats");
@@ -71,7 +71,7 @@ Collector format_figures(const Setup& setup) {
 }
 
 /// Wires of each stream: one item, its tag included, annotations not.
-Collector stream_figures(const Setup& setup) {
+Collector stream_figures(const MachineSetup& setup) {
     const int tag = tag_bits(setup.design);
     Collector c("streams");
     c.add("tag", tag, "bit", "names a triangle between Get Triangle and Pass or Tessellate");
@@ -97,7 +97,7 @@ Collector memory_figures(const char* name, const datapath::TableLayout& table, s
     return c;
 }
 
-Collector host_figures(const Setup& setup, std::uint64_t finished, std::uint64_t vertices) {
+Collector host_figures(const MachineSetup& setup, std::uint64_t finished, std::uint64_t vertices) {
     const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
     const auto bytes = [](std::uint64_t bits) { return (bits + 7) / 8; };
     const std::uint64_t base = base_mesh_bytes(setup);
@@ -182,7 +182,7 @@ std::uint64_t thrown_away_vertices(const Pipeline& pipeline, std::uint64_t base_
            pipeline.pass_or_tessellate.counts().edges_split;
 }
 
-std::vector<Figure> collect_statistics(const Setup& setup, const Simulation& simulation,
+std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulation& simulation,
                                        const MeshCounts& mesh) {
     const Pipeline& p = simulation.pipeline;
     const PassOrTessellate::Counts& counts = p.pass_or_tessellate.counts();

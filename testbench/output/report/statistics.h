@@ -20,7 +20,7 @@ struct Figure {
 
 /// The figures of a run, in the order of the pipeline. No wall-clock time: two runs give the same bytes.
 /// mesh: of the simulation's.
-std::vector<Figure> collect_statistics(const Setup& setup, const Simulation& simulation,
+std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulation& simulation,
                                        const MeshCounts& mesh);
 
 /// Midpoints that were displaced and transformed while their edge was tested, and not inserted.

@@ -77,21 +77,21 @@ ReadResult read_result(const CheckedUnits& units) {
 std::vector<Caught> who_noticed(const CheckedUnits& units, const FaultRun& run,
                                 const ConformanceResult* conformance, const WorkResult* work,
                                 const InvariantResult* invariants) {
-    std::vector<Caught> noticed;
+    std::vector<Caught> detected;
     if (run.stopped)
-        noticed.push_back(*run.stopped);
+        detected.push_back(*run.stopped);
     const ReadResult reads = read_result(units);
     if (!reads.passed())
-        noticed.push_back({"read check", reads.first_wrong});
+        detected.push_back({"read check", reads.first_wrong});
     if (conformance != nullptr && conformance->mismatches > 0)
-        noticed.push_back({"scoreboard", first_line(conformance->first_mismatch)});
+        detected.push_back({"scoreboard", first_line(conformance->first_mismatch)});
     if (run.stopped)
-        return noticed;
+        return detected;
     if (work != nullptr && !work->passed())
-        noticed.push_back({"work conservation", work->first_violation});
+        detected.push_back({"work conservation", work->first_violation});
     if (invariants != nullptr && !invariants->passed())
-        noticed.push_back({"invariants", first_line(invariants->first_violation)});
-    return noticed;
+        detected.push_back({"invariants", first_line(invariants->first_violation)});
+    return detected;
 }
 
 FaultReport judge_fault(const Job::Fault& fault, const CheckedUnits& units, const FaultRun& run, bool timed,

@@ -5,7 +5,7 @@
 
 #include "testbench/check/conformance/scoreboard.h"
 #include "testbench/check/mesh/invariants.h"
-#include "testbench/check/transport/work_check.h"
+#include "testbench/check/transport/transport_check.h"
 #include "testbench/common/error.h"
 #include "testbench/machine/simulation.h"
 #include "testbench/prove/faults/checked_units.h"
@@ -27,7 +27,7 @@ FaultRun run_with_fault(Simulation& simulation);
 /// Over all read checks.
 ReadResult read_result(const CheckedUnits& units);
 
-/// Who noticed something, in this order: who stopped the run, read check, scoreboard, work conservation,
+/// Who detected something, in this order: who stopped the run, read check, scoreboard, work conservation,
 /// invariants. The last two only of a run that drained; those not asked for are null.
 std::vector<Caught> who_noticed(const CheckedUnits& units, const FaultRun& run,
                                 const ConformanceResult* conformance, const WorkResult* work,

@@ -4,13 +4,13 @@
 
 namespace tessera {
 
-/// One check that noticed a fault.
+/// One check that detected a fault.
 struct Caught {
-    std::string by;        ///< scoreboard, invariants, work conservation, ...: testbench/prove/faults/CATCHERS.md
+    std::string by;        ///< scoreboard, invariants, work conservation, ...: testbench/prove/faults/FAULT_COVERAGE.md
     std::string evidence;  ///< what it found first
 };
 
-/// What was done to a run on purpose, and who noticed.
+/// What was done to a run on purpose, and who detected.
 struct FaultReport {
     std::string injected;  ///< KIND at PLACE, transaction N, bit B, cycle C
     std::vector<Caught> caught;

@@ -15,7 +15,7 @@
 #include <system_error>
 
 #include "testbench/common/error.h"
-#include "testbench/common/leave_process.h"
+#include "testbench/common/exit_process.h"
 #include "testbench/common/pipe.h"
 
 namespace tessera {
@@ -36,15 +36,15 @@ void fall_silent() {
     fall_silent();
     std::string text;
     try {
-        const std::vector<Caught> noticed = run();
-        if (!noticed.empty())
-            text = fmt::format("{}: {}", noticed.front().by, noticed.front().evidence);
+        const std::vector<Caught> detected = run();
+        if (!detected.empty())
+            text = fmt::format("{}: {}", detected.front().by, detected.front().evidence);
     } catch (const std::exception& error) {
         text = error.what();
     }
     write_to_pipe(pipe, text.data(), text.size());
     std::fflush(nullptr);
-    leave_process(0);
+    exit_process(0);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace tessera::fuzz {
 /// A design's formats and registers, its three tables, and a small patch of base triangles that share edges: all that
 /// the datapath works on, of a fuzzer's bytes. Whatever the bytes, a case is legal: its formats are those of a job that
 /// validates (by job_keys.cpp's ranges, which are asked for, not repeated), its registers lie where the host sets them
-/// (testbench/machine/setup.cpp). The Generation Test is always on: without it a recursion need not end.
+/// (testbench/machine/machine_setup.cpp). The Generation Test is always on: without it a recursion need not end.
 struct DatapathCase {
     datapath::Registers registers;
     testing::Tables tables;

@@ -15,7 +15,7 @@
 #include <system_error>
 #include <type_traits>
 
-#include "testbench/common/leave_process.h"
+#include "testbench/common/exit_process.h"
 #include "testbench/common/pipe.h"
 
 namespace tessera {
@@ -44,7 +44,7 @@ static_assert(std::is_trivially_copyable_v<Header>);
     write_to_pipe(pipe, &header, sizeof header);
     write_to_pipe(pipe, result.failure.data(), result.failure.size());
     std::fflush(nullptr);
-    leave_process(0);
+    exit_process(0);
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ CaseResult run_case(const RandomCase& random_case, Mode mode) {
     with_mode.job.mode = mode;
     const BaseMesh base_mesh = with_mode.base_mesh();
     const HeightMap height_map = with_mode.height_map();
-    const Setup setup = make_setup(with_mode.job, base_mesh, height_map);
+    const MachineSetup setup = make_setup(with_mode.job, base_mesh, height_map);
     const GoldenInputs golden(setup);
     Simulation simulation(setup, RandomCase::most_edges,
                           static_cast<std::uint64_t>(with_mode.job.limits.cycles_without_progress));

@@ -66,7 +66,7 @@ struct NamedTriangle {
 
 class Lineage {
   public:
-    explicit Lineage(const Setup& setup) : setup_(setup), bare_(setup) {}
+    explicit Lineage(const MachineSetup& setup) : setup_(setup), bare_(setup) {}
 
     LineageResult check();
 
@@ -87,7 +87,7 @@ class Lineage {
     }
     std::string describe(Name name) const;
 
-    const Setup& setup_;
+    const MachineSetup& setup_;
     BareRecursion bare_;
     LineageResult result_;
     using BaseKey = std::tuple<std::array<std::int32_t, 9>, std::int8_t, std::uint32_t, std::uint32_t>;
@@ -271,7 +271,7 @@ LineageResult Lineage::check() {
 
 }  // namespace
 
-LineageResult check_lineage(const Setup& setup) {
+LineageResult check_lineage(const MachineSetup& setup) {
     return Lineage(setup).check();
 }
 

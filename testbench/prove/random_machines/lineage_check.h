@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <string>
 
-#include "testbench/machine/setup.h"
+#include "testbench/machine/machine_setup.h"
 
 namespace tessera {
 
@@ -28,6 +28,6 @@ struct LineageResult {
     bool passed() const { return cracks + t_vertices + unlike_vertices == 0; }
 };
 
-LineageResult check_lineage(const Setup& setup);
+LineageResult check_lineage(const MachineSetup& setup);
 
 }  // namespace tessera

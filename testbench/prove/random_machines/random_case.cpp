@@ -90,7 +90,7 @@ void refine(Random& random, const Job::Formats& formats, Job::Tests& tests) {
 }
 
 std::uint64_t edges_of(const RandomCase& random_case) {
-    const Setup setup = random_case.setup();
+    const MachineSetup setup = random_case.setup();
     EmittedMesh mesh;
     return BareRecursion(setup).run(mesh, RandomCase::most_edges);
 }
@@ -129,7 +129,7 @@ BaseMesh RandomCase::base_mesh() const {
     return parse_obj(mesh.obj, job.mesh.file.empty() ? "mesh.obj" : job.mesh.file);
 }
 
-Setup RandomCase::setup() const {
+MachineSetup RandomCase::setup() const {
     return make_setup(job, base_mesh(), height_map());
 }
 

@@ -6,7 +6,7 @@
 #include "testbench/input/map/height_map.h"
 #include "testbench/input/mesh/base_mesh.h"
 #include "testbench/job/job.h"
-#include "testbench/machine/setup.h"
+#include "testbench/machine/machine_setup.h"
 #include "testbench/prove/random_machines/random_map.h"
 #include "testbench/prove/random_machines/random_mesh.h"
 
@@ -30,7 +30,7 @@ struct RandomCase {
 
     BaseMesh base_mesh() const;
     HeightMap height_map() const { return map.height_map(); }
-    Setup setup() const;
+    MachineSetup setup() const;
 
     /// Writes job.toml, mesh.obj and map.pgm: `tessera run FOLDER/job.toml` runs the same case. Makes the folder.
     void write(const std::filesystem::path& folder, Mode mode) const;

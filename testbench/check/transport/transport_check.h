@@ -33,11 +33,11 @@ struct WorkResult {
 /// triangles. Differences cancel by chance once in 2^64. The scoreboard judges what was decided; this, that it was
 /// decided from what it should have been. Children and light are the datapath's own: unit tests hold these.
 /// Cost: some 70 ns an edge, an eighth of the scoreboard's.
-class WorkCheck : public tlm::tlm_analysis_if<datapath::TrianglePass>,
+class TransportCheck : public tlm::tlm_analysis_if<datapath::TrianglePass>,
                   public tlm::tlm_analysis_if<datapath::Triangle>,
                   public tlm::tlm_analysis_if<LitTriangle> {
   public:
-    WorkCheck(const datapath::Registers& registers, const std::vector<datapath::Triangle>& base_triangles);
+    TransportCheck(const datapath::Registers& registers, const std::vector<datapath::Triangle>& base_triangles);
 
     void write(const datapath::TrianglePass& pass) override;
     void write(const datapath::Triangle& finished) override;

@@ -1,4 +1,4 @@
-#include "testbench/check/transport/work_check.h"
+#include "testbench/check/transport/transport_check.h"
 
 #include <fmt/core.h>
 
@@ -86,23 +86,23 @@ unsigned unknown_vertices(const datapath::Triangle& triangle) {
 
 }  // namespace
 
-WorkCheck::WorkCheck(const datapath::Registers& registers,
+TransportCheck::TransportCheck(const datapath::Registers& registers,
                      const std::vector<datapath::Triangle>& base_triangles)
     : registers_(registers), bases_(base_triangles.size()) {
     for (const datapath::Triangle& triangle : base_triangles)
         base_of(triangle.base).decided.expect(hash_to_decide(triangle, unknown_vertices(triangle)));
 }
 
-WorkCheck::Base& WorkCheck::base_of(std::uint32_t base) {
+TransportCheck::Base& TransportCheck::base_of(std::uint32_t base) {
     return base < bases_.size() ? bases_[base] : foreign_;
 }
 
-void WorkCheck::finding(const std::string& what) {
+void TransportCheck::finding(const std::string& what) {
     if (result_.violations++ == 0)
         result_.first_violation = what;
 }
 
-void WorkCheck::write(const datapath::TrianglePass& pass) {
+void TransportCheck::write(const datapath::TrianglePass& pass) {
     ++result_.triangles;
     Base& base = base_of(pass.triangle.base);
     base.decided.come(hash_to_decide(pass.triangle, pass.new_vertices));
@@ -115,7 +115,7 @@ void WorkCheck::write(const datapath::TrianglePass& pass) {
                              });
 }
 
-void WorkCheck::write(const datapath::Triangle& finished) {
+void TransportCheck::write(const datapath::Triangle& finished) {
     base_of(finished.base).finished.come(hash_to_finish(finished));
     LitTriangle lit;
     for (unsigned k = 0; k < 3; ++k) {
@@ -138,11 +138,11 @@ void WorkCheck::write(const datapath::Triangle& finished) {
         lit_.expect(hash_lit(lit));
 }
 
-void WorkCheck::write(const LitTriangle& lit) {
+void TransportCheck::write(const LitTriangle& lit) {
     lit_.come(hash_lit(lit));
 }
 
-WorkResult WorkCheck::result() const {
+WorkResult TransportCheck::result() const {
     WorkResult result = result_;
     const auto judge = [&](const Balance& balance, const std::string& whose, const char* what) {
         if (balance.even())

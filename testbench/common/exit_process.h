@@ -9,7 +9,7 @@ namespace tessera {
 
 /// Ends a forked process at once: nothing its parent also holds (test sessions, open files) is ended twice. What a
 /// coverage build counted is kept.
-[[noreturn]] inline void leave_process(int code) {
+[[noreturn]] inline void exit_process(int code) {
 #ifdef TESSERA_COVERAGE
     __llvm_profile_write_file();
 #endif

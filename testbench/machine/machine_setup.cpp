@@ -1,4 +1,4 @@
-#include "testbench/machine/setup.h"
+#include "testbench/machine/machine_setup.h"
 
 #include <fmt/core.h>
 
@@ -104,7 +104,7 @@ Heights model_heights(const Job& job, const HeightMap& map) {
 }
 
 /// A map whose values are few of those that the scale spans makes a nearly flat surface: metres in 16 bits.
-void note_unused_range(const MapRange& range, const HeightMap& map, Setup& setup) {
+void note_unused_range(const MapRange& range, const HeightMap& map, MachineSetup& setup) {
     constexpr double least_part = 1.0 / 8;
     const auto [lowest, highest] = std::minmax_element(map.values.begin(), map.values.end());
     const double low = static_cast<double>(*lowest), high = static_cast<double>(*highest);
@@ -181,7 +181,7 @@ BaseMesh with_low_texture(const BaseMesh& mesh, const datapath::MapGeometry& map
         {texels / map.width, texels / map.height});
 }
 
-void make_base_triangles(const BaseMesh& original, Setup& setup) {
+void make_base_triangles(const BaseMesh& original, MachineSetup& setup) {
     const datapath::Formats& formats = setup.registers.formats;
     const datapath::MapGeometry& map = setup.registers.map;
     const BaseMesh mesh = with_low_texture(original, map, formats.texture);
@@ -242,7 +242,7 @@ void make_base_triangles(const BaseMesh& original, Setup& setup) {
 /// The largest sum any edge's rectangle can have. An inserted vertex's texture coordinate lies between those of its
 /// edge's ends, so |du| and |dv| of no edge of a child exceed the largest of the parent's three, and the base
 /// triangles bound all their descendants.
-std::uint64_t bound_rectangle_sum(const Setup& setup) {
+std::uint64_t bound_rectangle_sum(const MachineSetup& setup) {
     std::uint64_t largest = 0;
     for (const datapath::Triangle& triangle : setup.base_triangles) {
         std::uint64_t width = 1, height = 1;
@@ -258,7 +258,7 @@ std::uint64_t bound_rectangle_sum(const Setup& setup) {
     return largest * setup.map.highest_code();
 }
 
-void choose_summed_height_bits(const Job& job, Setup& setup) {
+void choose_summed_height_bits(const Job& job, MachineSetup& setup) {
     setup.largest_rectangle_sum = bound_rectangle_sum(setup);
     const auto holds = [&](int bits) { return setup.largest_rectangle_sum >> bits == 0; };
     int bits = static_cast<int>(job.formats.summed_height_bits);
@@ -275,7 +275,7 @@ void choose_summed_height_bits(const Job& job, Setup& setup) {
     setup.registers.formats.summed_height = Format::make_unsigned(bits, 0);
 }
 
-void lay_out_tables(Setup& setup) {
+void lay_out_tables(MachineSetup& setup) {
     constexpr std::uint64_t page = 4096;
     datapath::Registers& registers = setup.registers;
     const auto entry = [](int bits) { return datapath::entry_bytes(bits); };
@@ -304,7 +304,7 @@ View make_view(const Job::Camera& camera) {
     return view;
 }
 
-datapath::TransformParameters make_transform(const Job& job, Setup& setup) {
+datapath::TransformParameters make_transform(const Job& job, MachineSetup& setup) {
     const Job::Camera& camera = job.camera;
     const View view = make_view(camera);
     const glm::dvec3 eye =
@@ -402,7 +402,7 @@ double largest_normal_threshold(const datapath::Formats& formats) {
 }
 
 /// The Highlight Test's registers, if the design has one.
-void set_highlight_test(const Job& job, Setup& setup) {
+void set_highlight_test(const Job& job, MachineSetup& setup) {
     const auto& tests = job.tests;
     if (!tests.highlight)
         return;
@@ -432,7 +432,7 @@ void set_highlight_test(const Job& job, Setup& setup) {
                      "formats.normal_fraction"}));
 }
 
-datapath::LightParameters make_light(const Job& job, Setup& setup) {
+datapath::LightParameters make_light(const Job& job, MachineSetup& setup) {
     const View view = make_view(job.camera);
     const glm::dvec3 world = towards_light(job.hardware);
     const glm::dvec3 seen(glm::dot(view.right, world), glm::dot(view.up, world),
@@ -445,7 +445,7 @@ datapath::LightParameters make_light(const Job& job, Setup& setup) {
     return result;
 }
 
-datapath::DisplacementParameters make_displacement(const Heights& heights, Setup& setup) {
+datapath::DisplacementParameters make_displacement(const Heights& heights, MachineSetup& setup) {
     // d = code / 2^bits reaches 1 - 2^-bits only; S makes up for it
     const double codes = static_cast<double>(setup.map.highest_code());
     const double full = heights.range * (codes + 1) / codes * setup.model_scale.scale;
@@ -502,9 +502,9 @@ datapath::TestParameters make_tests(const Job& job, const datapath::Formats& for
     return result;
 }
 
-Setup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& map) {
+MachineSetup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& map) {
     require_resolved(job, "make_setup");
-    Setup setup;
+    MachineSetup setup;
     datapath::Registers& registers = setup.registers;
     registers.formats = make_formats(job.formats);
     check_intermediates(registers.formats);

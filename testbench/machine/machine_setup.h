@@ -33,7 +33,7 @@ struct InputSaturations {
 
 /// A job made ready for the machine: everything rounded to the hardware's formats. What the simulation, the golden
 /// model and the reports all start from.
-struct Setup {
+struct MachineSetup {
     datapath::Registers registers;
     Design design;
     QuantisedMap map;
@@ -55,7 +55,7 @@ struct Setup {
 /// where something cannot fit and no repair keeps the meaning (a table entry too narrow for the largest
 /// rectangle, an eye too far away, a texture coordinate beyond the format, a threshold beyond its register or
 /// below its step), with value, limit and what to do.
-Setup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& map);
+MachineSetup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& map);
 
 /// The tests' part of it alone: the registers a job's [tests] are rounded to. InputError as above.
 datapath::TestParameters make_tests(const Job& job, const datapath::Formats& formats);

@@ -16,9 +16,9 @@ using Catch::Contains;
 namespace {
 
 void require_work_conserved(const Job& job) {
-    const Setup setup = setup_of(job);
+    const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000, 1'000'000);
-    WorkCheck work(setup.registers, setup.base_triangles);
+    TransportCheck work(setup.registers, setup.base_triangles);
     simulation.pipeline.pass_or_tessellate.decided.bind(work);
     simulation.pipeline.pass_or_tessellate.finished.bind(work);
     simulation.rasteriser.taken.bind(work);
@@ -59,7 +59,7 @@ struct OneTriangle {
             corner.intensity = 50;
     }
     WorkResult result() const {
-        WorkCheck check(registers, {base});
+        TransportCheck check(registers, {base});
         check.write(pass);
         check.write(finished);
         check.write(lit);
@@ -144,7 +144,7 @@ TEST_CASE("work check: whatever changes on a triangle's way is noticed where it 
           "base triangle 0: 1 triangles that were to be decided never were");
     // One from nowhere, one that is lost, and one that faces away and is lit all the same.
     OneTriangle stray;
-    WorkCheck check(stray.registers, {});
+    TransportCheck check(stray.registers, {});
     check.write(stray.pass);
     CHECK(check.result().first_violation ==
           "no base triangle: 1 triangles more were decided than were to be");
