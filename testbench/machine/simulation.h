@@ -13,8 +13,8 @@ struct Simulation {
     /// `setup` must outlive the simulation. triangle_limit: see MeshMonitor. cycles_without_progress: timed mode, how
     /// long no triangle may be decided; 0: for ever.
     /// units: see Pipeline; null: the machine's own.
-    Simulation(const MachineSetup& setup, std::uint64_t triangle_limit, std::uint64_t cycles_without_progress = 0,
-               UnitFactory* units = nullptr);
+    Simulation(const MachineSetup& setup, std::uint64_t triangle_limit,
+               std::uint64_t cycles_without_progress = 0, UnitFactory* units = nullptr);
 
     /// Runs until nothing is left to do. Empty: everything drained. Else a deadlock or livelock: what
     /// happened, and what each unit holds and waits for, one line each. Throws ResourceError when the mesh

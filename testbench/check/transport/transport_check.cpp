@@ -87,7 +87,7 @@ unsigned unknown_vertices(const datapath::Triangle& triangle) {
 }  // namespace
 
 TransportCheck::TransportCheck(const datapath::Registers& registers,
-                     const std::vector<datapath::Triangle>& base_triangles)
+                               const std::vector<datapath::Triangle>& base_triangles)
     : registers_(registers), bases_(base_triangles.size()) {
     for (const datapath::Triangle& triangle : base_triangles)
         base_of(triangle.base).decided.expect(hash_to_decide(triangle, unknown_vertices(triangle)));

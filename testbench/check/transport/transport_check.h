@@ -34,10 +34,11 @@ struct WorkResult {
 /// decided from what it should have been. Children and light are the datapath's own: unit tests hold these.
 /// Cost: some 70 ns an edge, an eighth of the scoreboard's.
 class TransportCheck : public tlm::tlm_analysis_if<datapath::TrianglePass>,
-                  public tlm::tlm_analysis_if<datapath::Triangle>,
-                  public tlm::tlm_analysis_if<LitTriangle> {
+                       public tlm::tlm_analysis_if<datapath::Triangle>,
+                       public tlm::tlm_analysis_if<LitTriangle> {
   public:
-    TransportCheck(const datapath::Registers& registers, const std::vector<datapath::Triangle>& base_triangles);
+    TransportCheck(const datapath::Registers& registers,
+                   const std::vector<datapath::Triangle>& base_triangles);
 
     void write(const datapath::TrianglePass& pass) override;
     void write(const datapath::Triangle& finished) override;

@@ -39,8 +39,8 @@ RecordedMesh recorded_mesh(const EmittedMesh& mesh, const MachineSetup& setup) {
     return result;
 }
 
-TunedFigures measure_tuned(const Job& job, const BaseMesh& base, const HeightMap& map, const MachineSetup& setup,
-                           const EmittedMesh& mesh) {
+TunedFigures measure_tuned(const Job& job, const BaseMesh& base, const HeightMap& map,
+                           const MachineSetup& setup, const EmittedMesh& mesh) {
     const DisplacementOf displacement = DisplacementOf::from(job, map);
     const RecordedMesh recorded = recorded_mesh(mesh, setup);
     TunedFigures figures;

@@ -6,7 +6,8 @@ namespace tessera {
 
 /// One check that detected a fault.
 struct Caught {
-    std::string by;        ///< scoreboard, invariants, work conservation, ...: testbench/prove/faults/FAULT_COVERAGE.md
+    std::string
+        by;  ///< scoreboard, invariants, work conservation, ...: testbench/prove/faults/FAULT_COVERAGE.md
     std::string evidence;  ///< what it found first
 };
 

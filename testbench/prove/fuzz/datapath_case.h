@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "testbench/tests/datapath_edge.h"
+#include "testbench/prove/random_edges/datapath_edge.h"
 
 namespace tessera::fuzz {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "testbench/job/dump_job.h"
-#include "testbench/tests/datapath_random.h"
+#include "testbench/prove/random_edges/datapath_random.h"
 
 namespace {
 

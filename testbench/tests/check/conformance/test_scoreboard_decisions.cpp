@@ -1,0 +1,135 @@
+#include <array>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <cstdlib>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "testbench/check/conformance/scoreboard.h"
+#include "testbench/tests/check/conformance/scoreboard_cases.h"
+
+using namespace tessera;
+using namespace tessera::testing;
+
+TEST_CASE("another diagonal than golden's is caught for each pair of split edges") {
+    using datapath::Triangulation;
+    // By the pair of split edges: the quadrilateral they leave, of vertices 0 to 2 and the midpoints 3 + k of edges k.
+    const std::map<unsigned, std::array<unsigned, 4>> quadrilaterals{
+        {3, {0, 3, 4, 2}}, {5, {3, 1, 2, 5}}, {6, {0, 1, 4, 5}}};
+    Random random(8);
+    std::map<std::pair<unsigned, bool>, int> seen;
+    for (int design = 0; design < 60; ++design) {
+        MachineSetup setup = Case::make_setup(random, datapath::Formats{}, Manner::tame);
+        setup.registers.triangulation = Triangulation::shorter;
+        for (bool datapath::TestParameters::*test :
+             {&datapath::TestParameters::summed_height_test, &datapath::TestParameters::view_test,
+              &datapath::TestParameters::tex_coord_test, &datapath::TestParameters::generation_test})
+            setup.registers.tests.*test = false;
+        Case c(setup, Manner::tame);
+        for (int k = 0; k < 50; ++k) {
+            const datapath::TrianglePass pass = c.pass(random);
+            const auto with = [&](Triangulation hardware) {
+                datapath::Registers registers = c.setup.registers;
+                registers.triangulation = hardware;
+                Scoreboard scoreboard(registers, c.inputs);
+                scoreboard.write(pass);
+                return scoreboard.result();
+            };
+            const auto found = quadrilaterals.find(pass.split);
+            if (found == quadrilaterals.end()) {
+                CHECK(test(with(Triangulation::shorter), "diagonal").compared == 0);
+                continue;
+            }
+            const auto length = [&](unsigned a, unsigned b) {
+                const auto corner = [&](unsigned index) {
+                    return index < 3 ? pass.triangle.vertices[index].displaced
+                                     : pass.new_vertex[index - 3].displaced;
+                };
+                const datapath::Position from = corner(a), to = corner(b);
+                return std::abs(std::int64_t{from.x} - to.x) + std::abs(std::int64_t{from.y} - to.y) +
+                       std::abs(std::int64_t{from.z} - to.z);
+            };
+            const auto& q = found->second;
+            // Shorter by more than a 64th.
+            const bool second = 64 * length(q[1], q[3]) < 63 * length(q[0], q[2]);
+            ++seen[{pass.split, second}];
+            INFO("split " << unsigned{pass.split} << ", second diagonal " << second);
+            const ConformanceResult right = with(second ? Triangulation::second : Triangulation::first);
+            CHECK(test(right, "diagonal").compared == 1);
+            CHECK(right.mismatches == 0);
+            const ConformanceResult wrong = with(second ? Triangulation::first : Triangulation::second);
+            CHECK(wrong.mismatches == 1);
+            CHECK(test(wrong, "diagonal").mismatches == 1);
+            CHECK(wrong.first_mismatch.find("diagonal (which diagonal") != std::string::npos);
+        }
+    }
+    CHECK(seen.size() == 6);
+    for (const auto& [which, times] : seen)
+        CHECK(times > 3);
+}
+
+TEST_CASE("each wrong decision of each edge is one mismatch of its name") {
+    const std::vector<std::pair<datapath::TestBits, std::string>> tests = {
+        {datapath::normal_bit, "NT"},
+        {datapath::summed_height_bit, "SHT"},
+        {datapath::view_bit, "VT"},
+        {datapath::tex_coord_bit, "TCT"},
+        {datapath::generation_bit, "GT"}};
+    Random random(9);
+    int behind = 0, wrong = 0, excused = 0;
+    for (int design = 0; design < 40; ++design) {
+        Case c(random, datapath::Formats{}, design % 2 == 0 ? Manner::tame : Manner::wild);
+        for (int n = 0; n < 5; ++n) {
+            const datapath::TrianglePass good = c.pass(random);
+            const ConformanceResult before = check(c, good);
+            REQUIRE(before.mismatches == 0);
+            const auto one_of = [&](const datapath::TrianglePass& bad, const std::string& name) {
+                INFO(name);
+                const ConformanceResult result = check(c, bad);
+                INFO(result.first_mismatch);
+                // Within a bound of its threshold nothing is wrong.
+                if (test(before, name).allowed_flips + test(result, name).allowed_flips > 0) {
+                    ++excused;
+                    return;
+                }
+                ++wrong;
+                CHECK(result.mismatches == 1);
+                CHECK(test(result, name).mismatches == 1);
+                CHECK(result.first_mismatch.find(name + " (") != std::string::npos);
+            };
+            for (unsigned k = 0; k < 3; ++k) {
+                INFO("edge " << k);
+                for (const auto& [bit, name] : tests) {
+                    datapath::TrianglePass bad = good;
+                    bad.edges[k].tests = static_cast<std::uint8_t>(bad.edges[k].tests ^ bit);
+                    one_of(bad, name);
+                }
+                datapath::TrianglePass bad = good;
+                bad.split = static_cast<std::uint8_t>(bad.split ^ 1u << k);
+                one_of(bad, "split");
+
+                const datapath::ScreenPosition& screen = good.new_vertex[k].screen;
+                bad = good;
+                bad.new_vertex[k].screen.in_front = !screen.in_front;
+                if (screen.in_front)
+                    bad.new_vertex[k].screen.x = bad.new_vertex[k].screen.y = 0;
+                one_of(bad, "in_front");
+                if (screen.in_front)
+                    continue;
+                ++behind;
+                for (std::int32_t datapath::ScreenPosition::*axis :
+                     {&datapath::ScreenPosition::x, &datapath::ScreenPosition::y}) {
+                    bad = good;
+                    bad.new_vertex[k].screen.*axis = 1;
+                    const ConformanceResult result = check(c, bad);
+                    CHECK(result.mismatches == 1);
+                    CHECK(result.first_mismatch.find("not in front of the near plane") != std::string::npos);
+                }
+            }
+        }
+    }
+    CHECK(behind > 20);
+    CHECK(excused * 100 < wrong);
+}

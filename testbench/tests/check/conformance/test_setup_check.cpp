@@ -1,0 +1,484 @@
+// What the host set, judged: nothing is wrong with the default job, and one wrong entry anywhere is noticed.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "modules/datapath/map_entry.h"
+#include "testbench/check/conformance/end_to_end.h"
+#include "testbench/check/conformance/setup_check.h"
+#include "testbench/machine/inputs.h"
+#include "testbench/machine/simulation.h"
+#include "testbench/output/report/conformance_report.h"
+
+using namespace tessera;
+using Catch::Contains;
+
+namespace {
+
+/// A job's run as the program makes it, in functional mode, up to the set-up check.
+struct CheckedRun {
+    explicit CheckedRun(const Job& job) : CheckedRun(job, load_mesh(job, {}), load_map(job, {})) {}
+    CheckedRun(const Job& job, const BaseMesh& its_mesh, const HeightMap& its_map)
+        : mesh(its_mesh),
+          map(its_map),
+          resolved(resolve_job(functional(job), mesh, map).job),
+          setup(make_setup(resolved, mesh, map)),
+          golden(resolved, mesh, map, setup.model_scale),
+          simulation(setup, 1000000) {
+        REQUIRE(simulation.run().empty());
+    }
+
+    static Job functional(Job job) {
+        job.mode = Mode::functional;
+        return job;
+    }
+    SetupResult check() { return check_setup(setup, golden, simulation); }
+
+    /// The verdict on another set-up, with the memories as they are.
+    void require_noticed(const MachineSetup& wrong, const std::string& name) {
+        const SetupResult result = check_setup(wrong, golden, simulation);
+        INFO(name << ": " << result.first_wrong);
+        CHECK(result.wrong() > 0);
+        CHECK_THAT(result.first_wrong, Contains(name));
+        Checks checks;
+        checks.setup = result;
+        CHECK_FALSE(checks.passed());
+        CHECK_THAT(conformance_text(checks), Contains(result.first_wrong) && Contains("Set-up: FAILED"));
+    }
+
+    BaseMesh mesh;
+    HeightMap map;
+    Job resolved;
+    MachineSetup setup;
+    GoldenJob golden;
+    Simulation simulation;
+};
+
+struct Mistake {
+    std::string name;  // as the check names it
+    std::function<void(MachineSetup&)> make;
+};
+
+/// One mistake for each register of the default job, by one LSB where it is a number.
+std::vector<Mistake> register_mistakes() {
+    using datapath::AddressMode;
+    std::vector<Mistake> list;
+    const auto add = [&](const std::string& name, auto member) {
+        list.push_back({name, [member](MachineSetup& setup) { ++member(setup.registers); }});
+        list.push_back({name, [member](MachineSetup& setup) { --member(setup.registers); }});
+    };
+    const auto turn = [&](const std::string& name, auto member) {
+        list.push_back(
+            {name, [member](MachineSetup& setup) { member(setup.registers) = !member(setup.registers); }});
+    };
+    const auto format = [&](const std::string& name, datapath::Format datapath::Formats::*it) {
+        add(
+            "formats." + name + ".bits", [it](auto& r) -> auto& { return (r.formats.*it).bits; });
+        add(
+            "formats." + name + ".fraction", [it](auto& r) -> auto& { return (r.formats.*it).fraction; });
+        add(
+            "formats." + name + ".lowest", [it](auto& r) -> auto& { return (r.formats.*it).lowest; });
+        add(
+            "formats." + name + ".highest", [it](auto& r) -> auto& { return (r.formats.*it).highest; });
+    };
+    format("position", &datapath::Formats::position);
+    format("normal", &datapath::Formats::normal);
+    format("texture", &datapath::Formats::texture);
+    format("displacement", &datapath::Formats::displacement);
+    format("screen", &datapath::Formats::screen);
+    add(
+        "formats.generation_bits", [](auto& r) -> auto& { return r.formats.generation_bits; });
+    add(
+        "formats.view_distance", [](auto& r) -> auto& { return r.formats.view_distance.bits; });
+    add(
+        "formats.view_distance", [](auto& r) -> auto& { return r.formats.view_distance.fraction; });
+    add(
+        "formats.summed_height", [](auto& r) -> auto& { return r.formats.summed_height.bits; });
+    add(
+        "formats.summed_height.fraction", [](auto& r) -> auto& { return r.formats.summed_height.fraction; });
+    turn(
+        "formats.highlight_tag", [](auto& r) -> auto& { return r.formats.highlight_tag; });
+
+    add(
+        "map.width", [](auto& r) -> auto& { return r.map.width; });
+    add(
+        "map.height", [](auto& r) -> auto& { return r.map.height; });
+    list.push_back(
+        {"map.address_u", [](MachineSetup& s) { s.registers.map.address_u = AddressMode::repeat; }});
+    list.push_back(
+        {"map.address_v", [](MachineSetup& s) { s.registers.map.address_v = AddressMode::repeat; }});
+    const auto table = [&](const std::string& name, datapath::TableLayout datapath::Registers::*it) {
+        add(
+            name + ".columns", [it](auto& r) -> auto& { return (r.*it).columns; });
+        add(
+            name + ".rows", [it](auto& r) -> auto& { return (r.*it).rows; });
+        add(
+            name + ".entry_bytes", [it](auto& r) -> auto& { return (r.*it).entry_bytes; });
+    };
+    table("displacement_map", &datapath::Registers::displacement_map);
+    table("normal_map", &datapath::Registers::normal_map);
+    table("summed_height_table", &datapath::Registers::summed_height_table);
+    list.push_back({"overlap", [](MachineSetup& s) {
+                        s.registers.normal_map.base = s.registers.displacement_map.base + 2;
+                    }});
+
+    turn(
+        "tests.normal_test", [](auto& r) -> auto& { return r.tests.normal_test; });
+    turn(
+        "tests.summed_height_test", [](auto& r) -> auto& { return r.tests.summed_height_test; });
+    turn(
+        "tests.view_test", [](auto& r) -> auto& { return r.tests.view_test; });
+    turn(
+        "tests.tex_coord_test", [](auto& r) -> auto& { return r.tests.tex_coord_test; });
+    turn(
+        "tests.generation_test", [](auto& r) -> auto& { return r.tests.generation_test; });
+    turn(
+        "tests.highlight_test", [](auto& r) -> auto& { return r.tests.highlight_test; });
+    add(
+        "tests.normal_threshold", [](auto& r) -> auto& { return r.tests.normal_threshold; });
+    add(
+        "tests.summed_height_threshold", [](auto& r) -> auto& { return r.tests.summed_height_threshold; });
+    list.push_back({"tests.summed_height_unit", [](MachineSetup& s) {
+                        s.registers.tests.summed_height_unit = datapath::SummedHeightUnit::area;
+                    }});
+    add(
+        "tests.view_threshold", [](auto& r) -> auto& { return r.tests.view_threshold; });
+    add(
+        "tests.generation_limit", [](auto& r) -> auto& { return r.tests.generation_limit; });
+    add(
+        "tests.highlight_cosine", [](auto& r) -> auto& { return r.tests.highlight_cosine; });
+    add(
+        "tests.highlight_normal_threshold",
+        [](auto& r) -> auto& { return r.tests.highlight_normal_threshold; });
+
+    add(
+        "displacement.scale", [](auto& r) -> auto& { return r.displacement.scale; });
+    add(
+        "displacement.bias", [](auto& r) -> auto& { return r.displacement.bias; });
+
+    for (std::size_t k = 0; k < 4; ++k) {
+        // The fourth column is finer than a double here.
+        const std::int64_t step = k < 3 ? 1 : 4096;
+        const auto row = [&](const std::string& name, auto member) {
+            for (const std::int64_t error : {step, -step})
+                list.push_back({"transform." + name + "[" + std::to_string(k) + "]",
+                                [=](MachineSetup& s) { (s.registers.transform.*member)[k] += error; }});
+        };
+        row("row_x", &datapath::TransformParameters::row_x);
+        row("row_y", &datapath::TransformParameters::row_y);
+        row("row_w", &datapath::TransformParameters::row_w);
+    }
+    add(
+        "transform.", [](auto& r) -> auto& { return r.transform.exponent; });
+    add(
+        "transform.near_plane", [](auto& r) -> auto& { return r.transform.near_plane; });
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::string index = "[" + std::to_string(k) + "]";
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            add(
+                "transform.normal_rows[" + std::to_string(axis) + "]" + index,
+                [ axis, k ](auto& r) -> auto& { return r.transform.normal_rows[axis][k]; });
+        add(
+            "light.direction" + index, [k](auto& r) -> auto& { return r.light.direction[k]; });
+        add(
+            "tests.half_vector" + index, [k](auto& r) -> auto& { return r.tests.half_vector[k]; });
+    }
+    add(
+        "light.ambient", [](auto& r) -> auto& { return r.light.ambient; });
+    list.push_back({"triangulation",
+                    [](MachineSetup& s) { s.registers.triangulation = datapath::Triangulation::first; }});
+    turn(
+        "back_face_culling", [](auto& r) -> auto& { return r.back_face_culling; });
+    return list;
+}
+
+/// One mistake for each field of a vertex, by one LSB.
+std::vector<Mistake> vertex_mistakes() {
+    std::vector<Mistake> list;
+    const auto add = [&](const std::string& field, auto member) {
+        for (const std::size_t k : {std::size_t{0}, std::size_t{1}, std::size_t{2}})
+            list.push_back({"triangle 7, vertex " + std::to_string(k) + ", " + field,
+                            [member, k](MachineSetup& s) { ++member(s.base_triangles[7].vertices[k]); }});
+    };
+    add(
+        "position.x", [](auto& v) -> auto& { return v.position.x; });
+    add(
+        "position.y", [](auto& v) -> auto& { return v.position.y; });
+    add(
+        "position.z", [](auto& v) -> auto& { return v.position.z; });
+    add(
+        "normal.x", [](auto& v) -> auto& { return v.normal.x; });
+    add(
+        "normal.y", [](auto& v) -> auto& { return v.normal.y; });
+    add(
+        "normal.z", [](auto& v) -> auto& { return v.normal.z; });
+    add(
+        "tangent.x", [](auto& v) -> auto& { return v.tangent.x; });
+    add(
+        "tangent.y", [](auto& v) -> auto& { return v.tangent.y; });
+    add(
+        "tangent.z", [](auto& v) -> auto& { return v.tangent.z; });
+    add(
+        "texture.u", [](auto& v) -> auto& { return v.texture.u; });
+    add(
+        "texture.v", [](auto& v) -> auto& { return v.texture.v; });
+    add(
+        "handedness", [](auto& v) -> auto& { return v.handedness; });
+    add(
+        "generation", [](auto& v) -> auto& { return v.generation; });
+    for (const std::size_t k : {std::size_t{0}, std::size_t{1}, std::size_t{2}}) {
+        const std::string vertex = "triangle 7, vertex " + std::to_string(k) + ", ";
+        list.push_back({vertex + "displaced_known",
+                        [k](MachineSetup& s) { s.base_triangles[7].vertices[k].displaced_known = true; }});
+        list.push_back({vertex + "screen_normal_known", [k](MachineSetup& s) {
+                            s.base_triangles[7].vertices[k].screen_normal_known = true;
+                        }});
+    }
+    list.push_back({"triangle 7, split_by", [](MachineSetup& s) { ++s.base_triangles[7].split_by; }});
+    list.push_back({"triangle 7, stopped_by", [](MachineSetup& s) { ++s.base_triangles[7].stopped_by; }});
+    list.push_back({"triangle 7, finished", [](MachineSetup& s) { s.base_triangles[7].finished = true; }});
+    list.push_back({"triangle 7, base", [](MachineSetup& s) { ++s.base_triangles[7].base; }});
+    list.push_back(
+        {"triangle 17 of the mesh is missing", [](MachineSetup& s) { s.base_triangles.pop_back(); }});
+    list.push_back(
+        {"19 base triangles", [](MachineSetup& s) { s.base_triangles.push_back(s.base_triangles.back()); }});
+    return list;
+}
+
+using Socket = tlm_utils::simple_initiator_socket<Host>;
+
+/// Adds to a byte of an entry by debug transport, as the host writes.
+void add_to_entry(Socket& socket, const datapath::TableLayout& layout, std::uint32_t x, std::uint32_t y,
+                  unsigned which, int add) {
+    unsigned char byte = 0;
+    tlm::tlm_generic_payload payload;
+    payload.set_address(layout.address(x, y) + which);
+    payload.set_data_ptr(&byte);
+    payload.set_data_length(1);
+    payload.set_streaming_width(1);
+    payload.set_command(tlm::TLM_READ_COMMAND);
+    REQUIRE(socket->transport_dbg(payload) == 1);
+    byte = static_cast<unsigned char>(byte + add);
+    payload.set_command(tlm::TLM_WRITE_COMMAND);
+    REQUIRE(socket->transport_dbg(payload) == 1);
+}
+
+}  // namespace
+
+TEST_CASE("one wrong register, base vertex or table entry fails the default job") {
+    CheckedRun run{Job{}};
+    const SetupResult right = run.check();
+    INFO(right.first_wrong);
+    REQUIRE(right.passed());
+    REQUIRE(right.parts.size() == 5);
+    CHECK(right.base_triangles.size() == 18);
+
+    for (const auto& list : {register_mistakes(), vertex_mistakes()})
+        for (const Mistake& mistake : list) {
+            MachineSetup wrong = run.setup;
+            mistake.make(wrong);
+            run.require_noticed(wrong, mistake.name);
+        }
+
+    const datapath::Registers& registers = run.setup.registers;
+    const auto every = [&](const std::string& name, Socket& socket, const datapath::TableLayout& layout,
+                           const std::string& component = {}, unsigned which = 0) {
+        for (const std::uint32_t x : {0U, layout.columns / 2, layout.columns - 1})
+            for (const std::uint32_t y : {0U, layout.rows / 3, layout.rows - 1}) {
+                add_to_entry(socket, layout, x, y, which, 1);
+                const SetupResult result = run.check();
+                CHECK(result.wrong() == 1);
+                CHECK_THAT(result.first_wrong,
+                           Contains(fmt::format("{}: ({}, {}){}", name, x, y, component)));
+                add_to_entry(socket, layout, x, y, which, -1);
+            }
+    };
+    Host& host = run.simulation.host;
+    every("displacement map", host.displacement_map, registers.displacement_map);
+    every("normal map", host.normal_map, registers.normal_map, ".x", 0);  // 16 bits each
+    every("normal map", host.normal_map, registers.normal_map, ".y", 2);
+    every("normal map", host.normal_map, registers.normal_map, ".z", 4);
+    every("summed height table", host.summed_height_table, registers.summed_height_table);
+    CHECK(run.check().passed());
+}
+
+TEST_CASE("the set-up of a job of other formats, with bias, highlight and a map that repeats, is right") {
+    Job job;
+    job.mesh.source = MeshSource::sphere;
+    job.map.source = MapSource::noise;
+    job.map.width = 40;
+    job.map.height = 24;
+    job.map.address_u = Addressing::repeat;
+    job.displacement.scale = -0.3;
+    job.displacement.bias = 0.7;
+    job.camera.eye = {0, -9, 2};
+    job.tests.highlight = true;
+    job.tests.summed_height_unit = SummedHeightUnit::area;
+    job.tests.summed_height_threshold = 0.1;
+    job.tests.generation_limit = 2;
+    job.formats.position_bits = 24;
+    job.formats.position_fraction = 10;
+    job.formats.normal_bits = 12;
+    job.formats.normal_fraction = 10;
+    job.formats.displacement_bits = 9;
+    job.formats.summed_height_bits = 16;  // sums of the whole map wrap
+    job.formats.texture_fraction = 5;
+    job.hardware.culling = Culling::back;
+    job.hardware.triangulation = Triangulation::second;
+    CheckedRun run{job};
+    const SetupResult result = run.check();
+    INFO(result.first_wrong);
+    CHECK(result.passed());
+
+    MachineSetup wrong = run.setup;
+    ++wrong.registers.tests.highlight_cosine;
+    run.require_noticed(wrong, "tests.highlight_cosine");
+    wrong = run.setup;
+    --wrong.registers.tests.half_vector[1];
+    run.require_noticed(wrong, "tests.half_vector[1]");
+    wrong = run.setup;
+    ++wrong.registers.tests.highlight_normal_threshold;
+    run.require_noticed(wrong, "tests.highlight_normal_threshold");
+    // A whole period is the host's own to add, but not to one corner alone.
+    wrong = run.setup;
+    const std::uint32_t period = 40U << 5;
+    for (datapath::Vertex& vertex : wrong.base_triangles[3].vertices)
+        vertex.texture.u += period;
+    CHECK(check_setup(wrong, run.golden, run.simulation).passed());
+    wrong.base_triangles[3].vertices[1].texture.u -= period;
+    run.require_noticed(wrong, "triangle 3, vertex 1, texture.u");
+}
+
+TEST_CASE("a base triangle that collapses in the formats is left out, any other is not") {
+    Job job;
+    job.formats.position_bits = 10;
+    job.formats.position_fraction = 4;
+    job.formats.texture_fraction = 0;
+    job.tests.generation_limit = 1;
+    BaseMesh mesh = load_mesh(job, {});
+    // A sliver, much less than an LSB wide, on the third triangle's edge.
+    const auto corners = mesh.triangles[2];
+    BaseVertex moved = mesh.vertices[corners[0]];
+    moved.position.x += 1e-9;
+    moved.texture.x += 1e-9;
+    mesh.vertices.push_back(moved);
+    const auto last = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+    mesh.triangles.insert(mesh.triangles.begin() + 3, {corners[0], last, corners[1]});
+    CheckedRun run{job, mesh, load_map(job, {})};
+    const SetupResult result = run.check();
+    INFO(result.first_wrong);
+    CHECK(result.passed());
+    REQUIRE(result.base_triangles.size() == 18);
+    CHECK(result.base_triangles[2] == 2);
+    CHECK(result.base_triangles[3] == 4);
+}
+
+TEST_CASE("a model scale that is no power of two, or too large, is not sound") {
+    CheckedRun run{Job{}};
+    ModelScale three = run.setup.model_scale;
+    three.scale *= 3;
+    CHECK_THAT(
+        check_setup(run.setup, GoldenJob(run.resolved, run.mesh, run.map, three), run.simulation).first_wrong,
+        Contains("not a power of two"));
+    ModelScale large = run.setup.model_scale;
+    large.scale *= 16;
+    const SetupResult result =
+        check_setup(run.setup, GoldenJob(run.resolved, run.mesh, run.map, large), run.simulation);
+    CHECK_THAT(result.first_wrong, Contains("a position"));
+}
+
+TEST_CASE("golden's own run is judged: by its triangles, by the surfaces' distance, by its bound") {
+    Job job;
+    job.tests.generation_limit = 4;
+    job.displacement.scale = 0.5;
+    job.displacement.bias = -0.2;
+    CheckedRun run{job};
+    const SetupResult checked = run.check();
+    const auto compare = [&](const EmittedMesh& mesh, double allowed) {
+        return compare_end_to_end(run.setup, run.golden, checked.base_triangles, mesh, allowed);
+    };
+    EmittedMesh mesh = run.simulation.monitor.mesh;
+    const EndToEndResult right = compare(mesh, 1);
+    CHECK(right.passed());
+    CHECK(right.rms_model() < 1e-3);
+    // Heights are -0.2 to 0.3, normals exact, four generations: (4 / 2 + 2) LSB of the position.
+    REQUIRE(right.golden_largest_generation == 4);
+    const double rounding = std::sqrt(3.0) * 4 * std::ldexp(1.0, -16) / run.setup.model_scale.scale;
+    CHECK(right.allowed.triangles == 1);
+    CHECK(right.allowed.rounding == Approx(rounding));
+    CHECK(right.allowed.displacement == Approx(0.5));
+    CHECK(right.farther() < 0.1);
+
+    // Progress moves while golden runs: every 256 triangles; then a step for each direction.
+    std::vector<double> told;
+    compare_end_to_end(run.setup, run.golden, checked.base_triangles, mesh, 1,
+                       [&](double part) { told.push_back(part); });
+    REQUIRE(right.golden_triangles > 512);
+    REQUIRE(told.size() == right.golden_triangles / 256 + 3);
+    CHECK(told[1] == Approx(0.5 * 512 / static_cast<double>(mesh.triangles.size())));
+    CHECK(std::is_sorted(told.begin(), told.end()));
+    CHECK(told[told.size() - 2] == 0.75);
+    CHECK(told.back() == 1);
+    CHECK(right.allowed_rms_model() == Approx(rounding + std::sqrt(right.farther() / 100) * 0.5));
+
+    Checks checks;
+    const auto failed = [&](const EndToEndResult& result) {
+        checks.end_to_end = result;
+        CHECK_FALSE(checks.passed());
+        CHECK_THAT(conformance_text(checks), Contains("End to end: FAILED"));
+        return !result.passed();
+    };
+    EmittedMesh fewer = mesh;
+    fewer.triangles.resize(fewer.triangles.size() * 97 / 100);
+    CHECK(failed(compare(fewer, 1)));
+
+    // By 10 LSB, of which rounding explains 6.9; less across the slopes.
+    EmittedMesh lifted = mesh;
+    for (EmittedTriangle& triangle : lifted.triangles)
+        for (auto& corner : triangle.corners)
+            corner.displaced.z += 10;
+    const EndToEndResult off = compare(lifted, 1);
+    CHECK(off.more_triangles() == right.more_triangles());
+    CHECK(off.farther() > 50);
+    CHECK(off.rms_model() < 1e-3);
+    CHECK(failed(off));
+
+    // A few triangles, farther out than any displacement puts them.
+    EmittedMesh thrown = mesh;
+    for (std::size_t k = 0; k < thrown.triangles.size(); k += 400)
+        thrown.triangles[k].corners[0].displaced.z += 6 * run.setup.registers.displacement.scale;
+    const EndToEndResult spikes = compare(thrown, 1);
+    CHECK(spikes.farther() < 1);
+    CHECK(failed(spikes));
+
+    mesh.triangles.resize(10);
+    const EndToEndResult stopped = compare(mesh, 1000);
+    CHECK(stopped.bound_hit);
+    CHECK(failed(stopped));
+    CHECK_THAT(conformance_text(checks), Contains("more than 1040, where its run was stopped"));
+}
+
+TEST_CASE("on a cylinder rounding moves normals, too, and they turn") {
+    Job job;
+    job.mesh.source = MeshSource::cylinder;
+    job.mesh.columns = 8;
+    job.tests.generation_limit = 4;
+    job.displacement.scale = 0.5;
+    job.displacement.bias = -0.2;
+    CheckedRun run{job};
+    const SetupResult checked = run.check();
+    const EndToEndResult result =
+        compare_end_to_end(run.setup, run.golden, checked.base_triangles, run.simulation.monitor.mesh, 1);
+    CHECK(result.passed());
+    REQUIRE(result.golden_largest_generation == 4);
+    CHECK(result.allowed.rounding ==
+          Approx(std::sqrt(3.0) *
+                 (4 * std::ldexp(1.0, -16) / run.setup.model_scale.scale + 10 * std::ldexp(1.0, -14) * 0.3)));
+    // Normals of neighbours are 45 degrees apart: 2 sin 22.5.
+    CHECK(result.allowed.displacement == Approx(0.5 + 0.3 * 0.765366865));
+}

@@ -1,0 +1,161 @@
+#include <catch2/catch.hpp>
+
+#include "testbench/input/map/read_height_map.h"
+#include "testbench/tests/support/program_runner.h"
+
+using namespace tessera;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path example(const char* name) {
+    return source_folder() / "testbench/examples/surfaces" / name;
+}
+
+ProgramEnd bake(std::vector<std::string> arguments, const fs::path& here, const ProgramLimits& limits = {}) {
+    arguments.insert(arguments.begin(), "bake");
+    return run_tessera(arguments, here, limits);
+}
+
+std::string baked(const std::vector<std::string>& arguments, const fs::path& here) {
+    const ProgramEnd end = bake(arguments, here);
+    INFO(end.text());
+    REQUIRE(end.exit_code == 0);
+    CHECK(end.err.empty());
+    return end.out;
+}
+
+/// Requires this exit code, one message on standard error with these words, and no new file.
+void refused(const std::vector<std::string>& arguments, const TestFolder& here,
+             const std::vector<std::string>& words) {
+    const std::vector<std::string> before = here.names();
+    const ProgramEnd end = bake(arguments, here.path());
+    INFO(end.text());
+    CHECK(end.exit_code == 2);
+    CHECK(end.signal == 0);
+    CHECK(end.out.empty());
+    CHECK(lines_of(end.err).size() == 1);
+    for (const std::string& word : words)
+        CHECK_THAT(end.err, Contains(word));
+    CHECK(here.names() == before);
+}
+
+}  // namespace
+
+TEST_CASE("bake: the examples in all formats, the same twice, and jobs that run") {
+    const TestFolder here;
+    for (const char* const name : {"dome", "saddle", "hills", "pillow"}) {
+        INFO(name);
+        const std::string surface = example((std::string(name) + ".toml").c_str()).string();
+        const std::string map = name;
+        for (const std::string ending : {".pgm", ".png", ".exr", ".PGM"}) {
+            const std::string out =
+                baked({surface, "--size", "40x30", "--output", map + ending}, here.path());
+            CHECK_THAT(out, Contains("40 x 30 texels") && Contains("displacement.scale") &&
+                                Contains(map + ".job.toml"));
+            const HeightMap read = read_height_map(here.path() / (map + ending));
+            CHECK(read.width == 40);
+            CHECK(read.height == 30);
+            const std::string once = read_all(here.path() / (map + ending)),
+                              job = read_all(here.path() / (map + ".job.toml"));
+            baked({surface, "--size", "40x30", "--output", map + ending}, here.path());
+            CHECK(read_all(here.path() / (map + ending)) == once);
+            CHECK(read_all(here.path() / (map + ".job.toml")) == job);
+        }
+        const ProgramEnd run =
+            run_tessera({"run", map + ".job.toml", "--set", "mode=functional"}, here.path());
+        INFO(run.text());
+        CHECK(run.exit_code == 0);
+        CHECK(fs::exists(here.path() / "runs" / map / "mesh.ply"));
+    }
+}
+
+TEST_CASE("bake: without a size the map has 256 x 256 texels") {
+    const TestFolder here;
+    baked({example("dome.toml").string(), "--output", "dome.pgm"}, here.path());
+    CHECK(read_height_map(here.path() / "dome.pgm").width == 256);
+    CHECK(here.names() == std::vector<std::string>{"dome.job.toml", "dome.pgm"});
+}
+
+TEST_CASE("bake: the job fits the domain and finds its files from its own folder") {
+    const TestFolder here;
+    write_all(here.path() / "wide.toml",
+              "[domain]\nx = [3, 7]\ny = [0, 0.5]\n[quadric]\nshape = \"paraboloid\"\n"
+              "radius = 2\ncentre = [5, 0, 1]\n");
+    fs::create_directories(here.path() / "base");
+    write_all(here.path() / "base/square.obj",
+              "v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n");
+    write_all(here.path() / "base/job.toml",
+              "mode = \"functional\"\n[mesh]\nsource = \"file\"\nfile = \"square.obj\"\n");
+    baked({"wide.toml", "--output", "out/wide.png"}, here.path());
+    const std::string job = read_all(here.path() / "out/wide.job.toml");
+    CHECK_THAT(job, Contains("width = 4.0\ndepth = 0.5\n") && Contains("file = \"wide.png\""));
+
+    write_all(here.path() / "ball.toml", "[quadric]\nshape = \"sphere\"\nradius = 3\n");
+    const std::string out =
+        baked({"ball.toml", "--mesh", "base/job.toml", "--output", "out/ball.pgm"}, here.path());
+    CHECK_THAT(out, Contains("no base triangle"));
+    CHECK_THAT(read_all(here.path() / "out/ball.job.toml"), Contains("file = \"../base/square.obj\""));
+    const ProgramEnd run = run_tessera({"run", "out/ball.job.toml"}, here.path());
+    INFO(run.text());
+    CHECK(run.exit_code == 0);
+
+    // A patch is the same map over whatever base mesh.
+    baked({example("hills.toml").string(), "--output", "plain.pgm"}, here.path());
+    baked({example("hills.toml").string(), "--mesh", "base/job.toml", "--output", "meshed.pgm"}, here.path());
+    CHECK(read_all(here.path() / "plain.pgm") == read_all(here.path() / "meshed.pgm"));
+    CHECK_THAT(read_all(here.path() / "meshed.job.toml"), Contains("base/square.obj"));
+}
+
+TEST_CASE("bake: overlapping base triangles are told of") {
+    const TestFolder here;
+    write_all(here.path() / "ball.toml", "[quadric]\nshape = \"sphere\"\nradius = 6\n");
+    CHECK_THAT(
+        baked({"ball.toml", "--mesh", (source_folder() / "testbench/examples/jobs/teapot.toml").string(),
+               "--output", "ball.pgm"},
+              here.path()),
+        Contains("note: 6") && Contains("lie in several base triangles"));
+}
+
+TEST_CASE("bake: hostile arguments are refused in one line") {
+    const TestFolder here;
+    const std::string dome = example("dome.toml").string();
+    refused({}, here, {"--help"});
+    refused({dome}, here, {"--output"});
+    refused({"", "--output", "a.pgm"}, here, {"SURFACE"});
+    refused({"absent.toml", "--output", "a.pgm"}, here, {"absent.toml: no such surface file"});
+    refused({".", "--output", "a.pgm"}, here, {"is a folder"});
+    for (const std::string size :
+         {"0x5", "5x0", "256", "x", "5x", "4097x4", "4x4097", "-3x5", "5x5x5", "1e3x5", ""})
+        refused({dome, "--output", "a.pgm", "--size=" + size}, here, {"--size"});
+    for (const std::string output : {"a.jpg", "a", "", ".pgm/", "folder/"})
+        refused({dome, "--output", output}, here, {"--output"});
+    refused({dome, "--output", "/proc/tessera/a.pgm"}, here, {"--output"});
+    refused({dome, "--output", "a.pgm", "--mesh", ""}, here, {"--mesh"});
+    refused({dome, "--output", "a.pgm", "--mesh", "absent.toml"}, here, {"absent.toml"});
+    refused({dome, "--output", "a.pgm", "--mesh", dome}, here, {"dome.toml:2", "quadric"});
+    write_all(here.path() / "far.toml", "[quadric]\nshape = \"sphere\"\nradius = 0.1\ncentre = [9, 0, 0]\n");
+    refused({"far.toml", "--output", "a.pgm"}, here, {"far.toml:1: the quadric is nowhere"});
+    write_all(here.path() / "bad.toml", "[bezier]\nheights = [[0, 1], [2, 3]]\nweights = [[1, 1], [1, 0]]\n");
+    refused({"bad.toml", "--output", "a.pgm"}, here, {"bad.toml:3:24:", "`weights`"});
+    for (const char* const name : {"c.job.toml", "d.job.toml"})
+        write_all(here.path() / name, read_all(example(name[0] == 'c' ? "dome.toml" : "barrel_base.toml")));
+    refused({"c.job.toml", "--output", "c.pgm"}, here, {"--output c.pgm", "would overwrite c.job.toml"});
+    refused({dome, "--mesh", "d.job.toml", "--output", "./d.pgm"}, here, {"would overwrite d.job.toml"});
+    CHECK(read_all(here.path() / "c.job.toml") == read_all(dome));
+    fs::create_directory(here.path() / "b.pgm");
+    refused({dome, "--output", "b.pgm"}, here, {"b.pgm", "folder"});
+}
+
+TEST_CASE("bake: a disk that is full ends it with exit code 4 and no map") {
+    const TestFolder here;
+    ProgramLimits limits;
+    limits.file_bytes = 4096;
+    const ProgramEnd end =
+        bake({example("dome.toml").string(), "--output", "new/a.pgm"}, here.path(), limits);
+    INFO(end.text());
+    CHECK(end.exit_code == 4);
+    CHECK_THAT(end.err, Contains("a.pgm"));
+    CHECK_FALSE(fs::exists(here.path() / "new"));
+}

@@ -1,0 +1,178 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "testbench/tests/support/program_runner.h"
+
+using namespace tessera;
+using Catch::Contains;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+void run_job(const fs::path& folder, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"run"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    for (const char* const setting : {"mode=functional", "output.picture=false", "output.obj=false",
+                                      "check.golden=false", "check.end_to_end=false"})
+        arguments.insert(arguments.end(), {"--set", setting});
+    const ProgramEnd end = run_tessera(arguments, folder);
+    INFO(end.text());
+    REQUIRE(end.exit_code == 0);
+}
+
+/// Compares a run; gives error.json, in which every figure must have value, unit and description.
+json compare(const fs::path& folder, const std::string& run) {
+    const ProgramEnd end = run_tessera({"compare", run}, folder);
+    INFO(end.text());
+    REQUIRE(end.exit_code == 0);
+    CHECK(end.err.empty());
+    const std::string text = read_all(folder / run / "error.txt");
+    CHECK_FALSE(text.empty());
+    CHECK(end.out.rfind(text, 0) == 0);
+    const json error = json::parse(read_all(folder / run / "error.json"));
+    for (const auto& [group, figures] : error.items())
+        for (const auto& [name, figure] : figures.items()) {
+            INFO(group << '.' << name);
+            CHECK(figure.contains("value"));
+            CHECK_FALSE(figure.at("unit").get<std::string>().empty());
+            CHECK_FALSE(figure.at("description").get<std::string>().empty());
+        }
+    return error;
+}
+
+double value(const json& error, const char* group, const char* name) {
+    return error.at(group).at(name).at("value").get<double>();
+}
+
+std::string refused(const fs::path& folder, const std::vector<std::string>& arguments) {
+    const ProgramEnd end = run_tessera(arguments, folder);
+    INFO(end.text());
+    CHECK(end.exit_code == 2);
+    CHECK(end.out.empty());
+    CHECK(lines_of(end.err).size() == 1);
+    return end.err;
+}
+
+}  // namespace
+
+TEST_CASE("compare tells the default run's error") {
+    const TestFolder here;
+    run_job(here.path(), {});
+    const json error = compare(here.path(), "runs/half_donut");
+    // A texel is 2 / 264. The mesh follows the donut within about a texel.
+    const double texel = value(error, "measurement", "texel");
+    CHECK(texel == Approx(2.0 / 264));
+    CHECK(value(error, "measurement", "reference_density") == 4);
+    for (const char* const group : {"interpolated", "nearest_texel"})
+        for (const char* const direction : {"reference_to_mesh", "mesh_to_reference"}) {
+            const std::string name = direction;
+            const double max = value(error, group, (name + "_max").c_str());
+            const double rms = value(error, group, (name + "_rms").c_str());
+            CHECK(rms > 0);
+            CHECK(rms < max);
+            CHECK(rms < texel);
+            CHECK(max < 4 * texel);
+            CHECK(value(error, group, (name + "_max_texels").c_str()) == Approx(max / texel));
+        }
+    CHECK(value(error, "vertical", "grid_points") == 69696);
+    CHECK(value(error, "vertical", "covered") == 69696);
+    CHECK(value(error, "vertical", "rms") < 0.005);
+    CHECK(value(error, "vertical", "max_map") == Approx(value(error, "vertical", "max") / 0.25));
+    CHECK(value(error, "worst_reference_to_mesh", "distance") ==
+          value(error, "interpolated", "reference_to_mesh_max"));
+    CHECK(value(error, "worst_mesh_to_reference", "base") < 18);
+    CHECK_FALSE(error.at("worst_vertical").at("why_whole").at("value").get<std::string>().empty());
+
+    // Again: the same bytes. And a run of the same folder takes away what no longer holds.
+    const std::string first = read_all(here.path() / "runs/half_donut/error.json");
+    const std::string text = read_all(here.path() / "runs/half_donut/error.txt");
+    compare(here.path(), "runs/half_donut");
+    CHECK((first == read_all(here.path() / "runs/half_donut/error.json")));
+    CHECK((text == read_all(here.path() / "runs/half_donut/error.txt")));
+    run_job(here.path(), {"--set", "tests.normal_threshold=1"});
+    CHECK_FALSE(fs::exists(here.path() / "runs/half_donut/error.json"));
+    CHECK_FALSE(fs::exists(here.path() / "runs/half_donut/error.txt"));
+    const json coarse = compare(here.path(), "runs/half_donut");
+    CHECK(value(coarse, "interpolated", "reference_to_mesh_rms") >
+          value(error, "interpolated", "reference_to_mesh_rms"));
+}
+
+TEST_CASE("an undisplaced run of a constant map has the error its bias makes") {
+    const TestFolder here;
+    run_job(here.path(), {"--set", "map.source=constant", "--set", "displacement.bias=0.25"});
+    const json error = compare(here.path(), "runs/half_donut");
+    CHECK(value(error, "interpolated", "hausdorff") <
+          1e-4);  // 0.25 + 0.25 / 2, rounded to the position's format
+    CHECK(value(error, "vertical", "max") < 1e-4);
+    run_job(here.path(), {"--set", "mesh.source=cylinder", "--set", "map.address_u=repeat", "--set",
+                          "displacement.scale=0.05", "--set", "output.folder=runs/round"});
+    const json round = compare(here.path(), "runs/round");
+    CHECK(round.at("vertical").at("none").at("value") == "the base mesh is not planar");
+    CHECK(value(round, "interpolated", "reference_to_mesh_max_texels") < 6);
+}
+
+TEST_CASE("a run whose triangles were all culled has no mesh to compare") {
+    const TestFolder here;
+    run_job(here.path(),
+            {"--set", "hardware.culling=back", "--set", "camera.eye=[0,0,-9]", "--set",
+             "camera.target=[0,0,0]", "--set", "camera.up=[0,1,0]", "--set", "displacement.scale=0"});
+    const json error = compare(here.path(), "runs/half_donut");
+    CHECK(value(error, "measurement", "triangles") == 0);
+    CHECK(error.at("interpolated").at("reference_to_mesh_max").at("value").is_null());
+    CHECK(value(error, "vertical", "covered") == 0);
+    CHECK_THAT(read_all(here.path() / "runs/half_donut/error.txt"),
+               Contains("no mesh") && Contains("culling"));
+}
+
+TEST_CASE("compare refuses what is no run, and leaves nothing then") {
+    const TestFolder here;
+    CHECK_THAT(refused(here.path(), {"compare"}), Contains("RUN") && Contains("--help"));
+    CHECK_THAT(refused(here.path(), {"compare", "a", "b"}), Contains("--help"));
+    CHECK_THAT(refused(here.path(), {"compare", "absent"}), Contains("absent") && Contains("no such folder"));
+    CHECK_THAT(refused(here.path(), {"compare", "."}), Contains("no job.toml"));
+    run_job(here.path(), {"--set", "output.ply=false", "--set", "tests.normal_threshold=1"});
+    CHECK_THAT(refused(here.path(), {"compare", "runs/half_donut"}), Contains("output.ply=true"));
+    run_job(here.path(), {"--set", "tests.normal_threshold=1"});
+    const fs::path mesh = here.path() / "runs/half_donut/mesh.ply";
+    const std::string bytes = read_all(mesh);
+    write_all(mesh, bytes.substr(0, bytes.size() - 7));
+    CHECK_THAT(refused(here.path(), {"compare", "runs/half_donut"}),
+               Contains("mesh.ply") && Contains("announces"));
+    // Another job's mesh: of more base triangles than this one has.
+    run_job(here.path(), {"--set", "tests.normal_threshold=1", "--set", "mesh.columns=9", "--set",
+                          "output.folder=runs/other"});
+    fs::copy_file(here.path() / "runs/other/mesh.ply", mesh, fs::copy_options::overwrite_existing);
+    CHECK_THAT(refused(here.path(), {"compare", "runs/half_donut"}), Contains("another job"));
+    CHECK_FALSE(fs::exists(here.path() / "runs/half_donut/error.json"));
+    CHECK_FALSE(fs::exists(here.path() / "runs/half_donut/error.txt"));
+}
+
+TEST_CASE("compare tells Crater Lake's error in metres") {
+    const TestFolder here;
+    const auto run = [&](const std::string& name, const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{
+            (source_folder() / "testbench/examples/jobs" / (name + ".toml")).string()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        run_job(here.path(), arguments);
+        return compare(here.path(), "runs/" + name);
+    };
+    // The grid of 704 triangles itself, without a split.
+    const json base =
+        run("crater_lake_704", {"--set", "tests.normal=false", "--set", "tests.summed_height=false"});
+    CHECK(value(base, "measurement", "triangles") == 704);
+    CHECK(value(base, "vertical", "grid_points") == 336 * 459);
+    CHECK(value(base, "vertical", "covered") == 336 * 459);
+    CHECK(value(base, "vertical", "rms_map") == Approx(26.52).epsilon(0.01));  // another program's figure
+    CHECK(value(base, "vertical", "max_map") == Approx(219.2).epsilon(0.01));
+    CHECK(value(base, "vertical", "rms_map") == Approx(1000 * value(base, "vertical", "rms")));
+    for (const char* const name : {"crater_lake_24", "crater_lake_704"}) {
+        const json error = run(name, {});
+        CHECK(value(error, "vertical", "covered") == 336 * 459);
+        CHECK(value(error, "vertical", "rms_map") > 2);
+        CHECK(value(error, "vertical", "rms_map") < 12);
+        CHECK(value(error, "vertical", "max_map") < 150);
+        CHECK(value(error, "interpolated", "reference_to_mesh_rms_texels") < 0.5);
+    }
+}

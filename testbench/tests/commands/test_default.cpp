@@ -1,0 +1,173 @@
+#include <catch2/catch.hpp>
+
+#include "testbench/tests/support/program_runner.h"
+#include "testbench/tests/support/run_folder.h"
+
+using namespace tessera;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+ProgramEnd run_well(const std::vector<std::string>& arguments, const fs::path& folder) {
+    ProgramEnd end = run_tessera(arguments, folder);
+    INFO(end.text());
+    REQUIRE(end.exit_code == 0);
+    REQUIRE(end.err.empty());
+    return end;
+}
+
+}  // namespace
+
+TEST_CASE("the default job leaves a complete run folder whose figures agree") {
+    const TestFolder here;
+    const ProgramEnd end = run_well({"run"}, here.path());
+    CHECK(here.names() == std::vector<std::string>{"runs"});
+
+    const fs::path folder = here.path() / "runs/half_donut";
+    const RunFolder run(folder);
+    require_consistent(run);
+    CHECK(run.count("host", "base_triangles") == 18);
+    CHECK(run.count("pass_or_tessellate", "culled") == 0);
+    CHECK(run.count("summed_height_table", "reads") == 12 * run.count("run", "edges_tested"));
+    CHECK(run.conformance["remarks"].empty());
+
+    CHECK_THAT(end.out, Contains("all checks passed\n"));
+    CHECK_THAT(end.out, Contains("18 base -> "));
+    CHECK_THAT(end.out, Contains("0 mismatches"));
+    CHECK_THAT(end.out, Contains("results in " + folder.string() + "\n"));
+    CHECK_THAT(end.out, !Contains("note:") && !Contains("warning:"));
+    CHECK_THAT(end.out, !Contains("\x1b"));
+    CHECK_THAT(end.out, !Contains("SystemC"));
+}
+
+TEST_CASE("the summary says which test decided, in the statistics' figures") {
+    const TestFolder here;
+    // 6 edges of one quad, all split, and 24 of their children, which generation 1 stops.
+    const ProgramEnd end = run_well({"run",
+                                     "--set",
+                                     "mode=functional",
+                                     "--set",
+                                     "mesh.columns=1",
+                                     "--set",
+                                     "mesh.rows=1",
+                                     "--set",
+                                     "map.source=noise",
+                                     "--set",
+                                     "map.width=64",
+                                     "--set",
+                                     "map.height=64",
+                                     "--set",
+                                     "tests.normal_threshold=0",
+                                     "--set",
+                                     "tests.summed_height=false",
+                                     "--set",
+                                     "tests.generation_limit=1",
+                                     "--set",
+                                     "output.picture=false",
+                                     "--set",
+                                     "output.folder=out"},
+                                    here.path());
+    CHECK_THAT(end.out, Contains("split by                normal alone 6, summed height alone 0, both 0\n"));
+    CHECK_THAT(
+        end.out,
+        Contains(
+            "wanted, but stopped by  view alone 0, tex coord alone 0, generation alone 24, several 0\n"));
+    const RunFolder run(here.path() / "out");
+    CHECK(run.count("pass_or_tessellate", "split_by_normal") == 6);
+    CHECK(run.count("pass_or_tessellate", "stopped_by_view_alone") == 0);
+    CHECK(run.count("pass_or_tessellate", "stopped_by_tex_coord_alone") == 0);
+    CHECK(run.count("pass_or_tessellate", "stopped_by_generation_alone") == 24);
+    CHECK(run.count("pass_or_tessellate", "stopped_by_several") == 0);
+}
+
+TEST_CASE("a map that the mesh's quads do not divide: the run warns, and its remedy helps") {
+    const TestFolder here;
+    const auto run = [&](const char* side) {
+        return run_well({"run", "--set", "mode=functional", "--set", std::string("map.width=") + side,
+                         "--set", std::string("map.height=") + side, "--set", "check.golden=false", "--set",
+                         "check.end_to_end=false", "--set", "output.picture=false"},
+                        here.path())
+            .out;
+    };
+    CHECK_THAT(run("64"), Contains("warning: ") && Contains("one LSB below a texel's border") &&
+                              Contains("map.width = 72 (a multiple of 3 quads), or mesh.columns = 4"));
+    CHECK_THAT(run("72"), !Contains("warning: "));
+}
+
+TEST_CASE("two runs leave identical bytes, and so do the jobs they write down") {
+    const TestFolder here;
+    // The folder's name is part of the job: the runs keep it and change the folder they start from.
+    const auto run_in = [&](const std::string& name, std::vector<std::string> arguments) {
+        fs::create_directory(here.path() / name);
+        arguments.insert(arguments.begin(), "run");
+        run_well(arguments, here.path() / name);
+        return RunFolder(here.path() / name / "runs/half_donut").files();
+    };
+    const auto first = run_in("first", {});
+    require_same_files(first, run_in("second", {}));
+
+    const std::string dump = run_well({"run", "--dump-config"}, here.path()).out;
+    write_all(here.path() / "dump.toml", dump);
+    CHECK_THAT(dump, Contains("eye = \"auto\"") && Contains("scale = \"auto\""));
+    CHECK_THAT(first.at("job.toml"), !Contains("= \"auto\""));
+    require_same_files(first, run_in("dumped", {(here.path() / "dump.toml").string()}));
+    require_same_files(first, run_in("own", {(here.path() / "first/runs/half_donut/job.toml").string()}));
+    // This one states some defaults in other words.
+    auto stated = run_in("file", {(source_folder() / "testbench/examples/jobs/half_donut.toml").string()});
+    stated["job.toml"] = first.at("job.toml");
+    require_same_files(first, stated);
+    CHECK(run_well({"run", (here.path() / "dump.toml").string(), "--dump-config"}, here.path()).out == dump);
+}
+
+TEST_CASE("a job that reads files runs again from its run folder") {
+    const TestFolder here;
+    fs::create_directories(here.path() / "inputs");
+    write_all(here.path() / "inputs/square.obj",
+              "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n");
+    write_all(here.path() / "inputs/bump.pgm", "P2 3 3 4\n0 1 0\n1 4 1\n0 1 0\n");
+    write_all(here.path() / "inputs/job.toml",
+              "[mesh]\nsource = \"file\"\nfile = \"square.obj\"\n"
+              "[map]\nsource = \"file\"\nfile = \"bump.pgm\"\n"
+              "[tests]\ngeneration_limit = 4\ntex_coord = false\n[output]\nfolder = \"out\"\n");
+    run_well({"run", "inputs/job.toml"}, here.path());
+    const auto first = RunFolder(here.path() / "out").files();
+    fs::copy(here.path() / "out", here.path() / "again");
+
+    SECTION("from anywhere") {
+        fs::create_directory(here.path() / "elsewhere");
+        run_well({"run", "../out/job.toml", "--set", "output.folder=../out"}, here.path() / "elsewhere");
+        auto second = RunFolder(here.path() / "out").files();
+        // the folder's name is what was set
+        CHECK_THAT(second.at("job.toml"), Contains("folder = \"../out\""));
+        second["job.toml"] = first.at("job.toml");
+        require_same_files(first, second);
+    }
+    SECTION("with paths set on the command line, from there") {
+        run_well({"run", "--set", "mesh.source=file", "--set", "mesh.file=inputs/square.obj", "--set",
+                  "map.source=file", "--set", "map.file=inputs/bump.pgm", "--set", "tests.generation_limit=4",
+                  "--set", "tests.tex_coord=false", "--set", "output.folder=out"},
+                 here.path());
+        require_same_files(first, RunFolder(here.path() / "out").files());
+    }
+}
+
+TEST_CASE("a run replaces what an earlier one left in its folder") {
+    const TestFolder here;
+    const std::vector<std::string> small{"--set", "output.folder=out", "--set", "tests.generation_limit=2"};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), "run");
+        more.insert(more.end(), small.begin(), small.end());
+        return more;
+    };
+    run_well(with({"--set", "output.obj=true"}), here.path());
+    CHECK(fs::exists(here.path() / "out/mesh.obj"));
+    write_all(here.path() / "out/notes.txt", "mine");
+    run_well(with({"--set", "output.ply=false", "--set", "output.picture=false"}), here.path());
+    // A mesh of another job beside this one's statistics would be believed.
+    CHECK_FALSE(fs::exists(here.path() / "out/mesh.ply"));
+    CHECK_FALSE(fs::exists(here.path() / "out/mesh.obj"));
+    CHECK_FALSE(fs::exists(here.path() / "out/picture.png"));
+    CHECK(read_all(here.path() / "out/notes.txt") == "mine");
+    CHECK(fs::exists(here.path() / "out/statistics.json"));
+}

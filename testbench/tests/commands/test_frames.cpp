@@ -1,0 +1,277 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <sstream>
+
+#include "testbench/run_folder/ply_reader.h"
+#include "testbench/tests/support/program_runner.h"
+#include "testbench/tests/support/run_folder.h"
+
+using namespace tessera;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+ProgramEnd run(const fs::path& folder, const std::vector<std::string>& settings,
+               const std::string& mode = "functional") {
+    std::vector<std::string> arguments{"run", "--set", "mode=" + mode, "--set", "output.picture=false"};
+    for (const std::string& setting : settings)
+        arguments.insert(arguments.end(), {"--set", setting});
+    return run_tessera(arguments, folder);
+}
+
+void require_fine(const ProgramEnd& end) {
+    INFO(end.text());
+    REQUIRE(end.exit_code == 0);
+    CHECK(end.err.empty());
+}
+
+/// One camera for all frames and the plain runs beside them.
+const std::vector<std::string> small{"map.width=64",
+                                     "map.height=64",
+                                     "tests.view_threshold=12",
+                                     "tests.summed_height_threshold=2",
+                                     "camera.eye=[1.05, -2.9, 2.45]",
+                                     "camera.target=[0, 0, 0.05]",
+                                     "camera.up=[0, 0, 1]",
+                                     "camera.near_plane=0.01"};
+
+std::vector<std::string> frames(int count, std::vector<std::string> more = {}) {
+    std::vector<std::string> settings = small;
+    settings.insert(settings.end(), {"frames.count=" + std::to_string(count), "output.folder=out",
+                                     "displacement.scale=0.25"});
+    settings.insert(settings.end(), more.begin(), more.end());
+    return settings;
+}
+
+using Table = std::vector<std::vector<std::string>>;
+
+Table read_table(const fs::path& file) {
+    Table table;
+    for (const std::string& line : lines_of(read_all(file))) {
+        std::istringstream in(line);
+        table.emplace_back();
+        for (std::string cell; std::getline(in, cell, ',');)
+            table.back().push_back(cell);
+    }
+    return table;
+}
+
+std::uint64_t number(const Table& table, std::size_t row, const std::string& column) {
+    const auto found = std::find(table[0].begin(), table[0].end(), column);
+    INFO(column);
+    REQUIRE(found != table[0].end());
+    return std::stoull(table[row].at(static_cast<std::size_t>(found - table[0].begin())));
+}
+
+const std::vector<std::string> three_frames{"frame_000",  "frame_001",  "frame_002",
+                                            "frames.csv", "frames.txt", "job.toml"};
+
+std::vector<std::string> names_in(const fs::path& folder) {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder))
+        names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+}  // namespace
+
+TEST_CASE("a frame is, byte for byte, the plain run of its scale") {
+    const TestFolder here;
+    const std::string mode = GENERATE("functional", "timed");
+    require_fine(run(here.path(), frames(3), mode));
+    CHECK(names_in(here.path() / "out") == three_frames);
+    const char* const scales[] = {"0", "0.125", "0.25"};
+    for (int k = 0; k < 3; ++k) {
+        const std::string name = "out/frame_00" + std::to_string(k);
+        INFO(name);
+        const RunFolder frame(here.path() / name);
+        require_consistent(frame);
+        const TestFolder elsewhere;
+        std::vector<std::string> plain = small;
+        plain.insert(plain.end(), {std::string("displacement.scale=") + scales[k], "output.folder=" + name});
+        require_fine(run(elsewhere.path(), plain, mode));
+        require_same_files(frame.files(), RunFolder(elsewhere.path() / name).files());
+
+        const auto before = frame.files();
+        require_fine(run_tessera({"run", name + "/job.toml"}, here.path()));
+        require_same_files(before, RunFolder(here.path() / name).files());
+    }
+    CHECK(names_in(here.path() / "out") == three_frames);
+}
+
+TEST_CASE("frames grow out of a flat one, and the table says what they cost") {
+    const TestFolder here;
+    const ProgramEnd end = run(here.path(), frames(3), "timed");
+    require_fine(end);
+    for (const glm::dvec3& position : read_ply(here.path() / "out/frame_000/mesh.ply").positions)
+        REQUIRE(position.z == 0);
+    const Table table = read_table(here.path() / "out/frames.csv");
+    REQUIRE(table.size() == 4);
+    CHECK(number(table, 2, "triangles") > 2 * number(table, 1, "triangles"));
+    for (std::size_t k = 0; k < 3; ++k) {
+        const RunFolder frame(here.path() / "out" / table[k + 1][0]);
+        CHECK(number(table, k + 1, "triangles") == frame.count("run", "triangles_finished"));
+        CHECK(number(table, k + 1, "edges_tested") == frame.count("run", "edges_tested"));
+        CHECK(number(table, k + 1, "edges_split") == frame.count("run", "edges_split"));
+        CHECK(number(table, k + 1, "cycles") == frame.count("timing", "cycles"));
+        CHECK(number(table, k + 1, "base_mesh_bytes") == frame.count("host", "mesh_bytes"));
+        CHECK(number(table, k + 1, "tessellated_mesh_bytes") ==
+              frame.count("host", "tessellated_mesh_bytes"));
+        CHECK(number(table, k + 1, "normal_map_bytes") == 64 * 64 * 6);
+        CHECK(number(table, k + 1, "displacement_map_bytes") == (k == 0 ? 64 * 64 * 2 : 0));
+        CHECK(number(table, k + 1, "summed_height_table_bytes") == (k == 0 ? 65 * 65 * 4 : 0));
+        std::uint64_t sum = 0;
+        for (const char* const part : {"base_mesh_bytes", "displacement_map_bytes", "normal_map_bytes",
+                                       "summed_height_table_bytes", "register_bytes"})
+            sum += number(table, k + 1, part);
+        CHECK(number(table, k + 1, "sent_bytes") == sum);
+    }
+    CHECK(number(table, 3, "register_bytes") == 4);  // S
+    CHECK(end.out.rfind(read_all(here.path() / "out/frames.txt"), 0) == 0);
+    CHECK_THAT(end.out, Contains("frame_002") && Contains("sent for the first frame"));
+}
+
+TEST_CASE("frames are the same twice, and from the job they leave") {
+    const TestFolder here;
+    require_fine(run(here.path(), frames(2)));
+    const auto once = RunFolder(here.path() / "out/frame_001").files();
+    const std::string table = read_all(here.path() / "out/frames.csv"),
+                      job = read_all(here.path() / "out/job.toml");
+    require_fine(run_tessera({"run", "out/job.toml"}, here.path()));
+    require_same_files(once, RunFolder(here.path() / "out/frame_001").files());
+    CHECK(read_all(here.path() / "out/frames.csv") == table);
+    CHECK(read_all(here.path() / "out/job.toml") == job);
+}
+
+TEST_CASE("a frame that fails ends the run with its exit code and its name") {
+    const TestFolder here;
+    SECTION("a limit") {
+        const ProgramEnd end = run(here.path(), frames(3, {"limits.triangles=600"}));
+        INFO(end.text());
+        CHECK(end.exit_code == 4);
+        CHECK_THAT(end.err, Contains("limits.triangles") && Contains("frame_001") && Contains("1 of 3"));
+        CHECK(names_in(here.path() / "out") == std::vector<std::string>{"frame_000"});
+    }
+    SECTION("a deadlock") {
+        const ProgramEnd end = run(
+            here.path(), frames(3, {"hardware.queue_capacity=20", "hardware.queue_overflow=stall"}), "timed");
+        INFO(end.text());
+        CHECK(end.exit_code == 3);
+        CHECK_THAT(end.err, Contains("deadlock") && Contains("frame_00"));
+        CHECK_FALSE(fs::exists(here.path() / "out/frames.csv"));
+    }
+    SECTION("a check: all frames are there, and the failing ones are named") {
+        const ProgramEnd end =
+            run(here.path(),
+                frames(3, {"formats.normal_bits=7", "formats.normal_fraction=5", "check.allowed_flips=0"}));
+        INFO(end.text());
+        CHECK(end.exit_code == 1);
+        CHECK_THAT(end.err, Contains("frame_002") && Contains("conformance.txt") && !Contains("frame_000"));
+        CHECK(names_in(here.path() / "out") == three_frames);
+    }
+    SECTION("a signal") {
+        const std::string kill_the_first_frame =
+            "\"$0\" run --set frames.count=2 --set output.folder=out --set map.width=1024 & parent=$!\n"
+            "until [ \"$child\" ]; do child=$(cat /proc/$parent/task/$parent/children); done\n"
+            "kill -TERM $child; wait $parent; echo ended $?";
+        const ProgramEnd end = run_program({"sh", "-c", kill_the_first_frame, TESSERA_PROGRAM}, here.path());
+        INFO(end.text());
+        CHECK_THAT(end.out, Contains("ended 143"));  // by the same signal: 128 + SIGTERM
+        CHECK_THAT(end.err, Contains("frame_000") && Contains("signal 15") && Contains("0 of 2"));
+        CHECK_FALSE(fs::exists(here.path() / "out/frames.csv"));
+    }
+}
+
+TEST_CASE("frames of which the first fails leave the earlier run as it was") {
+    const TestFolder here;
+    std::vector<std::string> plain = small;
+    plain.emplace_back("output.folder=out");
+    require_fine(run(here.path(), plain));
+    const std::vector<std::string> names = names_in(here.path() / "out");
+    const std::string mesh = read_all(here.path() / "out/mesh.ply");
+    const ProgramEnd end = run(here.path(), frames(3, {"limits.triangles=20"}));
+    INFO(end.text());
+    CHECK(end.exit_code == 4);
+    CHECK_THAT(end.err, Contains("0 of 3"));
+    CHECK(names_in(here.path() / "out") == names);
+    CHECK(read_all(here.path() / "out/mesh.ply") == mesh);
+}
+
+TEST_CASE(
+    "a signal to the process of all frames ends the frame's first, and one line says how far all were") {
+    const TestFolder here;
+    const std::string interrupt =
+        "\"$0\" run --set frames.count=20 --set output.folder=out --set map.width=1024 & parent=$!\n"
+        "until [ \"$child\" ] && ls out/frame_00[0-9]/.tessera-* >/dev/null 2>&1; do\n"
+        "child=$(cat /proc/$parent/task/$parent/children); done\n"
+        "kill -TERM $parent; wait $parent; echo ended $?; ls -d /proc/$child; find out -name '.tessera-*'";
+    const ProgramEnd end = run_program({"sh", "-c", interrupt, TESSERA_PROGRAM}, here.path());
+    INFO(end.text());
+    CHECK_THAT(end.out, Contains("ended 143\n") && !Contains("/proc/") && !Contains(".tessera-"));
+    CHECK_THAT(end.err, Contains("tessera: interrupted (SIGTERM) at ") && Contains("of 20 frames, complete"));
+    std::size_t lines = 0;
+    for (const std::string& line : lines_of(end.err))
+        lines += line.rfind("tessera: ", 0) == 0;
+    CHECK(lines == 1);
+}
+
+TEST_CASE("frames that cannot be are refused before the first, and what was there stays") {
+    const TestFolder here;
+    require_fine(run(here.path(), frames(2)));
+    const std::string table = read_all(here.path() / "out/frames.csv");
+    const auto refused = [&](const std::vector<std::string>& settings) {
+        const ProgramEnd end = run(here.path(), settings);
+        INFO(end.text());
+        CHECK(end.exit_code == 2);
+        CHECK(end.out.empty());
+        CHECK(lines_of(end.err).size() == 1);
+        return end.err;
+    };
+    // Frame 0 could be; the displacement of the next leaves the mesh too few steps.
+    CHECK_THAT(refused(frames(
+                   3, {"displacement.scale=1e6", "formats.position_bits=16", "formats.position_fraction=0"})),
+               Contains("frame_001 (displacement.scale = 500000)"));
+    CHECK_THAT(refused(frames(3, {"map.source=file", "map.file=absent.pgm"})), Contains("absent.pgm"));
+    CHECK_THAT(refused(frames(0)), Contains("frames.count") && Contains("1 .. 1000"));
+    CHECK_THAT(refused({"frames.cuont=3"}), Contains("did you mean `frames.count`?"));
+    write_all(here.path() / "job.toml", "[frames]\ncount = 3\nfirst_skale = 0.1\n");
+    const ProgramEnd end = run_tessera({"run", "job.toml"}, here.path());
+    CHECK(end.exit_code == 2);
+    CHECK_THAT(end.err, Contains("job.toml:3:") && Contains("first_scale"));
+    CHECK_THAT(refused(frames(3, {"mesh.source=run", "mesh.file=out/frame_001"})),
+               Contains("its own base mesh"));
+    CHECK_THAT(refused({"mesh.source=run", "mesh.file=out"}), Contains("out/frame_000"));
+    CHECK(read_all(here.path() / "out/frames.csv") == table);
+    CHECK(fs::exists(here.path() / "out/frame_001/mesh.ply"));
+}
+
+TEST_CASE("what another run left in the folder does not stay beside the new one") {
+    const TestFolder here;
+    const fs::path out = here.path() / "out";
+    require_fine(run(here.path(), frames(5)));
+    write_all(out / "frame_004/notes.txt", "mine");
+    fs::create_directory(out / "frame_100");
+    write_all(out / "frame_100/picture.png", "mine, and no run's");
+
+    require_fine(run(here.path(), frames(3)));
+    std::vector<std::string> expected = three_frames;
+    expected.insert(expected.begin() + 3, {"frame_004", "frame_100"});
+    CHECK(names_in(out) == expected);
+    CHECK(names_in(out / "frame_004") == std::vector<std::string>{"notes.txt"});
+    CHECK(read_all(out / "frame_100/picture.png") == "mine, and no run's");
+    fs::remove_all(out / "frame_004");
+    fs::remove_all(out / "frame_100");
+
+    std::vector<std::string> plain = small;
+    plain.emplace_back("output.folder=out");
+    require_fine(run(here.path(), plain));
+    const std::vector<std::string> names = names_in(out);
+    for (const std::string& name : names)
+        CHECK(name.rfind("frame", 0) != 0);
+    CHECK(std::count(names.begin(), names.end(), "mesh.ply") == 1);
+
+    require_fine(run(here.path(), frames(3)));
+    CHECK(names_in(out) == three_frames);
+}

@@ -1,0 +1,125 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "testbench/tests/support/job_results.h"
+#include "testbench/tests/support/program_runner.h"
+#include "testbench/tests/support/run_folder.h"
+
+using namespace tessera;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// 64 bit FNV-1a of what follows the header, which names more than the mesh.
+std::uint64_t hash_of_mesh(const fs::path& ply) {
+    const std::string file = read_all(ply), end = "end_header\n";
+    const std::size_t header = file.find(end);
+    REQUIRE(header != std::string::npos);
+    std::uint64_t hash = 0xcbf29ce484222325u;
+    for (std::size_t k = header + end.size(); k < file.size(); ++k)
+        hash = (hash ^ static_cast<unsigned char>(file[k])) * 0x100000001b3u;
+    return hash;
+}
+
+void check_result(const JobResult& expected, const fs::path& folder) {
+    const RunFolder run(folder);
+    CHECK(run.count("run", "triangles_finished") == expected.triangles);
+    CHECK(run.count("run", "edges_split") == expected.splits);
+    CHECK(run.count("run", "edges_tested") == expected.edges);
+    CHECK(hash_of_mesh(folder / "mesh.ply") == expected.mesh);
+}
+
+/// Runs one of the project's jobs and requires what every one of them must hold.
+void run_job_well(const std::string& name) {
+    const fs::path job = source_folder() / "testbench/examples/jobs" / (name + ".toml");
+    const TestFolder here;
+    const ProgramEnd end = run_tessera({"run", job.string()}, here.path());
+    INFO(end.text());
+    REQUIRE(end.exit_code == 0);
+    CHECK(end.err.empty());
+    CHECK_THAT(end.out, Contains("all checks passed"));
+    // The paper's 30 quads do not divide the scan's 512 texels.
+    CHECK((end.out.find("texel's border") != std::string::npos) == (name == "head"));
+
+    const RunFolder run(here.path() / "runs" / name);
+    require_consistent(run);
+    CHECK(run.conformance["conformance"]["flips_percent"].get<double>() < 0.5);
+    CHECK(run.conformance["conformance"]["mismatches"] == 0);
+    for (const char* const figure :
+         {"cracks", "t_vertices", "collapsed", "turned_over", "area_mismatches", "duplicate_triangles",
+          "generation_violations", "inconsistent_vertices"}) {
+        INFO(figure);
+        CHECK(run.invariant(figure) == 0);
+    }
+    CHECK(run.invariant("open_crease_edges") == 0);
+    if (name == "head") {
+        CHECK(run.invariant("border_base_edges") == 60);  // above and below; the seam is not one
+        CHECK(run.invariant("open_texture_seam_edges") == 0);
+    }
+
+    const auto* const expected = std::find_if(job_results.begin(), job_results.end(),
+                                              [&](const JobResult& each) { return name == each.name; });
+    REQUIRE(expected != job_results.end());
+    check_result(*expected, here.path() / "runs" / name);
+    CHECK(run.count("timing", "cycles") == expected->cycles);
+    succeed({"run", job.string(), "--set", "mode=functional", "--set", "check.golden=false", "--set",
+             "check.end_to_end=false", "--set", "output.picture=false", "--set", "output.folder=functional"},
+            here.path());
+    check_result(*expected, here.path() / "functional");
+}
+
+}  // namespace
+
+TEST_CASE("every job of the project has its test here") {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(source_folder() / "testbench/examples/jobs"))
+        if (entry.path().extension() == ".toml")
+            names.push_back(entry.path().stem().string());
+    std::sort(names.begin(), names.end());
+    std::vector<std::string> covered;
+    for (const JobResult& each : job_results)
+        covered.emplace_back(each.name);
+    CHECK(names == covered);
+}
+
+TEST_CASE("the job crater_lake_24 passes") {
+    run_job_well("crater_lake_24");
+}
+TEST_CASE("the job crater_lake_704 passes") {
+    run_job_well("crater_lake_704");
+}
+TEST_CASE("the job half_donut passes") {
+    run_job_well("half_donut");
+}
+TEST_CASE("the job head passes and its seam is closed") {
+    run_job_well("head");
+}
+TEST_CASE("the job teapot passes") {
+    run_job_well("teapot");
+}
+
+TEST_CASE("the data folder can be elsewhere") {
+    const TestFolder here;
+    fs::create_directories(here.path() / "data/maps");
+    write_all(here.path() / "data/maps/dot.pgm", "P2 1 1 9\n5\n");
+    const std::vector<std::string> job{"run",
+                                       "--set",
+                                       "map.source=file",
+                                       "--set",
+                                       "map.file=data:maps/dot.pgm",
+                                       "--set",
+                                       "output.folder=out"};
+    std::vector<std::string> with_option = job;
+    with_option.insert(with_option.end(), {"--data", "data"});
+    CHECK(run_tessera(with_option, here.path()).exit_code == 0);
+
+    std::vector<std::string> command{TESSERA_PROGRAM};
+    command.insert(command.end(), job.begin(), job.end());
+    CHECK(run_program(command, here.path(), {}, {{"TESSERA_DATA", (here.path() / "data").string()}})
+              .exit_code == 0);
+
+    const ProgramEnd absent = run_program(command, here.path(), {}, {{"TESSERA_DATA", "absent"}});
+    CHECK(absent.exit_code == 2);
+    CHECK_THAT(absent.err, Contains("absent/maps/dot.pgm"));
+}

@@ -1,0 +1,219 @@
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <regex>
+
+#include "testbench/tests/support/checkout.h"
+#include "testbench/tests/support/program_runner.h"
+
+using namespace tessera;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The commands of the text's fenced `sh` blocks: one per line, lines that end in a backslash joined.
+std::vector<std::string> commands_in(const std::string& markdown) {
+    std::vector<std::string> commands;
+    bool within = false, continues = false;
+    for (std::string line : lines_of(markdown)) {
+        if (line.rfind("```", 0) == 0) {
+            within = !within && std::regex_match(line, std::regex("```(sh|bash|shell)\\s*"));
+            continue;
+        }
+        if (!within)
+            continue;
+        const std::size_t begin = line.find_first_not_of(" \t");
+        if (begin == std::string::npos || line[begin] == '#')
+            continue;
+        line.erase(0, begin);
+        if (continues)
+            commands.back() += line;
+        else
+            commands.push_back(line);
+        continues = !line.empty() && line.back() == '\\';
+        if (continues)
+            commands.back().pop_back();
+    }
+    return commands;
+}
+
+/// What a command is to be held to.
+enum class Trial {
+    run,    ///< run it, exit code 0
+    parse,  ///< a script that takes long or needs more tools than tests do: it is there and its syntax is right
+    build,    ///< builds and runs another program of ours: its folder has that target
+    foreign,  ///< it fetches or installs
+};
+
+Trial trial_of(const std::string& command) {
+    const auto says = [&](const char* words) { return std::regex_search(command, std::regex(words)); };
+    if (says("^(git|sudo|apt|apt-get|docker|cd) "))
+        return Trial::foreign;
+    if (says("^(\\.ci/|scripts/(check|install)|scripts/figures$)"))
+        return Trial::parse;
+    if (says("^cmake .*--target "))
+        return Trial::build;
+    return Trial::run;
+}
+
+void parse_script(const fs::path& script) {
+    INFO(script);
+    REQUIRE(fs::is_regular_file(script));
+    CHECK(::access(script.c_str(), X_OK) == 0);
+    const std::string first = lines_of(read_all(script)).at(0);
+    const std::vector<std::string> python{
+        "python3", "-c", "import sys; compile(open(sys.argv[1]).read(), sys.argv[1], 'exec')",
+        script.string()};
+    const std::vector<std::string> bash{"bash", "-n", script.string()};
+    const ProgramEnd end =
+        run_program(first.find("python3") != std::string::npos ? python : bash, source_folder());
+    INFO(end.text());
+    CHECK(end.exit_code == 0);
+}
+
+/// cmake --build FOLDER --target TARGET && FOLDER/path/TARGET
+void check_target(const std::string& command) {
+    std::smatch parts;
+    REQUIRE(std::regex_match(command, parts,
+                             std::regex("cmake --build (\\S+) --target (\\S+) && (\\S+)/([^/ ]+)( .*)?")));
+    CHECK(parts[2] == parts[4]);
+    const std::string build = parts[1], folder = parts[3];
+    REQUIRE(folder.rfind(build + "/", 0) == 0);
+    CHECK_THAT(read_all(source_folder() / folder.substr(build.size() + 1) / "CMakeLists.txt"),
+               Contains("add_executable(" + parts[2].str()));
+}
+
+void try_command(const std::string& command, const Checkout& checkout) {
+    INFO("$ " << command);
+    switch (trial_of(command)) {
+        case Trial::foreign:
+            return;
+        case Trial::parse:
+            parse_script(source_folder() / command.substr(0, command.find(' ')));
+            return;
+        case Trial::build:
+            check_target(command);
+            return;
+        case Trial::run:
+            break;
+    }
+    const ProgramEnd end = checkout.run(command);
+    INFO(end.text());
+    CHECK(end.exit_code == 0);
+}
+
+/// [text](file) or [text](file#heading).
+void check_links(const std::string& markdown, const fs::path& folder) {
+    const std::regex link(R"(\]\(([^)#: ]+)(#[^)]*)?\))");
+    for (std::sregex_iterator it(markdown.begin(), markdown.end(), link), end; it != end; ++it) {
+        INFO(it->str());
+        CHECK(fs::exists(folder / (*it)[1].str()));
+    }
+}
+
+}  // namespace
+
+TEST_CASE("commands are found in fenced blocks of shell") {
+    const std::string text =
+        "Text.\n```sh\n# why\nscripts/run\nscripts/run head \\\n    --set a.b=1\n\n```\n"
+        "```toml\n[tests]\n```\n`scripts/none`\n```bash\n  ls\n```\n```\noutput\n```\n";
+    CHECK(commands_in(text) == std::vector<std::string>{"scripts/run", "scripts/run head --set a.b=1", "ls"});
+}
+
+TEST_CASE("every command of README.md works") {
+    const std::vector<std::string> commands = commands_in(read_all(source_folder() / "README.md"));
+    REQUIRE_FALSE(commands.empty());
+    check_links(read_all(source_folder() / "README.md"), source_folder());
+    const Checkout checkout;
+    for (const std::string& command : commands)
+        try_command(command, checkout);
+}
+
+TEST_CASE("every command of the folders' READMEs works, and every file they link to is there") {
+    const Checkout checkout;
+    unsigned commands = 0;
+    for (const char* const folder : {"golden", "modules", "scripts", "testbench", "waveforms", ".github"}) {
+        for (const auto& entry : fs::recursive_directory_iterator(source_folder() / folder)) {
+            if (entry.path().extension() != ".md")
+                continue;
+            INFO(entry.path());
+            const std::string text = read_all(entry.path());
+            check_links(text, entry.path().parent_path());
+            for (const std::string& command : commands_in(text)) {
+                ++commands;
+                try_command(command, checkout);
+            }
+        }
+    }
+    CHECK(commands > 10);
+}
+
+TEST_CASE("every script parses") {
+    for (const char* const folder : {"scripts", "scripts/checks", ".ci"}) {
+        for (const auto& entry : fs::directory_iterator(source_folder() / folder)) {
+            if (entry.is_regular_file() && entry.path().extension().empty())
+                parse_script(entry.path());
+        }
+    }
+}
+
+TEST_CASE("scripts/check lists its checks and runs those named, with their options") {
+    const Checkout checkout;
+    const fs::path checks = checkout.root() / "scripts/checks";
+    write_all(checks / "failing", "#!/bin/sh\n# Fails.\nset -e\necho \"failing $*\"\nexit 3\n");
+    fs::permissions(checks / "failing", fs::perms::owner_all);
+
+    const ProgramEnd help = checkout.run("scripts/check --help");
+    CHECK(help.exit_code == 0);
+    CHECK_THAT(help.out, Contains("  failing      Fails.\n") && Contains("\n  all  "));
+    for (const auto& entry : fs::directory_iterator(checks)) {
+        if (entry.is_regular_file())
+            CHECK_THAT(help.out, Contains("\n  " + entry.path().filename().string() + " "));
+    }
+
+    const ProgramEnd one = checkout.run("scripts/check failing --seconds 3 obj");
+    CHECK(one.exit_code == 3);
+    CHECK(one.out == "failing --seconds 3 obj\n");
+    const ProgramEnd both = checkout.run("scripts/check failing rooms");
+    INFO(both.text());
+    CHECK(both.exit_code == 1);
+    CHECK(std::regex_search(both.out,
+                            std::regex("summary: \\d+ min =+\nFAILED .* failing\npassed .* rooms\n$")));
+    CHECK(checkout.run("scripts/check failing --help").out == "Fails.\n");
+
+    for (const char* const words : {"nothing", "failing rooms nothing", "--nothing"}) {
+        const ProgramEnd unknown = checkout.run("scripts/check " + std::string(words));
+        INFO(unknown.text());
+        CHECK(unknown.exit_code == 2);
+        CHECK(unknown.out.empty());
+        CHECK_THAT(unknown.err, Contains("nothing") && Contains("  failing  "));
+    }
+}
+
+TEST_CASE("scripts/run takes a job by name or by file and hands everything on") {
+    const Checkout checkout;
+    const std::string quick = " --set tests.generation_limit=1 --set output.folder=out";
+    const auto works = [&](const std::string& command) {
+        const ProgramEnd end = checkout.run(command);
+        INFO(command);
+        INFO(end.text());
+        CHECK(end.exit_code == 0);
+        CHECK_THAT(end.out, Contains("results in " + (checkout.root() / "out").string()));
+    };
+    works("scripts/run" + quick);
+    works("scripts/run half_donut" + quick);
+    works("scripts/run testbench/examples/jobs/half_donut.toml" + quick);
+    works(
+        "mkdir elsewhere && cd elsewhere && ../scripts/run half_donut --set tests.generation_limit=1"
+        " --set output.folder=../out");
+
+    const ProgramEnd unknown = checkout.run("scripts/run half_donat");
+    INFO(unknown.text());
+    CHECK(unknown.exit_code == 2);
+    CHECK(unknown.out.empty());
+    for (const char* const words : {"half_donat", "half_donut", "teapot"})
+        CHECK_THAT(unknown.err, Contains(words));
+    CHECK(checkout.run("scripts/run --set nonsense=1").exit_code == 2);
+    CHECK(checkout.run("scripts/run --set limits.triangles=1").exit_code == 4);
+}

@@ -1,0 +1,255 @@
+#include <png.h>
+
+#include <catch2/catch.hpp>
+#include <cstdint>
+
+#include "testbench/tests/support/program_runner.h"
+
+using namespace tessera;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A small run in here/run: a second or less.
+void make_run(const fs::path& here, const std::vector<std::string>& settings = {}) {
+    std::vector<std::string> arguments{"run"};
+    std::vector<std::string> all{"mode=functional",  "check.golden=false", "check.end_to_end=false",
+                                 "output.obj=false", "map.width=64",       "map.height=64",
+                                 "output.folder=run"};
+    all.insert(all.end(), settings.begin(), settings.end());
+    for (const std::string& setting : all) {
+        arguments.push_back("--set");
+        arguments.push_back(setting);
+    }
+    const ProgramEnd end = run_tessera(arguments, here);
+    INFO(end.text());
+    REQUIRE(end.exit_code == 0);
+}
+
+struct Pixels {
+    unsigned width = 0, height = 0;
+    std::vector<std::uint8_t> bytes;
+};
+
+Pixels read_png(const fs::path& path) {
+    png_image header{};
+    header.version = PNG_IMAGE_VERSION;
+    REQUIRE(png_image_begin_read_from_file(&header, path.c_str()) != 0);
+    CHECK(header.format == PNG_FORMAT_RGB);
+    Pixels pixels{header.width, header.height, std::vector<std::uint8_t>(PNG_IMAGE_SIZE(header))};
+    REQUIRE(png_image_finish_read(&header, nullptr, pixels.bytes.data(), 0, nullptr) != 0);
+    return pixels;
+}
+
+std::string rendered(std::vector<std::string> arguments, const fs::path& here) {
+    arguments.insert(arguments.begin(), "render");
+    const ProgramEnd end = run_tessera(arguments, here);
+    INFO(end.text());
+    REQUIRE(end.exit_code == 0);
+    CHECK(end.err.empty());
+    return end.out;
+}
+
+/// Requires this exit code, one message on standard error with these words, and no new file.
+void refused(std::vector<std::string> arguments, const TestFolder& here,
+             const std::vector<std::string>& words, int exit_code = 2) {
+    const std::vector<std::string> before = here.names();
+    arguments.insert(arguments.begin(), "render");
+    const ProgramEnd end = run_tessera(arguments, here.path());
+    INFO(end.text());
+    CHECK(end.exit_code == exit_code);
+    CHECK(end.signal == 0);
+    CHECK(end.out.empty());
+    CHECK(lines_of(end.err).size() == 1);
+    for (const std::string& word : words)
+        CHECK_THAT(end.err, Contains(word));
+    CHECK(here.names() == before);
+}
+
+bool all_background(const Pixels& pixels) {
+    for (std::size_t i = 0; i < pixels.bytes.size(); i += 3)
+        if (pixels.bytes[i] != 250 || pixels.bytes[i + 1] != 250 || pixels.bytes[i + 2] != 248)
+            return false;
+    return true;
+}
+
+}  // namespace
+
+TEST_CASE("render: the default is the run's own picture, byte for byte") {
+    const TestFolder here;
+    make_run(here.path());
+    const std::string said = rendered({"run"}, here.path());
+    CHECK_THAT(said, Contains("run/overview.png") && Contains("1600 x "));
+    CHECK(read_all(here.path() / "run/overview.png") == read_all(here.path() / "run/picture.png"));
+}
+
+TEST_CASE("render: pictures do not outlive the mesh they show") {
+    const TestFolder here;
+    make_run(here.path());
+    rendered({"run", "--size", "100x80", "--view", "shaded,test"}, here.path());
+    CHECK(fs::exists(here.path() / "run/shaded.png"));
+    write_all(here.path() / "run/mine.png", "mine");
+    make_run(here.path(), {"tests.normal_threshold=0.3"});
+    CHECK_FALSE(fs::exists(here.path() / "run/shaded.png"));
+    CHECK_FALSE(fs::exists(here.path() / "run/test.png"));
+    CHECK(fs::exists(here.path() / "run/mine.png"));
+}
+
+TEST_CASE("render: several views at once, the same as one by one and again") {
+    const TestFolder here;
+    make_run(here.path());
+    rendered({"run", "--size", "300x240", "--view", "shaded,wireframe", "--view", "generation", "--view",
+              "test", "--view", "stopped", "--view", "error", "--view", "shaded", "--output", "all"},
+             here.path());
+    std::vector<std::string> contents;
+    for (const std::string view : {"shaded", "wireframe", "generation", "test", "stopped", "error"}) {
+        INFO(view);
+        const Pixels pixels = read_png(here.path() / "all" / (view + ".png"));
+        CHECK(pixels.width == 300);
+        CHECK(pixels.height == 240);
+        CHECK_FALSE(all_background(pixels));
+        contents.push_back(read_all(here.path() / "all" / (view + ".png")));
+        for (std::size_t i = 0; i + 1 < contents.size(); ++i)
+            CHECK(contents[i] != contents.back());
+        rendered({"run", "--size", "300x240", "--view", view, "--output", "one.png"}, here.path());
+        CHECK(read_all(here.path() / "one.png") == contents.back());
+    }
+    std::size_t files = 0;
+    for (const auto& entry : fs::directory_iterator(here.path() / "all"))
+        files += entry.is_regular_file() ? 1u : 0u;
+    CHECK(files == 6);
+}
+
+TEST_CASE("render: camera, zoom, lines, caption and error scale change the picture") {
+    const TestFolder here;
+    make_run(here.path());
+    const auto picture = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), {"run", "--size", "200x150", "--output", "a.png"});
+        rendered(arguments, here.path());
+        return read_all(here.path() / "a.png");
+    };
+    const std::string usual = picture({"--view", "wireframe"});
+    for (const std::vector<std::string>& change :
+         std::vector<std::vector<std::string>>{{"--whole-viewport"},
+                                               {"--eye", "0", "-3", "1"},
+                                               {"--target", "0.5", "0", "0"},
+                                               {"--up", "1", "0", "0"},
+                                               {"--whole-viewport", "--field-of-view", "60"},
+                                               {"--zoom", "0.5", "0.5", "4"},
+                                               {"--line-width", "3"},
+                                               {"--caption", "half a donut"}}) {
+        INFO(change.front());
+        std::vector<std::string> arguments{"--view", "wireframe"};
+        arguments.insert(arguments.end(), change.begin(), change.end());
+        CHECK(picture(arguments) != usual);
+    }
+    CHECK(picture({"--view", "error"}) != picture({"--view", "error", "--error-scale", "0.5"}));
+    // The run's own camera, said aloud.
+    CHECK(picture({"--view", "wireframe", "--eye", "1.06953", "-2.9385", "2.56815", "--target", "0", "0",
+                   "0.125", "--up", "0", "0", "1", "--field-of-view", "36"}) == usual);
+}
+
+TEST_CASE("render: EXR files by name or by wish") {
+    const TestFolder here;
+    make_run(here.path());
+    const std::string magic("\x76\x2f\x31\x01", 4);
+    rendered({"run", "--size", "120x100", "--view", "shaded", "--output", "a.exr"}, here.path());
+    rendered({"run", "--size", "120x100", "--view", "shaded", "--output", "b.exr", "--exr", "half"},
+             here.path());
+    rendered({"run", "--size", "120x100", "--view", "shaded", "--exr", "float"}, here.path());
+    const std::string half = read_all(here.path() / "a.exr");
+    const std::string single = read_all(here.path() / "run/shaded.exr");
+    CHECK(half.compare(0, 4, magic) == 0);
+    CHECK(half == read_all(here.path() / "b.exr"));
+    CHECK(single.compare(0, 4, magic) == 0);
+    CHECK(single.size() > half.size());
+    CHECK_FALSE(fs::exists(here.path() / "run/shaded.png"));
+}
+
+TEST_CASE(
+    "render: a camera that sees nothing, and a run that emitted nothing, give an empty picture and say so") {
+    const TestFolder here;
+    make_run(here.path());
+    CHECK_THAT(rendered({"run", "--size", "100x80", "--view", "shaded", "--eye", "0", "0", "5", "--target",
+                         "0", "0", "9", "--up", "0", "1", "0", "--output", "behind.png"},
+                        here.path()),
+               Contains("nothing of the mesh is in sight"));
+    CHECK(all_background(read_png(here.path() / "behind.png")));
+    // The plane from below, back faces culled.
+    make_run(here.path(), {"map.source=constant", "hardware.culling=back", "camera.eye=[0.1, 0.2, -4]"});
+    for (const std::string view : {"overview", "wireframe", "stopped", "error"})
+        CHECK_THAT(rendered({"run", "--size", "200x100", "--view", view}, here.path()),
+                   Contains("the run's mesh is empty"));
+    CHECK(all_background(read_png(here.path() / "run/wireframe.png")));
+}
+
+TEST_CASE("render: hostile arguments are refused in one line") {
+    const TestFolder here;
+    make_run(here.path());
+    for (const std::string size : {"0", "0x0", "1x1", "100000x1", "63x64", "64x16385", "-5x100", "x", "64x",
+                                   "x64", "64x64x64", "1e3", "99999999999x99999999999"})
+        refused({"run", "--size=" + size}, here, {"--size", "64", "16384"});
+    refused({"run", "--size", "16384x16384"}, here, {"--size", "33554432"});
+    refused({"run", "--size", "16384"}, here, {"--size", "33554432"});
+    refused({"run", "--eye", "1", "1", "1", "--target", "1", "1", "1"}, here, {"--eye", "camera.target"});
+    refused({"run", "--eye", "0", "0", "3", "--target", "0", "0", "0", "--up", "0", "0", "-2"}, here,
+            {"--up", "parallel"});
+    refused({"run", "--up", "0", "0", "0"}, here, {"--up", "no direction"});
+    refused({"run", "--eye", "nan", "0", "0"}, here, {"--eye", "camera.eye"});
+    refused({"run", "--eye", "1", "2"}, here, {"--eye"});
+    refused({"run", "--eye", "1", "2", "east"}, here, {"--eye"});
+    refused({"run", "--field-of-view", "180"}, here, {"camera.field_of_view", "180"});
+    refused({"run", "--field-of-view", "0"}, here, {"camera.field_of_view"});
+    refused({"run", "--zoom", "0.5", "1.5", "2"}, here, {"--zoom", "1.5"});
+    refused({"run", "--zoom", "0.5", "0.5", "0"}, here, {"--zoom", "10000"});
+    refused({"run", "--zoom", "0.5", "0.5", "nan"}, here, {"--zoom"});
+    refused({"run", "--zoom", "0.5", "0.5"}, here, {"--zoom"});
+    refused({"run", "--line-width", "0"}, here, {"--line-width", "0.1", "50"});
+    refused({"run", "--line-width", "nan"}, here, {"--line-width"});
+    refused({"run", "--error-scale", "0"}, here, {"--error-scale"});
+    refused({"run", "--error-scale", "0.5"}, here, {"--error-scale 0.5", "--view error"});
+    refused({"run", "--view", "test,wireframe", "--error-scale", "0.5"}, here, {"--view error"});
+    refused({"run", "--view", "shadow"}, here, {"shadow", "shaded"});
+    refused({"run", "--view", ""}, here, {"--view"});
+    refused({"run", "--caption", "caf\xc3\xa9"}, here, {"--caption", "195"});
+    refused({"run", "--caption", std::string(201, 'a')}, here, {"--caption", "200"});
+    refused({"run", "--exr", "double"}, here, {"--exr", "half"});
+}
+
+TEST_CASE("render: folders that are no runs, and outputs that cannot be") {
+    const TestFolder here;
+    refused({}, here, {"--help"});
+    refused({""}, here, {"RUN"});
+    refused({"absent"}, here, {"absent"});
+    make_run(here.path());
+    fs::create_directory(here.path() / "empty");
+    refused({"empty"}, here, {"empty", "job.toml"});
+    write_all(here.path() / "file", "mine");
+    refused({"file"}, here, {"file"});
+    refused({"run", "--output", ""}, here, {"--output"});
+    refused({"run", "--output", "a.jpg"}, here, {"a.jpg", ".png", ".exr"});
+    refused({"run", "--output", "file/a.png"}, here, {"--output", "file"});
+    refused({"run", "--output", "file"}, here, {"--output", "file"});
+    refused({"run", "--output", "/proc/tessera/a.png"}, here, {"--output", "/proc"});
+    refused({"run", "--output", "a.png", "--exr", "half"}, here, {"a.png", "--exr"});
+    refused({"run", "--view", "shaded,test", "--output", "a.png"}, here, {"a.png", "folder"});
+    CHECK(read_all(here.path() / "file") == "mine");
+    fs::remove(here.path() / "run/mesh.ply");
+    refused({"run"}, here, {"mesh.ply"});
+}
+
+TEST_CASE("render: a disk that is full ends it with exit code 4 and no picture") {
+    const TestFolder here;
+    make_run(here.path());
+    ProgramLimits limits;
+    limits.file_bytes = 4096;
+    const ProgramEnd end =
+        run_tessera({"render", "run", "--size", "400x300", "--view", "generation", "--output", "new/"},
+                    here.path(), limits);
+    INFO(end.text());
+    CHECK(end.signal == 0);
+    CHECK(end.exit_code == 4);
+    CHECK_THAT(end.err, Contains("generation.png"));
+    CHECK_FALSE(fs::exists(here.path() / "new"));
+}

@@ -1,0 +1,222 @@
+#include "testbench/commands/summary.h"
+
+#include <catch2/catch.hpp>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "testbench/output/report/conformance_report.h"
+#include "testbench/tests/support/hand_made_run.h"
+
+// What a run prints: each figure in its place, on a machine whose counts are all different, and a run of one triangle.
+
+using namespace tessera;
+using namespace tessera::testing;
+using Catch::Contains;
+
+namespace {
+
+/// What stands behind a row's name.
+std::string value_of(const std::string& text, const std::string& name) {
+    const std::string begin = "  " + name + std::string(name.size() < 26 ? 26 - name.size() : 0, ' ');
+    const std::size_t at = ("\n" + text).find("\n" + begin);
+    if (at == std::string::npos)
+        return "no such row";
+    return text.substr(at + begin.size(), text.find('\n', at) - at - begin.size());
+}
+
+}  // namespace
+
+TEST_CASE("summary: counts of the machine, each in its place") {
+    HandMadeRun run;
+    run.setup.remarks = {"a remark"};
+    const std::string text = summary(run.setup, run.simulation, {6, 4, 7}, {}, 0.5);
+    INFO(text);
+    CHECK(value_of(text, "triangles") == "0 base -> 9 finished, 2 culled");
+    CHECK(value_of(text, "edges") == "33 tested, 17 split (51.5 %)");
+    CHECK(value_of(text, "  split by") ==
+          "normal alone 10, summed height alone 4, both 1, highlight alone 2");
+    CHECK(value_of(text, "  wanted, but stopped by") ==
+          "view alone 3, tex coord alone 4, generation alone 1, several 1");
+    CHECK(value_of(text, "distinct edges") == "11, each tested 3.0 times on average");
+    CHECK(value_of(text, "distinct vertices") ==
+          "6; 33 computed, 16 of them discarded, and 15 normals transformed");
+    // the default design's entry, and a bit for the Highlight Test
+    CHECK(value_of(text, "triangle queue") == "at most 24 triangles waiting, 1573 bits each");
+    CHECK_THAT(value_of(text, "summed height table"), Contains("0 reads, 0.0 an edge"));
+    CHECK(value_of(text, "functional mode") ==
+          "simulated in 0.50 s, 0.00 million edges a second, with the checks of each edge");
+    CHECK_THAT(text, Contains("  note: a remark\n"));
+    CHECK(value_of(text, "cycles") == "no such row");
+    CHECK(value_of(text, "golden model") == "no such row");
+
+    run.setup.registers.tests.highlight_test = false;
+    run.setup.base_triangles.resize(1);  // whose vertices would be three of those made
+    const std::string other = summary(run.setup, run.simulation, {}, {}, 0.5);
+    CHECK(value_of(other, "triangles") == "1 base -> 9 finished, 2 culled");
+    CHECK(value_of(other, "  split by") == "normal alone 10, summed height alone 4, both 1");
+    CHECK(value_of(other, "distinct edges") == "0, each tested 0.0 times on average");
+    CHECK(value_of(other, "distinct vertices") ==
+          "0; 33 computed, 13 of them discarded, and 15 normals transformed");
+}
+
+TEST_CASE("summary: seconds and edges a second") {
+    HandMadeRun run;
+    const std::string text = summary(run.setup, run.simulation, {}, {}, 0.000'015);
+    CHECK(value_of(text, "functional mode") ==
+          "simulated in 0.00 s, 2.20 million edges a second, with the checks of each edge");
+}
+
+TEST_CASE("summary: what was checked") {
+    HandMadeRun run;
+    Checks checks;
+    ConformanceResult conformance;
+    conformance.edges = 2000;
+    conformance.mismatches = 3;
+    conformance.flipped_edges = 5;
+    checks.conformance = conformance;
+    checks.allowed_flips = 1;
+    EndToEndResult end;
+    end.hardware_triangles = 1000;
+    end.golden_triangles = 1015;
+    end.hardware_to_golden.max_model = 0.5;
+    end.golden_to_hardware.max_model = 0.25;
+    end.hardware_to_golden.rms_model = 0.0625;
+    end.golden_to_hardware.rms_model = 0.125;
+    end.hardware_to_golden.farther = 1;
+    end.golden_to_hardware.farther = 0.5;
+    end.allowed = {2, 0.25, 2};
+    checks.end_to_end = end;
+    InvariantResult invariants;
+    invariants.cracks = 1;
+    invariants.t_vertices = 2;
+    invariants.collapsed = 3;
+    invariants.turned_over = 4;
+    checks.invariants = invariants;
+    WorkResult work;
+    work.triangles = 40;
+    work.equations = 2;
+    work.violations = 7;
+    checks.work = work;
+    ReadResult reads;
+    reads.entries = 60;
+    reads.wrong = 8;
+    checks.reads = reads;
+    const std::string text = summary(run.setup, run.simulation, {}, checks, 1);
+    INFO(text);
+    CHECK(value_of(text, "golden model") ==
+          "FAILED: 2,000 edges compared, 3 mismatches, 5 allowed flips (0.250 %)");
+    CHECK(value_of(text, "golden mesh") ==
+          "1,015 triangles (+1.50 %, allowed 2 %); 1.00 % of the points farther apart than rounding explains "
+          "(allowed 6), at most 0.5 model units, RMS 0.125 (allowed 0.45)");
+    CHECK(value_of(text, "invariants") ==
+          "FAILED: 1 cracks, 2 T-vertices; in texture space 3 collapsed, 4 turned over");
+    CHECK(value_of(text, "texture seams") == "no such row");
+    CHECK(value_of(text, "work conservation") ==
+          "FAILED: 40 triangles and 2 balances of units checked, 7 violations");
+    CHECK(value_of(text, "reads") == "FAILED: 60 entries compared, 8 wrong");
+
+    // What passes says nothing of it; a row fails for each of its reasons.
+    checks.conformance->mismatches = 0;
+    checks.work->violations = 0;
+    checks.reads->wrong = 0;
+    checks.invariants = InvariantResult{};
+    checks.end_to_end->golden_triangles = 1021;
+    checks.setup.emplace();
+    const std::string right = summary(run.setup, run.simulation, {}, checks, 1);
+    INFO(right);
+    for (const char* const name : {"set-up", "golden model", "invariants", "work conservation", "reads"})
+        CHECK_THAT(value_of(right, name), !Contains("FAILED"));
+    CHECK_THAT(value_of(right, "golden mesh"), Catch::StartsWith("FAILED: 1,021 triangles (+2.10 %"));
+
+    checks.setup->parts.push_back({"registers", "", 5, 1});
+    checks.allowed_flips = 0.2;
+    checks.invariants->open_texture_seam_edges = 9;
+    const std::string other = summary(run.setup, run.simulation, {}, checks, 1);
+    CHECK(value_of(other, "set-up") ==
+          "FAILED: 5 values of registers, base vertices and tables compared, 1 wrong");
+    CHECK(value_of(other, "golden model") ==
+          "FAILED: 2,000 edges compared, 0 mismatches, 5 allowed flips (0.250 %), more than the 0.2 % that "
+          "check.allowed_flips allows");
+    CHECK_THAT(value_of(other, "texture seams"), Catch::StartsWith("9 edges open: "));
+}
+
+TEST_CASE("the run's verdict: one part that fails fails it") {
+    const auto wrong = [](auto& part, auto figure) {
+        part.emplace();
+        (*part).*figure = 1;
+    };
+    const std::vector<std::function<void(Checks&)>> failures = {
+        [](Checks& c) { c.fault.emplace(); },
+        [](Checks& c) {
+            c.setup.emplace();
+            c.setup->parts.push_back({"registers", "", 1, 1});
+        },
+        [&](Checks& c) { wrong(c.conformance, &ConformanceResult::mismatches); },
+        [](Checks& c) {  // 0.6 % of the edges; 0.5 % are allowed
+            c.conformance.emplace();
+            c.conformance->edges = 1000;
+            c.conformance->flipped_edges = 6;
+        },
+        [&](Checks& c) { wrong(c.end_to_end, &EndToEndResult::bound_hit); },
+        [&](Checks& c) { wrong(c.invariants, &InvariantResult::cracks); },
+        [&](Checks& c) { wrong(c.work, &WorkResult::violations); },
+        [&](Checks& c) { wrong(c.reads, &ReadResult::wrong); }};
+    Checks right;
+    CHECK(right.passed());
+    right.setup.emplace();
+    right.conformance.emplace();
+    right.end_to_end.emplace();
+    right.invariants.emplace();
+    right.work.emplace();
+    right.reads.emplace();
+    CHECK(right.passed());
+    for (std::size_t k = 0; k < failures.size(); ++k) {
+        INFO("failure " << k);
+        for (Checks checks : {Checks{}, right}) {
+            failures[k](checks);
+            CHECK_FALSE(checks.passed());
+            CHECK_THAT(conformance_text(checks), Catch::StartsWith("Conformance report: FAILED\n"));
+            CHECK_THAT(conformance_json(checks), Catch::StartsWith("{\n  \"passed\": false,"));
+        }
+    }
+}
+
+// 86 cycles (test_timed_pipeline.cpp), of 5 ns; one pass of three edges.
+TEST_CASE("summary: a timed run of one triangle") {
+    Job job = timed_job();
+    job.mesh.columns = job.mesh.rows = 1;
+    job.map.source = MapSource::constant;
+    MachineSetup setup = setup_of(job);
+    setup.base_triangles.resize(1);
+    Simulation simulation(setup, 1000);
+    run_timed(simulation);
+    const std::string text = summary(setup, simulation, {3, 0, 3}, {}, 1);
+    INFO(text);
+    CHECK(value_of(text, "triangles") == "1 base -> 1 finished");
+    CHECK(value_of(text, "edges") == "3 tested, 0 split (0.0 %)");
+    CHECK(value_of(text, "distinct edges") == "3, each tested 1.0 times on average");
+    CHECK(value_of(text, "distinct vertices") ==
+          "3; 6 computed, 3 of them discarded, and 3 normals transformed");
+    CHECK_THAT(value_of(text, "triangle queue"), Catch::StartsWith("at most 1 triangles waiting, "));
+    CHECK_THAT(value_of(text, "summed height table"), Contains("; 36 reads, 12.0 an edge"));
+    CHECK(value_of(text, "cycles") ==
+          "86: 86.0 a finished triangle, 86.0 a pass, 28.7 an edge; 0.00043 ms at 200 MHz");
+    CHECK_THAT(value_of(text, "bottleneck"), Catch::StartsWith("none: bound by latency; "));
+    CHECK(value_of(text, "timed mode") ==
+          "simulated in 1.00 s, 0.00 million edges a second, with the checks of each edge");
+    CHECK(value_of(text, "spilled") == "no such row");
+}
+
+// Two base triangles, four children each, places for two: of the second's children at least one is spilled.
+TEST_CASE("summary: a queue that spills") {
+    Job job = full_split_job(1, 1);
+    job.hardware.queue_capacity = 2;
+    const MachineSetup setup = setup_of(job);
+    Simulation simulation(setup, 1000);
+    run_timed(simulation);
+    const TriangleQueue& queue = simulation.pipeline.triangle_queue;
+    REQUIRE(queue.spilled() > 0);
+    CHECK(value_of(summary(setup, simulation, {}, {}, 1), "spilled") ==
+          std::to_string(queue.spilled()) + " triangles, at most 2 on chip");
+}

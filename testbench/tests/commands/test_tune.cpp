@@ -1,0 +1,196 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "testbench/tests/support/program_runner.h"
+#include "testbench/tests/support/run_folder.h"
+
+using namespace tessera;
+using Catch::Contains;
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+namespace {
+
+const Arguments small_map{"--set", "map.width=64", "--set", "map.height=64"};
+
+std::string refused(const Arguments& arguments, const fs::path& folder) {
+    const ProgramEnd end = run_tessera(arguments, folder);
+    INFO(end.text());
+    CHECK(end.exit_code == 2);
+    CHECK(end.out.empty());
+    CHECK(lines_of(end.err).size() == 1);
+    return end.err;
+}
+
+/// Runs the tuned job and compares it: error.json must have the tuner's figures to the last bit.
+void check_by_run_and_compare(const fs::path& folder, const std::string& name) {
+    const Json tuned = read_json(folder / (name + ".json"));
+    succeed({"run", name + ".toml", "--set", "mode=functional", "--set", "check.end_to_end=false", "--set",
+             "output.picture=false"},
+            folder);
+    const fs::path run = folder / "runs" / fs::path(name).filename();
+    succeed({"compare", run.string()}, folder);
+    const Json error = read_json(run / "error.json");
+    const auto value = [&](const char* group, const char* figure) {
+        return error.at(group).at(figure).at("value");
+    };
+    CHECK(value("measurement", "triangles") == tuned.at("triangles"));
+    const bool vertical = tuned.at("error").at("what") == "vertical error";
+    const bool map_units = tuned.at("error").at("unit") == "map unit";
+    const char* const group = vertical ? "vertical" : "interpolated";
+    CHECK(value(group, vertical ? (map_units ? "rms_map" : "rms") : "reference_to_mesh_rms") ==
+          tuned.at("error").at("rms"));
+    CHECK(value(group, vertical ? (map_units ? "max_map" : "max") : "reference_to_mesh_max") ==
+          tuned.at("error").at("max"));
+}
+
+}  // namespace
+
+TEST_CASE("tune writes a job that runs to the figures it tells, and the same bytes again") {
+    const TestFolder here;
+    const Arguments tune = Arguments{"tune", "--triangles", "600", "--tried", "tried.csv"} + small_map;
+    succeed(tune, here.path());
+    CHECK(here.names() == Arguments{"tried.csv", "tuned.json", "tuned.toml"});
+    const Json tuned = read_json(here.path() / "tuned.json");
+    CHECK(tuned.at("triangles") <= 600);
+    CHECK(tuned.at("triangles") >= 570);
+    CHECK(tuned.at("goal").at("triangles") == 600);
+    CHECK(lines_of(read_all(here.path() / "tried.csv")).size() > 10);
+    CHECK_THAT(read_all(here.path() / "tuned.toml"), Contains("# Tuned by") && Contains("runs/tuned"));
+    check_by_run_and_compare(here.path(), "tuned");
+
+    const TestFolder again;
+    succeed(tune + Arguments{"--jobs", "2"}, again.path());
+    for (const char* const name : {"tuned.json", "tuned.toml", "tried.csv"})
+        CHECK(read_all(again.path() / name) == read_all(here.path() / name));
+}
+
+TEST_CASE("tune chooses a base mesh, writes a lattice beside the job, and keeps a bound") {
+    const TestFolder here;
+    fs::create_directory(here.path() / "found");
+    succeed(Arguments{"tune", "--triangles", "900", "--grid", "lattice16", "--output", "found/lattice.toml",
+                      "--set", "tests.view=false"} +
+                small_map,
+            here.path());
+    CHECK(fs::exists(here.path() / "found/lattice.obj"));
+    CHECK_THAT(read_all(here.path() / "found/lattice.toml"), Contains("file = \"lattice.obj\""));
+    CHECK(read_json(here.path() / "found/lattice.json").at("base").at("spacing") == 16);
+    check_by_run_and_compare(here.path(), "found/lattice");
+
+    succeed(Arguments{"tune", "--error", "0.02", "--grid", "auto", "--output", "bound.toml"} + small_map,
+            here.path());
+    const Json bound = read_json(here.path() / "bound.json");
+    CHECK(bound.at("goal").at("error") == 0.02);
+    CHECK(bound.at("error").at("rms") <= 0.02);
+    CHECK(bound.at("error").at("rms") > 0.015);
+    check_by_run_and_compare(here.path(), "bound");
+}
+
+TEST_CASE("a bound on the error holds for the error that compare measures, to the last bit") {
+    const TestFolder here;
+    const auto error_for = [&](const char* option, const std::string& value) {
+        succeed(
+            Arguments{"tune", option, value, "--vary", "none", "--grid", "5x7", "--set", "tests.view=false"} +
+                small_map,
+            here.path());
+        return read_json(here.path() / "tuned.json").at("error").at("rms").get<double>();
+    };
+    for (int triangles = 100; triangles <= 800; triangles += 100) {
+        const double bound = std::nextafter(error_for("--triangles", std::to_string(triangles)), 0.0);
+        INFO(triangles);
+        CHECK(error_for("--error", Json(bound).dump()) <= bound);
+    }
+}
+
+TEST_CASE("tune works where the surface is no height field") {
+    const TestFolder here;
+    succeed(Arguments{"tune", "--triangles", "1200", "--set", "mesh.source=cylinder", "--set",
+                      "mesh.columns=12", "--set", "mesh.rows=6", "--set", "map.address_u=repeat", "--set",
+                      "displacement.scale=0.1"} +
+                small_map,
+            here.path());
+    const Json tuned = read_json(here.path() / "tuned.json");
+    CHECK(tuned.at("error").at("unit") == "model unit");
+    CHECK(tuned.at("triangles") <= 1200);
+    check_by_run_and_compare(here.path(), "tuned");
+}
+
+TEST_CASE("tune finds thresholds for Crater Lake") {
+    const TestFolder here;
+    const std::string job = (source_folder() / "testbench/examples/jobs/crater_lake_704.toml").string();
+    succeed(
+        {"tune", job, "--triangles", "3047", "--grid", "lattice16,lattice32", "--set", "tests.view=false"},
+        here.path());
+    const Json tuned = read_json(here.path() / "tuned.json");
+    CHECK(tuned.at("triangles") <= 3047);
+    CHECK(tuned.at("error").at("rms") < 8.2);  // metres; the sketch had 9.1
+    CHECK(tuned.at("error").at("unit") == "map unit");
+    check_by_run_and_compare(here.path(), "tuned");
+}
+
+TEST_CASE("tune refuses wrong usage and goals out of reach, and leaves nothing") {
+    const TestFolder here;
+    const auto tune = [&](const Arguments& more) {
+        return refused(Arguments{"tune"} + more + small_map, here.path());
+    };
+    CHECK_THAT(tune({}), Contains("--triangles") && Contains("--error") && Contains("tune --help"));
+    CHECK_THAT(tune({"--triangles", "5", "--error", "1"}), Contains("either"));
+    CHECK_THAT(tune({"--triangles", "0"}), Contains("--triangles 0"));
+    CHECK_THAT(tune({"--triangles", "-4"}), Contains("--triangles") && Contains("-4"));
+    CHECK_THAT(tune({"--triangles", "17"}), Contains("18 triangles"));
+    CHECK_THAT(tune({"--triangles", "3000000"}), Contains("at most"));
+    CHECK_THAT(tune({"--triangles", "300000000"}), Contains("limits.triangles"));
+    for (const char* number : {"18446744073709551615", "18446744073709551616", "99999999999999999999999"})
+        CHECK_THAT(tune({"--triangles", number}), Contains(number) && Contains("limits.triangles"));
+    CHECK_THAT(tune({"--error", "0"}), Contains("--error"));
+    CHECK_THAT(tune({"--error", "nan"}), Contains("--error"));
+    CHECK_THAT(tune({"--error", "1e-9"}), Contains("the least RMS error"));
+    CHECK_THAT(tune({"--triangles", "500", "--metric", "mean"}), Contains("rms and max"));
+    CHECK_THAT(tune({"--triangles", "500", "--tests", "normals"}), Contains("normals"));
+    CHECK_THAT(tune({"--triangles", "500", "--vary", "grid"}), Contains("grid"));
+    CHECK_THAT(tune({"--triangles", "500", "--jobs", "0"}), Contains("--jobs"));
+    CHECK_THAT(tune({"--triangles", "500", "--grid", "3x3", "absent.toml"}), Contains("no such job file"));
+    CHECK_THAT(tune({"--triangles", "500", "--grid", "big"}), Contains("--grid big"));
+    CHECK_THAT(tune({"--triangles", "500", "--grid", "0x4"}), Contains("--grid 0x4"));
+    CHECK_THAT(tune({"--triangles", "500", "--grid", "lattice24"}), Contains("power of two"));
+    CHECK_THAT(tune({"--triangles", "500", "--grid", "auto", "--set", "mesh.source=sphere"}),
+               Contains("plane"));
+    CHECK_THAT(tune({"--triangles", "500", "--output", "absent/tuned.toml"}), Contains("absent"));
+    CHECK_THAT(tune({"--triangles", "500", "--output", "tuned.json"}), Contains("tuned.json"));
+    CHECK_THAT(tune({"--triangles", "500", "--output", ""}), Contains("--output"));
+    CHECK_THAT(tune({"--triangles", "500", "--set", "hardware.culling=back"}), Contains("culling"));
+    CHECK_THAT(tune({"--triangles", "500", "--set", "tests.highlight=true"}), Contains("tests.highlight"));
+    CHECK_THAT(
+        tune({"--triangles", "500", "--set", "tests.normal=false", "--set", "tests.summed_height=false"}),
+        Contains("both off"));
+    CHECK_THAT(tune({"--triangles", "500", "--set", "tests.view_treshold=1"}), Contains("view_threshold"));
+    CHECK_THAT(tune({"--triangles", "500", "--set", "frames.count=3"}), Contains("frames.count"));
+    CHECK_THAT(tune({"--triangles", "500", "--output", "map.exr"}), Contains(".toml"));
+    CHECK_THAT(tune({"--triangles", "500", "--output", "a.toml", "--tried", "a.json"}), Contains("--tried"));
+    CHECK_THAT(tune({"--triangles", "500", "--output", "a.toml", "--tried", "./a.toml"}),
+               Contains("--tried"));
+    CHECK(here.names().empty());
+}
+
+TEST_CASE("tune overwrites nothing that it reads and nobody's mesh") {
+    const TestFolder here;
+    write_all(here.path() / "mine.toml", "[map]\nwidth = 32\nheight = 32\n");
+    write_all(here.path() / "own.obj", "# mine\nv 0 0 0\n");
+    CHECK_THAT(refused({"tune", "mine.toml", "--triangles", "300", "--output", "mine.toml"}, here.path()),
+               Contains("would overwrite mine.toml"));
+    CHECK_THAT(
+        refused(Arguments{"tune", "--triangles", "300", "--grid", "lattice16", "--output", "own.toml"} +
+                    small_map,
+                here.path()),
+        Contains("own.obj"));
+    CHECK(read_all(here.path() / "own.obj") == "# mine\nv 0 0 0\n");
+    REQUIRE(run_tessera({"run", "--set", "mode=functional", "--set", "map.width=32", "--set", "map.height=32",
+                         "--set", "output.folder=runs/tuned"},
+                        here.path())
+                .exit_code == 0);
+    CHECK_THAT(
+        refused({"tune", "--triangles", "30000", "--set", "mesh.source=run", "--set", "mesh.file=runs/tuned"},
+                here.path()),
+        Contains("take away its own base mesh"));
+}

@@ -1,0 +1,259 @@
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+
+#include "testbench/job/job_keys.h"
+#include "testbench/tests/support/program_runner.h"
+#include "testbench/tests/support/run_folder.h"
+
+using namespace tessera;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Requires exit code 2, one message on standard error with these words, and no trace; gives the message.
+std::string refused(const std::vector<std::string>& arguments, const fs::path& folder,
+                    const std::vector<std::string>& words) {
+    const ProgramEnd end = run_tessera(arguments, folder);
+    INFO(end.text());
+    CHECK(end.exit_code == 2);
+    CHECK(end.out.empty());
+    CHECK(lines_of(end.err).size() == 1);
+    CHECK(end.err.rfind("tessera: ", 0) == 0);
+    for (const std::string& word : words)
+        CHECK_THAT(end.err, Contains(word));
+    CHECK_FALSE(fs::exists(folder / "runs"));
+    return end.err;
+}
+
+}  // namespace
+
+TEST_CASE("wrong usage is refused in one line that says how to find help") {
+    const TestFolder here;
+    for (const std::vector<std::string>& arguments :
+         std::vector<std::vector<std::string>>{{},
+                                               {"rum"},
+                                               {"run", "--verbose"},
+                                               {"run", "--set"},
+                                               {"run", "--data"},
+                                               {"keys", "--all"},
+                                               {"run", "a", "b"}})
+        refused(arguments, here.path(), {"--help"});
+    refused({"rum"}, here.path(), {"rum"});
+    refused({"run", "--verbose"}, here.path(), {"--verbose"});
+    refused({"run", ""}, here.path(), {"JOB", "empty"});
+    CHECK(here.names().empty());
+}
+
+TEST_CASE("a mistyped key is refused with file, line and what was meant") {
+    const TestFolder here;
+    write_all(here.path() / "job.toml", "[tests]\nnormal = true\nview_treshold = 2\n");
+    refused({"run", "job.toml"}, here.path(), {"job.toml:3:", "view_treshold", "view_threshold"});
+    write_all(here.path() / "job.toml", "[test]\nnormal = true\n");
+    refused({"run", "job.toml"}, here.path(), {"job.toml:1:", "test", "tests"});
+    write_all(here.path() / "job.toml", "[tests]\nview_threshold = \"near\"\n");
+    refused({"run", "job.toml"}, here.path(), {"job.toml:2:", "view_threshold", "a number"});
+    write_all(here.path() / "job.toml", "[tests\n");
+    refused({"run", "job.toml"}, here.path(), {"job.toml:1:"});
+    // also where the job would only be printed
+    refused({"run", "job.toml", "--dump-config"}, here.path(), {"job.toml:1:"});
+}
+
+TEST_CASE("a setting that is unknown, out of range or no setting is refused") {
+    const TestFolder here;
+    refused({"run", "--set", "tests.view_treshold=2"}, here.path(),
+            {"tests.view_treshold", "tests.view_threshold"});
+    refused({"run", "--set", "nonsense=2"}, here.path(), {"nonsense", "tessera keys"});
+    refused({"run", "--set", "tests.view_threshold"}, here.path(), {"tests.view_threshold"});
+    refused({"run", "--set", "tests.view_threshold=-1"}, here.path(), {"tests.view_threshold", "-1"});
+    refused({"run", "--set", "tests.view_threshold=nan"}, here.path(), {"tests.view_threshold", "nan"});
+    refused({"run", "--set", "map.width=0"}, here.path(), {"map.width", "0"});
+    refused({"run", "--set", "map.width=4097"}, here.path(), {"map.width", "4097", "4096"});
+    refused({"run", "--set", "output.folder="}, here.path(), {"output.folder"});
+    refused({"run", "--set", "map.source=file"}, here.path(), {"map.file"});
+    refused({"run", "--set", "camera.eye=[0, 0, 0]", "--set", "camera.target=[0, 0, 0]"}, here.path(),
+            {"camera.eye", "camera.target"});
+}
+
+TEST_CASE("a job, mesh or map file that is absent, a folder or a device is refused") {
+    const TestFolder here;
+    refused({"run", "absent.toml"}, here.path(), {"absent.toml"});
+    fs::create_directory(here.path() / "folder");
+    refused({"run", "folder"}, here.path(), {"folder"});
+    refused({"run", "/dev/zero"}, here.path(), {"/dev/zero"});
+    REQUIRE(::mkfifo((here.path() / "pipe").c_str(), 0600) ==
+            0);  // nobody writes: reading would wait for ever
+    for (const std::string table : {"mesh", "map"}) {
+        for (const std::string file : {"absent.file", "folder", "/dev/zero", "pipe"}) {
+            INFO(table << ' ' << file);
+            refused({"run", "--set", table + ".source=file", "--set", table + ".file=" + file}, here.path(),
+                    {file});
+        }
+    }
+    refused({"run", "pipe"}, here.path(), {"pipe"});
+}
+
+TEST_CASE("a run folder that cannot be is refused before the work") {
+    const TestFolder here;
+    write_all(here.path() / "file", "mine");
+    refused({"run", "--set", "output.folder=file"}, here.path(), {"output.folder", "file"});
+    refused({"run", "--set", "output.folder=file/below"}, here.path(), {"output.folder", "file"});
+    CHECK(read_all(here.path() / "file") == "mine");
+    refused({"run", "--set", "output.folder=/proc/tessera"}, here.path(), {"output.folder", "/proc"});
+    fs::create_symlink("nowhere", here.path() / "dangling");
+    refused({"run", "--set", "output.folder=dangling"}, here.path(), {"output.folder", "dangling"});
+    if (::geteuid() != 0) {  // root may write anywhere
+        fs::create_directory(here.path() / "locked");
+        fs::permissions(here.path() / "locked", fs::perms::owner_read | fs::perms::owner_exec);
+        refused({"run", "--set", "output.folder=locked"}, here.path(),
+                {"output.folder", "locked", "ermission"});
+        refused({"run", "--set", "output.folder=locked/below"}, here.path(), {"output.folder", "locked"});
+    }
+    fs::create_directories(here.path() / "taken/mesh.ply");
+    const ProgramEnd end = run_tessera(
+        {"run", "--set", "output.folder=taken", "--set", "tests.generation_limit=1"}, here.path());
+    INFO(end.text());
+    CHECK(end.exit_code == 2);
+    CHECK_THAT(end.err, Contains("taken/mesh.ply"));
+}
+
+TEST_CASE("a stated limit ends a run with exit code 4, one message and no trace") {
+    const TestFolder here;
+    const std::string folder = "output.folder=out";
+    SECTION("too many triangles") {
+        const ProgramEnd end =
+            run_tessera({"run", "--set", "limits.triangles=1000", "--set", folder}, here.path());
+        INFO(end.text());
+        CHECK(end.exit_code == 4);
+        CHECK(end.out.empty());
+        CHECK(lines_of(end.err).size() == 1);
+        CHECK_THAT(end.err, Contains("limits.triangles = 1000"));
+        CHECK(here.names().empty());
+    }
+    SECTION("exactly as many triangles are not too many") {
+        const ProgramEnd whole = run_tessera({"run", "--set", folder}, here.path());
+        REQUIRE(whole.exit_code == 0);
+        const std::uint64_t triangles = RunFolder(here.path() / "out").count("run", "triangles_finished");
+        const auto limited = [&](std::uint64_t limit) {
+            return run_tessera({"run", "--set", "limits.triangles=" + std::to_string(limit), "--set", folder},
+                               here.path())
+                .exit_code;
+        };
+        CHECK(limited(triangles) == 0);
+        CHECK(limited(triangles - 1) == 4);
+    }
+    SECTION("a file larger than allowed") {
+        ProgramLimits limits;
+        limits.file_bytes = 100'000;
+        const ProgramEnd end = run_tessera({"run", "--set", folder}, here.path(), limits);
+        INFO(end.text());
+        CHECK(end.signal == 0);
+        CHECK(end.exit_code == 4);
+        CHECK(lines_of(end.err).size() == 1);
+        CHECK_THAT(end.err, Contains("out/mesh.ply"));
+        CHECK_FALSE(fs::exists(here.path() / "out"));
+    }
+    SECTION("standard output on a full disk") {
+        for (const std::string words : {"keys", "run --dump-config", "run --set output.folder=out"}) {
+            const ProgramEnd end =
+                run_program({"bash", "-c", "\"$0\" " + words + " > /dev/full", TESSERA_PROGRAM}, here.path());
+            INFO(words);
+            INFO(end.text());
+            CHECK(end.exit_code == 4);
+            CHECK(lines_of(end.err).size() == 1);
+            CHECK_THAT(end.err, Contains("No space left"));
+        }
+    }
+}
+
+TEST_CASE("the largest map runs") {
+    const TestFolder here;
+    const ProgramEnd end = run_tessera(
+        {"run", "--set", "map.source=noise", "--set", "map.width=4096", "--set", "map.height=4096", "--set",
+         "tests.normal_threshold=1", "--set", "tests.generation_limit=6", "--set", "output.folder=out"},
+        here.path());
+    INFO(end.text());
+    REQUIRE(end.exit_code == 0);
+    const RunFolder run(here.path() / "out");
+    require_consistent(run);
+    CHECK(run.count("displacement_map", "size") == std::uint64_t{4096} * 4096 * 2);
+}
+
+TEST_CASE("help and version are asked for and given") {
+    const TestFolder here;
+    for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+             {"--help"}, {"-h"}, {"run", "--help"}, {"keys", "--help"}, {"--version"}}) {
+        const ProgramEnd end = run_tessera(arguments, here.path());
+        INFO(end.text());
+        CHECK(end.exit_code == 0);
+        CHECK(end.err.empty());
+        CHECK_FALSE(end.out.empty());
+    }
+    const std::string help = run_tessera({"--help"}, here.path()).out;
+    for (const char* const word : {"run", "keys", "exit codes", "--version"})
+        CHECK_THAT(help, Contains(word));
+    const std::string run_help = run_tessera({"run", "--help"}, here.path()).out;
+    for (const char* const word : {"JOB", "--set", "--data", "--dump-config"})
+        CHECK_THAT(run_help, Contains(word));
+    CHECK_THAT(run_tessera({"--version"}, here.path()).out,
+               Catch::Matches("tessera [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+    CHECK(here.names().empty());
+}
+
+TEST_CASE("help has every exit code that testbench/run_folder/README.md has") {
+    const TestFolder here;
+    const std::string readme = read_all(source_folder() / "testbench/run_folder/README.md");
+    std::string codes = readme.substr(readme.find("Exit codes: ") + std::string("Exit codes: ").size());
+    codes = codes.substr(0, codes.find('.'));
+    std::vector<std::string> parts;
+    for (std::size_t at = 0, comma = 0; comma != std::string::npos; at = comma + 1) {
+        comma = codes.find(',', at);
+        std::string part = codes.substr(at, comma - at);
+        for (char& c : part)
+            c = c == '\n' ? ' ' : c;
+        parts.push_back(part.substr(part.find_first_not_of(' ')));
+    }
+    REQUIRE(parts.size() == 6);
+    for (const std::vector<std::string>& verb : std::vector<std::vector<std::string>>{
+             {}, {"run"}, {"compare"}, {"render"}, {"bake"}, {"tune"}, {"widths"}, {"keys"}}) {
+        std::vector<std::string> arguments = verb;
+        arguments.emplace_back("--help");
+        const std::string help = run_tessera(arguments, here.path()).out;
+        for (const std::string& part : parts)
+            CHECK_THAT(help, Contains(part));
+    }
+}
+
+TEST_CASE("keys lists every key of a dumped job") {
+    const TestFolder here;
+    const ProgramEnd end = run_tessera({"keys"}, here.path());
+    CHECK(end.exit_code == 0);
+    CHECK(end.err.empty());
+    const std::string dump = run_tessera({"run", "--dump-config"}, here.path()).out;
+    std::string table;
+    std::size_t keys = 0;
+    for (const std::string& line : lines_of(dump)) {
+        if (line.rfind('[', 0) == 0)
+            table = line.substr(1, line.find(']') - 1) + ".";
+        const std::size_t equals = line.find(" = ");
+        if (line.rfind('#', 0) == 0 || equals == std::string::npos)
+            continue;
+        ++keys;
+        INFO(table + line.substr(0, equals));
+        CHECK_THAT(end.out, Contains(table + line.substr(0, equals)));
+    }
+    std::size_t declared = 0;
+    for (const KeyTable& each : job_tables())
+        declared += each.keys.size();
+    CHECK(keys == declared);
+}
+
+TEST_CASE("a reader that goes away early ends the program quietly") {
+    const TestFolder here;
+    const ProgramEnd end =
+        run_program({"bash", "-c", "\"$0\" keys | head -n 1 > /dev/null", TESSERA_PROGRAM}, here.path());
+    CHECK(end.exit_code == 0);
+    CHECK(end.err.empty());
+}

@@ -1,0 +1,376 @@
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <map>
+
+#include "testbench/tests/support/checkout.h"
+#include "testbench/tests/support/program_runner.h"
+
+using namespace tessera;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+using Files = std::map<std::string, std::string>;
+
+Files files_in(const fs::path& folder) {
+    Files files;
+    std::error_code absent;
+    for (const auto& entry : fs::recursive_directory_iterator(folder, absent))
+        files[entry.path().lexically_relative(folder).string()] =
+            entry.is_regular_file() ? read_all(entry.path()) : "(folder)";
+    return files;
+}
+
+bool is_unfinished(const std::string& name) {
+    return fs::path(name).filename().string().rfind(".tessera-", 0) == 0;
+}
+
+/// A run small enough to be made some hundred times, with every file there is but the picture, which takes long.
+std::vector<std::string> run_arguments(const std::string& seed) {
+    std::vector<std::string> arguments{"run", "--vcd", "--timeline"};
+    for (const char* const setting :
+         {"map.width=16", "map.height=16", "map.source=noise", "tests.generation_limit=3",
+          "output.picture=false", "output.trace_to=3000", "output.folder=out/run"})
+        arguments.insert(arguments.end(), {"--set", setting});
+    arguments.insert(arguments.end(), {"--set", "map.seed=" + seed});
+    return arguments;
+}
+
+ProgramEnd run_failing(const std::vector<std::string>& arguments, const fs::path& folder, long at,
+                       const std::string& what) {
+    std::vector<std::string> command{TESSERA_PROGRAM};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    return run_program(
+        command, folder, {},
+        {{"LD_PRELOAD", TESSERA_FAILING_DISK}, {"TESSERA_FAILING_DISK", std::to_string(at) + ":" + what}});
+}
+
+/// How many of its calls concern the disk.
+long disk_calls(const std::vector<std::string>& arguments, const fs::path& folder) {
+    const TestFolder log;
+    std::vector<std::string> command{TESSERA_PROGRAM};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    const ProgramEnd end = run_program(
+        command, folder, {},
+        {{"LD_PRELOAD", TESSERA_FAILING_DISK}, {"TESSERA_DISK_LOG", (log.path() / "calls").string()}});
+    INFO(end.text());
+    REQUIRE(end.exit_code == 0);
+    const long calls = std::stol(read_all(log.path() / "calls"));
+    REQUIRE(calls > 4);
+    return calls;
+}
+
+/// What a command may leave behind, whatever happens to it: all that was there, or all that it makes.
+struct Expected {
+    Files before, after;
+};
+
+void check_ends_well(const std::vector<std::string>& arguments, const fs::path& folder,
+                     const Expected& expected, const std::string& what) {
+    const long calls = disk_calls(arguments, folder);
+    long failures = 0;
+    for (long at = 1; at <= calls; ++at) {
+        fs::remove_all(folder / "out");
+        for (const auto& [name, content] : expected.before) {
+            if (content == "(folder)")
+                fs::create_directories(folder / "out" / name);
+            else
+                write_all(folder / "out" / name, content);
+        }
+        const ProgramEnd end = run_failing(arguments, folder, at, what);
+        INFO("call " << at << " of " << calls << ": " << what << "\n" << end.text());
+        const Files left = files_in(folder / "out");
+        std::vector<std::string> names;
+        for (const auto& [name, content] : left)
+            names.push_back(name);
+        CAPTURE(names);
+        CHECK((left == expected.before || left == expected.after));
+        if (end.exit_code == 0) {  // what cannot be synchronised is kept all the same
+            CHECK(left == expected.after);
+            continue;
+        }
+        ++failures;
+        CHECK(lines_of(end.err).size() == 1);
+        CHECK(end.err.rfind("tessera: ", 0) == 0);
+        if (what == "SIGINT" || what == "SIGTERM") {
+            CHECK(end.signal == (what == "SIGINT" ? SIGINT : SIGTERM));
+            CHECK_THAT(end.err, Contains("interrupted (" + what + ")"));
+        } else {
+            CHECK((end.exit_code == 4 || end.exit_code == 2));
+            CHECK_THAT(end.err, Contains(what == "full" ? "No space left on device" : "Input/output error"));
+            CHECK_THAT(end.err, !Contains(".tessera-"));
+        }
+    }
+    CHECK(failures > calls / 2);
+}
+
+Files files_after(const std::vector<std::string>& arguments, const fs::path& folder) {
+    fs::remove_all(folder / "out");
+    const ProgramEnd end = run_tessera(arguments, folder);
+    INFO(end.text());
+    REQUIRE(end.exit_code == 0);
+    return files_in(folder / "out");
+}
+
+}  // namespace
+
+TEST_CASE("a run whose disk is full or fails at any call, or that is interrupted, leaves all or nothing") {
+    const TestFolder here;
+    Expected expected{{}, files_after(run_arguments("1"), here.path())};
+    REQUIRE(expected.after.size() > 10);
+    SECTION("no run before it") {
+        expected.before = {};
+    }
+    SECTION("a run before it, of another map") {
+        expected.before = files_after(run_arguments("2"), here.path());
+        REQUIRE(expected.before != expected.after);
+    }
+    for (const char* const what : {"full", "SIGINT"})
+        check_ends_well(run_arguments("1"), here.path(), expected, what);
+}
+
+TEST_CASE("a run that is killed leaves no half file, and no job beside another's mesh") {
+    const TestFolder here;
+    const Files old_run = files_after(run_arguments("2"), here.path());
+    const Files new_run = files_after(run_arguments("1"), here.path());
+    const long calls = disk_calls(run_arguments("1"), here.path());
+    for (long at = 1; at <= calls; ++at) {
+        files_after(run_arguments("2"), here.path());
+        const ProgramEnd end = run_failing(run_arguments("1"), here.path(), at, "SIGKILL");
+        INFO("call " << at << " of " << calls << "\n" << end.text());
+        CHECK(end.signal == SIGKILL);
+        bool all_old = true, all_new = true;
+        for (const auto& [name, content] : files_in(here.path() / "out")) {
+            if (is_unfinished(name) || content == "(folder)")
+                continue;
+            all_old = all_old && old_run.count(name) > 0 && old_run.at(name) == content;
+            all_new = all_new && new_run.count(name) > 0 && new_run.at(name) == content;
+        }
+        CHECK((all_old || all_new));
+        const ProgramEnd next = run_tessera(run_arguments("1"), here.path());
+        INFO(next.text());
+        CHECK(next.exit_code == 0);
+        CHECK(files_in(here.path() / "out") == new_run);
+    }
+}
+
+TEST_CASE("a folder that is not for a run is refused") {
+    const TestFolder here;
+    for (const char* const folder : {"mine", "runs/frame_001"})
+        fs::create_directories(here.path() / "work/deep" / folder);
+    const auto refused = [&](const std::string& folder, const std::vector<std::string>& more = {}) {
+        std::vector<std::string> arguments{"run"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        arguments.insert(arguments.end(), {"--set", "output.folder=" + folder, "--set", "map.width=16"});
+        const ProgramEnd end = run_tessera(arguments, here.path() / "work/deep");
+        INFO(end.text());
+        CHECK(end.exit_code == 2);
+        CHECK(lines_of(end.err).size() == 1);
+        CHECK_THAT(end.err, Contains("output.folder = \"" + folder + "\""));
+        return end.err;
+    };
+    for (const std::string& folder :
+         {std::string("/"), std::string(".."), std::string("../.."), here.path().string()})
+        CHECK_THAT(refused(folder), Contains("holds the working folder"));
+
+    write_all(here.path() / "work/deep/runs/frame_001/mesh.ply", "mine");
+    CHECK_THAT(refused("runs", {"--set", "frames.count=2"}), Contains("runs/frame_001/mesh.ply"));
+
+    // The default job, every key with its value: what --dump-config gave is no run's.
+    const ProgramEnd dumped = run_tessera({"run", "--dump-config"}, here.path());
+    write_all(here.path() / "work/deep/mine/job.toml", dumped.out);
+    CHECK_THAT(refused("mine", {"mine/job.toml"}), Contains("mine/job.toml"));
+    CHECK(read_all(here.path() / "work/deep/mine/job.toml") == dumped.out);
+    write_all(here.path() / "work/deep/mine/picture.png", "mine");
+    for (const std::vector<std::string>& job : {std::vector<std::string>{}, {"mine/job.toml"}})
+        CHECK_THAT(refused("mine", job), Contains("mine/job.toml"));
+    CHECK(read_all(here.path() / "work/deep/mine/job.toml") == dumped.out);
+    CHECK(read_all(here.path() / "work/deep/mine/picture.png") == "mine");
+}
+
+TEST_CASE("an output that is a link is replaced, and what it leads to stays") {
+    const TestFolder here;
+    files_after(run_arguments("1"), here.path());
+    const fs::path run = here.path() / "out/run", input = here.path() / "input";
+    const auto link_all = [&](const std::vector<fs::path>& names) {
+        write_all(input, "mine");
+        for (const fs::path& name : names) {
+            fs::remove(name);
+            fs::create_symlink(input, name);
+        }
+    };
+    const auto check_replaced = [&](const std::vector<std::string>& arguments,
+                                    const std::vector<fs::path>& names) {
+        link_all(names);
+        const ProgramEnd end = run_tessera(arguments, here.path());
+        INFO(end.text());
+        CHECK(end.exit_code == 0);
+        CHECK(read_all(input) == "mine");
+        for (const fs::path& name : names) {
+            INFO(name);
+            CHECK(fs::is_regular_file(fs::symlink_status(name)));
+            CHECK(fs::file_size(name) > 4);
+        }
+    };
+    check_replaced(run_arguments("1"), {run / "mesh.ply", run / "statistics.json", run / "trace.vcd"});
+    check_replaced({"compare", "out/run"}, {run / "error.txt", run / "error.json"});
+    check_replaced({"render", "out/run", "--size", "64x64", "--view", "shaded"}, {run / "shaded.png"});
+    const fs::path out = here.path() / "out";
+    check_replaced({"bake", (source_folder() / "testbench/examples/surfaces/dome.toml").string(), "--size",
+                    "16x16", "--output", "out/baked.png"},
+                   {out / "baked.png"});
+    check_replaced({"tune", "--triangles", "60", "--set", "map.width=16", "--set", "map.height=16",
+                    "--output", "out/tuned.toml"},
+                   {out / "tuned.toml", out / "tuned.json"});
+    check_replaced({"widths", "--quantity", "normal", "--bits", "16..16", "--set", "map.width=16", "--set",
+                    "map.height=16", "--output", "out/widths.csv"},
+                   {out / "widths.csv", out / "widths.json"});
+}
+
+TEST_CASE("an input whose name lies in the output folder stays, wherever it leads") {
+    const TestFolder here;
+    files_after(run_arguments("1"), here.path());
+    write_all(here.path() / "map.pgm", "P2 2 2 9\n0 9 5 1\n");
+    fs::create_symlink(here.path() / "map.pgm", here.path() / "out/run/picture.png");
+    std::vector<std::string> arguments = run_arguments("1");
+    arguments.insert(arguments.end(), {"--set", "map.source=file", "--set", "map.file=out/run/picture.png"});
+    const ProgramEnd end = run_tessera(arguments, here.path());
+    INFO(end.text());
+    CHECK(end.exit_code == 2);
+    CHECK_THAT(end.err, Contains("would take away its own map"));
+    CHECK(fs::is_symlink(here.path() / "out/run/picture.png"));
+}
+
+TEST_CASE("a built checkout that cannot be written runs") {
+    const TestFolder here;
+    const Checkout checkout;
+    // What ninja says of a build folder in which nothing is to be done.
+    write_all(checkout.root() / "tools/cmake",
+              "#!/bin/sh\necho \"ninja: $(cat " + (here.path() / "state").string() + ")\"\n");
+    write_all(checkout.root() / "build/release/build.ninja", "");
+    write_all(checkout.root() / "build/release/CMakeCache.txt",
+              "CMAKE_HOME_DIRECTORY:INTERNAL=" + checkout.root().string() + "\n");
+    const auto run = [&](const std::string& state, const std::string& folder) {
+        write_all(here.path() / "state", state);
+        return checkout.run(
+            "unshare --mount --map-root-user sh -c '"
+            "mount --bind . . && mount -o remount,bind,ro . && cd \"$PWD\" && exec scripts/run"
+            " --set map.width=16 --set map.height=16" +
+            (folder.empty() ? "" : " --set output.folder=" + folder) + "'");
+    };
+    const fs::path elsewhere = here.path() / "run";
+    const ProgramEnd good = run("no work to do.", elsewhere.string());
+    if (good.err.find("unshare:") != std::string::npos || good.err.find("mount:") != std::string::npos) {
+        WARN("this test is skipped: no folder can be made read-only here");
+        return;
+    }
+    INFO(good.text());
+    CHECK(good.exit_code == 0);
+    CHECK(fs::exists(elsewhere / "mesh.ply"));
+    const ProgramEnd own = run("no work to do.", "");
+    CHECK(own.exit_code == 2);
+    CHECK_THAT(own.err, Contains("output.folder = \"runs/half_donut\": cannot write there") &&
+                            Contains("Read-only file system"));
+    const ProgramEnd old = run("Entering directory", elsewhere.string());
+    CHECK(old.exit_code == 2);
+    CHECK_THAT(old.err, Contains("build/release is not up to date and cannot be written"));
+}
+
+TEST_CASE("what cannot be taken away or replaced leaves the earlier run as it was") {
+    const TestFolder here;
+    const fs::path run = here.path() / "out/run";
+    Files old_run = files_after(run_arguments("2"), here.path());
+
+    // What is no file of a run's is none of its business.
+    fs::create_directories(run / "wireframe.png/mine");
+    write_all(run / "wireframe.png/mine/notes.txt", "mine");
+    INFO(run_tessera(run_arguments("1"), here.path()).text());
+    CHECK(read_all(run / "wireframe.png/mine/notes.txt") == "mine");
+    CHECK(files_in(run).at("mesh.ply") != old_run.at("run/mesh.ply"));
+
+    // A folder that never held a run keeps what it has.
+    fs::remove_all(here.path() / "out");
+    for (const char* const name : {"error.txt", "shaded.png", "mesh.ply", "job.toml"}) {
+        fs::create_directories(run);
+        write_all(run / name, "mine");
+        const Files mine = files_in(run);
+        const ProgramEnd refused = run_tessera(run_arguments("1"), here.path());
+        INFO(refused.text());
+        CHECK(refused.exit_code == 2);
+        CHECK_THAT(refused.err, Contains("output.folder = \"out/run\"") &&
+                                    Contains(std::string("out/run/") + name) &&
+                                    Contains("move the file away, or choose another"));
+        CHECK(files_in(run) == mine);
+        fs::remove_all(run);
+    }
+
+    // A link that leads into a folder nobody may write to: the last file of all that cannot be replaced.
+    if (::geteuid() == 0)
+        return;  // whom permissions do not stop
+    old_run = files_after(run_arguments("2"), here.path());
+    fs::create_directories(run / "frame_000");
+    fs::copy_file(run / "job.toml", run / "frame_000/job.toml");
+    fs::permissions(run / "frame_000", fs::perms::owner_read | fs::perms::owner_exec);
+    const ProgramEnd refused = run_tessera(run_arguments("1"), here.path());
+    fs::permissions(run / "frame_000", fs::perms::owner_all);
+    INFO(refused.text());
+    CHECK(refused.exit_code == 2);
+    CHECK_THAT(refused.err, Contains("frame_000/job.toml") && Contains("all is as it was"));
+    fs::remove_all(run / "frame_000");
+    CHECK(files_in(here.path() / "out") == old_run);
+}
+
+TEST_CASE("an interrupted run says how far it was") {
+    const TestFolder here;
+    std::vector<std::string> arguments{"run",   "--vcd",
+                                       "--set", "map.width=512",
+                                       "--set", "map.height=512",
+                                       "--set", "output.trace_to=10000000",
+                                       "--set", "output.folder=out/run"};
+    const ProgramEnd end = run_failing(arguments, here.path(), 12, "SIGINT");
+    INFO(end.text());
+    CHECK(end.signal == SIGINT);
+    CHECK_THAT(end.err, Contains(" %, ") && Contains(" triangles; no unfinished file is left"));
+    CHECK(here.names().empty());
+}
+
+TEST_CASE(
+    "compare, render, bake and tune leave whole files or none when the disk is full or they are "
+    "interrupted") {
+    const TestFolder here;
+    const std::vector<std::string> run = run_arguments("1");
+    const Files before = files_after(run, here.path());
+    for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+             {"compare", "out/run"},
+             {"render", "out/run", "--size", "64x64", "--view", "shaded", "--view", "generation"},
+             {"bake", (source_folder() / "testbench/examples/surfaces/dome.toml").string(), "--size", "16x16",
+              "--output", "out/baked.png"},
+             {"tune", "--triangles", "60", "--set", "map.width=16", "--set", "map.height=16", "--output",
+              "out/tuned.toml"}}) {
+        INFO(arguments[0]);
+        files_after(run, here.path());
+        const ProgramEnd end = run_tessera(arguments, here.path());
+        INFO(end.text());
+        REQUIRE(end.exit_code == 0);
+        const Files after = files_in(here.path() / "out");
+        REQUIRE(after.size() > before.size());
+        for (const char* const what : {"full", "SIGTERM"})
+            check_ends_well(arguments, here.path(), {before, after}, what);
+    }
+}
+
+TEST_CASE("a summary that cannot be printed is an error, and the results are whole") {
+    const TestFolder here;
+    const Files expected = files_after(run_arguments("1"), here.path());
+    std::string line = std::string(TESSERA_PROGRAM);
+    for (const std::string& argument : run_arguments("1"))
+        line += " " + argument;
+    const ProgramEnd end = run_program({"sh", "-c", line + " > /dev/full"}, here.path());
+    INFO(end.text());
+    CHECK(end.exit_code == 4);
+    CHECK_THAT(end.err, Contains("standard output: No space left on device"));
+    CHECK(files_in(here.path() / "out") == expected);
+}

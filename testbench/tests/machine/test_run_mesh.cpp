@@ -1,0 +1,230 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "testbench/common/atomic_file.h"
+#include "testbench/common/error.h"
+#include "testbench/input/map/built_in_maps.h"
+#include "testbench/input/mesh/built_in.h"
+#include "testbench/input/mesh/run_mesh.h"
+#include "testbench/job/dump_job.h"
+#include "testbench/job/frame_job.h"
+#include "testbench/machine/host_traffic.h"
+#include "testbench/output/report/ply_writer.h"
+#include "testbench/tests/support/program_runner.h"
+
+using namespace tessera;
+using Catch::Contains;
+
+namespace {
+
+using Corner = EmittedTriangle::Corner;
+
+constexpr std::int32_t one = 65536, unit = 16384, texel = 4096;
+
+/// At x, y, 0 in world units, with t = (x, y) / 4 of the map.
+Corner corner(int x, int y, std::int32_t base_x = 0) {
+    Corner c;
+    c.position = {base_x, 0, 0};
+    c.displaced = {x * one, y * one, 0};
+    c.displaced_normal = {0, 0, unit};
+    c.texture = {static_cast<std::uint32_t>(x * 2 * texel), static_cast<std::uint32_t>(y * 2 * texel)};
+    return c;
+}
+
+EmittedTriangle triangle(const Corner& a, const Corner& b, const Corner& c) {
+    EmittedTriangle t;
+    t.corners = {a, b, c};
+    return t;
+}
+
+/// What a run finds for itself, said.
+Job without_automatic(Job job) {
+    job.displacement.scale = 0.25;
+    job.camera.eye = {1.05, -2.9, 2.45};
+    job.camera.target = {0, 0, 0.05};
+    if (is_automatic(job.camera.up))
+        job.camera.up = {0, 0, 1};
+    job.camera.near_plane = 0.01;
+    return job;
+}
+
+BaseMesh read_back(const std::vector<EmittedTriangle>& triangles, const Job& job = {},
+                   std::uint32_t map_size = 8) {
+    const TestFolder run;
+    EmittedMesh mesh;
+    mesh.triangles = triangles;
+    MeshUnits units;
+    units.map.width = units.map.height = map_size;
+    write_ply(run.path() / "mesh.ply", mesh, units);
+    write_file(run.path() / "job.toml", dump_job(without_automatic(job), run.path()));
+    return read_run_mesh(run.path());
+}
+
+bool repaired(const BaseMesh& mesh, const std::string& words) {
+    for (const std::string& repair : mesh.repairs)
+        if (repair.find(words) != std::string::npos)
+            return true;
+    return false;
+}
+
+/// The default job's, with this displacement scale.
+MachineSetup setup_of(double scale) {
+    Job job = without_automatic({});
+    job.displacement.scale = scale;
+    return make_setup(job, make_plane(3, 3, 2, 2), half_donut_map(64, 64));
+}
+
+}  // namespace
+
+TEST_CASE("a run's mesh as a base: displaced vertices, shared, complete") {
+    const BaseMesh mesh = read_back({triangle(corner(0, 0), corner(4, 0), corner(4, 4)),
+                                     triangle(corner(0, 0), corner(4, 4), corner(0, 4))});
+    REQUIRE(mesh.vertices.size() == 4);
+    REQUIRE(mesh.triangles.size() == 2);
+    CHECK(mesh.repairs.empty());
+    CHECK(mesh.dropped_degenerate == 0);
+    const BaseVertex& far = mesh.vertices[mesh.triangles[0][2]];
+    CHECK(far.position == glm::dvec3(4, 4, 0));
+    CHECK(far.normal == glm::dvec3(0, 0, 1));
+    CHECK(far.tangent == glm::dvec3(1, 0, 0));
+    CHECK(far.handedness == 1);
+    CHECK(far.texture == glm::dvec2(1, 1));
+    CHECK(mesh.texture_scale.mean_u == 4);
+}
+
+TEST_CASE("texture coordinates keep every bit, whatever the map's size") {
+    // as a float, 2999 + 1/4096 of 3000 texels is a third of a step off: two sides of a seam would round apart
+    Corner fine = corner(4, 4);
+    fine.texture = {2999 * texel + 1, 1001 * texel + 4095};
+    const BaseMesh mesh = read_back({triangle(corner(0, 0), corner(4, 0), fine)}, {}, 3000);
+    const glm::dvec2 steps = mesh.vertices[2].texture * (3000.0 * texel);
+    CHECK(std::abs(steps.x - fine.texture.u) < 1e-6);
+    CHECK(std::abs(steps.y - fine.texture.v) < 1e-6);
+}
+
+TEST_CASE(
+    "vertices of a run that only their base position tells apart become one, and triangles so collapsed go") {
+    // Corner (4, 0) came of two places; the triangle between them has no edge any more that a neighbour needs.
+    const BaseMesh mesh = read_back({triangle(corner(0, 0), corner(4, 0), corner(4, 4)),
+                                     triangle(corner(4, 0), corner(4, 0, 7), corner(4, 4)),
+                                     triangle(corner(4, 0, 7), corner(8, 0), corner(4, 4))});
+    CHECK(mesh.vertices.size() == 4);
+    CHECK(mesh.triangles.size() == 2);
+    CHECK(mesh.dropped_degenerate == 1);
+    CHECK(repaired(mesh, "1 triangle(s) of the run"));
+}
+
+TEST_CASE("a triangle without area that holds a T-vertex's place stays") {
+    // (2, 0) lies on the edge from (0, 0) to (4, 0): whole on one side, cut on the other, and the flat
+    // triangle between.
+    const BaseMesh mesh = read_back({triangle(corner(0, 0), corner(4, 0), corner(4, 4)),
+                                     triangle(corner(4, 0), corner(0, 0), corner(2, 0)),
+                                     triangle(corner(2, 0), corner(0, 0), corner(2, -4)),
+                                     triangle(corner(4, 0), corner(2, 0), corner(2, -4))});
+    CHECK(mesh.triangles.size() == 4);
+    CHECK(mesh.dropped_degenerate == 0);
+    for (const BaseVertex& vertex : mesh.vertices)
+        CHECK(vertex.tangent == glm::dvec3(1, 0, 0));
+}
+
+TEST_CASE("normals that the run had not, and triangles it culled, are said") {
+    Corner bare = corner(4, 4);
+    bare.displaced_normal = {0, 0, 0};
+    EmittedTriangle culled = triangle(corner(0, 0), corner(4, 4), corner(0, 4));
+    culled.culled = true;
+    Job job;
+    job.hardware.culling = Culling::back;
+    const BaseMesh mesh = read_back({triangle(corner(0, 0), corner(4, 0), bare), culled}, job);
+    CHECK(mesh.triangles.size() == 1);
+    CHECK(mesh.vertices[2].normal == glm::dvec3(0, 0, 1));
+    CHECK(repaired(mesh, "1 vertices of the run have no normal"));
+    CHECK(repaired(mesh, "culled"));
+    CHECK_THROWS_WITH(read_back({culled}, job), Contains("no triangle is left"));
+    CHECK_THROWS_WITH(read_back({triangle(corner(0, 0), corner(0, 0), corner(0, 0))}),
+                      Contains("no triangle is left"));
+}
+
+TEST_CASE("up is the run's camera.up if its mesh was a file or a run, else z") {
+    const auto up_of = [](MeshSource source) {
+        Job job;
+        job.mesh.source = source;
+        job.mesh.file = reads_file(source) ? "not looked at" : "";
+        job.camera.up = {0, 2, 1};
+        return read_back({triangle(corner(0, 0), corner(4, 0), corner(4, 4))}, job).up;
+    };
+    CHECK(up_of(MeshSource::file) == glm::dvec3(0, 2, 1));
+    CHECK(up_of(MeshSource::run) == glm::dvec3(0, 2, 1));
+    CHECK(up_of(MeshSource::cylinder) == glm::dvec3(0, 0, 1));
+    CHECK(up_of(MeshSource::patches) == glm::dvec3(0, 0, 1));
+}
+
+TEST_CASE("frame k of n: its scale, its folder, and nothing else") {
+    Job job;
+    job.displacement.scale = 0.3;
+    job.displacement.bias = -0.1;
+    job.frames.count = 4;
+    job.frames.first_scale = -0.3;
+    job.output.folder = "runs/x";
+    CHECK(frame_job(job, 0).displacement.scale == -0.3);
+    CHECK(frame_job(job, 1).displacement.scale == Approx(-0.1));
+    CHECK(frame_job(job, 3).displacement.scale == 0.3);
+    for (std::int64_t k = 0; k < 4; ++k) {
+        const Job frame = frame_job(job, k);
+        CHECK(frame.frames.count == 1);
+        CHECK(frame.displacement.bias == -0.1);
+        CHECK(frame.output.folder == "runs/x/frame_00" + std::to_string(k));
+    }
+    CHECK(is_frame_name("frame_000"));
+    CHECK(is_frame_name("frame_1000"));
+    CHECK_FALSE(is_frame_name("frame_00"));
+    CHECK_FALSE(is_frame_name("frame_00a"));
+    CHECK_FALSE(is_frame_name("frames"));
+}
+
+TEST_CASE("another scale: what the host sends again is the normal map, S and the base mesh") {
+    const MachineSetup low = setup_of(0.2), high = setup_of(0.25);
+    REQUIRE(low.model_scale.scale == high.model_scale.scale);
+    // what makes it true: the machine holds nothing else that depends on S
+    CHECK(low.map.codes == high.map.codes);
+    CHECK(low.registers.formats.summed_height.bits == high.registers.formats.summed_height.bits);
+
+    const HostTraffic first = first_frame_traffic(low);
+    CHECK(first.base_mesh == base_mesh_bytes(low));
+    CHECK(first.displacement_map == 64 * 64 * 2);
+    CHECK(first.normal_map == 64 * 64 * 6);
+    CHECK(first.summed_height_table == 65 * 65 * 4);
+    // choices 1, map 2, tables 3 x 2, tests 5, S and bias, rows 3 x (3 + 2), shifts 2, near plane 2, normals 9, light 4
+    CHECK(first.registers == 4 * 48);
+
+    const HostTraffic later = next_frame_traffic(low, high);
+    CHECK(later.base_mesh == first.base_mesh);
+    CHECK(later.displacement_map == 0);
+    CHECK(later.normal_map == first.normal_map);
+    CHECK(later.summed_height_table == 0);
+    CHECK(later.registers == 4);
+    CHECK(later.total() == first.base_mesh + first.normal_map + 4);
+
+    CHECK(next_frame_traffic(low, low).total() == first.base_mesh);
+}
+
+TEST_CASE("the point of w and the Highlight Test's values are registers that the host sends") {
+    const MachineSetup before = setup_of(0.2);
+    MachineSetup now = before;
+    --now.registers.formats.view_distance.fraction;
+    CHECK(next_frame_traffic(before, now).registers == 4);
+    now = before;
+    now.registers.formats.highlight_tag = true;
+    // H 3, cosine 1, threshold 1; its switch stands with the others
+    CHECK(register_words(now.registers).size() == 48 + 5);
+    now.registers.formats.normal = datapath::Format::make_signed(18, 16);
+    CHECK(register_words(now.registers).size() == 48 + 6);  // a cosine of 34 bits
+}
+
+TEST_CASE("a scale that makes the model's own change sends Transform's matrix again") {
+    const MachineSetup low = setup_of(0.2), high = setup_of(5);
+    REQUIRE(low.model_scale.scale != high.model_scale.scale);
+    const HostTraffic later = next_frame_traffic(low, high);
+    CHECK(later.displacement_map == 0);
+    CHECK(later.registers > 4);
+    CHECK(later.registers < first_frame_traffic(high).registers);
+}

@@ -1,0 +1,360 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+
+#include "testbench/common/error.h"
+#include "testbench/machine/bare_recursion.h"
+#include "testbench/output/report/saturation_figures.h"
+#include "testbench/tests/modules/datapath/datapath_reference.h"
+#include "testbench/tests/support/timed_checks.h"
+
+// What does not fit its format is counted: as often as integers of another width, in another place, say.
+
+using namespace tessera;
+using namespace tessera::testing;
+using datapath::Saturations;
+using datapath::TrianglePass;
+
+namespace {
+
+/// Sees every decided pass.
+class Watcher : public tlm::tlm_analysis_if<TrianglePass> {
+  public:
+    explicit Watcher(std::function<void(const TrianglePass&)> look) : look_(std::move(look)) {}
+    void write(const TrianglePass& pass) override { look_(pass); }
+
+  private:
+    std::function<void(const TrianglePass&)> look_;
+};
+
+Saturations run_watched(const MachineSetup& setup, const std::function<void(const TrianglePass&)>& look) {
+    Simulation simulation(setup, 1'000'000, 100'000);
+    Watcher watcher(look);
+    simulation.pipeline.pass_or_tessellate.decided.bind(watcher);
+    const std::string stuck = simulation.run();
+    INFO(stuck);
+    REQUIRE(stuck.empty());
+    return simulation.pipeline.saturations();
+}
+
+Job small_job() {
+    Job job = timed_job();
+    job.map.width = job.map.height = 32;
+    job.tests.generation_limit = 4;
+    return job;
+}
+
+bool beyond(Wide value, const datapath::Format& format) {
+    return value < format.lowest || value > format.highest;
+}
+
+/// Calls look(P, N, t, P', P's) for every vertex that the machine displaces on this pass.
+template <class Look>
+void for_each_displaced(const TrianglePass& pass, Look&& look) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        const datapath::Vertex& v = pass.triangle.vertices[k];
+        if ((pass.new_vertices >> k & 1) != 0)
+            look(v.position, v.normal, v.texture, v.displaced, v.screen);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+        const datapath::NewVertex& made = pass.new_vertex[k];
+        look(made.position, pass.edges[k].normal, made.texture, made.displaced, made.screen);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("saturations: the default job has none, of any quantity") {
+    const MachineSetup setup = setup_of(timed_job());
+    Simulation simulation(setup, 1'000'000, 100'000);
+    REQUIRE(simulation.run().empty());
+    const auto figures = saturation_figures(setup, simulation.pipeline.saturations());
+    CHECK(figures.size() == 12);
+    for (const SaturationFigure& figure : figures) {
+        INFO(figure.name);
+        CHECK(figure.count == 0);
+    }
+    CHECK(saturations_text(figures) == "none");
+    CHECK(saturation_warnings(figures).empty());
+}
+
+TEST_CASE("saturations: displaced positions, as 128 bit integers count them") {
+    MachineSetup setup = setup_of(small_job());
+    datapath::Registers& r = setup.registers;
+    r.displacement.bias = static_cast<std::int32_t>(r.formats.position.highest / 5 * 4);
+    r.displacement.scale = static_cast<std::int32_t>(r.formats.position.highest / 3);
+    std::uint64_t expected = 0, wrong = 0;
+    const Saturations counted = run_watched(setup, [&](const TrianglePass& pass) {
+        for_each_displaced(
+            pass, [&](const auto& p, const auto& n, const auto& t, const auto& displaced, const auto&) {
+                const auto texel = [&](std::uint32_t c, std::uint32_t size) {
+                    return std::min(c >> r.formats.texture.fraction, size - 1);
+                };
+                const Wide code = setup.map.code(texel(t.u, r.map.width), texel(t.v, r.map.height));
+                const Wide height =
+                    nearest(r.displacement.scale * code, r.formats.displacement.bits) + r.displacement.bias;
+                const auto count = [&](std::int32_t base, std::int32_t normal, std::int32_t machine) {
+                    const Wide exact = base + nearest(height * normal, r.formats.normal.fraction);
+                    expected += beyond(exact, r.formats.position) ? 1u : 0u;
+                    wrong += machine == clamped(exact, r.formats.position.lowest, r.formats.position.highest)
+                                 ? 0u
+                                 : 1u;
+                };
+                count(p.x, n.x, displaced.x);
+                count(p.y, n.y, displaced.y);
+                count(p.z, n.z, displaced.z);
+            });
+    });
+    CHECK(expected > 50);
+    CHECK(counted.displaced_position == expected);
+    CHECK(wrong == 0);
+}
+
+TEST_CASE("saturations: screen positions, as a division in doubles counts them") {
+    Job job = small_job();
+    job.formats.screen_bits = 13;
+    job.formats.screen_fraction = 2;
+    job.camera.eye = {0.2, -0.5, 0.4};
+    const MachineSetup setup = setup_of(job);
+    const datapath::TransformParameters& transform = setup.registers.transform;
+    const datapath::Format& screen = setup.registers.formats.screen;
+    std::uint64_t certain = 0, possible = 0;
+    const Saturations counted = run_watched(setup, [&](const TrianglePass& pass) {
+        for_each_displaced(
+            pass, [&](const auto&, const auto&, const auto&, const auto& p, const auto& on_screen) {
+                if (!on_screen.in_front)
+                    return;
+                const auto along = [&](const std::array<std::int64_t, 4>& row) {
+                    return static_cast<double>(Wide{row[0]} * p.x + Wide{row[1]} * p.y + Wide{row[2]} * p.z +
+                                               row[3]);
+                };
+                for (const auto& row : {transform.row_x, transform.row_y}) {
+                    const double exact =
+                        std::ldexp(along(row) / along(transform.row_w), transform.exponent + screen.fraction);
+                    const double room = 0.5 + std::abs(exact) * 0x1p-28;
+                    const auto lowest = static_cast<double>(screen.lowest),
+                               highest = static_cast<double>(screen.highest);
+                    certain += exact > highest + 0.5 + room || exact < lowest - 0.5 - room ? 1u : 0u;
+                    possible += exact > highest + 0.5 - room || exact < lowest - 0.5 + room ? 1u : 0u;
+                }
+            });
+    });
+    CHECK(certain > 50);
+    CHECK(counted.screen_position >= certain);
+    CHECK(counted.screen_position <= possible);
+    CHECK(possible - certain < certain / 20);
+    CHECK(counted.total() == counted.screen_position);
+    const auto warnings = saturation_warnings(saturation_figures(setup, counted));
+    REQUIRE(warnings.size() == 1);
+    CHECK_THAT(warnings[0], Catch::StartsWith("screen position: ") && Catch::Contains("formats.screen_bits"));
+}
+
+TEST_CASE("saturations: view distances, as 128 bit integers count them") {
+    MachineSetup setup = setup_of(small_job());
+    datapath::Format& format = setup.registers.formats.view_distance;
+    format.fraction += 6;  // more than the host would choose
+    const auto& row = setup.registers.transform.row_w;
+    const int shift = datapath::TransformParameters::matrix_fraction +
+                      setup.registers.formats.position.fraction - format.fraction;
+    std::uint64_t expected = 0;
+    const Saturations counted = run_watched(setup, [&](const TrianglePass& pass) {
+        for_each_displaced(pass, [&](const auto&, const auto&, const auto&, const auto& p, const auto&) {
+            const Wide w = Wide{row[0]} * p.x + Wide{row[1]} * p.y + Wide{row[2]} * p.z + row[3];
+            expected += beyond(nearest(w, shift), format) ? 1u : 0u;
+        });
+    });
+    CHECK(expected > 50);
+    CHECK(counted.view_distance == expected);
+}
+
+// The host's normals have two integer bits, so that 1.0 fits: only a format of one saturates.
+TEST_CASE("saturations: normals of one integer bit, where a plane's own do not fit") {
+    Job job = small_job();
+    job.map.source = MapSource::constant;
+    MachineSetup setup = setup_of(job);
+    datapath::Formats& formats = setup.registers.formats;
+    formats.normal = datapath::Format::make_signed(16, 15);
+    for (datapath::Triangle& triangle : setup.base_triangles)
+        for (datapath::Vertex& v : triangle.vertices) {
+            v.normal = {0, 0, 32767};
+            v.tangent = {32767, 0, 0};
+        }
+    setup.registers.transform.normal_rows = {{{0, 0, 32768}, {0, 1000, 0}, {0, 0, 60000}}};
+    Simulation simulation(setup, 1'000'000, 100'000);
+    REQUIRE(simulation.run().empty());
+    const Saturations counted = simulation.pipeline.saturations();
+    const std::uint64_t edges = simulation.pipeline.edges_tested(), base = setup.base_triangles.size();
+    // N_ij in two units, T_ij, N'_ij; N' of each base triangle's corners
+    CHECK(counted.normal == 4 * edges + 3 * base);
+    // 32767 * 60000 / 2^15 does not fit; 32767 * 32768 / 2^15 does
+    CHECK(counted.screen_normal == simulation.pipeline.transform.normals());
+    CHECK(counted.screen_normal == 3 * base);
+}
+
+TEST_CASE("saturations: opposite normals leave zero vectors, counted") {
+    MachineSetup setup = setup_of(small_job());
+    for (datapath::Triangle& triangle : setup.base_triangles) {
+        datapath::Direction& n = triangle.vertices[1].normal;
+        n = {-n.x, -n.y, -n.z};
+    }
+    std::uint64_t expected = 0;
+    const auto zero = [](const datapath::Direction& d) { return d == datapath::Direction{}; };
+    const Saturations counted = run_watched(setup, [&](const TrianglePass& pass) {
+        for (int k = 0; k < 3; ++k) {
+            const datapath::Vertex &i = pass.edge_begin(k), &j = pass.edge_end(k);
+            const datapath::EdgeTests& edge = pass.edges[static_cast<std::size_t>(k)];
+            // the sum of the ends is 0 or rounds to it: 1 is halved downwards
+            const auto mean_is_zero = [](const datapath::Direction& a, const datapath::Direction& b) {
+                const auto none = [](std::int32_t s) { return s == 0 || s == 1; };
+                return none(a.x + b.x) && none(a.y + b.y) && none(a.z + b.z);
+            };
+            expected += mean_is_zero(i.normal, j.normal) ? 2u : 0u;  // in two units
+            expected += mean_is_zero(i.tangent, j.tangent) ? 1u : 0u;
+            expected += zero(edge.displaced_normal) ? 1u : 0u;
+        }
+        for (std::size_t k = 0; k < 3; ++k)
+            if ((pass.new_vertices >> k & 1) != 0)
+                expected += zero(pass.triangle.vertices[k].displaced_normal) ? 1u : 0u;
+    });
+    CHECK(expected > 50);
+    CHECK(counted.degenerate_normal == expected);
+}
+
+TEST_CASE("saturations: generations beyond their field, with the Generation Test off") {
+    Job job = timed_job();
+    job.mesh.columns = job.mesh.rows = 1;
+    job.map.source = MapSource::noise;
+    job.map.width = job.map.height = 16;
+    job.tests.normal_threshold = job.tests.summed_height_threshold = job.tests.view_threshold = 0;
+    job.tests.generation = false;
+    job.tests.generation_limit = 3;
+    job.formats.generation_bits = 2;
+    job.hardware.queue_capacity = 4;  // spilled triangles are packed: what is in them fits their fields
+    const MachineSetup setup = setup_of(job);
+    std::uint64_t expected = 0;
+    int deepest = 0;
+    Simulation simulation(setup, 100'000, 100'000);
+    Watcher watcher([&](const TrianglePass& pass) {
+        for (int k = 0; k < 3; ++k) {
+            const int oldest = std::max(pass.edge_begin(k).generation, pass.edge_end(k).generation);
+            deepest = std::max(deepest, oldest);
+            expected += (pass.split >> k & 1) != 0 && oldest == 3 ? 1u : 0u;
+        }
+    });
+    simulation.pipeline.pass_or_tessellate.decided.bind(watcher);
+    run_timed(simulation);
+    CHECK(deepest == 3);
+    CHECK(expected > 50);
+    CHECK(simulation.pipeline.saturations().generation == expected);
+    CHECK(simulation.pipeline.triangle_queue.spilled() > 0);
+
+    BareRecursion bare(setup);
+    EmittedMesh mesh;
+    bare.run(mesh);
+    CHECK(bare.saturations().generation == expected);
+    CHECK(keys(mesh) == keys(simulation.monitor.mesh));
+}
+
+TEST_CASE("saturations: vertices that face the light fully") {
+    Job job = timed_job();
+    job.map.source = MapSource::constant;
+    job.camera.eye = {0, -3, 0};
+    job.camera.target = {0, 0, 0};
+    job.hardware.light = {0, 0, 1};
+    const MachineSetup setup = setup_of(job);
+    Simulation simulation(setup, 1'000'000, 100'000);
+    REQUIRE(simulation.run().empty());
+    const Saturations counted = simulation.pipeline.saturations();
+    CHECK(counted.intensity == 3 * setup.base_triangles.size());
+    CHECK(counted.total() == counted.intensity);
+    const auto figures = saturation_figures(setup, counted);
+    CHECK(saturations_text(figures) == "intensity 54");
+    CHECK(saturation_warnings(figures).empty());  // no width helps
+    const auto notes = saturation_notes(figures);
+    REQUIRE(notes.size() == 1);
+    CHECK_THAT(notes[0], Catch::Contains("intensity: 54 values saturated") &&
+                             Catch::Contains("no key widens Lighting's 8 bits"));
+}
+
+TEST_CASE("saturations: each says what to widen, what it means, or is remarked on by the setup") {
+    for (const SaturationFigure& figure : saturation_figures(setup_of(small_job()), {})) {
+        INFO(figure.name);
+        CHECK((figure.remedy != nullptr || figure.meaning != nullptr) ==
+              (figure.name != std::string("input_texture")));
+    }
+}
+
+TEST_CASE(
+    "saturations: texture coordinates beyond a map that clamps are counted, and the setup remarks on them") {
+    const Job job = small_job();
+    BaseMesh mesh = load_mesh(job, {});
+    mesh.vertices.front().texture.x = -0.25;
+    const HeightMap map = load_map(job, {});
+    const MachineSetup setup = make_setup(resolve_job(job, mesh, map).job, mesh, map);
+    const auto figures = saturation_figures(setup, {});
+    CHECK(saturations_text(figures) == "input texture 1");
+    CHECK(saturation_warnings(figures).empty());
+    CHECK(saturation_notes(figures).empty());
+    REQUIRE(setup.remarks.size() == 1);
+    CHECK_THAT(setup.remarks[0],
+               Catch::Contains("set to the map's border") && Catch::Contains("map.address_u"));
+}
+
+TEST_CASE("saturations: what the host rounds is counted too") {
+    // S is twice the range of a map of one bit: 2^(bits - 1), one LSB more than its register holds
+    Job job = small_job();
+    job.formats.displacement_bits = 1;
+    job.tests.summed_height_threshold = 2;
+    job.displacement.scale = 1;
+    job.displacement.bias = -0.5;
+    job.mesh.width = job.mesh.depth = 0.5;
+    const MachineSetup setup = setup_of(job);
+    CHECK(setup.registers.displacement.scale == setup.registers.formats.position.highest);
+    CHECK(setup.input_saturations.registers == 1);
+    CHECK(setup.input_saturations.position == 0);
+    const auto warnings = saturation_warnings(saturation_figures(setup, {}));
+    REQUIRE(warnings.size() == 1);
+    CHECK_THAT(warnings[0], Catch::Contains("input register") && Catch::Contains("formats.position_bits"));
+}
+
+TEST_CASE("a threshold that its register cannot tell from 0 is refused with the register's step") {
+    const auto refusal = [](const std::function<void(Job&)>& change) -> std::string {
+        Job job;
+        change(job);
+        try {
+            setup_of(job);
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return {};
+    };
+    using Catch::Contains;
+    const double step = 0x1p-14;
+    CHECK_THAT(refusal([](Job& job) { job.tests.normal_threshold = 1e-5; }),
+               Contains("tests.normal_threshold = 1e-05") && Contains("6.103515625e-05") &&
+                   Contains("formats.normal_fraction"));
+    CHECK_THAT(refusal([](Job& job) {
+                   job.tests.highlight = true;
+                   job.tests.highlight_normal_threshold = 6e-5;
+               }),
+               Contains("tests.highlight_normal_threshold = 6e-05") && Contains("6.103515625e-05"));
+    CHECK_THAT(refusal([](Job& job) { job.tests.view_threshold = 0.003; }),
+               Contains("tests.view_threshold = 0.003") && Contains("0.00390625"));
+    CHECK_THAT(refusal([](Job& job) { job.tests.summed_height_threshold = 3e-6; }),
+               Contains("tests.summed_height_threshold") && Contains("formats.displacement_bits"));
+    CHECK_THAT(refusal([](Job& job) {
+                   job.tests.summed_height_threshold = 0.4;
+                   job.tests.summed_height_unit = SummedHeightUnit::area;
+                   job.formats.displacement_bits = 1;
+               }),
+               Contains("tests.summed_height_threshold = 0.4"));
+    CHECK(refusal([=](Job& job) { job.tests.normal_threshold = step; }).empty());
+    CHECK(refusal([](Job& job) { job.tests.normal_threshold = 0; }).empty());
+    CHECK(refusal([](Job& job) {
+              job.tests.highlight_normal_threshold = 1e-5;
+          }).empty());  // there is no such test
+    CHECK(refusal([](Job& job) {
+              job.tests.normal = false;
+              job.tests.normal_threshold = 1e-5;
+          }).empty());
+}

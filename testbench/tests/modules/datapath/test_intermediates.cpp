@@ -1,0 +1,349 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <string>
+#include <vector>
+
+#include "modules/datapath/all_intermediates.h"
+#include "testbench/tests/modules/datapath/datapath_reference.h"
+
+using namespace tessera::datapath;
+using namespace tessera::testing;
+
+namespace {
+
+/// The values seen of an intermediate.
+struct Reach {
+    Wide low = 0, high = 0;
+    void see(Wide value) {
+        low = std::min(low, value);
+        high = std::max(high, value);
+    }
+    /// Bits that hold them; unsigned if none is negative.
+    int bits() const {
+        for (int bits = 1;; ++bits) {
+            const Wide beyond = Wide{1} << (low < 0 ? bits - 1 : bits);
+            if (high < beyond && low >= (low < 0 ? -beyond : 0))
+                return bits;
+        }
+    }
+};
+
+/// Formats as narrow and as wide as a job may have them, with few and many fraction bits.
+std::vector<Formats> formats_to_try() {
+    std::vector<Formats> all{Formats{}};
+    const auto vary = [&](const auto& change, const auto&... choices) {
+        const std::vector<Formats> before = all;
+        for (const Formats& formats : before)
+            (
+                [&] {
+                    Formats changed = formats;
+                    change(changed, choices);
+                    all.push_back(changed);
+                }(),
+                ...);
+    };
+    const auto position = [](Formats& f, const Format& format) { f.position = f.view_distance = format; };
+    vary(position, Format::make_signed(8, 0), Format::make_signed(8, 7), Format::make_signed(32, 0),
+         Format::make_signed(32, 31));
+    vary([](Formats& f, const Format& format) { f.normal = format; }, Format::make_signed(6, 0),
+         Format::make_signed(6, 4), Format::make_signed(18, 0), Format::make_signed(18, 16));
+    vary([](Formats& f, const Format& format) { f.texture = format; }, Format::make_unsigned(2, 0),
+         Format::make_unsigned(13, 0), Format::make_unsigned(14, 12));
+    vary([](Formats& f, const Format& format) { f.displacement = format; }, Format::make_unsigned(1, 1));
+    vary([](Formats& f, const Format& format) { f.summed_height = format; }, Format::make_unsigned(8, 0),
+         Format::make_unsigned(48, 0));
+    vary([](Formats& f, const Format& format) { f.screen = format; }, Format::make_signed(8, 7),
+         Format::make_signed(31, 0));
+    return all;
+}
+
+/// No width too small; in the default formats, none more than a bit too large.
+void check(const char* function, const Width& width, const Reach& reach, bool tight) {
+    INFO(function << ": " << width.name << " has " << width.bits << " bits, " << reach.bits()
+                  << " are needed");
+    CHECK(reach.bits() <= width.bits);
+    CHECK(width.bits <= width.most);
+    if (tight)
+        CHECK(width.bits <= reach.bits() + 1);
+}
+
+Wide one(const Formats& f) {
+    return Wide{1} << f.normal.fraction;
+}
+Wide half(int shift) {
+    return shift == 0 ? 0 : Wide{1} << (shift - 1);
+}
+
+void check_displace(const Formats& f, bool tight) {
+    const DisplaceWidths widths{f};
+    Reach product, height, along, step, sum;
+    for (const Wide p : {f.position.lowest, f.position.highest})
+        for (const Wide scale : {f.position.lowest, f.position.highest})
+            for (const Wide bias : {f.position.lowest, f.position.highest})
+                for (const Wide n : {f.normal.lowest, f.normal.highest}) {
+                    const Wide scaled = scale * f.displacement.highest;
+                    const Wide h = nearest(scaled, f.displacement.bits) + bias;
+                    product.see(scaled + half(f.displacement.bits));
+                    height.see(h);
+                    along.see(h * n + half(f.normal.fraction));
+                    step.see(nearest(h * n, f.normal.fraction));
+                    sum.see(p + nearest(h * n, f.normal.fraction));
+                }
+    check("displace", widths.product, product, tight);
+    check("displace", widths.height, height, tight);
+    check("displace", widths.along, along, tight);
+    check("displace", widths.step, step, tight);
+    check("displace", widths.sum, sum, tight);
+}
+
+void check_bump(const Formats& f, bool tight) {
+    const BumpWidths widths{f};
+    Reach cross, bitangent, product, sum, combined;
+    for (const int sign : {-1, 1}) {
+        const Wide largest = 2 * sign * one(f) * one(f) + half(f.normal.fraction);
+        const Wide b = nearest(2 * sign * one(f) * one(f), f.normal.fraction);
+        const Wide all = one(f) * b + 2 * sign * one(f) * one(f);
+        cross.see(largest);
+        bitangent.see(b);
+        product.see(one(f) * b);
+        sum.see(all + half(bump_shift(f)));
+        combined.see(nearest(all, bump_shift(f)));
+    }
+    check("bump", widths.cross, cross, tight);
+    check("bump", widths.bitangent, bitangent, tight);
+    check("bump", widths.product, product, tight);
+    check("bump", widths.sum, sum, tight);
+    check("bump", widths.combined, combined, tight);
+
+    const NormaliseWidths normalise_widths(f, widths.combined.bits);
+    Reach square, root, scaled;
+    const Wide component = Wide{1} << (widths.combined.bits - 1);
+    square.see(3 * component * component);
+    root.see(reciprocal_root(1u << 30));
+    scaled.see(component * reciprocal_root(1u << 30));
+    scaled.see(-component * reciprocal_root(1u << 30));
+    check("normalise", normalise_widths.square, square, tight);
+    check("normalise", normalise_widths.root, root, tight);
+    check("normalise", normalise_widths.product, scaled, tight);
+}
+
+void check_transform(const Formats& f, bool tight) {
+    const TransformWidths widths{f};
+    Reach product, sum, w, numerator, quotient;
+    for (const int sign : {-1, 1}) {
+        const Wide largest = sign * (Wide{1} << TransformParameters::matrix_fraction) * f.position.lowest;
+        const Wide all = 3 * largest + -sign * (Wide{1} << 61);
+        product.see(largest);
+        sum.see(all + half(view_distance_down(f)));
+        w.see(nearest(all, view_distance_down(f)));
+    }
+    for (const Wide kept : {-(Wide{1} << numerator_bits), (Wide{1} << numerator_bits) - 1}) {
+        numerator.see(kept);
+        quotient.see(kept * reciprocal(1u << 31) + half(62));
+    }
+    Reach inverse;
+    inverse.see(reciprocal(1u << 31));
+    check("transform", widths.product, product, tight);
+    check("transform", widths.sum, sum, tight);
+    check("transform", widths.w, w, tight);
+    check("transform", widths.inverse, inverse, tight);
+    check("transform", widths.numerator, numerator, tight);
+    check("transform", widths.quotient, quotient, tight);
+}
+
+void check_rectangle(const Formats& f, bool tight) {
+    const RectangleWidths widths{f};
+    const std::uint32_t border = 1u << (f.texture.bits - 1), size = border >> f.texture.fraction;
+    const MapGeometry map{size, size, AddressMode::repeat, AddressMode::repeat};
+    const TexCoord zero, farthest{border, border}, last{border - 1, border - 1};
+    const RectangleSize largest = rectangle_size(zero, farthest, map, f);
+    Reach difference, width, height, first, end, area, limit;
+    difference.see(border);
+    width.see(largest.width);
+    height.see(largest.height);
+    first.see(-Wide{largest.width / 2});
+    first.see(size);
+    end.see(centred_rectangle(last, largest, map, f).last_column);
+    end.see(centred_rectangle(last, {1, 1}, map, f).last_column);
+    end.see(Wide{size} - 1 + largest.width);
+    check("rectangle_size", widths.difference, difference, tight);
+    check("rectangle_size", widths.width, width, tight);
+    check("rectangle_size", widths.height, height, tight);
+    check("rectangle_size", widths.first, first, tight);
+    check("rectangle_size", widths.last, end, tight);
+
+    const EdgeTestWidths edge{f};
+    area.see(Wide{largest.width} * largest.height);
+    limit.see(Wide{1} << 50);
+    TestParameters by_area;
+    by_area.summed_height_unit = SummedHeightUnit::area;
+    by_area.summed_height_threshold = 1u << 18;
+    limit.see(summed_height_limit(largest, by_area));
+    check("edge tests", edge.area, area, tight);
+    check("edge tests", edge.limit, limit, tight);
+}
+
+void check_edge_tests(const Formats& f, bool tight) {
+    const EdgeTestWidths widths{f};
+    Reach normal, sums, screen, length, index, product, cosine;
+    normal.see(absolute_difference(f.normal.lowest, f.normal.highest));
+    sums.see(2 * Wide{f.summed_height.highest});
+    screen.see(absolute_difference(f.screen.lowest, f.screen.highest));
+    length.see(2 * Wide{f.screen.highest - f.screen.lowest});
+    index.see(integer_part(1u << (f.texture.bits - 1), f));
+    const Wide most = Wide{f.normal.lowest} * f.normal.lowest,
+               least = Wide{f.normal.lowest} * f.normal.highest;
+    for (const Wide term : {least, most}) {
+        product.see(term);
+        cosine.see(3 * term);
+    }
+    check("edge tests", widths.normal, normal, tight);
+    check("edge tests", widths.sums, sums, tight);
+    check("edge tests", widths.screen, screen, tight);
+    check("edge tests", widths.length, length, tight);
+    check("edge tests", widths.index, index, tight);
+    check("edge tests", widths.product, product, tight);
+    check("edge tests", widths.cosine, cosine, tight);
+
+    const TransformNormalWidths rotation{f};
+    Reach sum;
+    for (const Wide term : {least, most})
+        sum.see(3 * term + half(f.normal.fraction));
+    check("transform_normal", rotation.product, product, tight);
+    check("transform_normal", rotation.sum, sum, tight);
+
+    const LightWidths light_widths{f};
+    Reach lit, scaled, intensity;
+    lit.see((3 * most) >> f.normal.fraction);
+    scaled.see(256 * lit.high);
+    intensity.see(scaled.high >> f.normal.fraction);
+    intensity.see(256 + ((256 - 256) * lit.high >> f.normal.fraction));
+    check("light", light_widths.product, product, tight);
+    check("light", light_widths.dot, cosine, tight);
+    check("light", light_widths.cosine, lit, tight);
+    check("light", light_widths.scaled, scaled, tight);
+    check("light", light_widths.intensity, intensity, tight);
+}
+
+void check_the_rest(const Formats& f, bool tight) {
+    const MidpointWidths middle{f};
+    const DiagonalWidths diagonal{f};
+    const CullWidths cull{f};
+    Reach position, direction, texture, side, length, compared, difference, product;
+    for (const int k : {0, 1}) {
+        position.see(2 * Wide{k == 0 ? f.position.lowest : f.position.highest});
+        direction.see(2 * Wide{k == 0 ? f.normal.lowest : f.normal.highest});
+    }
+    texture.see(2 * (Wide{1} << (f.texture.bits - 1)));
+    check("midpoint", middle.position, position, tight);
+    check("midpoint", middle.direction, direction, tight);
+    check("midpoint", middle.texture, texture, tight);
+
+    side.see(absolute_difference(f.position.lowest, f.position.highest));
+    length.see(3 * side.high);
+    compared.see(64 * length.high);
+    check("choose_second_diagonal", diagonal.difference, side, tight);
+    check("choose_second_diagonal", diagonal.length, length, tight);
+    check("choose_second_diagonal", diagonal.compared, compared, tight);
+
+    const Wide across = Wide{f.screen.highest} - f.screen.lowest;
+    for (const Wide sign : {-1, 1}) {
+        difference.see(sign * across);
+        product.see(sign * across * across);
+    }
+    check("faces_away", cull.difference, difference, tight);
+    check("faces_away", cull.product, product, tight);
+}
+
+}  // namespace
+
+TEST_CASE("intermediates: operands at their limits need no more bits than declared, nor much less") {
+    bool tight = true;  // the first are the default formats
+    for (const Formats& formats : formats_to_try()) {
+        check_displace(formats, tight);
+        check_bump(formats, tight);
+        check_transform(formats, tight);
+        check_rectangle(formats, tight);
+        check_edge_tests(formats, tight);
+        check_the_rest(formats, tight);
+        tight = false;
+    }
+}
+
+TEST_CASE("intermediates: Newton's steps, over their operands' range") {
+    Reach root_m, y, square, root_product, root_step, m, r, product, correction, step;
+    for (std::uint64_t at = 0; at < (std::uint64_t{1} << 32); at += at < 0x40000000 ? 0x40000000 : 10007) {
+        const auto value = static_cast<std::uint32_t>(at);
+        if (value >= 1u << 30) {
+            root_m.see(value);
+            Wide root = reciprocal_root_seeds[value >> 24];
+            for (int k = 0; k < 2; ++k) {
+                y.see(root);
+                square.see(root * root);
+                root_product.see(value * (root * root >> 32));
+                const Wide factor = (Wide{3} << 30) - (value * (root * root >> 32) >> 30);
+                root_step.see(root * factor);
+                root = root * factor >> 31;
+            }
+            y.see(root);
+            REQUIRE(static_cast<std::uint64_t>(root) == reciprocal_root(value));
+        }
+        if (value >= 1u << 31) {
+            m.see(value);
+            Wide inverse = Wide{reciprocal_seeds[value >> 24 & 127]} << 16;
+            for (int k = 0; k < 2; ++k) {
+                r.see(inverse);
+                product.see(value * inverse);
+                const Wide factor = (Wide{1} << 32) - (value * inverse >> 32);
+                correction.see(factor);
+                step.see(inverse * factor);
+                inverse = inverse * factor >> 31;
+            }
+            r.see(inverse);
+            REQUIRE(static_cast<std::uint64_t>(inverse) == reciprocal(value));
+        }
+    }
+    const ReciprocalRootWidths root{Formats{}};
+    check("reciprocal_root", root.mantissa, root_m, true);
+    check("reciprocal_root", root.root, y, true);
+    check("reciprocal_root", root.square, square, true);
+    check("reciprocal_root", root.product, root_product, true);
+    check("reciprocal_root", root.step, root_step, true);
+    const ReciprocalWidths inverse{Formats{}};
+    check("reciprocal", inverse.mantissa, m, true);
+    check("reciprocal", inverse.reciprocal, r, true);
+    check("reciprocal", inverse.product, product, true);
+    check("reciprocal", inverse.correction, correction, true);
+    check("reciprocal", inverse.step, step, true);
+}
+
+TEST_CASE(
+    "intermediates: the model's integers hold those of every legal format, and of a wider one they say which "
+    "not") {
+    using Limits = FormatLimits;
+    const auto misfit = [](const Formats& formats) {
+        std::string found;
+        visit_intermediates(formats, [&](const char* function, const auto& widths) {
+            if (const char* const name = first_too_wide(widths); name != nullptr && found.empty())
+                found = std::string(function) + ": " + name;
+        });
+        return found;
+    };
+    for (int bits = Limits::position_bits.least; bits <= Limits::position_bits.most; ++bits) {
+        for (int normal = Limits::normal_bits.least; normal <= Limits::normal_bits.most; ++normal) {
+            for (int fraction = 0; fraction <= std::min(normal - 2, Limits::normal_fraction.most);
+                 ++fraction) {
+                Formats formats;
+                formats.position = formats.view_distance = Format::make_signed(bits, bits - 1);
+                formats.normal = Format::make_signed(normal, fraction);
+                REQUIRE(misfit(formats) == "");
+            }
+        }
+    }
+    Formats formats;
+    formats.normal = Format::make_signed(40, 26);
+    CHECK(misfit(formats) == "displace: (S * d + bias) * N");
+    formats = Formats{};
+    formats.position = Format::make_signed(38, 16);
+    CHECK(misfit(formats) == "transform: row . (P', 1)");
+}

@@ -1,0 +1,282 @@
+#include <algorithm>
+#include <array>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "testbench/prove/random_edges/datapath_edge.h"
+#include "testbench/prove/random_edges/datapath_random.h"
+
+using namespace tessera::datapath;
+using namespace tessera::testing;
+
+namespace {
+
+constexpr std::array<AddressMode, 2> both_modes{AddressMode::clamp, AddressMode::repeat};
+
+/// Texel `index`, which may lie anywhere, as the address mode sees it.
+std::uint32_t wrapped(std::int64_t index, std::uint32_t size, AddressMode mode) {
+    if (mode == AddressMode::clamp)
+        return static_cast<std::uint32_t>(std::clamp<std::int64_t>(index, 0, std::int64_t{size} - 1));
+    const std::int64_t rest = index % size;
+    return static_cast<std::uint32_t>(rest < 0 ? rest + size : rest);
+}
+
+/// The sum texel by texel.
+std::uint64_t brute_force(const std::vector<std::uint32_t>& codes, const Rectangle& r,
+                          const MapGeometry& map) {
+    std::uint64_t sum = 0;
+    for (std::uint32_t y = r.first_row; y < r.last_row; ++y)
+        for (std::uint32_t x = r.first_column; x < r.last_column; ++x)
+            sum += codes[std::size_t{wrapped(y, map.height, map.address_v)} * map.width +
+                         wrapped(x, map.width, map.address_u)];
+    return sum;
+}
+
+/// Equal size, inside (clamp) or begun inside (repeat), and placed as golden/ALGORITHM.md 4.2 says, by floor
+/// division.
+bool placed_right(std::uint32_t centre, std::uint32_t first, std::uint32_t extent, std::uint32_t size,
+                  AddressMode mode) {
+    const std::int64_t wanted = std::int64_t{centre} - extent / 2;
+    if (mode == AddressMode::repeat)
+        return first < size && first == wrapped(wanted, size, mode);
+    return first + extent <= size && first == static_cast<std::uint32_t>(std::clamp<std::int64_t>(
+                                                  wanted, 0, std::int64_t{size} - std::int64_t{extent}));
+}
+
+bool placed_right(const TexCoord& t, const Rectangle& r, const RectangleSize& size, const MapGeometry& map,
+                  const Formats& formats) {
+    return r.last_column - r.first_column == size.width && r.last_row - r.first_row == size.height &&
+           placed_right(t.u >> formats.texture.fraction, r.first_column, size.width, map.width,
+                        map.address_u) &&
+           placed_right(t.v >> formats.texture.fraction, r.first_row, size.height, map.height, map.address_v);
+}
+
+std::uint32_t expected_side(std::uint32_t a, std::uint32_t b, std::uint32_t divisor, std::uint32_t size,
+                            const Formats& formats) {
+    const std::uint32_t texels = (std::max(a, b) - std::min(a, b)) / (divisor << formats.texture.fraction);
+    return std::clamp<std::uint32_t>(texels, 1, size);
+}
+
+std::vector<std::uint32_t> random_codes(std::uint32_t width, std::uint32_t height, Random& random) {
+    std::vector<std::uint32_t> codes(std::size_t{width} * height);
+    for (std::uint32_t& code : codes)
+        code = random.natural(0, 65535);
+    return codes;
+}
+
+Machine machine_of(std::uint32_t width, std::uint32_t height, AddressMode u, AddressMode v, int bits,
+                   const std::vector<std::uint32_t>& codes) {
+    Registers registers;
+    registers.map = {width, height, u, v};
+    registers.formats.summed_height = Format::make_unsigned(bits, 0);
+    registers.tests.summed_height_threshold = 0;
+    Tables tables = make_tables(registers, codes, std::vector<Direction>(codes.size()));
+    return Machine(registers, std::move(tables));
+}
+
+/// Every rectangle of a small map, sampled ones of a large map, against the brute force.
+void check_sums(std::uint32_t width, std::uint32_t height, int bits, const std::vector<std::uint32_t>& codes,
+                Random& random) {
+    for (const AddressMode u : both_modes) {
+        for (const AddressMode v : both_modes) {
+            const Machine machine = machine_of(width, height, u, v, bits, codes);
+            const MapGeometry& map = machine.registers.map;
+            const auto check = [&](std::uint32_t x, std::uint32_t y, const RectangleSize& size) {
+                const TexCoord t{x << 12, y << 12};
+                const Rectangle r = centred_rectangle(t, size, map, machine.registers.formats);
+                const std::uint64_t expected = brute_force(codes, r, map);
+                if (expected >> bits != 0)
+                    return;
+                if (machine.sum_around(t, size) != expected || !placed_right(t, r, size, map, Formats{}))
+                    FAIL(width << " x " << height << " map, " << bits << " bits, rectangle of " << size.width
+                               << " x " << size.height << " about " << x << ", " << y << ": "
+                               << machine.sum_around(t, size) << " for " << expected);
+            };
+            if (width * height <= 256) {
+                for (std::uint32_t h = 1; h <= height; ++h)
+                    for (std::uint32_t w = 1; w <= width; ++w)
+                        for (std::uint32_t y = 0; y <= height; ++y)
+                            for (std::uint32_t x = 0; x <= width; ++x)
+                                check(x, y, {w, h});
+                // repeated meshes: several periods on
+                check(3 * width + width / 2, 5 * height, {width, height});
+            } else {
+                check(0, 0, {width, height});
+                check(width, height, {width, height});
+                for (int k = 0; k < 300; ++k) {
+                    const std::uint32_t x = random.natural(0, 4 * width), y = random.natural(0, 4 * height);
+                    check(x, y, {random.natural(1, width), random.natural(1, k % 2 == 0 ? height : 8)});
+                }
+            }
+        }
+    }
+}
+
+constexpr std::array<std::pair<std::uint32_t, std::uint32_t>, 8> sizes{
+    {{1, 1}, {1, 6}, {6, 1}, {2, 3}, {5, 7}, {12, 19}, {16, 16}, {336, 459}}};
+
+}  // namespace
+
+TEST_CASE("rectangles: size by division, at least one texel, at most the map; commutative") {
+    Random random(14);
+    for (int k = 0; k < 1'000'000; ++k) {
+        Formats formats;
+        const int fraction = static_cast<int>(random.integer(0, 12));
+        formats.texture = Format::make_unsigned(12 + fraction + 1, fraction);
+        MapGeometry map;
+        map.width = random.natural(1, 4096);
+        map.height = random.natural(1, 4096);
+        const auto coordinate = [&] {
+            return static_cast<std::uint32_t>(
+                std::abs(random.any_size(std::int64_t{1} << random.integer(0, 12 + fraction))));
+        };
+        const TexCoord a{coordinate(), coordinate()}, b{coordinate(), coordinate()};
+        const RectangleSize size = rectangle_size(a, b, map, formats),
+                            other = rectangle_size(b, a, map, formats);
+        if (size.width != expected_side(a.u, b.u, 2, map.width, formats) ||
+            size.height != expected_side(a.v, b.v, 4, map.height, formats) || other.width != size.width ||
+            other.height != size.height)
+            FAIL(a.u << ", " << a.v << " to " << b.u << ", " << b.v << " gives " << size.width << " x "
+                     << size.height);
+        for (const AddressMode mode : both_modes) {
+            map.address_u = mode;
+            map.address_v = mode;
+            for (const TexCoord& t : {a, b, midpoint(a, b)})
+                if (!placed_right(t, centred_rectangle(t, size, map, formats), size, map, formats))
+                    FAIL("rectangle of " << size.width << " x " << size.height << " about " << t.u << ", "
+                                         << t.v << " on " << map.width << " x " << map.height);
+        }
+    }
+}
+
+TEST_CASE("rectangles: four reads equal the sum texel by texel") {
+    Random random(15);
+    for (const auto& [width, height] : sizes) {
+        check_sums(width, height, 48, random_codes(width, height, random), random);
+        check_sums(width, height, 48, std::vector<std::uint32_t>(std::size_t{width} * height, 65535), random);
+    }
+}
+
+TEST_CASE("rectangles: entries that wrap around give the right sum whenever the sum fits") {
+    Random random(16);
+    for (const auto& [width, height] : sizes) {
+        const std::vector<std::uint32_t> codes = random_codes(width, height, random);
+        check_sums(width, height, 32, codes, random);
+        check_sums(width, height, 20, codes, random);  // entries of 336 x 459 wrap 4000 times
+        check_sums(width, height, 17, codes, random);
+        std::vector<std::uint32_t> low(codes);
+        for (std::uint32_t& code : low)
+            code &= 15;
+        check_sums(width, height, 8, low, random);
+    }
+}
+
+TEST_CASE("rectangles: four reads inside the map, six across one border, nine across two") {
+    Registers registers;
+    registers.map = {6, 4, AddressMode::repeat, AddressMode::repeat};
+    const Tables tables =
+        make_tables(registers, std::vector<std::uint32_t>(24, 1), std::vector<Direction>(24));
+    const TableLayout& table = registers.summed_height_table;
+    const auto reads = [&](const Rectangle& r) {
+        int count = 0;
+        rectangle_sum(r, registers.map, table, registers.formats, [&](std::uint64_t address) {
+            ++count;
+            return tables.sums.at(Tables::entry(address, table));
+        });
+        return count;
+    };
+    // columns, then rows; what ends on the border does not cross it
+    CHECK(reads({0, 6, 0, 4}) == 4);
+    CHECK(reads({2, 5, 1, 3}) == 4);
+    CHECK(reads({4, 7, 1, 3}) == 6);
+    CHECK(reads({4, 7, 1, 4}) == 6);
+    CHECK(reads({2, 5, 3, 5}) == 6);
+    CHECK(reads({2, 6, 3, 5}) == 6);
+    CHECK(reads({4, 7, 3, 5}) == 9);
+}
+
+TEST_CASE("rectangles: 32-bit entries agree with 64-bit ones on a large map of large codes") {
+    Random random(17);
+    constexpr std::uint32_t width = 700, height = 500;  // sums up to 2^34.4: wraps five times
+    std::vector<std::uint32_t> codes(std::size_t{width} * height);
+    for (std::uint32_t& code : codes)
+        code = random.natural(60000, 65535);
+    for (const AddressMode mode : both_modes) {
+        const Machine narrow = machine_of(width, height, mode, mode, 32, codes);
+        const Machine wide = machine_of(width, height, mode, mode, 48, codes);
+        int compared = 0;
+        for (int k = 0; k < 50'000; ++k) {
+            const TexCoord t{random.natural(0, width << 12), random.natural(0, height << 12)};
+            const RectangleSize size{random.natural(1, width), random.natural(1, height)};
+            const std::uint64_t sum = wide.sum_around(t, size);
+            if (sum >> 32 != 0)
+                continue;
+            ++compared;
+            if (narrow.sum_around(t, size) != sum)
+                FAIL("about " << t.u << ", " << t.v);
+        }
+        CHECK(compared > 10'000);
+    }
+}
+
+TEST_CASE(
+    "rectangles: a constant map never splits, every edge of small maps, any value, every address mode") {
+    // 1 fraction bit: whole and half texels, every pair of them
+    constexpr std::array<std::pair<std::uint32_t, std::uint32_t>, 7> small{
+        {{1, 1}, {1, 7}, {7, 1}, {2, 2}, {3, 5}, {8, 4}, {9, 3}}};
+    for (const auto& [width, height] : small) {
+        for (const std::uint32_t value : {0u, 1u, 40000u, 65535u}) {
+            for (const AddressMode u : both_modes) {
+                for (const AddressMode v : both_modes) {
+                    Machine machine =
+                        machine_of(width, height, u, v, 32,
+                                   std::vector<std::uint32_t>(std::size_t{width} * height, value));
+                    machine.registers.formats.texture = Format::make_unsigned(14, 1);
+                    for (std::uint32_t iu = 0; iu <= 2 * width; ++iu)
+                        for (std::uint32_t iv = 0; iv <= 2 * height; ++iv)
+                            for (std::uint32_t ju = 0; ju <= 2 * width; ++ju)
+                                for (std::uint32_t jv = 0; jv <= 2 * height; ++jv)
+                                    if (machine.summed_height({iu, iv}, {ju, jv}))
+                                        FAIL(width << " x " << height << " of " << value << ": " << iu << ", "
+                                                   << iv << " to " << ju << ", " << jv);
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("rectangles: a constant map never splits, long edges of odd-sized maps, modulo 2^32 and 2^40") {
+    Random random(18);
+    for (const auto& [width, height] : sizes) {
+        const std::vector<std::uint32_t> codes(std::size_t{width} * height, 65535);
+        for (const AddressMode u : both_modes) {
+            for (const AddressMode v : both_modes) {
+                for (const int bits : {32, 40}) {
+                    const Machine machine = machine_of(width, height, u, v, bits, codes);
+                    for (int k = 0; k < 20'000; ++k) {
+                        const TexCoord i{random.natural(0, width << 12), random.natural(0, height << 12)};
+                        const TexCoord j{random.natural(0, width << 12), random.natural(0, height << 12)};
+                        if (machine.summed_height(i, j))
+                            FAIL(width << " x " << height << ", edge " << i.u << ", " << i.v << " to " << j.u
+                                       << ", " << j.v);
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("rectangles: the largest table address is the last entry") {
+    const Machine machine =
+        machine_of(5, 3, AddressMode::repeat, AddressMode::clamp, 40, std::vector<std::uint32_t>(15, 1));
+    const TableLayout& table = machine.registers.summed_height_table;
+    CHECK(table.columns == 6);
+    CHECK(table.rows == 4);
+    CHECK(table.entry_bytes == 5);
+    CHECK(table.bytes() == 120);
+    CHECK(table.address(0, 0) == table.base);
+    CHECK(table.address(2, 1) == table.base + 40);
+    CHECK(table.address(5, 3) == table.base + table.bytes() - 5);
+}

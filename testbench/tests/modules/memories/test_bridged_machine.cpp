@@ -1,0 +1,165 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "modules/datapath/pack_triangle.h"
+#include "modules/memories/base_protocol_bridge.h"
+#include "testbench/machine/bare_recursion.h"
+#include "testbench/tests/modules/memories/base_protocol_memories.h"
+#include "testbench/tests/support/job_results.h"
+#include "testbench/tests/support/timed_checks.h"
+
+// The machine with memories of the base protocol in the places of its own: the same mesh, and with the same
+// latencies the same cycles.
+
+using namespace tessera;
+using namespace tessera::testing;
+
+namespace {
+
+/// Makes the memory that stands in the place of one of the machine's, by its name there, and binds the bridge to it.
+using Maker = std::function<std::unique_ptr<sc_core::sc_module>(BaseProtocolBridge&, const std::string&)>;
+
+template <class Memory, class... Arguments>
+std::unique_ptr<sc_core::sc_module> bound(BaseProtocolBridge& bridge, const std::string& name,
+                                          const Arguments&... arguments) {
+    auto memory = std::make_unique<Memory>((name + "_bus").c_str(), arguments...);
+    bridge.to_memory.bind(memory->socket);
+    return memory;
+}
+
+class BridgedUnits : public UnitFactory {
+  public:
+    BridgedUnits(const Timing& timing, Maker make) : timing_(timing), make_(std::move(make)) {}
+
+    void join(MemoryPort& port, TableMemory& memory) override { join_any(port, memory, 1); }
+    void join(MemoryPort& port, OffChipMemory& memory) override {
+        join_any(port, memory, timing_.off_chip_memory.buffer);
+    }
+    BaseProtocolBridge& bridge(const std::string& memory) { return *bridges_.at(memory); }
+
+  private:
+    void join_any(MemoryPort& port, const MemoryServer& memory, unsigned buffer) {
+        const std::string name = memory.basename();
+        if (bridges_.count(name) == 0) {
+            auto* clock = dynamic_cast<CycleScheduler*>(sc_core::sc_find_object("bridged.clock"));
+            bridges_[name] =
+                std::make_unique<BaseProtocolBridge>(("bridge_of_" + name).c_str(), *clock, buffer);
+            memories_.push_back(make_(*bridges_[name], name));
+        }
+        port.bind(*bridges_[name]);
+    }
+
+    Timing timing_;
+    Maker make_;
+    std::map<std::string, std::unique_ptr<BaseProtocolBridge>> bridges_;
+    std::vector<std::unique_ptr<sc_core::sc_module>> memories_;
+};
+
+/// The machine on such memories; the host fills them.
+struct BridgedMachine {
+    BridgedUnits units;
+    Pipeline pipeline;
+    Host host;
+    Rasteriser rasteriser;
+    MeshMonitor monitor;
+
+    BridgedMachine(const MachineSetup& setup, Maker make)
+        : units(setup.design.timing, std::move(make)),
+          pipeline("bridged", setup.registers, setup.design, &units),
+          host("bridged_host", setup, pipeline.clock),
+          rasteriser("bridged_rasteriser", pipeline.clock, setup.design.timing.stalls),
+          monitor("bridged_monitor", setup.registers.back_face_culling, 1'000'000) {
+        host.to_get_triangle.bind(pipeline.get_triangle.from_host);
+        host.displacement_map.bind(units.bridge("displacement_map").host);
+        host.normal_map.bind(units.bridge("normal_map").host);
+        host.summed_height_table.bind(units.bridge("summed_height_table").host);
+        pipeline.lighting.to_rasteriser.bind(rasteriser.from_lighting);
+        pipeline.pass_or_tessellate.finished.bind(monitor);
+    }
+    std::uint64_t cycles() const { return pipeline.clock.last_cycle() + 1; }
+    void require_drained() const {
+        CHECK(pipeline.idle());
+        CHECK(pipeline.summed_height_table.transactions() == 0);
+        CHECK(pipeline.displacement_map.transactions() == 0);
+        CHECK(pipeline.off_chip_memory.bytes_written() == 0);
+    }
+};
+
+void expect_bare_mesh(const MachineSetup& setup, const EmittedMesh& machines) {
+    BareRecursion bare(setup);
+    EmittedMesh mesh;
+    bare.run(mesh);
+    CHECK((keys(mesh) == keys(machines)));  // not to be printed
+}
+
+std::unique_ptr<sc_core::sc_module> blocking_5_ns(BaseProtocolBridge& bridge, const std::string& name) {
+    return bound<BlockingMemory>(bridge, name, sc_core::sc_time(5, sc_core::SC_NS));
+}
+
+/// Both machines at once, and the same cycles. The bridged memories have the latencies of the machine's own.
+void expect_same_cycles(const Job& job) {
+    const MachineSetup setup = setup_of(job);
+    const Timing& timing = setup.design.timing;
+    Simulation simulation(setup, 1'000'000, 0);
+    BridgedMachine bridged(setup, [&](BaseProtocolBridge& bridge, const std::string& name) {
+        const sc_core::sc_time cycle(timing.cycle_picoseconds, sc_core::SC_PS);
+        if (name == "off_chip_memory")
+            return bound<PipelinedMemory>(bridge, name, cycle, timing.off_chip_memory.latency,
+                                          timing.off_chip_memory.bandwidth,
+                                          unsigned{datapath::packed_triangle_tag_bytes});
+        return bound<PipelinedMemory>(bridge, name, cycle, timing.summed_height_table.latency);
+    });
+    CHECK(simulation.run().empty());
+    bridged.require_drained();
+    CHECK(bridged.cycles() == simulation.cycles());
+    CHECK(bridged.pipeline.triangle_queue.spilled() == simulation.pipeline.triangle_queue.spilled());
+    CHECK((keys(bridged.monitor.mesh) == keys(simulation.monitor.mesh)));
+    expect_bare_mesh(setup, bridged.monitor.mesh);
+}
+
+}  // namespace
+
+TEST_CASE("bridged machine: blocking memories of 5 ns, the same mesh and the same cycles") {
+    const MachineSetup setup = setup_of(timed_job());
+    BridgedMachine machine(setup, blocking_5_ns);
+    sc_core::sc_start();
+    machine.require_drained();
+    const auto* const expected =
+        std::find_if(job_results.begin(), job_results.end(),
+                     [](const JobResult& each) { return std::string(each.name) == "half_donut"; });
+    REQUIRE(expected != job_results.end());
+    CHECK(machine.cycles() == expected->cycles);
+    CHECK(machine.monitor.mesh.triangles.size() == expected->triangles);
+    expect_bare_mesh(setup, machine.monitor.mesh);
+}
+
+TEST_CASE("bridged machine: functional mode, the same mesh") {
+    Job job;
+    job.mode = Mode::functional;
+    const MachineSetup setup = setup_of(job);
+    BridgedMachine machine(setup, blocking_5_ns);
+    sc_core::sc_start();
+    machine.require_drained();
+    expect_bare_mesh(setup, machine.monitor.mesh);
+}
+
+TEST_CASE("bridged machine: pipelined memories and a queue that spills") {
+    Job job = full_split_job(3, 3);
+    job.hardware.queue_capacity = 16;
+    for (MemoryTiming* table :
+         {&job.timing.displacement_map, &job.timing.normal_map, &job.timing.summed_height_table})
+        table->latency = 7;
+    expect_same_cycles(job);
+}
+
+TEST_CASE("bridged machine: three Tessellation Tests units share the bridges") {
+    Job job = full_split_job(3, 3);
+    job.hardware.tests_units = 3;
+    expect_same_cycles(job);
+}

@@ -1,0 +1,335 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "modules/memories/table_memory.h"
+#include "modules/sockets/memory_port.h"
+#include "testbench/tests/support/timed_modules.h"
+
+// A table's memory to the cycle: ports, banks, latency, width, gathers, arbitration, back-pressure.
+
+using namespace tessera;
+using namespace tessera::testing;
+using sc_core::SC_PS;
+using sc_core::sc_time;
+using Cycles = std::vector<std::uint64_t>;
+
+namespace {
+
+const sc_time period(10, SC_PS);
+const datapath::TableLayout layout{4096, 16, 16, 4};
+
+/// A unit that makes each of its reads as soon as it may, from a cycle on, and notes when they were taken and answered.
+struct Reader : sc_core::sc_module {
+    MemoryPort port;
+    std::vector<std::vector<std::uint32_t>> reads;  ///< entries of each request
+    std::uint64_t from = 10;
+    Cycles offered, answered;
+    std::vector<std::uint64_t> values;
+
+    Reader(const sc_core::sc_module_name& name, CycleScheduler& clock, std::size_t most_under_way)
+        : sc_module(name), port("port", 4, false), clock_(clock), caller_(clock) {
+        port.clocked_by(clock, caller_, most_under_way);
+        caller_.on_step = [this] { step(); };
+    }
+
+  private:
+    void start_of_simulation() override { clock_.wake_at(caller_, from); }
+    void step() {
+        while (port.answered()) {
+            answered.push_back(clock_.cycle());
+            for (std::size_t k = 0; k < reads[answered.size() - 1].size(); ++k)
+                values.push_back(port.entry(static_cast<unsigned>(k)));
+            port.pop_answer();
+        }
+        while (clock_.cycle() >= from && offered.size() < reads.size() && port.may_request()) {
+            std::vector<std::uint64_t> addresses;
+            for (const std::uint32_t entry : reads[offered.size()])
+                addresses.push_back(layout.base + std::uint64_t{entry} * port.entry_bytes());
+            offered.push_back(clock_.cycle());
+            port.request(addresses.data(), static_cast<unsigned>(addresses.size()));
+        }
+    }
+
+    CycleScheduler& clock_;
+    Caller caller_;
+};
+
+/// A memory in which entry k holds 3 * k + 1, and its readers.
+struct Bench {
+    CycleScheduler clock{"clock", period};
+    TableMemory memory;
+    std::vector<std::unique_ptr<Reader>> readers;
+
+    explicit Bench(const MemoryTiming& timing, unsigned count = 1, const StallParameters& stalls = {},
+                   std::size_t most_under_way = 64)
+        : memory("memory", clock, layout, timing, stalls) {
+        clock.attach(memory);
+        for (unsigned k = 0; k < count; ++k) {
+            readers.push_back(
+                std::make_unique<Reader>(("reader_" + std::to_string(k)).c_str(), clock, most_under_way));
+            readers.back()->port.bind(memory);
+        }
+    }
+    Reader& reader(std::size_t k = 0) { return *readers[k]; }
+
+    void run() {
+        sc_core::sc_start(sc_core::SC_ZERO_TIME);
+        fill();
+        sc_core::sc_start();
+        memory.activity().finish(clock.last_cycle() + 1);
+        for (const auto& reader : readers) {
+            CHECK(reader->answered.size() == reader->reads.size());
+            std::size_t place = 0;
+            for (const auto& entries : reader->reads)
+                for (const std::uint32_t entry : entries)
+                    REQUIRE(reader->values.at(place++) == 3 * entry + 1);
+        }
+        CHECK(memory.activity().items_in() == memory.activity().items_out());
+        CHECK(memory.describe_contents().empty());
+    }
+
+    void fill() {
+        for (std::uint32_t entry = 0; entry < 256; ++entry) {
+            std::uint32_t value = 3 * entry + 1;
+            MemoryRequest request{tlm::TLM_WRITE_COMMAND,
+                                  1,
+                                  4,
+                                  {layout.base + std::uint64_t{entry} * 4},
+                                  reinterpret_cast<unsigned char*>(&value)};
+            REQUIRE(reader().port.socket->transport_dbg(request) == 4);
+        }
+    }
+};
+
+/// `count` reads of one entry each: 0, 1, 2 ...
+std::vector<std::vector<std::uint32_t>> single_reads(std::uint32_t count) {
+    std::vector<std::vector<std::uint32_t>> reads;
+    for (std::uint32_t k = 0; k < count; ++k)
+        reads.push_back({k});
+    return reads;
+}
+
+/// `count` gathers of `entries` entries.
+std::vector<std::vector<std::uint32_t>> gathers(std::uint32_t count, std::uint32_t entries) {
+    std::vector<std::vector<std::uint32_t>> reads(count);
+    for (std::uint32_t k = 0; k < count; ++k)
+        for (std::uint32_t entry = 0; entry < entries; ++entry)
+            reads[k].push_back((17 * k + 5 * entry) % 256);
+    return reads;
+}
+
+/// first, first + step, ...
+Cycles every(std::uint64_t first, std::uint64_t step, std::size_t count) {
+    Cycles cycles;
+    for (std::size_t k = 0; k < count; ++k)
+        cycles.push_back(first + step * k);
+    return cycles;
+}
+
+MemoryTiming timing(unsigned ports, unsigned banks, unsigned latency, unsigned width = 0,
+                    unsigned buffer = 1) {
+    return {ports, banks, latency, width, buffer};
+}
+
+void expect_answers(const MemoryTiming& its_timing, const std::vector<std::vector<std::uint32_t>>& reads,
+                    const Cycles& answers) {
+    Bench bench(its_timing);
+    bench.reader().reads = reads;
+    bench.run();
+    CHECK(bench.reader().answered == answers);
+    std::uint64_t entries = 0;
+    for (const auto& read : reads)
+        entries += read.size();
+    CHECK(bench.memory.transactions() == entries);
+    CHECK(bench.reader().port.reads() == entries);
+}
+
+}  // namespace
+
+// Request k of one entry takes the port in cycle 10 + k; its data comes `latency` cycles after.
+TEST_CASE("memory: one port takes an address a cycle, data come a latency later") {
+    expect_answers(timing(1, 1, 1), single_reads(20), every(11, 1, 20));
+}
+TEST_CASE("memory: latency 0 answers in the cycle of the address") {
+    expect_answers(timing(1, 1, 0), single_reads(20), every(10, 1, 20));
+}
+TEST_CASE("memory: latency 100 does not lower the throughput") {
+    expect_answers(timing(1, 1, 100), single_reads(60), every(110, 1, 60));
+}
+TEST_CASE("memory: latency 2000 is beyond the clock's table") {
+    expect_answers(timing(1, 1, 2000), single_reads(3), every(2010, 1, 3));
+}
+TEST_CASE("memory: a gather of four keeps one port for four cycles") {
+    // addresses in cycles 10 to 13, 14 to 17 ...; the last one's data is the answer
+    expect_answers(timing(1, 1, 1), gathers(10, 4), every(14, 4, 10));
+}
+TEST_CASE("memory: a gather of nine keeps one port for nine cycles") {
+    expect_answers(timing(1, 1, 3), gathers(5, 9), every(21, 9, 5));
+}
+TEST_CASE("memory: two ports halve a gather of four") {
+    expect_answers(timing(2, 1, 1), gathers(10, 4), every(12, 2, 10));
+}
+TEST_CASE("memory: four ports take a gather of four a cycle") {
+    expect_answers(timing(4, 1, 1), gathers(10, 4), every(11, 1, 10));
+}
+TEST_CASE("memory: four ports and gathers of nine share cycles") {
+    // nine slots, four a cycle: gather k ends in slot 9 k + 8, in cycle 10 + floor((9 k + 8) / 4)
+    expect_answers(timing(4, 1, 1), gathers(6, 9), {13, 15, 17, 19, 22, 24});
+}
+TEST_CASE("memory: a port narrower than an entry takes it in pieces") {
+    expect_answers(timing(1, 1, 1, 2), single_reads(10), every(12, 2, 10));  // 4 bytes at 2 a cycle
+}
+TEST_CASE("memory: a width that does not divide the entry rounds up") {
+    expect_answers(timing(1, 1, 1, 3), gathers(4, 4), every(18, 8, 4));  // 2 cycles an entry, 8 a gather
+}
+TEST_CASE("memory: two narrow ports take two entries in pieces, and no entry in one cycle") {
+    // 4 bytes at 2 a cycle: entries 0 and 1 in cycles 10 and 11, one on each port
+    expect_answers(timing(2, 1, 1, 2), single_reads(6), {12, 12, 14, 14, 16, 16});
+}
+TEST_CASE("memory: a gather of four through two narrow ports") {
+    expect_answers(timing(2, 1, 1, 2), gathers(3, 4), every(14, 4, 3));
+}
+TEST_CASE("memory: a port wider than an entry takes one a cycle all the same") {
+    expect_answers(timing(1, 1, 1, 64), single_reads(10), every(11, 1, 10));
+}
+
+TEST_CASE("memory: entries in different banks are read at the same time") {
+    // entries 0, 1, 2, 3 lie in banks 0, 1, 2, 3: one cycle; 0, 4, 8, 12 all in bank 0: four
+    Bench bench(timing(1, 4, 1));
+    bench.reader().reads = {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 4, 8, 12}, {1, 2, 3, 5}};
+    bench.run();
+    // gather 2 keeps bank 0 in cycles 12 to 15. Requests are served in order, as soon as any bank is free: gather 3 in
+    // cycle 13, in banks 1 (twice), 2, 3, until 14; answers stay in order, behind gather 2's in 16
+    CHECK(bench.reader().answered == Cycles{11, 12, 16, 16});
+}
+
+TEST_CASE("memory: requests wait while every bank is taken") {
+    Bench bench(timing(1, 2, 1));
+    bench.reader().reads = {{0, 1, 2, 3}, {0, 2}, {1, 3}};
+    bench.run();
+    // two in each bank, cycles 10 and 11; {0, 2} bank 0 in 12, 13; {1, 3} as bank 1 is free in 12: 12, 13
+    CHECK(bench.reader().answered == Cycles{12, 14, 14});
+}
+
+TEST_CASE("memory: an idle bank does not let requests past one that is taken") {
+    // all in bank 0 of two: one a cycle, as with one bank, and the buffer (1) leaves the rest waiting at the inputs
+    Bench bench(timing(1, 2, 1), 1, {}, 2);
+    for (std::uint32_t k = 0; k < 10; ++k)
+        bench.reader().reads.push_back({2 * k, 2 * k + 4, 2 * k + 8});
+    bench.run();
+    CHECK(bench.reader().answered == every(13, 3, 10));
+    CHECK(bench.memory.occupied_cycles() == 30);
+    CHECK(bench.memory.cycles_held_up() > 20);
+}
+
+TEST_CASE("memory: three readers take turns, none starves") {
+    // One port, 30 reads each. In cycle 10 the reader called first takes the free port, then the buffer, and is the
+    // first to wait: its data come in 11, 12, 13. From then on all three wait at their inputs and each has every
+    // third cycle, until the first reader has had its 30, in 94; the other two share the rest.
+    Bench bench(timing(1, 1, 1), 3);
+    for (const auto& reader : bench.readers)
+        reader->reads = single_reads(30);
+    bench.run();
+    const auto joined = [](Cycles a, const Cycles& b) {
+        a.insert(a.end(), b.begin(), b.end());
+        return a;
+    };
+    CHECK(bench.reader(0).answered == joined({11, 12}, every(13, 3, 28)));
+    CHECK(bench.reader(1).answered == joined(every(14, 3, 28), {97, 99}));
+    CHECK(bench.reader(2).answered == joined(every(15, 3, 28), {98, 100}));
+}
+
+TEST_CASE("memory: what it holds, in words") {
+    Bench bench(timing(1, 1, 1), 3);
+    for (const auto& reader : bench.readers)
+        reader->reads = single_reads(30);
+    sc_core::sc_start(sc_time(20 * 10, SC_PS));
+    // one being read, one in the buffer, one of each reader at an input
+    CHECK(bench.memory.describe_contents() == "2 requests, 3 waiting at the inputs");
+    sc_core::sc_start();
+    CHECK(bench.memory.describe_contents().empty());
+}
+
+TEST_CASE("memory: a reader that comes later gets its turn after at most the others' and the buffer's") {
+    Bench bench(timing(1, 1, 1), 3);
+    bench.reader(0).reads = gathers(20, 4);
+    bench.reader(1).reads = gathers(20, 4);
+    bench.reader(2).reads = single_reads(1);
+    bench.reader(2).from = 40;
+    bench.run();
+    // at worst one gather is being read, one is in the buffer, and one of each other reader goes first
+    CHECK(bench.reader(2).answered[0] <= 40 + 4 * 4 + 1 + 1);
+    CHECK(bench.reader(2).answered[0] > 41);
+}
+
+TEST_CASE("memory: a full buffer withholds END_REQ") {
+    // buffer 1, gathers of four: cycle 10: the first is served, the second waits in the buffer, the third is on offer
+    // until the first's four cycles are over
+    Bench bench(timing(1, 1, 1));
+    bench.reader().reads = gathers(6, 4);
+    bench.run();
+    CHECK(bench.reader().offered == Cycles{10, 10, 10, 14, 18, 22});
+}
+
+TEST_CASE("memory: a buffer of four takes four requests more") {
+    Bench bench(timing(1, 1, 1, 0, 4));
+    bench.reader().reads = gathers(8, 4);
+    bench.run();
+    // one served, four in the buffer, the sixth on offer; each gather served lets one more in
+    CHECK(bench.reader().offered == Cycles{10, 10, 10, 10, 10, 10, 14, 18});
+    CHECK(bench.reader().answered == every(14, 4, 8));
+}
+
+TEST_CASE("memory: no more requests are under way than the reader has room for") {
+    // two under way, latency 10: a pair in cycles 10 and 11, answered in 20 and 21, each replaced at once
+    Bench bench(timing(1, 1, 10), 1, {}, 2);
+    bench.reader().reads = single_reads(6);
+    bench.run();
+    CHECK(bench.reader().answered == Cycles{20, 21, 30, 31, 40, 41});
+}
+
+TEST_CASE("memory: busy from the first address to the last answer, its port as long as it takes addresses") {
+    Bench bench(timing(1, 1, 7), 2);
+    bench.reader(0).reads = gathers(9, 4);
+    bench.reader(1).reads = single_reads(11);
+    bench.reader(1).from = 300;
+    bench.run();
+    CHECK(bench.memory.slots_taken() == 9 * 4 + 11);
+    // twice, for cycle 300 begins anew, the last address waits 7 cycles for its data, the first of them its port's
+    CHECK(bench.memory.activity().cycles_in(State::busy) == 9 * 4 + 6 + 11 + 6);
+    CHECK(bench.memory.occupied_cycles() == 9 * 4 + 11);
+}
+
+TEST_CASE("memory: the mean occupancy is throughput times latency") {
+    // Little: 40 reads, each from its address to its data `latency` cycles in the memory, none waits
+    Bench bench(timing(1, 1, 25));
+    bench.reader().reads = single_reads(1);
+    bench.run();
+    CHECK(bench.memory.activity().item_cycles() == 25);
+    CHECK(bench.memory.activity().high_water_mark() == 1);
+}
+
+TEST_CASE("memory: random stalls delay answers and change none") {
+    Bench bench(timing(2, 2, 3), 3, {9, 400, 12});
+    for (const auto& reader : bench.readers)
+        reader->reads = gathers(200, 4);
+    bench.run();
+    // 2400 entries over four slots a cycle would take 600 cycles
+    CHECK(bench.clock.last_cycle() > 10 + 600 + 100);
+    for (const auto& reader : bench.readers)
+        CHECK(std::is_sorted(reader->answered.begin(), reader->answered.end()));
+}
+
+TEST_CASE("memory: b_transport adds the latency to the delay it is given, and counts alike") {
+    Bench bench(timing(1, 1, 6));
+    sc_core::sc_start(sc_core::SC_ZERO_TIME);
+    bench.fill();
+    sc_time delay(33, SC_PS);
+    CHECK(bench.reader().port.read(layout.base + 4 * 77, delay) == 3 * 77 + 1);
+    CHECK(delay == sc_time(33 + 60, SC_PS));
+    CHECK(bench.memory.transactions() == 1);
+    CHECK(bench.reader().port.reads() == 1);
+}

@@ -1,0 +1,87 @@
+#pragma once
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "testbench/machine/bare_recursion.h"
+#include "testbench/machine/host.h"
+#include "testbench/machine/mesh_monitor.h"
+#include "testbench/machine/rasteriser.h"
+#include "testbench/tests/machine/mesh_keys.h"
+
+namespace tessera::testing {
+
+/// A machine with all that surrounds it under a name of its own: several stand in one simulation, which the test starts.
+struct NamedMachine : sc_core::sc_module {
+    Pipeline pipeline;
+    Host host;
+    Rasteriser rasteriser;
+    MeshMonitor monitor;
+    std::vector<sc_core::sc_time> drained;  ///< when its event fired
+
+    /// `setup` must outlive the machine.
+    NamedMachine(const sc_core::sc_module_name& name, const MachineSetup& setup, UnitFactory* units = nullptr)
+        : sc_module(name),
+          pipeline("pipeline", setup.registers, setup.design, units),
+          host("host", setup, pipeline.clock),
+          rasteriser("rasteriser", pipeline.clock, setup.design.timing.stalls),
+          monitor("monitor", setup.registers.back_face_culling, 1'000'000) {
+        host.to_get_triangle.bind(pipeline.get_triangle.from_host);
+        host.displacement_map.bind(pipeline.displacement_map.host);
+        host.normal_map.bind(pipeline.normal_map.host);
+        host.summed_height_table.bind(pipeline.summed_height_table.host);
+        pipeline.lighting.to_rasteriser.bind(rasteriser.from_lighting);
+        pipeline.pass_or_tessellate.finished.bind(monitor);
+        pipeline.clock.halt_without_progress_for(1'000'000);
+        SC_HAS_PROCESS(NamedMachine);
+        SC_METHOD(note_drained);
+        dont_initialize();
+        sensitive << pipeline.drained();
+    }
+
+    std::uint64_t cycles() const { return pipeline.clock.last_cycle() + 1; }
+    bool finished() const { return host.idle() && pipeline.idle() && !pipeline.clock.halted(); }
+
+  private:
+    void note_drained() { drained.push_back(sc_core::sc_time_stamp()); }
+};
+
+inline EmittedMesh bare_mesh(const MachineSetup& setup) {
+    BareRecursion bare(setup);
+    EmittedMesh mesh;
+    bare.run(mesh);
+    return mesh;
+}
+
+/// What a machine comes to in a simulation of its own.
+struct AloneResult {
+    std::uint64_t cycles = 0;
+    std::uint64_t drained = 0;  ///< when for the last time, in time steps
+};
+
+/// Runs one in another process, since SystemC elaborates once a process. To be called before anything is built.
+inline AloneResult run_alone(const MachineSetup& setup) {
+    int ends[2];
+    REQUIRE(pipe(ends) == 0);
+    const pid_t child = fork();
+    REQUIRE(child >= 0);
+    AloneResult result;
+    if (child == 0) {
+        NamedMachine machine("machine", setup);
+        sc_core::sc_start();
+        if (machine.finished() && !machine.drained.empty())
+            result = {machine.cycles(), machine.drained.back().value()};
+        _exit(write(ends[1], &result, sizeof result) == sizeof result ? 0 : 1);
+    }
+    const bool read_all = read(ends[0], &result, sizeof result) == sizeof result;
+    int status = 0;
+    REQUIRE(waitpid(child, &status, 0) == child);
+    REQUIRE((read_all && status == 0 && result.drained > 0));
+    return result;
+}
+
+}  // namespace tessera::testing

@@ -1,0 +1,274 @@
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "modules/sockets/packed_item.h"
+#include "modules/timing/design.h"
+#include "testbench/common/random.h"
+#include "testbench/tests/support/timed_modules.h"
+
+// The items of the streams: each goes through its packed form and back, and modules/sockets/README.md lists its fields.
+
+using namespace tessera;
+
+namespace {
+
+/// Sets each field to any value that its bits hold: often an end of their range.
+struct Filler {
+    Random& random;
+
+    std::int64_t field(const datapath::Field& field, std::int64_t) {
+        const std::int64_t values = std::int64_t{1} << field.bits;
+        const std::int64_t lowest = field.is_signed ? -values / 2 : 0;
+        switch (random.integer(0, 3)) {
+            case 0:
+                return lowest;
+            case 1:
+                return lowest + values - 1;
+            default:
+                return random.integer(lowest, lowest + values - 1);
+        }
+    }
+    std::uint32_t annotation(const char*, std::uint32_t) {
+        return static_cast<std::uint32_t>(random.integer(0, 0xffffffff));
+    }
+};
+
+/// All values, in order, and the fields' widths.
+struct Lister {
+    std::vector<std::int64_t> values;
+    std::vector<int> bits;
+
+    std::int64_t field(const datapath::Field& field, std::int64_t value) {
+        values.push_back(value);
+        bits.push_back(field.bits);
+        return value;
+    }
+    std::uint32_t annotation(const char*, std::uint32_t value) {
+        values.push_back(value);
+        return value;
+    }
+};
+
+datapath::Formats narrow_formats() {
+    datapath::Formats formats;
+    formats.position = datapath::Format::make_signed(9, 4);
+    formats.view_distance = datapath::Format::make_signed(17, 4);
+    formats.normal = datapath::Format::make_signed(7, 5);
+    formats.texture = datapath::Format::make_unsigned(11, 4);
+    formats.screen = datapath::Format::make_signed(13, 2);
+    formats.generation_bits = 3;
+    formats.highlight_tag = true;
+    return formats;
+}
+
+datapath::Formats widest_formats() {
+    using Limits = datapath::FormatLimits;
+    datapath::Formats formats;
+    formats.position = datapath::Format::make_signed(Limits::position_bits.most, 16);
+    formats.view_distance = datapath::Format::make_signed(Limits::position_bits.most, 16);
+    formats.normal = datapath::Format::make_signed(Limits::normal_bits.most, 16);
+    formats.texture =
+        datapath::Format::make_unsigned(Limits::texture_integer.most + Limits::texture_fraction.most + 1, 12);
+    formats.screen = datapath::Format::make_signed(Limits::screen_bits.most, 8);
+    formats.generation_bits = Limits::generation_bits.most;
+    formats.highlight_tag = true;
+    return formats;
+}
+
+template <class Item>
+void check_round_trips(const datapath::Formats& formats, int tag_bits, Random& random) {
+    INFO(DescriptionOf<Item>::Type::name);
+    for (int k = 0; k < 200; ++k) {
+        Item item;
+        Filler filler{random};
+        describe_item(filler, item, formats, tag_bits);
+        Lister expected;
+        describe_item(expected, item, formats, tag_bits);
+        PackedItem packed;
+        REQUIRE(pack_item(item, formats, tag_bits, packed));
+        const Item back = unpack_item<Item>(packed, formats, tag_bits);
+        Lister found;
+        describe_item(found, back, formats, tag_bits);
+        REQUIRE(found.values == expected.values);
+        const std::uint32_t bits = item_bits<Item>(formats, tag_bits);
+        bool empty_beyond = true;
+        for (std::size_t bit = bits; bit < 8 * PackedItem::most_bytes; ++bit)
+            empty_beyond = empty_beyond && (packed.bytes[bit / 8] >> bit % 8 & 1) == 0;
+        REQUIRE(empty_beyond);
+    }
+}
+
+/// Each field: its name, how many alike, and what they mean.
+struct Table {
+    std::string text;
+    datapath::Field last{};
+    int alike = 0;
+
+    std::int64_t field(const datapath::Field& field, std::int64_t value) {
+        const bool same = alike > 0 && std::string(field.name) == last.name && field.index == last.index &&
+                          field.bits == last.bits && field.is_signed == last.is_signed;
+        if (!same)
+            finish();
+        last = field;
+        ++alike;
+        return value;
+    }
+    std::uint32_t annotation(const char*, std::uint32_t value) const { return value; }
+
+    /// Of three vertices or edges alike the first stands for all.
+    void finish() {
+        if (alike > 0 && last.index <= 0)
+            text += "| " + std::string(last.name) + (last.index < 0 ? "" : " of each") + " | " +
+                    (alike > 1 ? std::to_string(alike) + " x " : "") + std::to_string(last.bits) +
+                    (last.is_signed ? " signed" : "") + " | " + last.meaning + " |\n";
+        alike = 0;
+    }
+};
+
+template <class Item>
+std::string table_of() {
+    const datapath::Formats formats;
+    const int tag = tag_bits(Design{});
+    Table table;
+    const Item item{};
+    describe_item(table, item, formats, tag);
+    table.finish();
+    return "### " + std::string(DescriptionOf<Item>::Type::name) + ": " +
+           std::to_string(item_bits<Item>(formats, tag)) +
+           " bits\n\n| field | bits | meaning |\n| --- | --- | --- |\n" + table.text + "\n";
+}
+
+}  // namespace
+
+TEST_CASE("every stream's item goes through its packed form and back, in any formats") {
+    Random random(11);
+    for (const datapath::Formats& formats : {datapath::Formats{}, narrow_formats(), widest_formats()}) {
+        for (const int tag : {1, 6, 32}) {
+            StreamItems::for_each(
+                [&](auto type) { check_round_trips<typename decltype(type)::Item>(formats, tag, random); });
+        }
+    }
+}
+
+TEST_CASE("a value that its field cannot hold is told when it is packed") {
+    BasePoint point;
+    const datapath::Formats formats = narrow_formats();
+    PackedItem packed;
+    point.p.y = 255;
+    CHECK(pack_item(point, formats, 6, packed));
+    point.p.y = 256;
+    CHECK_FALSE(pack_item(point, formats, 6, packed));
+    point.p.y = -257;
+    CHECK_FALSE(pack_item(point, formats, 6, packed));
+    point.p.y = 0;
+    point.tag.triangle = 64;
+    CHECK_FALSE(pack_item(point, formats, 6, packed));
+}
+
+// 32 * 3 for a position, 16 * 3 for a normal, 25 * 2 for a texture coordinate, 24 * 2 + 32 + 1 on the screen, 4 a part.
+TEST_CASE("widths of items in the default formats, by hand") {
+    const datapath::Formats formats;
+    CHECK(item_bits<BasePoint>(formats, 6) == 6 + 4 + 96 + 48 + 50);
+    CHECK(item_bits<ScreenPoint>(formats, 6) == 6 + 4 + 96 + 48 + 50 + 96 + 81);
+    CHECK(item_bits<ViewResult>(formats, 6) == 6 + 4 + 1);
+    CHECK(item_bits<datapath::Triangle>(formats, 6) == 1572);
+    CHECK(item_bits<TriangleToLight>(formats, 6) == 3 * (81 + 48 + 50));
+    CHECK(item_bits<QueueLevel>(formats, 6) == 1);
+}
+
+// One bit more wherever tests are named: in split_by, and in each edge's tests.
+TEST_CASE("widths of items in the default formats, with a Highlight Test") {
+    datapath::Formats formats;
+    formats.highlight_tag = true;
+    CHECK(item_bits<datapath::Triangle>(formats, 6) == 1572 + 1);
+    CHECK(item_bits<TestedEdge>(formats, 6) == 257 + 1);
+    CHECK(item_bits<DecidedTriangle>(formats, 6) == 2991 + 1 + 3);
+}
+
+// What the item does not describe, here which vertices are new, does not come through.
+TEST_CASE("an output sends its items through their packed form where the design says so, in both modes") {
+    using testing::Sink;
+    CycleScheduler clock("clock", sc_core::sc_time(10, sc_core::SC_PS));
+    testing::Caller unit(clock);
+    datapath::Registers registers;
+    Design packed, whole;
+    packed.packed_streams = true;
+    whole.packed_streams = false;
+    struct Bench : sc_core::sc_module {
+        StreamOutput<DecidedTriangle> through_wires{"through_wires"}, direct{"direct"};
+        explicit Bench(const sc_core::sc_module_name& name) : sc_module(name) {}
+    } bench("bench");
+    Sink<DecidedTriangle> from_wires("from_wires", clock), from_direct("from_direct", clock);
+    bench.through_wires.clocked_by({clock, registers, packed}, unit);
+    bench.direct.clocked_by({clock, registers, whole}, unit);
+    bench.through_wires.bind(from_wires.in);
+    bench.direct.bind(from_direct.in);
+    sc_core::sc_start(sc_core::SC_ZERO_TIME);
+
+    DecidedTriangle item;
+    item.origin = {12, 3};
+    item.pass.split = 5;
+    item.pass.new_vertices = 7;
+    item.pass.triangle.vertices[1].normal.y = -9;
+    sc_core::sc_time delay;
+    bench.through_wires.transport(item, delay);
+    bench.direct.transport(item, delay);
+    CHECK(bench.through_wires.send(item));
+    CHECK(bench.direct.send(item));
+    sc_core::sc_start(sc_core::sc_time(10, sc_core::SC_PS));
+    REQUIRE(from_wires.items.size() == 2);
+    REQUIRE(from_direct.items.size() == 2);
+    for (const DecidedTriangle& come : from_wires.items) {
+        CHECK(come.origin.pass == 12);
+        CHECK(come.origin.base == 3);
+        CHECK(come.pass.split == 5);
+        CHECK(come.pass.triangle.vertices[1].normal.y == -9);
+        CHECK(come.pass.new_vertices == 0);
+    }
+    for (const DecidedTriangle& come : from_direct.items)
+        CHECK(come.pass.new_vertices == 7);
+    item.pass.triangle.vertices[2].generation = 16;  // of four bits
+    CHECK_THAT(testing::error_of([&] { bench.through_wires.send(item); }),
+               Catch::Contains("through_wires") && Catch::Contains("a value that its field cannot hold"));
+}
+
+// One triangle in Get Triangle; a place at the input and a register stage each of Calculate New P, 7 of Displace Vertex
+// (one more for the map's cycle), 20 of Transform; one at Pass or Tessellate's input; and its 8 places.
+TEST_CASE("a tag tells apart all triangles between Get Triangle and Pass or Tessellate") {
+    Design design;
+    CHECK(triangles_ahead_of_parts(design) == 1 + (1 + 1) + (1 + 7) + (1 + 20) + 1);
+    CHECK(tag_bits(design) == 6);  // 33, one on offer, and 8
+    design.timing.pass_or_tessellate.buffer = 30;
+    CHECK(tag_bits(design) == 6);
+    design.timing.pass_or_tessellate.buffer = 31;
+    CHECK(tag_bits(design) == 7);
+    design.transform_pipelines = 2;
+    CHECK(triangles_ahead_of_parts(design) == 33 + 20);
+    CHECK(tag_bits_in_use(design) == 32);  // blocking transport
+    design.transport = Transport::non_blocking;
+    CHECK(tag_bits_in_use(design) == tag_bits(design));
+}
+
+TEST_CASE("the streams' README lists every item with its fields") {
+    const std::string path = TESSERA_SOURCE_DIR "/modules/sockets/README.md";
+    std::stringstream stream;
+    stream << std::ifstream(path).rdbuf();
+    const std::string document = stream.str();
+    const std::string heading = "## Items\n\n";
+    const std::size_t begin = document.find(heading);
+    REQUIRE(begin != std::string::npos);
+    std::string found;
+    StreamItems::for_each([&](auto type) { found += table_of<typename decltype(type)::Item>(); });
+    found.pop_back();
+    if (std::getenv("TESSERA_WRITE_STREAMS") != nullptr) {
+        std::ofstream(path) << document.substr(0, begin) + heading + found;
+        return;
+    }
+    INFO("modules/sockets/README.md says something else; TESSERA_WRITE_STREAMS=1 has the test write it");
+    CHECK(document.substr(begin + heading.size()) == found);
+}

@@ -1,0 +1,192 @@
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "testbench/common/error.h"
+#include "testbench/tests/support/timed_checks.h"
+#include "testbench/tests/support/timed_modules.h"
+
+// A machine that cannot go on says so, and who holds what and waits for whom.
+
+using namespace tessera;
+using namespace tessera::testing;
+using Catch::Contains;
+
+namespace {
+
+/// The line of a report that begins with a unit's name.
+std::string line_of(const std::string& report, const std::string& unit) {
+    const std::size_t begin = report.find("tessera." + unit + ":");
+    return begin == std::string::npos ? std::string{}
+                                      : report.substr(begin, report.find('\n', begin) - begin);
+}
+
+/// Cycles in the four states add up for a run that did not drain, too.
+void require_cycles_add_up(const Simulation& simulation) {
+    for (const Unit* unit : simulation.pipeline.units())
+        testing::require_cycles_add_up(*unit, simulation.cycles());
+}
+
+Job full_queue_job(Overflow overflow) {
+    Job job = timed_job();
+    job.hardware.queue_capacity = 8;
+    job.hardware.queue_overflow = overflow;
+    return job;
+}
+
+}  // namespace
+
+// First in first out, eight places. When the queue is full, Tessellation keeps a child; Pass or Tessellate keeps what
+// Tessellation does not take; the tests and Transform what Pass or Tessellate does not take; Get Triangle a
+// triangle whose parts nobody takes; and the queue's first triangle waits for Get Triangle: the ring is
+// closed.
+TEST_CASE("a full queue that stalls is a deadlock, told unit by unit") {
+    const MachineSetup setup = setup_of(full_queue_job(Overflow::stall));
+    Simulation simulation(setup, 1'000'000, 1'000'000);
+    const std::string report = simulation.run();
+    INFO(report);
+    CHECK_THAT(report, Catch::StartsWith("deadlock: "));
+    CHECK_FALSE(simulation.pipeline.clock.stalled());
+    CHECK(simulation.pipeline.clock.idle());
+    CHECK_THAT(report, Contains("18 base triangles"));
+    CHECK_THAT(line_of(report, "triangle_queue"), Contains("triangles") &&
+                                                      Contains("no place for the next (capacity 8)") &&
+                                                      Contains("waits for get_triangle"));
+    CHECK_THAT(line_of(report, "tessellation"), Contains("waits for triangle_queue"));
+    CHECK_THAT(line_of(report, "pass_or_tessellate"), Contains("waits for tessellation"));
+    CHECK_THAT(line_of(report, "get_triangle"), Contains("not all of it sent"));
+    CHECK(simulation.pipeline.triangle_queue.on_chip_high_water_mark() == 8);
+    require_cycles_add_up(simulation);
+    CHECK(simulation.pipeline.passes_under_way() > 0);
+    // who is idle says nothing
+    CHECK(line_of(report, "lighting").empty());
+    CHECK(line_of(report, "off_chip_memory").empty());
+}
+
+TEST_CASE("the same queue that spills is none") {
+    const MachineSetup setup = setup_of(full_queue_job(Overflow::spill));
+    Simulation simulation(setup, 1'000'000, 1'000'000);
+    run_timed(simulation);
+    CHECK(simulation.pipeline.triangle_queue.spilled() > 0);
+}
+
+TEST_CASE("the same queue that may not overflow ends the run with the key's name") {
+    const MachineSetup setup = setup_of(full_queue_job(Overflow::error));
+    Simulation simulation(setup, 1'000'000, 1'000'000);
+    try {
+        simulation.run();
+        FAIL("no error");
+    } catch (const ResourceError& error) {
+        CHECK_THAT(error.what(), Contains("hardware.queue_capacity = 8") &&
+                                     Contains("hardware.queue_order") && Contains("hardware.queue_overflow"));
+    }
+}
+
+TEST_CASE("a full queue, last in first out, with stalls: a deadlock too, not a crash") {
+    Job job = full_queue_job(Overflow::stall);
+    job.hardware.queue_order = QueueOrder::lifo;
+    job.hardware.queue_capacity = 1;
+    job.timing.stalls = {7, 300, 16};
+    const MachineSetup setup = setup_of(job);
+    Simulation simulation(setup, 1'000'000, 1'000'000);
+    const std::string report = simulation.run();
+    CHECK_THAT(report, Catch::StartsWith("deadlock: ") && Contains("tessera.triangle_queue"));
+    require_cycles_add_up(simulation);
+}
+
+// The first decision takes 86 cycles, and in more than 20 of them something is called.
+TEST_CASE("a machine that works and decides nothing within the bound is a livelock") {
+    const MachineSetup setup = setup_of(timed_job());
+    Simulation simulation(setup, 1'000'000, 20);
+    const std::string report = simulation.run();
+    INFO(report);
+    CHECK_THAT(report, Catch::StartsWith("livelock: ") && Contains("limits.cycles_without_progress = 20"));
+    CHECK(simulation.pipeline.clock.stalled());
+    require_cycles_add_up(simulation);
+}
+
+// Every item on every channel held back for up to a million cycles: slow, but whoever is called gets something done.
+TEST_CASE("a machine that waits for a million cycles is none") {
+    Job job = timed_job();
+    job.mesh.columns = job.mesh.rows = 1;
+    job.map.source = MapSource::constant;
+    job.timing.stalls = {1, 1000, 1'000'000};
+    const MachineSetup setup = setup_of(job);
+    Simulation simulation(setup, 1'000'000, 500);
+    run_timed(simulation);
+    CHECK(simulation.cycles() > 1'000'000);
+}
+
+// First in first out: all of a generation is decided before any of the next, so the first triangle is lit after
+// 18 * (1 + 4 + 16 + 64) passes of 36 cycles.
+TEST_CASE("a triangle decided is progress, though none is lit for long") {
+    const MachineSetup setup = setup_of(full_split_job(3, 4));
+    Simulation simulation(setup, 1'000'000, 1000);
+    run_timed(simulation);
+    CHECK(simulation.cycles() > 1530 * 36);
+}
+
+// Lighting, one triangle in 500 cycles, has places for all that wait for it: most are lit when the last has
+// long been decided, and each takes more than one cycle in which something is called.
+TEST_CASE("a triangle lit is progress, though none is decided any more") {
+    MachineSetup setup = setup_of(full_split_job(2, 2));
+    setup.design.timing.lighting = {4, 500, 128};
+    Simulation simulation(setup, 1'000'000, 100);
+    run_timed(simulation);
+    CHECK(simulation.rasteriser.triangles() == 128);
+    CHECK(simulation.cycles() > 127 * 500);
+}
+
+TEST_CASE("the bound on progress does not end a run that just keeps it") {
+    Job job = timed_job();
+    job.mesh.columns = job.mesh.rows = 1;
+    job.map.source = MapSource::constant;
+    MachineSetup setup = setup_of(job);
+    setup.base_triangles.resize(1);
+    Simulation simulation(setup, 1'000'000, 46);
+    run_timed(simulation);
+}
+
+namespace {
+
+/// Leaves one triangle waiting at its input for ever.
+struct Wall : sc_core::sc_module, CycleProcess {
+    StreamInput<LitTriangle> in{"in"};
+    Wall(const sc_core::sc_module_name& name, CycleScheduler& clock) : sc_module(name) {
+        clock.attach(*this);
+        in.clocked_by(clock, *this, 1, {});
+    }
+    void step() override {}
+};
+
+}  // namespace
+
+// Behind a rasteriser that takes one triangle and no other, units fill up one behind the other, up to the host.
+TEST_CASE("a rasteriser that takes nothing is a deadlock that begins at Lighting") {
+    const MachineSetup setup = setup_of(full_split_job(3, 2));
+    Pipeline pipeline("tessera", setup.registers, setup.design);
+    Host host("host", setup, pipeline.clock);
+    Wall wall("wall", pipeline.clock);
+    host.to_get_triangle.bind(pipeline.get_triangle.from_host);
+    host.displacement_map.bind(pipeline.displacement_map.host);
+    host.normal_map.bind(pipeline.normal_map.host);
+    host.summed_height_table.bind(pipeline.summed_height_table.host);
+    pipeline.lighting.to_rasteriser.bind(wall.in);
+    sc_core::sc_start();
+    CHECK(pipeline.clock.idle());
+    CHECK_FALSE(pipeline.idle());
+    const auto expect_blocked = [](const Unit& unit, const sc_core::sc_object& by) {
+        INFO(unit.name());
+        CHECK(unit.activity().state() == State::blocked);
+        CHECK(unit.activity().by() == &by);
+        CHECK_FALSE(unit.describe_contents().empty());
+    };
+    expect_blocked(pipeline.lighting, wall);
+    expect_blocked(pipeline.pass_or_tessellate, pipeline.lighting);
+    CHECK(pipeline.pass_or_tessellate.most_incomplete() == setup.design.timing.pass_or_tessellate.buffer);
+    expect_blocked(pipeline.transform, pipeline.pass_or_tessellate);
+    expect_blocked(pipeline.get_triangle, pipeline.calculate_new_p);
+    expect_blocked(pipeline.triangle_queue, pipeline.get_triangle);
+    // register stages hold what they can and no more
+    CHECK(pipeline.transform.activity().level() <= 20);
+    CHECK(pipeline.lighting.activity().level() == 4);
+}

@@ -1,0 +1,331 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdint>
+
+#include "testbench/tests/support/timed_checks.h"
+
+// One triangle through an idle machine: every cycle of its way, derived by hand.
+//
+// The triangle is a base triangle of a constant map: no edge splits, so it goes round twice, first with its three
+// vertices and three edges, then, finished, with its three normals in screen space.
+//
+// First round. The host offers it in cycle 0 and Get Triangle takes it then; its parts leave one a cycle, a latency G
+// later: vertices in G, G + 1, G + 2, edges in G + 3, G + 4, G + 5, on both branches. Then
+//
+//   geometry   Calculate New P (P), a read of the displacement map (latency Md), Displace Vertex (D), Transform (T):
+//              the third vertex is on the screen in V = G + 2 + P + Md + D + T, the last edge three cycles later.
+//   corners    the Normal Test has the third corner's map entry (read: Mn) in A = G + 2 + C + Mn, C: Calculate New U;
+//              it starts no edge of a base triangle before.
+//   edge 2     View Test (L) and Normal Test (N) each hold one edge at their input and keep another waiting, in
+//              Calculate New U. A Calculate New U of one cycle has room for one edge: so edges 0 and 1 go to the other
+//              tests in U = G + 3 + C and U + 1, and edge 2 enters Calculate New U when both have started edge 0, and
+//              leaves it in W = max(G + 5, V, A) + 1. With a latency of 2 and more it waits at its end: then
+//              W = max(G + 5 + C, V, A).
+//   View Test  starts edges in V, V + 1, V + 2: through in max(W, V + 2) + L.
+//   Normal     starts edge 2 in max(W, A + 2), one read and its latency later it is through.
+//   SAT        12 entries an edge, `slots` cycles: edges 0 and 1 keep the table from U on for 2 * slots, edge 2 from
+//              S = max(U + 2 * slots, W) on; its last address goes out in S + slots - 1, the data come Ms later, the
+//              test is through H later.
+//
+// Pass or Tessellate completes it in
+//   J = max(V + 3, max(W, A + 2) + Mn + N, S + slots - 1 + Ms + H, max(W, V + 2) + L).
+//
+// Second round: Pass or Tessellate (O), Tessellation (E), the Triangle Queue (Q), Get Triangle (G) and the
+// last of three normals 2 later, Calculate New P, Displace Vertex (which reads nothing for normals),
+// Transform, Pass or Tessellate, Lighting (I): the rasteriser has it in
+// J + O + E + Q + G + 2 + P + D + T + O + I. The run's cycles: one more, since the first is number 0.
+
+using namespace tessera;
+using namespace tessera::testing;
+
+namespace {
+
+Job one_triangle_job() {
+    Job job = timed_job();
+    job.mesh.columns = job.mesh.rows = 1;
+    job.map.source = MapSource::constant;
+    return job;
+}
+
+MachineSetup one_triangle(const Timing& timing) {
+    MachineSetup setup = setup_of(one_triangle_job());
+    setup.base_triangles.resize(1);
+    setup.design.timing = timing;
+    return setup;
+}
+
+std::uint64_t derived_cycles(const Timing& t) {
+    const std::uint64_t g = t.get_triangle.latency, p = t.calculate_new_p.latency;
+    const std::uint64_t d = t.displace_vertex.latency, transform = t.transform.latency;
+    const std::uint64_t c = t.calculate_new_u.latency, l = t.view_test.latency;
+    const std::uint64_t slots = (12 + t.summed_height_table.ports - 1) / t.summed_height_table.ports;
+    const std::uint64_t v = g + 2 + p + t.displacement_map.latency + d + transform;
+    const std::uint64_t u = g + 3 + c;
+    const std::uint64_t a = g + 2 + c + t.normal_map.latency;
+    const std::uint64_t w = c == 1 ? std::max({g + 5, v, a}) + 1 : std::max({g + 5 + c, v, a});
+    const std::uint64_t s = std::max(u + 2 * slots, w);
+    const std::uint64_t joined =
+        std::max({v + 3, std::max(w, a + 2) + t.normal_map.latency + t.normal_test.latency,
+                  s + slots - 1 + t.summed_height_table.latency + t.summed_height_test.latency,
+                  std::max(w, v + 2) + l});
+    const std::uint64_t o = t.pass_or_tessellate.latency;
+    const std::uint64_t lit = joined + o + t.tessellation.latency + t.triangle_queue.latency + g + 2 + p + d +
+                              transform + o + t.lighting.latency;
+    return lit + 1;
+}
+
+void expect_derived(const Timing& timing, std::uint64_t by_hand) {
+    const MachineSetup setup = one_triangle(timing);
+    Simulation simulation(setup, 1000);
+    run_timed(simulation);
+    CHECK(derived_cycles(timing) == by_hand);
+    CHECK(simulation.cycles() == by_hand);
+    CHECK(simulation.rasteriser.triangles() == 1);
+}
+
+}  // namespace
+
+// V = 1 + 2 + 1 + 1 + 6 + 20 = 31; W = 32; S = max(5 + 24, 32) = 32; J = 32 + 11 + 1 + 3 = 47;
+// then 1 + 1 + 1 + 1 + 2 + 1 + 6 + 20 + 1 + 4 = 38: cycle 85.
+TEST_CASE("one triangle, the paper's design: 86 cycles") {
+    expect_derived({}, 86);
+}
+
+// V = 12, W = 13, S = 29, J = 29 + 11 + 1 + 3 = 44, then 19: the tests take longer than Transform.
+TEST_CASE("one triangle, Transform of 1 cycle: the tests are what takes time") {
+    Timing timing;
+    timing.transform.latency = 1;
+    expect_derived(timing, 64);
+}
+
+// V = 511, W = 512, J = 512 + 11 + 1 + 3 = 527, then 518.
+TEST_CASE("one triangle, Transform of 500 cycles: edge 2 waits for the screen positions") {
+    Timing timing;
+    timing.transform.latency = 500;
+    expect_derived(timing, 527 + 518 + 1);
+}
+
+// S = 32, last address 43, data 143, test 146; then 38.
+TEST_CASE("one triangle, a Summed Height Table of latency 100") {
+    Timing timing;
+    timing.summed_height_table.latency = 100;
+    expect_derived(timing, 146 + 38 + 1);
+}
+
+TEST_CASE("one triangle, a Summed Height Table of latency 0") {
+    Timing timing;
+    timing.summed_height_table.latency = 0;
+    expect_derived(timing, 46 + 38 + 1);
+}
+
+// The map's latency delays V to 130 = 1 + 2 + 1 + 100 + 6 + 20, W = 131, J = 131 + 15 = 146; normals read nothing: 38.
+TEST_CASE("one triangle, a displacement map of latency 100") {
+    Timing timing;
+    timing.displacement_map.latency = 100;
+    expect_derived(timing, 146 + 38 + 1);
+}
+
+// A = 1 + 2 + 1 + 200 = 204, after V = 31: W = 205, edge 2 starts in 206, J = 206 + 200 + 9 = 415.
+TEST_CASE("one triangle, a normal map of latency 200: the Normal Test is the last") {
+    Timing timing;
+    timing.normal_map.latency = 200;
+    expect_derived(timing, 415 + 38 + 1);
+}
+
+// J = 32 + 1 + 300 = 333.
+TEST_CASE("one triangle, a Normal Test of 300 cycles") {
+    Timing timing;
+    timing.normal_test.latency = 300;
+    expect_derived(timing, 333 + 38 + 1);
+}
+
+// Edge 2 starts in V + 2 = 33, J = 103.
+TEST_CASE("one triangle, a View Test of 70 cycles") {
+    Timing timing;
+    timing.view_test.latency = 70;
+    expect_derived(timing, 103 + 38 + 1);
+}
+
+// Two ports: 6 cycles an edge; S = 32, J = 32 + 5 + 1 + 3 = 41, before the Normal Test's 42 = 32 + 1 + 9.
+TEST_CASE("one triangle, two ports on the Summed Height Table: the Normal Test is the last") {
+    Timing timing;
+    timing.summed_height_table.ports = 2;
+    expect_derived(timing, 42 + 38 + 1);
+}
+
+TEST_CASE("one triangle, four ports on the Summed Height Table: no faster than two") {
+    Timing timing;
+    timing.summed_height_table.ports = 4;
+    expect_derived(timing, 42 + 38 + 1);
+}
+
+// What the header of each unit says, and the sums above rest on. The tests' own figures do not hold the
+// defaults of units off the critical path.
+TEST_CASE("the paper's design: latency, interval and buffer of every unit and memory") {
+    const Timing t;
+    struct Default {
+        const char* name;
+        UnitTiming is;
+        unsigned latency, buffer;
+    };
+    for (const Default& unit : {Default{"get_triangle", t.get_triangle, 1, 1},
+                                {"calculate_new_p", t.calculate_new_p, 1, 1},
+                                {"displace_vertex", t.displace_vertex, 6, 1},
+                                {"transform", t.transform, 20, 1},
+                                {"calculate_new_u", t.calculate_new_u, 1, 1},
+                                {"tex_coord_test", t.tex_coord_test, 1, 1},
+                                {"summed_height_test", t.summed_height_test, 3, 1},
+                                {"normal_test", t.normal_test, 9, 1},
+                                {"view_test", t.view_test, 1, 1},
+                                {"pass_or_tessellate", t.pass_or_tessellate, 1, 8},
+                                {"tessellation", t.tessellation, 1, 1},
+                                {"triangle_queue", t.triangle_queue, 1, 1},
+                                {"lighting", t.lighting, 4, 1}}) {
+        INFO(unit.name);
+        CHECK(unit.is.latency == unit.latency);
+        CHECK(unit.is.interval == 1);
+        CHECK(unit.is.buffer == unit.buffer);
+    }
+    for (const MemoryTiming& memory : {t.displacement_map, t.normal_map, t.summed_height_table}) {
+        CHECK(memory.ports == 1);
+        CHECK(memory.banks == 1);
+        CHECK(memory.latency == 1);
+        CHECK(memory.width == 0);
+        CHECK(memory.buffer == 1);
+    }
+    CHECK(t.cycle_picoseconds == 5000);
+    CHECK(t.highlight_test_latency == 1);
+    CHECK(t.results_buffer == 4);
+    CHECK(t.off_chip_memory.latency == 40);
+    CHECK(t.off_chip_memory.bandwidth == 16);
+    CHECK(t.off_chip_memory.buffer == 4);
+    CHECK(t.stalls.per_mille == 0);
+}
+
+// Each unit with a latency of its own, all different: what is forgotten or counted twice shows.
+// V = 3 + 2 + 5 + 7 + 11 + 40 = 68, A = 3 + 2 + 2 + 4 = 11,
+// W = 68 (edge 2 waits at the end of Calculate New U), S = 68,
+// J = max(71, 68 + 4 + 13, 68 + 11 + 9 + 17, 70 + 6) = 105,
+// then 8 + 10 + 12 + 3 + 2 + 5 + 11 + 40 + 8 + 14 = 113.
+TEST_CASE("one triangle, every latency another") {
+    Timing timing;
+    timing.get_triangle.latency = 3;
+    timing.calculate_new_p.latency = 5;
+    timing.displacement_map.latency = 7;
+    timing.displace_vertex.latency = 11;
+    timing.transform.latency = 40;
+    timing.calculate_new_u.latency = 2;
+    timing.normal_map.latency = 4;
+    timing.normal_test.latency = 13;
+    timing.summed_height_table.latency = 9;
+    timing.summed_height_test.latency = 17;
+    timing.view_test.latency = 6;
+    timing.tex_coord_test.latency = 3;
+    timing.pass_or_tessellate.latency = 8;
+    timing.tessellation.latency = 10;
+    timing.triangle_queue.latency = 12;
+    timing.lighting.latency = 14;
+    const MachineSetup setup = one_triangle(timing);
+    Simulation simulation(setup, 1000);
+    run_timed(simulation);
+    CHECK(derived_cycles(timing) == 105 + 113 + 1);
+    CHECK(simulation.cycles() == 105 + 113 + 1);
+
+    // and each unit keeps each item for its own latency, on the way or beside it
+    const Pipeline& p = simulation.pipeline;
+    const TessellationTests& tests = p.tessellation_tests[0];
+    const std::pair<const Unit*, std::uint64_t> stays[] = {
+        {&p.calculate_new_p, 9 * 5}, {&p.displace_vertex, 6 * (7 + 11) + 3 * 11},
+        {&p.transform, 9 * 40},      {&tests.tex_coord_test, 3 * 3},
+        {&tests.view_test, 3 * 6},   {&tests.normal_test, 6 * (4 + 13)},
+        {&p.tessellation, 10},       {&p.triangle_queue, 12},
+        {&p.lighting, 14},           {&p.displacement_map, 6 * 7},
+        {&p.normal_map, 6 * 4},
+    };
+    for (const auto& [unit, item_cycles] : stays) {
+        INFO(unit->name());
+        CHECK(unit->activity().cycles_in(State::blocked) == 0);
+        CHECK(unit->activity().item_cycles() == item_cycles);
+    }
+}
+
+// Three Tessellation Tests units: each has an edge and its two vertices, sent in G, G + 1 and G + 2 on its branch;
+// geometry as before. All three edges reach the Summed Height Tests in G + 2 + C = 4 and share the one port
+// for 36 cycles: last address 39, data 40, test 43. The Normal Tests read six corners through the map's one
+// port, in 2 to 7; the last has come in 8: edges read in 8 to 10 at the latest, are through in 20. View 32,
+// geometry 34. J = 43, then 38.
+TEST_CASE("one triangle, three tests units: 82 cycles") {
+    MachineSetup setup = one_triangle({});
+    setup.design.tests_units = 3;
+    Simulation simulation(setup, 1000);
+    run_timed(simulation);
+    CHECK(simulation.cycles() == 43 + 38 + 1);
+    CHECK(simulation.pipeline.normal_map.transactions() == 6 + 3);
+}
+
+// Nine gathers of one cycle each: last address 4 + 8 = 12, data 13, test 16: the last edge's geometry is later, in 34.
+TEST_CASE("one triangle, three tests units and four ports: the tests are hidden behind Transform") {
+    MachineSetup setup = one_triangle({});
+    setup.design.tests_units = 3;
+    setup.design.timing.summed_height_table.ports = 4;
+    Simulation simulation(setup, 1000);
+    run_timed(simulation);
+    CHECK(simulation.cycles() == 34 + 38 + 1);
+}
+
+// Normals only take part in the second round: three parts, read nothing, and skip the tests. Six parts in the first.
+TEST_CASE("one triangle: its parts and reads") {
+    const MachineSetup setup = one_triangle({});
+    Simulation simulation(setup, 1000);
+    run_timed(simulation);
+    const Pipeline& p = simulation.pipeline;
+    CHECK(p.get_triangle.parts_sent() == 9);
+    CHECK(p.displacement_map.transactions() == 6);
+    CHECK(p.normal_map.transactions() == 6);
+    CHECK(p.summed_height_table.transactions() == 36);
+    CHECK(p.pass_or_tessellate.counts().normal_passes == 1);
+    // an idle machine blocks nobody but Calculate New U, from cycle 6, when the View Test's input is full, to 31, and
+    // Get Triangle's way to it is free: its input has room for edge 2
+    for (const Unit* unit : p.units()) {
+        INFO(unit->name());
+        CHECK(unit->activity().cycles_in(State::blocked) ==
+              (unit == &p.tessellation_tests[0].calculate_new_u ? 31 - 6 : 0));
+    }
+    // Little, exactly: nothing is held up in Transform, nine parts of 20 cycles; in Lighting one of 4
+    CHECK(p.transform.activity().item_cycles() == 9 * 20);
+    CHECK(p.lighting.activity().item_cycles() == 4);
+    CHECK(p.displace_vertex.activity().item_cycles() == 6 * (1 + 6) + 3 * 6);
+}
+
+// What a triangle's stages take cannot depend on the clock's period.
+TEST_CASE("one triangle: cycles do not depend on the clock's period, time does") {
+    Timing timing;
+    timing.cycle_picoseconds = 1234;
+    const MachineSetup setup = one_triangle(timing);
+    Simulation simulation(setup, 1000);
+    run_timed(simulation);
+    CHECK(simulation.cycles() == 86);
+    CHECK(sc_core::sc_time_stamp().value() == 85 * 1234);
+}
+
+// Transform's interval 4, parts 4 cycles apart from G + P + Md + D = 9 on: vertices start in 9, 13, 17, on
+// the screen in 29, 33, 37 = V; edges in 41, 45, 49. W = 38, S = 38, J = max(49, 38 + 15) = 53. Second round:
+// normals enter Transform 4 apart: 2 normals later 8 instead of 2: 38 + 6.
+TEST_CASE("one triangle, Transform every 4 cycles") {
+    MachineSetup setup = one_triangle({});
+    setup.design.timing.transform.interval = 4;
+    Simulation simulation(setup, 1000);
+    run_timed(simulation);
+    CHECK(simulation.cycles() == 53 + 44 + 1);
+}
+
+// Two pipelines that take turns, each every 4 cycles: starts in 9, 10, 13: V = 33, W = 34, edges 34, 37, 38.
+// J = 34 + 15. Normals: the third starts 4 after the first: 38 + 2.
+TEST_CASE("one triangle, two Transform pipelines every 4 cycles") {
+    MachineSetup setup = one_triangle({});
+    setup.design.timing.transform.interval = 4;
+    setup.design.transform_pipelines = 2;
+    Simulation simulation(setup, 1000);
+    run_timed(simulation);
+    CHECK(simulation.cycles() == 49 + 40 + 1);
+}

@@ -1,0 +1,180 @@
+#include <catch2/catch.hpp>
+#include <set>
+#include <string>
+
+#include "testbench/tests/support/timed_checks.h"
+
+// A machine that is stopped anywhere, cycle by cycle: a unit says that it holds something while it does, in
+// whole words, and what it says of the pipeline as a whole is true.
+
+using namespace tessera;
+using namespace tessera::testing;
+using Catch::Contains;
+using Texts = std::set<std::string>;
+
+namespace {
+
+/// One thing after another, each of them said: no separator without something on both sides.
+bool is_well_formed(const std::string& text) {
+    for (const char* broken : {", ,", "; ;", ", ;", "; ,", "  "})
+        if (text.find(broken) != std::string::npos)
+            return false;
+    return text.find_first_of(",; ") != 0 && text.find_last_of(",; ") != text.size() - 1;
+}
+
+/// Runs the machine cycle by cycle. All that its units said they held, with digits as #.
+Texts texts_of_every_cycle(const MachineSetup& setup) {
+    Simulation simulation(setup, 1'000'000, 1'000'000);
+    Pipeline& pipeline = simulation.pipeline;
+    Texts texts;
+    sc_core::sc_start(sc_core::SC_ZERO_TIME);
+    while (!pipeline.clock.idle()) {
+        sc_core::sc_start(pipeline.clock.period());
+        bool all_empty = true;
+        for (const Unit* unit : pipeline.units()) {
+            std::string text = unit->describe_contents();
+            INFO("cycle " << pipeline.clock.last_cycle() << ": " << unit->name() << ": \"" << text << '"');
+            REQUIRE((text.empty() || is_well_formed(text)));
+            if (!unit->idle())
+                REQUIRE_FALSE(text.empty());
+            all_empty = all_empty && unit->idle() && text.empty();
+            for (char& c : text)
+                c = c >= '0' && c <= '9' ? '#' : c;
+            texts.insert(unit->basename() + (": " + text));
+        }
+        REQUIRE(pipeline.idle() == all_empty);
+    }
+    sc_core::sc_report_handler::set_actions(sc_core::SC_ID_NO_SC_START_ACTIVITY_, sc_core::SC_DO_NOTHING);
+    run_timed(simulation);
+    return texts;
+}
+
+bool any_contains(const Texts& texts, const std::string& unit, const std::string& what) {
+    for (const std::string& text : texts)
+        if (text.rfind(unit + ": ", 0) == 0 && text.find(what) != std::string::npos)
+            return true;
+    return false;
+}
+
+void set_every_unit(Timing& timing, const UnitTiming& its) {
+    for (UnitTiming* unit :
+         {&timing.get_triangle, &timing.calculate_new_p, &timing.displace_vertex, &timing.transform,
+          &timing.calculate_new_u, &timing.tex_coord_test, &timing.summed_height_test, &timing.normal_test,
+          &timing.view_test, &timing.pass_or_tessellate, &timing.tessellation, &timing.triangle_queue,
+          &timing.lighting})
+        *unit = its;
+}
+
+/// What there is to see whenever Pipeline::drained() is notified, of base triangles that become 16 each.
+struct DrainedWatch : sc_core::sc_module {
+    explicit DrainedWatch(Simulation& simulation) : sc_module("watch"), simulation_(simulation) {
+        SC_HAS_PROCESS(DrainedWatch);
+        SC_METHOD(note);
+        dont_initialize();
+        sensitive << simulation.pipeline.drained();
+    }
+    unsigned notified = 0;
+    bool always_empty = true;       ///< all that the host had sent was lit
+    std::uint64_t sent_before = 0;  ///< base triangles of earlier frames
+    std::uint64_t lit = 0;          ///< at the last notification
+
+  private:
+    void note() {
+        ++notified;
+        lit = simulation_.rasteriser.triangles();
+        always_empty = always_empty && simulation_.pipeline.idle() &&
+                       lit == 16 * (sent_before + simulation_.host.sent());
+    }
+    Simulation& simulation_;
+};
+
+/// Two frames of 8 base triangles. Returns the notifications.
+unsigned expect_drained_when_empty(const Job& job) {
+    const MachineSetup setup = setup_of(job);
+    Simulation simulation(setup, 1'000'000);
+    DrainedWatch watch(simulation);
+    REQUIRE(simulation.run().empty());
+    CHECK(watch.lit == 8 * 16);
+    watch.sent_before = 8;
+    simulation.host.send_again();
+    REQUIRE(simulation.run().empty());
+    CHECK(watch.lit == 2 * 8 * 16);
+    CHECK(watch.always_empty);
+    return watch.notified;
+}
+
+}  // namespace
+
+TEST_CASE("stopped anywhere: the paper's design, items stalled at random") {
+    Job job = full_split_job(2, 2);
+    job.timing.stalls = {3, 300, 9};
+    job.hardware.queue_capacity = 2;
+    const Texts texts = texts_of_every_cycle(setup_of(job));
+    CHECK(any_contains(texts, "get_triangle", "not all of it sent"));
+    CHECK(any_contains(texts, "get_triangle", "may not take: the queue is at its watermark"));
+    CHECK(any_contains(texts, "pass_or_tessellate", "waiting for both branches"));
+    CHECK(any_contains(texts, "pass_or_tessellate", "waiting for Tessellation Tests"));
+    CHECK(any_contains(texts, "transform", "waiting at the input"));
+    CHECK(any_contains(texts, "summed_height_table", "one waiting at the input"));
+    CHECK(any_contains(texts, "off_chip_memory", "one waiting at the input"));
+}
+
+TEST_CASE("stopped anywhere: every unit slower to begin than to end, a queue of three that spills") {
+    Job job = full_split_job(2, 2);
+    job.hardware.queue_capacity = 3;
+    job.hardware.queue_order = QueueOrder::lifo;
+    MachineSetup setup = setup_of(job);
+    set_every_unit(setup.design.timing, {1, 7, 1});
+    // A triangle's nine edges take the tests some sixty cycles: each of these then waits for the one behind it.
+    setup.design.timing.pass_or_tessellate = {1, 100, 8};
+    setup.design.timing.tessellation = {1, 60, 1};
+    setup.design.timing.triangle_queue = {1, 100, 1};
+    const Texts texts = texts_of_every_cycle(setup);
+    CHECK(any_contains(texts, "pass_or_tessellate", "the first (#) complete"));
+    CHECK(any_contains(texts, "triangle_queue", "of them off chip"));
+    CHECK(any_contains(texts, "triangle_queue", "no place for the next (capacity #)"));
+    CHECK(any_contains(texts, "tessellation", "children of a triangle, a triangle that waits"));
+}
+
+TEST_CASE("stopped anywhere: three tests units, a slow Transform, host triangles at any time") {
+    Job job = full_split_job(2, 2);
+    job.hardware.tests_units = 3;
+    job.hardware.queue_watermark = 1000;
+    job.timing.summed_height_table.ports = 12;
+    MachineSetup setup = setup_of(job);
+    setup.design.timing.transform = {300, 90, 1};
+    const Texts texts = texts_of_every_cycle(setup);
+    CHECK(any_contains(texts, "pass_or_tessellate", "waiting for Transform"));
+    CHECK(any_contains(texts, "get_triangle", "a host triangle"));
+}
+
+TEST_CASE("stopped anywhere: a queue without bound that takes a triangle every forty cycles") {
+    Job job = full_split_job(2, 2);
+    MachineSetup setup = setup_of(job);
+    setup.design.timing.triangle_queue = {50, 40, 1};
+    const Texts texts = texts_of_every_cycle(setup);
+    CHECK(any_contains(texts, "triangle_queue", "of them on the way out"));
+    CHECK(any_contains(texts, "triangle_queue", "no place for the next"));
+}
+
+TEST_CASE("drained: timed, notified once a frame, when all has gone out") {
+    CHECK(expect_drained_when_empty(full_split_job(2, 2)) == 2);
+}
+
+// The host may wait between two base triangles, and the machine be empty.
+TEST_CASE("drained: functional, notified when all that came in has gone out") {
+    Job job = full_split_job(2, 2);
+    job.mode = Mode::functional;
+    CHECK(expect_drained_when_empty(job) >= 2);
+}
+
+TEST_CASE("drained: a machine in a deadlock is not") {
+    Job job = timed_job();
+    job.hardware.queue_capacity = 8;
+    job.hardware.queue_overflow = Overflow::stall;
+    const MachineSetup setup = setup_of(job);
+    Simulation simulation(setup, 1'000'000);
+    DrainedWatch watch(simulation);
+    CHECK_THAT(simulation.run(), Catch::StartsWith("deadlock: "));
+    CHECK(watch.notified == 0);
+}

@@ -1,0 +1,302 @@
+#include <catch2/catch.hpp>
+#include <cstdint>
+
+#include "testbench/output/report/timing_report.h"
+#include "testbench/tests/support/timed_checks.h"
+
+// Long runs: the slowest unit's interval times its work, and the cycles the machine takes to fill and to drain, to the
+// cycle where that can be derived.
+//
+// The mesh: 18 base triangles, each split into four until generation 4: 18 * (1 + 4 + 16 + 64 + 256) = 6138 passes,
+// 18 * 256 finished. A base triangle sends three vertices and three edges; its four children lack all three normals
+// (the base's corners have none yet); of a later split's children three lack two normals, the middle one all three.
+// So parts = 18 * (6 + 4 * 6) + 18 * (16 + 64 + 256) * 3 + 18 * (4 + 16 + 64) * (3 * 2 + 3) = 32292.
+
+using namespace tessera;
+using namespace tessera::testing;
+
+namespace {
+
+constexpr std::uint64_t base = 18;
+constexpr std::uint64_t passes = 6138;
+constexpr std::uint64_t finished = 18 * 256;
+constexpr std::uint64_t parts = 32292;
+
+// From the first cycle until the first edge's first address: Get Triangle 1, its three vertices go first, Calculate
+// New U 1. With a Tessellation Tests unit for each edge only its two vertices go first.
+constexpr std::uint64_t fill = 5;
+constexpr std::uint64_t fill_of_three = 4;
+// After the last address: data 1, Summed Height Test 3, Pass or Tessellate 1, Lighting 4.
+constexpr std::uint64_t drain = 9;
+// From the cycle a base triangle is taken in until its corners are on the screen (test_timed_pipeline.cpp): the longest
+// that the View Test, waiting for one, can keep its edges from the other tests.
+constexpr std::uint64_t until_on_screen = 31;
+
+MachineSetup full_split() {
+    return setup_of(full_split_job(3, 4));
+}
+
+void run_full_split(Simulation& simulation) {
+    run_timed(simulation);
+    const Pipeline& p = simulation.pipeline;
+    REQUIRE(p.pass_or_tessellate.counts().passes == passes);
+    REQUIRE(p.pass_or_tessellate.counts().finished == finished);
+    REQUIRE(p.get_triangle.parts_sent() == parts);
+    REQUIRE(p.summed_height_table.transactions() == 36 * passes);  // no rectangle wraps: four entries each
+}
+
+void require_sole_bottleneck(const Simulation& simulation, const Unit* unit) {
+    CHECK(find_bottleneck(simulation.pipeline, simulation.cycles()).first.units ==
+          std::vector<const Unit*>{unit});
+}
+
+}  // namespace
+
+// One port takes 3 edges x 3 rectangles x 4 entries = 36 cycles a pass, without a break but for one: the
+// first triangle's third edge comes in cycle 32 (test_timed_pipeline.cpp), 3 after the first two's 24 entries
+// have been read in 5 to 28. From then on the next triangle's edges wait when one is through.
+TEST_CASE("the paper's design is bound by the Summed Height Table: 36 cycles a pass") {
+    const MachineSetup setup = full_split();
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    const Pipeline& p = simulation.pipeline;
+    CHECK(simulation.cycles() == fill + 3 + 36 * passes + drain);
+    CHECK(p.summed_height_table.activity().cycles_in(State::busy) == 36 * passes);
+    CHECK(p.summed_height_table.occupied_cycles() == 36 * passes);
+    // and the unit that reads it works 3 cycles on each edge and waits for it, and no other, the rest of that
+    // time; behind the first triangle's second edge, and the last, there is nothing to wait for
+    const Activity& test = p.tessellation_tests[0].summed_height_test.activity();
+    CHECK(test.cycles_in(State::busy) == 3 * 3 * passes);
+    CHECK(test.cycles_in(State::waiting_for_memory) == 36 * passes - 3 * (3 * passes - 2));
+    CHECK(test.cycles_in(State::blocked) == 0);
+}
+
+TEST_CASE("half donut, the paper's design: 36 cycles a pass") {
+    const MachineSetup setup = setup_of(timed_job());
+    Simulation simulation(setup, 1'000'000);
+    run_timed(simulation);
+    const std::uint64_t its_passes = simulation.pipeline.pass_or_tessellate.counts().passes;
+    CHECK(its_passes > 10'000);
+    CHECK(simulation.cycles() == fill + 3 + 36 * its_passes + drain);
+}
+
+// 18 cycles a pass; the first triangle's first two edges are through in 5 to 16, its third comes in 32.
+TEST_CASE("two ports on the Summed Height Table: 18 cycles a pass") {
+    MachineSetup setup = full_split();
+    setup.design.timing.summed_height_table.ports = 2;
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    CHECK(simulation.cycles() == fill + 15 + 18 * passes + drain);
+    CHECK(simulation.pipeline.summed_height_table.activity().cycles_in(State::busy) == 18 * passes);
+}
+
+// 9 cycles a pass: still more than a pass has parts (at most 6). A base triangle's 31 cycles to the screen are now
+// longer than the work on the ones before it, so each of 18 may hold the table up for so long at most.
+TEST_CASE("four ports on the Summed Height Table: 9 cycles a pass, still bound by it") {
+    MachineSetup setup = full_split();
+    setup.design.timing.summed_height_table.ports = 4;
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    CHECK(simulation.cycles() >= fill + 9 * passes + drain);
+    CHECK(simulation.cycles() <= fill + 9 * passes + drain + base * until_on_screen);
+    CHECK(simulation.pipeline.summed_height_table.activity().cycles_in(State::busy) == 9 * passes);
+}
+
+// Four banks instead: a rectangle's corners lie in banks as they fall, so no better than four ports, and with one port
+// each no worse than one.
+TEST_CASE("four banks of the Summed Height Table are between one port and four") {
+    MachineSetup setup = full_split();
+    setup.design.timing.summed_height_table.banks = 4;
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    CHECK(simulation.cycles() > fill + 9 * passes + drain);
+    CHECK(simulation.cycles() < fill + 3 + 36 * passes + drain);
+}
+
+// 64 ports: a rectangle takes no more than its cycle, and what binds is one part a cycle, out of Get Triangle
+// and through Calculate New P, Displace Vertex and Transform alike. The first leaves in cycle 1, the last
+// takes Calculate New P 1, the map 1, Displace Vertex 6, Transform 20, Pass or Tessellate 1, Lighting 4 to
+// come out.
+TEST_CASE("with ports to spare a part a cycle is what binds") {
+    MachineSetup setup = full_split();
+    setup.design.timing.summed_height_table.ports = 64;
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    const std::uint64_t least = 1 + parts + 1 + 1 + 6 + 20 + 1 + 4;
+    CHECK(simulation.cycles() >= least);
+    CHECK(simulation.cycles() <= least + base * until_on_screen);
+    CHECK(simulation.pipeline.get_triangle.occupied_cycles() == parts);
+}
+
+// Three Tessellation Tests units share the one port: nothing gained but the first triangle's three cycles and
+// one vertex.
+TEST_CASE("three tests units on one port: 36 cycles a pass as before") {
+    MachineSetup setup = full_split();
+    setup.design.tests_units = 3;
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    CHECK(simulation.cycles() == fill_of_three + 36 * passes + drain);
+}
+
+TEST_CASE("three tests units on four ports: 9 cycles a pass") {
+    MachineSetup setup = full_split();
+    setup.design.tests_units = 3;
+    setup.design.timing.summed_height_table.ports = 4;
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    CHECK(simulation.cycles() >= fill_of_three + 9 * passes + drain);
+    CHECK(simulation.cycles() <= fill_of_three + 9 * passes + drain + base * until_on_screen);
+}
+
+// Transform starts a part every 8 cycles, the first in cycle 9 (Get Triangle 1, Calculate New P 1, map 1,
+// Displace Vertex 6); the last, 8 * (parts - 1) later, is out 20 later, the triangle decided 1, lit 4 later.
+// The table, with four ports, needs 9 cycles of the 24 and more that three edges take here.
+TEST_CASE("Transform every 8 cycles binds: 8 cycles a part") {
+    MachineSetup setup = full_split();
+    setup.design.timing.summed_height_table.ports = 4;
+    setup.design.timing.transform.interval = 8;
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    CHECK(simulation.cycles() == 9 + 8 * (parts - 1) + 20 + 1 + 4 + 1);
+    CHECK(simulation.pipeline.transform.occupied_cycles() == 8 * parts);
+    // ceil(20 / 8) register stages
+    CHECK(simulation.pipeline.transform.activity().high_water_mark() == 3);
+}
+
+// Two pipelines: parts 0, 2, 4 ... start in 9, 17, 25 ...; parts 1, 3, 5 ... in 10, 18, 26 ...; the last one is odd.
+TEST_CASE("two Transform pipelines every 8 cycles: 4 cycles a part") {
+    MachineSetup setup = full_split();
+    setup.design.timing.summed_height_table.ports = 4;
+    setup.design.timing.transform.interval = 8;
+    setup.design.transform_pipelines = 2;
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    CHECK(simulation.cycles() == 10 + 8 * (parts / 2 - 1) + 20 + 1 + 4 + 1);
+    CHECK(simulation.pipeline.transform.occupied_cycles() == 4 * parts);
+    CHECK(simulation.pipeline.transform.activity().high_water_mark() == 6);
+}
+
+// Tessellation: 6120 children, one every 20 cycles, also from one pass's last to the next one's first.
+TEST_CASE("Tessellation every 20 cycles binds where the tests take less") {
+    MachineSetup setup = full_split();
+    setup.design.timing.summed_height_table.ports = 4;
+    setup.design.timing.tessellation.interval = 20;
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    CHECK(simulation.pipeline.tessellation.children() == passes - base);
+    CHECK(simulation.cycles() >= 20 * (passes - base - 1));
+    // and when the last is made, the finished ones may still wait for the table, nine cycles each
+    CHECK(simulation.cycles() < 20 * (passes - base) + 9 * finished + 500);
+    CHECK(simulation.pipeline.tessellation.occupied_cycles() == 20 * (passes - base));
+    require_sole_bottleneck(simulation, &simulation.pipeline.tessellation);
+}
+
+// One pass at a time: a latency of 300 before its first child, and the other three in the cycles after it.
+TEST_CASE("Tessellation of latency 300 binds: 303 cycles a split") {
+    MachineSetup setup = full_split();
+    setup.design.timing.summed_height_table.ports = 4;
+    setup.design.timing.tessellation.latency = 300;
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    const std::uint64_t splits = (passes - base) / 4;
+    CHECK(simulation.pipeline.tessellation.occupied_cycles() == 303 * splits);
+    CHECK(simulation.cycles() >= 303 * splits);
+    CHECK(simulation.cycles() < 303 * splits + 9 * finished + 500);
+    require_sole_bottleneck(simulation, &simulation.pipeline.tessellation);
+}
+
+TEST_CASE("Get Triangle every 100 cycles binds: 100 cycles a part") {
+    MachineSetup setup = full_split();
+    setup.design.timing.get_triangle.interval = 100;
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    CHECK(simulation.cycles() >= 100 * (parts - 1));
+    CHECK(simulation.cycles() < 100 * parts + 1000);
+    CHECK(simulation.pipeline.get_triangle.occupied_cycles() == 100 * parts);
+    require_sole_bottleneck(simulation, &simulation.pipeline.get_triangle);
+}
+
+TEST_CASE("Get Triangle of latency 200 binds: 200 cycles a pass") {
+    MachineSetup setup = full_split();
+    setup.design.timing.get_triangle.latency = 200;
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    CHECK(simulation.cycles() >= 200 * passes);
+    require_sole_bottleneck(simulation, &simulation.pipeline.get_triangle);
+}
+
+// Eight triangles may be under way at the join, so one a 400 / 8 cycles at most, where the tests take nine.
+TEST_CASE("a Transform of latency 400 is what the join waits for") {
+    MachineSetup setup = full_split();
+    setup.design.timing.summed_height_table.ports = 4;
+    setup.design.timing.transform.latency = 400;
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    const Pipeline& p = simulation.pipeline;
+    std::uint64_t for_transform = 0;
+    for (const Activity::Share& share : p.pass_or_tessellate.activity().shares())
+        for_transform += share.by == &p.transform && share.state == State::starved ? share.cycles : 0;
+    CHECK(2 * for_transform > simulation.cycles());
+}
+
+// As many banks as a row has entries put the corners of a rectangle that lie below one another into one bank: it takes
+// two cycles, and the next one waits when it needs either bank, while nearly all banks idle.
+TEST_CASE("banks in conflict are a bottleneck though their ports idle") {
+    MachineSetup setup = full_split();
+    setup.design.timing.summed_height_table.banks = setup.registers.summed_height_table.columns;
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    const TableMemory& table = simulation.pipeline.summed_height_table;
+    CHECK(table.slots_taken() < table.slots_per_cycle() * simulation.cycles() / 5);
+    CHECK(simulation.cycles() > 10 * passes);
+    CHECK(table.occupied_cycles() == table.cycles_held_up());
+    require_sole_bottleneck(simulation, &table);
+}
+
+TEST_CASE("an interval that lasts is no lack of work") {
+    MachineSetup setup = full_split();
+    setup.design.timing.displace_vertex = {1, 100, 1};
+    setup.design.timing.pass_or_tessellate.interval = 50;
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    const Pipeline& p = simulation.pipeline;
+    CHECK(p.displace_vertex.activity().cycles_in(State::busy) +
+              p.displace_vertex.activity().cycles_in(State::waiting_for_memory) >
+          simulation.cycles() * 9 / 10);
+    require_sole_bottleneck(simulation, &p.displace_vertex);
+}
+
+// Little's law, exactly: where nothing is ever held up, what is in a unit, summed over all cycles, is items
+// times latency: mean occupancy = throughput * latency.
+TEST_CASE("mean occupancy is throughput times latency in units that are never blocked") {
+    const MachineSetup setup = full_split();
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    const Pipeline& p = simulation.pipeline;
+    const auto expect = [](const Unit& unit, std::uint64_t item_cycles) {
+        INFO(unit.name());
+        REQUIRE(unit.activity().cycles_in(State::blocked) == 0);
+        CHECK(unit.activity().item_cycles() == item_cycles);
+    };
+    const std::uint64_t edges = 3 * passes, vertices = 3 * base, normals = parts - edges - vertices;
+    expect(p.transform, 20 * parts);
+    expect(p.calculate_new_p, parts);
+    expect(p.lighting, 4 * finished);
+    expect(p.displace_vertex, (1 + 6) * (edges + vertices) + 6 * normals);  // normals read nothing
+    expect(p.tessellation_tests[0].normal_test, (1 + 9) * (edges + vertices));
+    expect(p.tessellation_tests[0].view_test, edges);
+    expect(p.tessellation_tests[0].tex_coord_test, edges);
+    expect(p.displacement_map, edges + vertices);
+    expect(p.normal_map, edges + vertices);
+}
+
+TEST_CASE("a second frame takes the same cycles again") {
+    const MachineSetup setup = full_split();
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    const std::uint64_t first = simulation.cycles();
+    simulation.host.send_again();
+    REQUIRE(simulation.run().empty());
+    // the second frame's first cycle is the one in which the first one ended
+    CHECK(simulation.cycles() - first + 1 == first);
+}

@@ -1,0 +1,121 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <string>
+
+#include "testbench/tests/modules/named_machine.h"
+#include "testbench/tests/support/job_results.h"
+#include "testbench/tests/support/timed_checks.h"
+
+// Machines of different clocks, modes and designs in one simulation: each does what it does alone.
+
+using namespace tessera;
+using namespace tessera::testing;
+
+namespace {
+
+MachineSetup with_clock(MachineSetup setup, unsigned picoseconds) {
+    setup.design.timing.cycle_picoseconds = picoseconds;
+    return setup;
+}
+
+Job three_tests_units_job() {
+    Job job = full_split_job(3, 3);
+    job.hardware.tests_units = 3;
+    job.hardware.queue_capacity = 16;
+    return job;
+}
+
+const JobResult& default_result() {
+    return *std::find_if(job_results.begin(), job_results.end(),
+                         [](const JobResult& each) { return std::string(each.name) == "half_donut"; });
+}
+
+void expect_mesh(const NamedMachine& machine, const MachineSetup& setup) {
+    INFO(machine.name());
+    CHECK(machine.finished());
+    CHECK((keys(machine.monitor.mesh) == keys(bare_mesh(setup))));  // not to be printed
+}
+
+/// Once, in the last cycle of its own clock.
+void expect_drained_in_last_cycle(const NamedMachine& machine) {
+    INFO(machine.name());
+    REQUIRE(machine.drained.size() == 1);
+    CHECK(machine.drained[0] ==
+          machine.pipeline.clock.period() * static_cast<double>(machine.pipeline.clock.last_cycle()));
+}
+
+MachineSetup full_queue_setup(Overflow overflow) {
+    Job job = timed_job();
+    job.hardware.queue_capacity = 8;
+    job.hardware.queue_overflow = overflow;
+    return setup_of(job);
+}
+
+}  // namespace
+
+TEST_CASE("two machines: a timed one of 5 ns, and a functional one") {
+    const MachineSetup timed_setup = setup_of(timed_job());
+    Job job;
+    job.mode = Mode::functional;
+    job.hardware.tests_units = 3;
+    const MachineSetup functional_setup = with_clock(setup_of(job), 3200);
+    const AloneResult alone = run_alone(functional_setup);
+
+    NamedMachine timed("timed", timed_setup);
+    NamedMachine functional("functional", functional_setup);
+    sc_core::sc_start();
+    expect_mesh(timed, timed_setup);
+    expect_mesh(functional, functional_setup);
+    CHECK(timed.cycles() == default_result().cycles);
+    CHECK(timed.monitor.mesh.triangles.size() == default_result().triangles);
+    CHECK(functional.pipeline.clock.last_cycle() == 0);
+    expect_drained_in_last_cycle(timed);
+    CHECK(functional.drained.back().value() == alone.drained);
+    CHECK(functional.drained.back() != timed.drained.back());
+}
+
+TEST_CASE("two machines: timed ones of 5 ns and of 3.2 ns with three Tessellation Tests units") {
+    const MachineSetup slow_setup = setup_of(timed_job());
+    const MachineSetup fast_setup = with_clock(setup_of(three_tests_units_job()), 3200);
+    const AloneResult alone = run_alone(fast_setup);
+
+    NamedMachine slow("slow", slow_setup);
+    NamedMachine fast("fast", fast_setup);
+    sc_core::sc_start();
+    expect_mesh(slow, slow_setup);
+    expect_mesh(fast, fast_setup);
+    CHECK(slow.cycles() == default_result().cycles);
+    CHECK(fast.cycles() == alone.cycles);
+    CHECK(slow.pipeline.clock.period() == sc_core::sc_time(5000, sc_core::SC_PS));
+    CHECK(fast.pipeline.clock.period() == sc_core::sc_time(3200, sc_core::SC_PS));
+    expect_drained_in_last_cycle(slow);
+    expect_drained_in_last_cycle(fast);
+    CHECK(fast.drained[0].value() == alone.drained);
+    CHECK(fast.drained[0] < slow.drained[0]);
+}
+
+TEST_CASE("two machines: one whose queue overflows halts alone, one whose queue stalls waits alone") {
+    const MachineSetup overflow_setup = full_queue_setup(Overflow::error);
+    const MachineSetup stall_setup = full_queue_setup(Overflow::stall);
+    const MachineSetup sound_setup = with_clock(setup_of(three_tests_units_job()), 3200);
+    const AloneResult alone = run_alone(sound_setup);
+
+    NamedMachine overflowing("overflowing", overflow_setup);
+    NamedMachine stalling("stalling", stall_setup);
+    NamedMachine sound("sound", sound_setup);
+    sc_core::sc_start();
+    CHECK(overflowing.pipeline.triangle_queue.overflowed());
+    CHECK(overflowing.pipeline.clock.halted());
+    CHECK_FALSE(stalling.pipeline.clock.halted());
+    CHECK_FALSE(stalling.pipeline.idle());
+    for (const NamedMachine* stuck : {&overflowing, &stalling}) {
+        INFO(stuck->name());
+        CHECK_FALSE(stuck->finished());
+        CHECK(stuck->drained.empty());
+        CHECK(stuck->cycles() * stuck->pipeline.clock.period().value() < alone.drained);
+    }
+    expect_mesh(sound, sound_setup);
+    CHECK(sound.cycles() == alone.cycles);
+    expect_drained_in_last_cycle(sound);
+}

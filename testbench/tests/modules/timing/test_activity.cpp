@@ -1,0 +1,243 @@
+#include <catch2/catch.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "modules/stage/fork.h"
+#include "modules/stage/per_triangle.h"
+#include "modules/stage/signals.h"
+#include "modules/timing/activity.h"
+#include "modules/timing/level_history.h"
+#include "modules/units/triangle_store.h"
+#include "testbench/tests/support/timed_modules.h"
+
+// What units keep their books and their items with.
+
+using namespace tessera;
+using namespace tessera::testing;
+using Catch::Contains;
+
+namespace {
+
+using Levels = std::vector<std::uint64_t>;
+
+struct Neighbour : sc_core::sc_module {
+    explicit Neighbour(const sc_core::sc_module_name& name) : sc_module(name) {}
+};
+
+/// Outputs in a module, as a unit has them; their consumers take nothing.
+struct ForkBench : sc_core::sc_module {
+    std::vector<std::unique_ptr<StreamOutput<int>>> outputs;
+    std::vector<std::unique_ptr<BareTarget<int>>> targets;
+    Fork<int> fork;
+
+    explicit ForkBench(const sc_core::sc_module_name& name) : sc_module(name) {
+        for (int k = 0; k < 5; ++k) {
+            const std::string number = std::to_string(k);
+            outputs.push_back(std::make_unique<StreamOutput<int>>(("out_" + number).c_str()));
+            targets.push_back(std::make_unique<BareTarget<int>>(("target_" + number).c_str()));
+            outputs.back()->bind(targets.back()->in);
+        }
+    }
+};
+
+}  // namespace
+
+TEST_CASE("activity: cycles by state, and by whom it was blocked or waited for") {
+    Neighbour a("a"), b("b");
+    Activity activity;
+    activity.set(10, State::blocked, &a);
+    activity.set(13, State::waiting_for_memory, &a);
+    activity.set(17, State::blocked, &b);
+    activity.set(18, State::blocked, &a);
+    activity.set(20, State::busy);
+    activity.finish(25);
+    CHECK(activity.cycles_in(State::starved) == 10);
+    CHECK(activity.cycles_in(State::blocked) == 6);
+    CHECK(activity.cycles_in(State::waiting_for_memory) == 4);
+    CHECK(activity.cycles_in(State::busy) == 5);
+    const auto share = [&](State state, const Neighbour& by) {
+        std::uint64_t cycles = 0;
+        for (const Activity::Share& it : activity.shares())
+            if (it.state == state && it.by == &by)
+                cycles += it.cycles;
+        return cycles;
+    };
+    CHECK(share(State::blocked, a) == 5);
+    CHECK(share(State::blocked, b) == 1);
+    CHECK(share(State::waiting_for_memory, a) == 4);
+    CHECK(share(State::waiting_for_memory, b) == 0);
+}
+
+TEST_CASE("activity: more neighbours than it can tell apart are an error, none is added to another") {
+    std::vector<std::unique_ptr<Neighbour>> neighbours;
+    Activity activity;
+    const auto visit_all = [&] {
+        std::uint64_t cycle = 0;
+        for (const auto& it : neighbours)
+            activity.set(cycle++, State::blocked, it.get());
+        activity.finish(cycle);
+    };
+    for (std::size_t k = 0; k <= Activity::most_shares; ++k)
+        neighbours.push_back(std::make_unique<Neighbour>(("n" + std::to_string(k)).c_str()));
+    CHECK_THAT(error_of(visit_all), Contains("more neighbours"));
+    for (const Activity::Share& share : activity.shares())
+        CHECK(share.cycles == 1);
+}
+
+TEST_CASE("level history: the highest level of each stretch, stretches double") {
+    LevelHistory history;
+    history.finish(0);
+    CHECK(history.highest().empty());
+    history.set(2, 7);
+    history.set(4, 3);
+    history.finish(6);
+    CHECK(history.stretch() == 1);
+    CHECK(history.highest() == Levels{0, 0, 7, 7, 7, 3});
+    history.finish(2000);
+    CHECK(history.stretch() == 2);
+    REQUIRE(history.highest().size() == 1000);
+    CHECK(history.highest()[0] == 0);
+    CHECK(history.highest()[1] == 7);
+    CHECK(history.highest()[2] == 7);
+    CHECK(history.highest()[3] == 3);
+    CHECK(history.highest().back() == 3);
+}
+
+TEST_CASE("fork: says who holds it up, and has four outputs at most") {
+    ForkBench bench("bench");
+    sc_core::sc_start(sc_core::SC_ZERO_TIME);
+    for (std::size_t k = 0; k < 4; ++k)
+        bench.fork.add(*bench.outputs[k]);
+    CHECK_THAT(error_of([&] { bench.fork.add(*bench.outputs[4]); }), Contains("more than four"));
+    CHECK(bench.fork.blocked_by() == nullptr);
+    for (const std::size_t k : {0u, 1u, 3u}) {
+        bench.targets[k]->status = tlm::TLM_UPDATED;
+        bench.targets[k]->phase_back = tlm::END_REQ;
+    }
+    int item = 5;
+    CHECK_FALSE(bench.fork.deliver(item));
+    CHECK(bench.fork.blocked_by() == bench.targets[2].get());
+    for (const auto& target : bench.targets)
+        target->status = tlm::TLM_COMPLETED;  // a second offer would be a breach
+    CHECK_FALSE(bench.fork.deliver(item));
+    bench.targets[2]->send_back(item, tlm::END_REQ, sc_core::SC_ZERO_TIME);
+    CHECK(bench.fork.deliver(item));
+}
+
+TEST_CASE("fork: an output gets the parts that it is for, and of them what it needs, in both modes") {
+    struct Bench : sc_core::sc_module {
+        StreamOutput<ScreenPoint> all{"all"}, edges{"edges"};
+        StreamOutput<ScreenCorner> vertices{"vertices"};
+        Fork<ScreenPoint> fork;
+        explicit Bench(const sc_core::sc_module_name& name) : sc_module(name) {
+            fork.add(all);
+            fork.add(edges, edge_parts);
+            const auto corner = +[](const ScreenPoint& point) {
+                return ScreenCorner{point.tag, point.screen};
+            };
+            fork.add(vertices, corner, vertex_parts);
+        }
+    } bench("bench");
+    CycleScheduler clock("clock", sc_core::sc_time(10, sc_core::SC_PS));
+    Sink<ScreenPoint> all("all", clock), edges("edges", clock);
+    Sink<ScreenCorner> vertices("vertices", clock);
+    bench.all.bind(all.in);
+    bench.edges.bind(edges.in);
+    bench.vertices.bind(vertices.in);
+    const auto parts_of_items = [](const auto& sink) {
+        std::vector<int> parts;
+        for (const auto& item : sink.items)
+            parts.push_back(item.tag.part);
+        return parts;
+    };
+    sc_core::sc_start(sc_core::SC_ZERO_TIME);
+    ScreenPoint point;
+    point.screen.x = 5;
+    for (const int part : {7, 4, 2}) {
+        point.tag.part = static_cast<std::uint8_t>(part);
+        CHECK(bench.fork.deliver(point));
+        sc_core::sc_start(sc_core::sc_time(10, sc_core::SC_PS));
+    }
+    sc_core::sc_time delay;
+    for (const int part : {6, 3, 0}) {
+        point.tag.part = static_cast<std::uint8_t>(part);
+        bench.fork.transport(point, delay);
+    }
+    CHECK(parts_of_items(all) == std::vector<int>{7, 4, 2, 6, 3, 0});
+    CHECK(parts_of_items(edges) == std::vector<int>{7, 6});
+    CHECK(parts_of_items(vertices) == std::vector<int>{2, 0});
+    CHECK(vertices.items.front().screen.x == 5);
+}
+
+TEST_CASE("per triangle: found by tag, closed in any order, and it grows") {
+    PerTriangle<int> kept(2);
+    CHECK(kept.find(7) == nullptr);
+    kept.open(7) = 70;
+    kept.find_or_open(8) = 80;
+    CHECK(kept.full());
+    kept.find_or_open(9) = 90;
+    CHECK(kept.size() == 3);
+    CHECK(kept.find_or_open(8) == 80);
+    kept.close(8);
+    kept.close(8);  // has gone
+    CHECK(kept.size() == 2);
+    CHECK(kept.oldest() == 70);
+    CHECK(*kept.find(9) == 90);
+    kept.close_oldest();
+    CHECK(kept.oldest() == 90);
+    CHECK(kept.find(7) == nullptr);
+    CHECK(kept.find_or_open(7) == 0);  // anew
+}
+
+TEST_CASE("unit numbers: the units of a machine, anything else is other, nothing is nobody") {
+    Neighbour transform("transform"), stranger("stranger");
+    struct Machine : sc_core::sc_module {
+        Neighbour lighting{"lighting"};
+        Neighbour host{"a_host"};
+        struct Inner : sc_core::sc_module {
+            Neighbour lighting{"lighting"};
+            explicit Inner(const sc_core::sc_module_name& name) : sc_module(name) {}
+        } inner{"inner"};
+        Neighbour lookalike{"xlighting"};
+        explicit Machine(const sc_core::sc_module_name& name) : sc_module(name) {}
+    } machine("machine");
+    const auto number_of = [](const std::string& name) {
+        for (const UnitNumbers::Entry& entry : UnitNumbers::all())
+            if (entry.name == name)
+                return entry.number;
+        return ~0u;
+    };
+    UnitNumbers numbers;
+    CHECK(numbers.of(nullptr) == UnitNumbers::nobody);
+    CHECK(numbers.of(&transform) == number_of("transform"));
+    CHECK(numbers.of(&machine.lighting) == number_of("lighting"));
+    CHECK(numbers.of(&machine.lighting) == number_of("lighting"));  // known by now
+    for (const Neighbour* other : {&stranger, &machine.host, &machine.lookalike, &machine.inner.lighting})
+        CHECK(numbers.of(other) == UnitNumbers::other);
+}
+
+TEST_CASE("triangle store: grows at either end, and keeps the order") {
+    TriangleStore store(TriangleOrder::fifo);
+    datapath::Triangle triangle;
+    const auto numbered = [&](std::uint32_t number) -> const datapath::Triangle& {
+        triangle.base = number;
+        return triangle;
+    };
+    for (std::uint32_t k = 0; k < 1500; ++k) {
+        store.push_oldest(numbered(2999 - k));
+        store.push(numbered(3000 + k));
+    }
+    CHECK(store.size() == 3000);
+    for (std::uint32_t k = 1500; k < 4500; ++k)
+        REQUIRE(store.pop().base == k);
+    CHECK(store.empty());
+    TriangleStore other(TriangleOrder::lifo);
+    for (std::uint32_t k = 0; k < 3000; ++k)
+        other.push_oldest(numbered(k));
+    for (std::uint32_t k = 2999; k >= 2000; --k)
+        REQUIRE(other.pop_oldest().base == k);
+    for (std::uint32_t k = 0; k < 2000; ++k)
+        REQUIRE(other.pop().base == k);
+    CHECK(other.empty());
+}

@@ -1,0 +1,62 @@
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "testbench/tests/support/timed_checks.h"
+#include "testbench/tests/support/timed_modules.h"
+
+// The clock's period under time resolutions of SystemC other than its default, 1 ps. A program of its own:
+// the constants of other tests fix the resolution before main.
+
+using namespace tessera;
+using namespace tessera::testing;
+using Catch::Contains;
+using sc_core::sc_time;
+
+TEST_CASE("time resolution 1 ns: a period of whole nanoseconds is exact") {
+    sc_core::sc_set_time_resolution(1, sc_core::SC_NS);
+    CHECK(clock_period("machine", 5000) == sc_time(5, sc_core::SC_NS));
+}
+
+TEST_CASE("time resolution 1 ns: another period is an error that says what to do") {
+    sc_core::sc_set_time_resolution(1, sc_core::SC_NS);
+    for (const unsigned picoseconds : {1u, 999u, 2500u, 5001u})
+        CHECK_THAT(error_of([&] { clock_period("machine", picoseconds); }),
+                   Contains("machine: ") && Contains(" " + std::to_string(picoseconds) + " ps") &&
+                       Contains("1 ns") && Contains("sc_set_time_resolution"));
+}
+
+TEST_CASE("time resolution 10 s: no period is a multiple of that") {
+    sc_core::sc_set_time_resolution(10, sc_core::SC_SEC);
+    CHECK_THAT(error_of([] { clock_period("machine", 5000); }), Contains("10 s"));
+}
+
+TEST_CASE("time resolution 1 ns: a machine refuses the period, in its own name") {
+    sc_core::sc_set_time_resolution(1, sc_core::SC_NS);
+    Job job = full_split_job(1, 1);
+    job.timing.cycle_picoseconds = 2500;
+    const MachineSetup setup = setup_of(job);
+    CHECK_THAT(error_of([&] { const Pipeline pipeline("machine", setup.registers, setup.design); }),
+               Contains("machine: a clock period of 2500 ps"));
+}
+
+namespace {
+
+void expect_time(double resolution, sc_core::sc_time_unit unit) {
+    sc_core::sc_set_time_resolution(resolution, unit);
+    const MachineSetup setup = setup_of(full_split_job(1, 2));
+    Simulation simulation(setup, 1'000'000);
+    CHECK(simulation.run().empty());
+    CHECK(simulation.cycles() > 1000);
+    // 5000 ps a cycle
+    CHECK(sc_core::sc_time_stamp() ==
+          sc_time(5.0 * static_cast<double>(simulation.cycles() - 1), sc_core::SC_NS));
+}
+
+}  // namespace
+
+TEST_CASE("time resolution 1 fs: a run lasts its cycles") {
+    expect_time(1, sc_core::SC_FS);
+}
+TEST_CASE("time resolution 1 ns: a run lasts its cycles") {
+    expect_time(1, sc_core::SC_NS);
+}

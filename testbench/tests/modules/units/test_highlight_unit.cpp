@@ -1,0 +1,146 @@
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <vector>
+
+#include "modules/datapath/map_entry.h"
+#include "modules/memories/table_memory.h"
+#include "modules/units/edge_tests/normal.h"
+#include "testbench/tests/support/timed_modules.h"
+
+// The Normal Test unit alone, through its sockets, with and without a Highlight Test.
+
+using namespace tessera;
+using namespace tessera::testing;
+
+namespace {
+
+datapath::Registers registers_of(bool highlight_test) {
+    datapath::Registers registers;
+    registers.map = {4, 1, datapath::AddressMode::clamp, datapath::AddressMode::clamp};
+    registers.normal_map = {4096, 4, 1, datapath::entry_bytes(3 * registers.formats.normal.bits)};
+    registers.tests.normal_threshold = 9000;
+    registers.tests.highlight_test = highlight_test;
+    registers.formats.highlight_tag = highlight_test;
+    registers.tests.half_vector = {9830, 0, 13107};  // (0.6, 0, 0.8)
+    registers.tests.highlight_cosine = 255'000'000;  // 0.95
+    registers.tests.highlight_normal_threshold = 2000;
+    return registers;
+}
+
+constexpr datapath::Direction up{0, 0, 1 << 14};
+constexpr datapath::Direction at_half{9830, 0, 13107};
+constexpr datapath::Direction tilted{3000, 0, 16107};  // 3000 from up, 0.90 from H: outside
+
+/// The unit, its memory full of normals straight up, and three edges whose midpoints so have N' = up:
+/// (at_half, up): both tests; (up, tilted): neither, it lies outside; (tilted, at_half): both.
+struct Bench {
+    datapath::Registers registers;
+    Design design;
+    CycleScheduler clock{"clock", sc_core::sc_time(10, sc_core::SC_PS)};
+    NormalMap memory;
+    Sink<NormalResult> sink{"sink", clock};
+    NormalTest unit;
+    Driver<NormalOperands> driver{"driver", clock};
+    std::vector<NormalOperands> edges;
+
+    Bench(bool highlight_test, const Timing& timing)
+        : registers(registers_of(highlight_test)),
+          design(with(timing)),
+          memory("memory", clock, registers.normal_map, timing.normal_map, timing.stalls),
+          unit("unit", {clock, registers, design}) {
+        clock.attach(memory);
+        clock.attach(unit);
+        unit.normal_map.bind(memory);
+        unit.output.bind(sink.in);
+        driver.out.bind(unit.input);
+        const std::vector<datapath::Direction> ends{at_half, up, tilted};
+        for (unsigned k = 0; k < 3; ++k) {
+            NormalOperands edge;
+            edge.tag.part = static_cast<std::uint8_t>(first_edge_part + k);
+            edge.n_i = edge.n_j = up;
+            edge.tangent_i = edge.tangent_j = {1 << 14, 0, 0};
+            edge.displaced_n_i = ends[k];
+            edge.displaced_n_j = ends[(k + 1) % 3];
+            edge.t = {k << 12, 0};
+            edges.push_back(edge);
+        }
+    }
+
+    static Design with(const Timing& timing) {
+        Design design;
+        design.timing = timing;
+        return design;
+    }
+
+    void fill_memory() {
+        const std::uint64_t entry = datapath::pack_normal(up, registers.formats.normal.bits);
+        for (std::uint32_t x = 0; x < 4; ++x) {
+            std::vector<unsigned char> bytes;
+            for (std::uint32_t k = 0; k < registers.normal_map.entry_bytes; ++k)
+                bytes.push_back(static_cast<unsigned char>(entry >> (8 * k)));
+            MemoryRequest request{tlm::TLM_WRITE_COMMAND,
+                                  1,
+                                  registers.normal_map.entry_bytes,
+                                  {registers.normal_map.address(x, 0)},
+                                  bytes.data()};
+            REQUIRE(unit.normal_map.socket->transport_dbg(request) == bytes.size());
+        }
+    }
+
+    /// Timed: one edge after another, and the cycles in which they come out.
+    std::vector<std::uint64_t> run_timed() {
+        driver.items = edges;
+        sc_core::sc_start(sc_core::SC_ZERO_TIME);
+        fill_memory();
+        sc_core::sc_start();
+        REQUIRE(driver.offered.front() == 0);
+        return sink.cycles;
+    }
+
+    std::vector<int> tests() const {
+        std::vector<int> bits;
+        for (const NormalResult& result : sink.items)
+            bits.push_back((result.normal ? datapath::normal_bit : 0) |
+                           (result.highlight ? datapath::highlight_bit : 0));
+        return bits;
+    }
+};
+
+const std::vector<int> without_highlight{datapath::normal_bit, 0, datapath::normal_bit};
+
+}  // namespace
+
+// Taken in cycle 0, read in 1, the compare 9 later; another edge each cycle.
+TEST_CASE("Normal Test unit without a Highlight Test: 10 cycles with the read") {
+    Bench bench(false, {});
+    CHECK(bench.run_timed() == std::vector<std::uint64_t>{10, 11, 12});
+    CHECK(bench.tests() == without_highlight);
+}
+
+TEST_CASE("Normal Test unit with a Highlight Test: one cycle more, an edge a cycle still") {
+    Bench bench(true, {});
+    CHECK(bench.run_timed() == std::vector<std::uint64_t>{11, 12, 13});
+    const int both = datapath::normal_bit | datapath::highlight_bit;
+    CHECK(bench.tests() == std::vector<int>{both, 0, both});
+}
+
+TEST_CASE("Normal Test unit with a Highlight Test of 7 cycles") {
+    Timing timing;
+    timing.highlight_test_latency = 7;
+    Bench bench(true, timing);
+    CHECK(bench.run_timed() == std::vector<std::uint64_t>{17, 18, 19});
+}
+
+TEST_CASE("Normal Test unit with a Highlight Test, blocking transport: the same bits, one cycle more") {
+    Bench bench(true, {});
+    bench.registers.tests.normal_threshold = 16384;  // so that the Highlight Test is alone
+    sc_core::sc_start(sc_core::SC_ZERO_TIME);
+    bench.fill_memory();
+    for (NormalOperands& edge : bench.edges) {
+        sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
+        bench.driver.out.transport(edge, delay);
+        // a read of a cycle, and 9 and 1
+        CHECK(bench.sink.delays.back() == 11 * bench.clock.period());
+    }
+    CHECK(bench.tests() == std::vector<int>{datapath::highlight_bit, 0, datapath::highlight_bit});
+}

@@ -1,0 +1,150 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "modules/datapath/pack_triangle.h"
+#include "modules/memories/off_chip_memory.h"
+#include "modules/units/triangle_queue.h"
+#include "testbench/tests/support/timed_modules.h"
+
+// The Triangle Queue alone, spilling: what goes in comes out, and first in first out in that order.
+
+using namespace tessera;
+using namespace tessera::testing;
+
+namespace {
+
+constexpr unsigned triangles = 600;
+
+/// A queue of a few places between a driver that pauses and a sink that stalls.
+struct Bench {
+    Design all;
+    Sink<datapath::Triangle> sink;
+    Sink<QueueLevel> level;
+    OffChipMemory memory;
+    TriangleQueue queue;
+    Driver<datapath::Triangle> driver;
+
+    Bench(const std::string& name, CycleScheduler& clock, const datapath::Registers& registers,
+          const QueueDesign& design, std::uint64_t seed, const StallParameters& sink_stalls)
+        : all(with(design)),
+          sink(("sink_" + name).c_str(), clock, sink_stalls),
+          level(("level_" + name).c_str(), clock),
+          memory(("memory_" + name).c_str(), clock, OffChipTiming{}, {}, std::uint64_t{1} << 20,
+                 datapath::packed_triangle_tag_bytes),
+          queue(("queue_" + name).c_str(), {clock, registers, all}),
+          driver(("driver_" + name).c_str(), clock, {seed + 1, 250, 120}) {
+        clock.attach(memory);
+        clock.attach(queue);
+        driver.out.bind(queue.from_tessellation);
+        queue.to_get_triangle.bind(sink.in);
+        queue.level.bind(level.in);
+        queue.off_chip_memory.bind(memory);
+        for (unsigned k = 0; k < triangles; ++k) {
+            datapath::Triangle triangle;
+            triangle.base = k;
+            driver.items.push_back(triangle);
+        }
+    }
+
+    static Design with(const QueueDesign& queue) {
+        Design design;
+        design.queue = queue;
+        return design;
+    }
+
+    std::vector<std::uint32_t> came() const {
+        std::vector<std::uint32_t> tags;
+        for (const datapath::Triangle& triangle : sink.items)
+            tags.push_back(triangle.base);
+        return tags;
+    }
+};
+
+std::vector<std::uint32_t> in_order() {
+    std::vector<std::uint32_t> tags;
+    for (std::uint32_t k = 0; k < triangles; ++k)
+        tags.push_back(k);
+    return tags;
+}
+
+}  // namespace
+
+TEST_CASE("triangle queue: first in first out, through off-chip memory and back") {
+    CycleScheduler clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
+    const datapath::Registers registers;
+    std::vector<std::unique_ptr<Bench>> benches;
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+        QueueDesign design;
+        design.capacity = 1 + seed % 4;
+        benches.push_back(std::make_unique<Bench>(std::to_string(seed), clock, registers, design, 3 * seed,
+                                                  StallParameters{3 * seed, 500, 12}));
+    }
+    sc_core::sc_start();
+    for (const auto& bench : benches) {
+        INFO(bench->queue.name());
+        CHECK(bench->queue.spilled() > 0);
+        CHECK(bench->queue.spilled() < triangles);  // it was empty off chip now and then
+        CHECK(bench->queue.spilled() == bench->queue.refilled());
+        CHECK(bench->queue.on_chip_high_water_mark() <= 4);
+        CHECK(bench->came() == in_order());
+    }
+}
+
+TEST_CASE("triangle queue: last in first out, through off-chip memory and back, none is lost or doubled") {
+    CycleScheduler clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
+    const datapath::Registers registers;
+    std::vector<std::unique_ptr<Bench>> benches;
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+        QueueDesign design;
+        design.order = TriangleOrder::lifo;
+        design.capacity = 1 + seed % 4;
+        benches.push_back(std::make_unique<Bench>(std::to_string(seed), clock, registers, design, 3 * seed,
+                                                  StallParameters{3 * seed, 500, 12}));
+    }
+    sc_core::sc_start();
+    for (const auto& bench : benches) {
+        INFO(bench->queue.name());
+        CHECK(bench->queue.spilled() > 0);
+        std::vector<std::uint32_t> tags = bench->came();
+        CHECK(tags != in_order());
+        std::sort(tags.begin(), tags.end());
+        CHECK(tags == in_order());
+    }
+}
+
+TEST_CASE("triangle queue: a triangle that does not fit its record is an error, not another triangle") {
+    CycleScheduler clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
+    const datapath::Registers registers;
+    QueueDesign design;
+    design.capacity = 1;
+    Bench bench("spills", clock, registers, design, 0, StallParameters{1, 1000, 1000});
+    for (datapath::Triangle& triangle : bench.driver.items)
+        triangle.vertices[0].generation = 255;
+    CHECK_THAT(error_of([] { sc_core::sc_start(); }),
+               Catch::Contains("triangle_queue") || Catch::Contains("does not fit"));
+}
+
+// Nobody takes what the queue offers, for far longer than the test looks.
+TEST_CASE("triangle queue: the host may send while fewer triangles wait than the watermark says") {
+    CycleScheduler clock("clock", sc_core::sc_time(5, sc_core::SC_NS));
+    const datapath::Registers registers;
+    std::vector<std::unique_ptr<Bench>> benches;
+    for (unsigned waiting = 0; waiting < 5; ++waiting) {
+        QueueDesign design;
+        design.watermark = 3;
+        benches.push_back(std::make_unique<Bench>(std::to_string(waiting), clock, registers, design, 0,
+                                                  StallParameters{1, 1000, 1'000'000}));
+        benches.back()->driver.items.resize(waiting);
+    }
+    sc_core::sc_start(sc_core::sc_time(100 * triangles, sc_core::SC_NS));
+    for (unsigned waiting = 0; waiting < 5; ++waiting) {
+        const TriangleQueue& queue = benches[waiting]->queue;
+        INFO(queue.name());
+        REQUIRE(queue.waiting() == waiting);
+        CHECK(queue.below_watermark() == (waiting < 3));
+        CHECK(benches[waiting]->level.items.size() == (waiting < 3 ? 0 : 1));  // told when it changes
+    }
+}

@@ -1,0 +1,259 @@
+#include "testbench/output/report/timing_report.h"
+
+#include <catch2/catch.hpp>
+#include <string>
+#include <vector>
+
+#include "testbench/tests/support/timed_checks.h"
+
+// timing.txt on a machine that has not run: its units' books are written by hand, over 1000 cycles, so that each column
+// holds a figure of its own.
+
+using namespace tessera;
+using namespace tessera::testing;
+using Catch::Contains;
+using Catch::EndsWith;
+using Catch::StartsWith;
+
+namespace {
+
+constexpr std::uint64_t cycles = 1000;
+
+/// A machine whose units have done nothing yet.
+struct Machine {
+    MachineSetup setup = setup_of(timed_job());
+    Simulation simulation{setup, 1000};
+    Pipeline& pipeline = simulation.pipeline;
+    TessellationTests& tests = pipeline.tessellation_tests[0];
+};
+
+/// `count` items one after another, from cycle `first` on, of one cycle each; with one interval a cycle the
+/// unit is so many cycles occupied.
+void work_on(Unit& unit, std::uint64_t count, std::uint64_t first = 0) {
+    for (std::uint64_t k = 0; k < count; ++k) {
+        unit.activity().item_in(first + k);
+        unit.activity().item_out(first + k + 1);
+    }
+}
+
+std::string line_of(const std::string& text, const std::string& unit) {
+    const std::size_t begin = text.find("\n" + unit + " ");
+    REQUIRE(begin != std::string::npos);
+    return text.substr(begin + 1, text.find('\n', begin + 1) - begin - 1);
+}
+
+}  // namespace
+
+TEST_CASE("timing tables: each column of a unit") {
+    Machine m;
+    Activity& a = m.tests.normal_test.activity();
+    a.item_in(0);
+    a.item_in(0);
+    a.item_in(10);  // three for 100 cycles
+    a.item_out(110);
+    a.item_out(110);
+    a.item_out(110);
+    a.set(0, State::waiting_for_memory, &m.pipeline.normal_map);
+    a.set(40, State::busy);
+    a.set(110, State::blocked, &m.tests.collect_tests);
+    a.set(310, State::starved, &m.pipeline.transform);
+    a.set(410, State::starved);
+    a.finish(cycles);
+    const std::string text = timing_tables(m.pipeline, cycles);
+    CHECK_THAT(text,
+               StartsWith("unit                                         items     busy  memory  blocked  "
+                          "starved  utilisation  items/kcyc   occup.  most  by whom\n"));
+    // (2 * 10 + 3 * 100) / 1000 items in it on average
+    CHECK(line_of(text, "tessellation_tests_0.normal_test") ==
+          "tessellation_tests_0.normal_test                 3     7.00    4.00    20.00    69.00         0.30"
+          "        3.00    0.320     3  blocked by tessellation_tests_0.collect_tests, waits for normal_map, "
+          "lacks transform");
+    // who did nothing starved, and nobody is named
+    m.pipeline.lighting.activity().finish(cycles);
+    CHECK(line_of(timing_tables(m.pipeline, cycles), "lighting") ==
+          "lighting                                         0     0.00    0.00     0.00   100.00         0.00"
+          "        0.00    0.000     0");
+}
+
+TEST_CASE("timing tables: of several who block a unit the one that did so longest is named") {
+    Machine m;
+    Activity& a = m.tests.calculate_new_u.activity();
+    a.set(0, State::blocked, &m.tests.normal_test);
+    a.set(100, State::blocked, &m.tests.view_test);
+    a.set(300, State::blocked, &m.tests.normal_test);
+    a.set(390, State::blocked, &m.tests.tex_coord_test);
+    a.set(400, State::busy);
+    a.finish(cycles);
+    CHECK_THAT(line_of(timing_tables(m.pipeline, cycles), "tessellation_tests_0.calculate_new_u"),
+               EndsWith("  blocked by tessellation_tests_0.view_test"));
+}
+
+// Otherwise the queue would be "blocked" whenever something waits in it, and the wires "starved" for ever.
+TEST_CASE("timing tables: queues and wires have a rate and a level, and no states") {
+    Machine m;
+    Activity& queue = m.pipeline.triangle_queue.activity();
+    for (int k = 0; k < 5; ++k)
+        queue.item_in(0);
+    for (int k = 0; k < 5; ++k)
+        queue.item_out(500);
+    queue.set(0, State::blocked, &m.pipeline.get_triangle);
+    queue.finish(cycles);
+    work_on(m.tests.collect_tests, 20);
+    const std::string text = timing_tables(m.pipeline, cycles);
+    CHECK_THAT(
+        text,
+        EndsWith("queue or wire                                items  items/kcyc  mean level      most\n"
+                 "tessellation_tests_0.collect_tests              20       20.00       0.020         1\n"
+                 "triangle_queue                                   5        5.00       2.500         5\n"));
+    CHECK(text.find("triangle_queue") == text.rfind("triangle_queue"));
+    CHECK(text.find("collect_tests") == text.rfind("collect_tests"));
+}
+
+TEST_CASE("timing tables: every unit and memory has its line") {
+    Machine m;
+    const std::string text = "\n" + timing_tables(m.pipeline, cycles);
+    for (const Unit* unit : m.pipeline.units())
+        CHECK(line_of(text, unit_name(*unit)).size() > 50);
+}
+
+TEST_CASE("utilisation: occupied cycles in all, at most all of them") {
+    Machine m;
+    work_on(m.pipeline.transform, 250);
+    CHECK(utilisation(m.pipeline.transform, cycles) == 0.25);
+    CHECK(utilisation(m.pipeline.transform, 200) == 1);
+    CHECK(utilisation(m.pipeline.transform, 0) == 0);
+}
+
+TEST_CASE("bottleneck: the next limit names all within a per cent of it, in the pipeline's order") {
+    Machine m;
+    work_on(m.pipeline.transform, 1000);
+    work_on(m.tests.view_test, 400);
+    work_on(m.tests.normal_test, 396);  // a per cent less
+    work_on(m.pipeline.calculate_new_p, 398);
+    work_on(m.pipeline.displace_vertex, 395);
+    const Bottleneck found = find_bottleneck(m.pipeline, cycles);
+    CHECK(found.binding);
+    CHECK(found.first.units == std::vector<const Unit*>{&m.pipeline.transform});
+    CHECK(found.first.utilisation == 1);
+    CHECK(found.next.units ==
+          std::vector<const Unit*>{&m.pipeline.calculate_new_p, &m.tests.normal_test, &m.tests.view_test});
+    CHECK(found.next.utilisation == 0.4);
+    CHECK(found.bound() == Approx(2.5));
+    CHECK(bottleneck_text(m.pipeline, cycles) ==
+          "transform: 100.0 % of its throughput is used; without it at most 2.5 times "
+          "faster, bounded by calculate_new_p, tessellation_tests_0.normal_test and "
+          "tessellation_tests_0.view_test, which tie at 40.0 %");
+}
+
+// The bound is on the run's length, so it rests on the work that remains, not on how much more the first
+// limit has: what is 90 % taken and gone leaves half of the cycles at least.
+TEST_CASE("bottleneck: the bound is what remains to be done, and who waits longest is named") {
+    Machine m;
+    work_on(m.pipeline.lighting, 900);
+    work_on(m.pipeline.calculate_new_p, 500);
+    Activity& waiting = m.pipeline.pass_or_tessellate.activity();
+    waiting.set(0, State::blocked, &m.pipeline.tessellation);
+    waiting.set(500, State::blocked, &m.pipeline.lighting);
+    waiting.finish(800);
+    Activity& less = m.pipeline.get_triangle.activity();
+    less.set(0, State::blocked, &m.pipeline.lighting);
+    less.finish(299);
+    CHECK(bottleneck_text(m.pipeline, cycles) ==
+          "lighting: 90.0 % of its throughput is used; pass_or_tessellate is held up by it in "
+          "30.0 % of all cycles; without it at most 2.0 times faster, bounded by calculate_new_p, at 50.0 %");
+}
+
+TEST_CASE("bottleneck: units that tie bind together") {
+    Machine m;
+    work_on(m.pipeline.calculate_new_p, 1000);
+    work_on(m.pipeline.transform, 995);
+    work_on(m.pipeline.lighting, 100);
+    Activity& get = m.pipeline.get_triangle.activity();
+    get.set(0, State::blocked, &m.pipeline.calculate_new_p);
+    get.finish(700);
+    CHECK(bottleneck_text(m.pipeline, cycles) ==
+          "calculate_new_p and transform, which tie: 100.0 % of their throughput is used; "
+          "get_triangle is held up by calculate_new_p in 70.0 % of all cycles; without them at most 10.0 "
+          "times faster, bounded by "
+          "lighting, at 10.0 %");
+}
+
+TEST_CASE("bottleneck: the only unit that worked has no next limit") {
+    Machine m;
+    work_on(m.pipeline.lighting, 1000);
+    CHECK(find_bottleneck(m.pipeline, cycles).bound() == 0);
+    CHECK(bottleneck_text(m.pipeline, cycles) == "lighting: 100.0 % of its throughput is used");
+}
+
+TEST_CASE("bottleneck: below 85 % latency binds, and what would help is said") {
+    Machine m;
+    work_on(m.pipeline.lighting, 849);
+    work_on(m.pipeline.calculate_new_p, 845);
+    Activity& transform = m.pipeline.transform.activity();
+    transform.item_in(0);
+    transform.item_out(35);  // longer than any other stage
+    transform.item_in(100);
+    transform.item_out(120);
+    Activity& get = m.pipeline.get_triangle.activity();
+    get.item_in(0);
+    get.item_out(900);  // waiting for others
+    SECTION("more triangles, where none waits") {
+        get.set(0, State::blocked, &m.pipeline.calculate_new_p);
+        get.set(200, State::starved);
+        get.finish(cycles);
+        CHECK(bottleneck_text(m.pipeline, cycles) ==
+              "none: bound by latency; of the busiest (calculate_new_p and lighting) 84.9 % of the "
+              "throughput is "
+              "used; at most 1.2 times faster with more triangles in flight "
+              "(get_triangle is starved 80.0 %: more base triangles, a higher hardware.queue_watermark) or "
+              "shorter latencies (an item stays 27.5 cycles in transform)");
+    }
+    SECTION("larger buffers, where Get Triangle cannot get rid of them") {
+        get.set(0, State::blocked, &m.pipeline.calculate_new_p);
+        get.set(600, State::starved);
+        get.finish(cycles);
+        CHECK_THAT(bottleneck_text(m.pipeline, cycles),
+                   Contains("(get_triangle is blocked 60.0 %: larger buffers, timing.*_buffer)"));
+    }
+    CHECK_FALSE(find_bottleneck(m.pipeline, cycles).binding);
+    work_on(m.pipeline.lighting, 1, 950);
+    CHECK(find_bottleneck(m.pipeline, cycles).binding);
+}
+
+TEST_CASE("bottleneck: a machine that did nothing has none") {
+    Machine m;
+    CHECK(bottleneck_text(m.pipeline, cycles) == "nothing was done");
+    CHECK(find_bottleneck(m.pipeline, cycles).bound() == 0);
+}
+
+// 12 entries an edge through one port: 36 of the 86 cycles (test_timed_pipeline.cpp); the bound is the nine parts that
+// four units pass on, a cycle each.
+TEST_CASE("timing.txt of one triangle: latency binds") {
+    Job job = timed_job();
+    job.mesh.columns = job.mesh.rows = 1;
+    job.map.source = MapSource::constant;
+    MachineSetup setup = setup_of(job);
+    setup.base_triangles.resize(1);
+    Simulation simulation(setup, 1000);
+    run_timed(simulation);
+    const std::string text = timing_text(simulation.pipeline, simulation.cycles());
+    CHECK_THAT(text, StartsWith("86 cycles. "));
+    CHECK_THAT(text, Contains(timing_tables(simulation.pipeline, 86)));
+    CHECK_THAT(
+        text,
+        Contains("\nbottleneck: none: bound by latency; of the busiest (summed_height_table) 41.9 % of the "
+                 "throughput is used; at most 2.4 times faster "));
+    CHECK_THAT(text, EndsWith("(an item stays 20.0 cycles in transform)\n"));
+}
+
+TEST_CASE("queue_levels.csv: first cycle of each stretch and its highest level") {
+    LevelHistory history;
+    history.set(1, 4);
+    history.set(3, 2);
+    history.finish(5);
+    CHECK(queue_levels_csv(history) == "first_cycle,highest_level\n0,0\n1,4\n2,4\n3,4\n4,2\n");
+    history.finish(2000);
+    const std::string text = queue_levels_csv(history);
+    CHECK_THAT(text, StartsWith("first_cycle,highest_level\n0,4\n2,4\n4,2\n"));
+    CHECK_THAT(text, EndsWith("\n1998,2\n"));
+}

@@ -1,0 +1,600 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "testbench/tests/output/trace/vcd_file.h"
+#include "testbench/tests/support/program_runner.h"
+#include "testbench/tests/support/run_folder.h"
+
+using namespace tessera;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::uint64_t period = 5;  // ns a cycle, VCD time unit 1 ns
+
+/// A timed run of a smaller half donut into the folder "out", with these arguments besides.
+ProgramEnd run_small(const TestFolder& here, const std::vector<std::string>& more,
+                     const ProgramLimits& limits = {}) {
+    std::vector<std::string> arguments{"run", "--set", "tests.generation_limit=4", "--set",
+                                       "output.folder=out"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_tessera(arguments, here.path(), limits);
+}
+
+void require_fine(const ProgramEnd& end) {
+    INFO(end.text());
+    REQUIRE(end.exit_code == 0);
+}
+
+nlohmann::json statistics_of(const TestFolder& here) {
+    return nlohmann::json::parse(read_all(here.path() / "out/statistics.json"));
+}
+
+std::uint64_t count(const nlohmann::json& statistics, const std::string& group, const std::string& name) {
+    return statistics.at(group).at(name).at("value").get<std::uint64_t>();
+}
+
+/// A timeline read back: what each unit did, and the flows by triangle in the order of time.
+struct Timeline {
+    struct Slice {
+        std::string track, state;
+        double begin, end;
+        nlohmann::json arguments;
+    };
+    struct Step {
+        std::string phase, track;
+        double time;
+    };
+
+    explicit Timeline(const fs::path& file) {
+        const nlohmann::json all = nlohmann::json::parse(read_all(file));
+        for (const nlohmann::json& event : all.at("traceEvents")) {
+            const std::string phase = event.at("ph");
+            if (event.at("name") == "thread_name")
+                tracks[event.at("tid")] = event.at("args").at("name");
+            if (phase == "X") {
+                const double begin = event.at("ts");
+                slices.push_back({tracks.at(event.at("tid")), event.at("name"), begin,
+                                  begin + event.at("dur").get<double>(),
+                                  event.value("args", nlohmann::json::object())});
+            } else if (phase == "s" || phase == "t" || phase == "f") {
+                CHECK(event.at("name") == "triangle");
+                CHECK(event.at("cat") == "triangle");
+                CHECK((event.value("bp", "") == "e") == (phase == "f"));
+                flows[event.at("id")].push_back({phase, tracks.at(event.at("tid")), event.at("ts")});
+            }
+        }
+        for (auto& [triangle, steps] : flows)
+            std::stable_sort(steps.begin(), steps.end(),
+                             [](const Step& a, const Step& b) { return a.time < b.time; });
+        for (const Slice& slice : slices)
+            by_begin[slice.track].emplace(slice.begin, &slice);
+    }
+    const Slice* slice_at(const std::string& track, double time) const {
+        const auto& its = by_begin.at(track);
+        const auto after = its.upper_bound(time);
+        return after == its.begin() || std::prev(after)->second->end <= time ? nullptr
+                                                                             : std::prev(after)->second;
+    }
+
+    std::map<int, std::string> tracks;
+    std::vector<Slice> slices;
+    std::map<std::uint64_t, std::vector<Step>> flows;
+    std::map<std::string, std::map<double, const Slice*>> by_begin;
+};
+
+}  // namespace
+
+TEST_CASE("tracing changes nothing but its own files, and those are the same every time") {
+    const TestFolder here;
+    require_fine(run_small(here, {}));
+    const std::map<std::string, std::string> plain = RunFolder(here.path() / "out").files();
+    require_fine(run_small(here, {"--vcd", "--timeline"}));
+    const std::map<std::string, std::string> traced = RunFolder(here.path() / "out").files();
+    require_fine(run_small(here, {"--vcd", "--timeline"}));
+    require_same_files(traced, RunFolder(here.path() / "out").files());
+    CHECK(traced.size() == plain.size() + 2);
+    for (const auto& [name, content] : plain) {
+        INFO(name);
+        if (name != "job.toml")  // which says that traces were asked for
+            CHECK((content == traced.at(name)));
+    }
+    require_fine(run_small(here, {"--timeline"}));
+    CHECK_FALSE(fs::exists(here.path() / "out/trace.vcd"));
+    require_fine(run_small(here, {}));
+    require_same_files(plain, RunFolder(here.path() / "out").files());
+}
+
+TEST_CASE("a window shows the cycles it names, with the values they have in the whole run") {
+    const TestFolder here;
+    // Also with items held back at random, and with three Tessellation Tests units.
+    const auto design = GENERATE(
+        std::vector<std::string>{},
+        std::vector<std::string>{"--set", "timing.stalls_per_mille=200", "--set", "hardware.tests_units=3"});
+    const auto trace = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), design.begin(), design.end());
+        const ProgramEnd end = run_small(here, arguments);
+        require_fine(end);
+        CHECK_THAT(end.out, Contains("trace.vcd"));
+        return VcdFile(here.path() / "out/trace.vcd");
+    };
+    const VcdFile whole = trace({"--vcd", "--trace", "0:1000000"});
+    const std::uint64_t cycles = count(statistics_of(here), "timing", "cycles");
+    CHECK(whole.begin == 0);
+    CHECK(whole.end == cycles * period);
+    for (const auto& [first, last] : std::vector<std::pair<std::uint64_t, std::uint64_t>>{
+             {0, 0}, {100, 100}, {1000, 1500}, {1001, 1007}, {cycles - 50, cycles + 50}}) {
+        INFO(first << " to " << last);
+        const VcdFile part = trace({"--vcd", "--trace", std::to_string(first) + ":" + std::to_string(last)});
+        CHECK(part.begin == first * period);
+        CHECK(part.end == std::min(last + 1, cycles) * period);
+        REQUIRE(part.signals.size() == whole.signals.size());
+        for (const auto& [name, signal] : part.signals) {
+            INFO(name);
+            const VcdFile::Signal& its = whole[name];
+            // Operands of what came before the window are shown only while still in the unit.
+            const bool operand = signal.initial != its.at(first * period);
+            std::vector<std::pair<std::uint64_t, std::uint64_t>> expected;
+            for (const auto& change : its.changes) {
+                if (change.first > first * period && change.first < (last + 1) * period)
+                    expected.push_back(change);
+            }
+            if (!operand) {
+                CHECK(signal.changes == expected);
+                continue;
+            }
+            CHECK(signal.initial == 0);
+            for (const char* const exact :
+                 {"state", "blocked_by", "occupancy", "valid", "ready", "stalled", "waiting", "level",
+                  "request", "requests", "reads", "under_way", "served", "held_up", "threshold"})
+                CHECK_FALSE(name.substr(name.rfind('.') + 1) == exact);
+        }
+    }
+}
+
+TEST_CASE("a window that the run does not reach shows how the run ends") {
+    const TestFolder here;
+    const ProgramEnd end = run_small(here, {"--vcd", "--timeline", "--trace", "1000000:1000010"});
+    require_fine(end);
+    CHECK_THAT(end.out, Contains("before cycle 1000000"));
+    const VcdFile vcd(here.path() / "out/trace.vcd");
+    CHECK(vcd.begin == vcd.end);
+    CHECK(vcd["tessera.pass_or_tessellate.finished"].initial ==
+          count(statistics_of(here), "run", "triangles_finished"));
+}
+
+TEST_CASE("waveforms count what the statistics count") {
+    const TestFolder here;
+    require_fine(
+        run_small(here, {"--vcd", "--trace", "0:1000000", "--set", "timing.summed_height_table_ports=4"}));
+    const VcdFile vcd(here.path() / "out/trace.vcd");
+    const nlohmann::json statistics = statistics_of(here);
+    const auto high = [&](const std::string& name) {
+        return vcd["tessera." + name].high_cycles(period, vcd.end);
+    };
+    const auto cycles_in = [&](const std::string& unit, std::uint64_t state) {
+        const VcdFile::Signal& signal = vcd["tessera." + unit + ".state"];
+        VcdFile::Signal is{1, signal.initial == state, {}};
+        for (const auto& [time, value] : signal.changes)
+            is.changes.emplace_back(time, value == state);
+        return is.high_cycles(period, vcd.end);
+    };
+    CHECK(high("triangle_queue.ready") == count(statistics, "triangle_queue", "taken"));
+    CHECK(high("tessellation_tests_0.collect_tests.edge") == count(statistics, "run", "edges_tested"));
+    CHECK(high("pass_or_tessellate.decided") == count(statistics, "pass_or_tessellate", "passes") +
+                                                    count(statistics, "pass_or_tessellate", "normal_passes"));
+    CHECK(high("calculate_new_p.ready") == count(statistics, "timing.calculate_new_p", "items"));
+    CHECK(high("displace_vertex.request") == count(statistics, "displacement_map", "reads"));
+    const char* const names[] = {"starved", "busy", "waiting_for_memory", "blocked"};
+    for (const auto& [group, members] : statistics.items()) {
+        if (group.rfind("timing.", 0) != 0 || !members.contains("busy"))
+            continue;
+        INFO(group);
+        for (std::uint64_t state = 0; state < 4; ++state)
+            CHECK(cycles_in(group.substr(7), state) == members.at(names[state]).at("value"));
+    }
+}
+
+TEST_CASE("every read request can be counted in the waveforms") {
+    const TestFolder here;
+    const std::string ports = GENERATE("1", "2", "4");
+    const std::string banks = GENERATE("1", "2", "4");
+    INFO(ports << " ports, " << banks << " banks");
+    std::vector<std::string> arguments{"--vcd", "--trace", "0:1000000"};
+    for (const char* const table : {"displacement_map", "normal_map", "summed_height_table"}) {
+        for (const auto& [key, value] : {std::pair{"_ports=", ports}, std::pair{"_banks=", banks}}) {
+            arguments.emplace_back("--set");
+            arguments.push_back("timing." + std::string(table) + key + value);
+        }
+    }
+    require_fine(run_small(here, arguments));
+    const VcdFile vcd(here.path() / "out/trace.vcd");
+    const nlohmann::json statistics = statistics_of(here);
+    // What the signal counted; each change is one more, or several more in one cycle.
+    const auto counted = [&](const std::string& name) {
+        const VcdFile::Signal& signal = vcd["tessera." + name];
+        std::uint64_t value = signal.initial;
+        CHECK(value == 0);
+        for (const auto& change : signal.changes)
+            value += change.second > value ? change.second - value : UINT64_MAX / 2;
+        return value;
+    };
+    for (const auto& [unit, memory] :
+         {std::pair{"displace_vertex", "displacement_map"},
+          std::pair{"tessellation_tests_0.normal_test", "normal_map"},
+          std::pair{"tessellation_tests_0.summed_height_test", "summed_height_table"}}) {
+        const std::string its = unit, of_memory = memory;
+        INFO(its);
+        const std::uint64_t reads = count(statistics, of_memory, "reads");
+        const std::uint64_t requests = counted(its + ".requests");
+        CHECK(counted(its + ".reads") == reads);
+        CHECK(counted(of_memory + ".reads") == reads);
+        CHECK(counted(of_memory + ".requests") == requests);
+        // A rectangle of the Summed Height Table is one request.
+        CHECK(requests ==
+              (of_memory == "summed_height_table" ? 3 * count(statistics, "run", "edges_tested") : reads));
+        CHECK(vcd["tessera." + its + ".requests"].changes.size() ==
+              vcd["tessera." + its + ".request"].high_cycles(period, vcd.end));
+    }
+}
+
+TEST_CASE("waveforms show what each test compares, and with what") {
+    const TestFolder here;
+    const std::string unit = GENERATE("sum", "area");
+    require_fine(run_small(
+        here, {"--vcd", "--trace", "0:1000000", "--set", "tests.summed_height_unit=" + unit, "--set",
+               "tests.summed_height_threshold=" + std::string(unit == "sum" ? "1" : "0.01")}));
+    const VcdFile vcd(here.path() / "out/trace.vcd");
+    const auto signal = [&](const std::string& test, const std::string& name) -> const VcdFile::Signal& {
+        return vcd["tessera.tessellation_tests_0." + test + "." + name];
+    };
+    const auto sign_extended = [](std::uint64_t value, unsigned bits) {
+        return static_cast<std::int64_t>(value << (64 - bits)) >> (64 - bits);
+    };
+    const auto distance = [](std::int64_t a, std::int64_t b) {
+        return static_cast<std::uint64_t>(std::abs(a - b));
+    };
+    std::uint64_t time = 0;
+    const auto at = [&](const std::string& test, const std::string& name) {
+        const VcdFile::Signal& its = signal(test, name);
+        const bool is_signed = name.rfind("n_", 0) == 0 || name.rfind("screen_", 0) == 0;
+        return is_signed ? sign_extended(its.at(time), its.bits) : static_cast<std::int64_t>(its.at(time));
+    };
+    std::set<bool> normal, summed_height, view, generation;
+    for (const auto& change : signal("normal_test", "difference").changes) {
+        time = change.first;
+        std::uint64_t largest = 0;
+        for (const char* const axis : {"x", "y", "z"}) {
+            const std::int64_t middle = at("normal_test", std::string("n_ij_") + axis);
+            for (const char* const end : {"n_i_", "n_j_"})
+                largest = std::max(largest, distance(middle, at("normal_test", std::string(end) + axis)));
+        }
+        if (at("normal_test", "out.part") < 6) {
+            CHECK(change.second == 0);
+            continue;
+        }
+        CHECK(change.second == largest);
+        const bool differs = change.second > signal("normal_test", "threshold").at(time);
+        CHECK(differs == (at("normal_test", "out.normal") == 1));
+        normal.insert(differs);
+    }
+    for (const auto& change : signal("summed_height_test", "difference").changes) {
+        time = change.first;
+        const char* const test = "summed_height_test";
+        CHECK(change.second == distance(2 * at(test, "sum_ij"), at(test, "sum_i") + at(test, "sum_j")));
+        const std::uint64_t limit = signal(test, "limit").at(time);
+        const bool differs = change.second > limit;
+        CHECK(differs == (at(test, "out.summed_height") == 1));
+        summed_height.insert(differs);
+        // The rectangle shown is the item's that was started last; its area has changed the limit if it is one's.
+        CHECK((limit == signal(test, "threshold").at(time) || unit == "area"));
+    }
+    CHECK((signal("summed_height_test", "limit").changes.size() > 1) == (unit == "area"));
+    for (const auto& change : signal("view_test", "length").changes) {
+        time = change.first;
+        CHECK(change.second == distance(at("view_test", "screen_i_x"), at("view_test", "screen_j_x")) +
+                                   distance(at("view_test", "screen_i_y"), at("view_test", "screen_j_y")));
+        const bool is_long = change.second > signal("view_test", "threshold").at(time);
+        CHECK(is_long == (at("view_test", "out.view") == 1));
+        view.insert(is_long);
+    }
+    for (const auto& change : signal("tex_coord_test", "generation_ij").changes) {
+        time = change.first;
+        CHECK(change.second ==
+              1 + static_cast<std::uint64_t>(std::max(at("tex_coord_test", "in.generation_i"),
+                                                      at("tex_coord_test", "in.generation_j"))));
+        const bool allowed = change.second <= signal("tex_coord_test", "generation_limit").at(time);
+        CHECK(allowed == (at("tex_coord_test", "out.generation") == 1));
+        generation.insert(allowed);
+    }
+    CHECK(normal.size() == 2);
+    CHECK(summed_height.size() == 2);
+    CHECK(view.size() + generation.size() >= 3);
+}
+
+TEST_CASE("waveforms of off-chip memory show what a queue of four triangles spills and gets back") {
+    const TestFolder here;
+    require_fine(run_small(here, {"--vcd", "--trace", "0:1000000", "--set", "hardware.queue_capacity=4"}));
+    const VcdFile vcd(here.path() / "out/trace.vcd");
+    const nlohmann::json statistics = statistics_of(here);
+    const auto& of_memory = [&](const std::string& name) -> const VcdFile::Signal& {
+        return vcd["tessera.off_chip_memory." + name];
+    };
+    const std::uint64_t bytes = count(statistics, "timing.triangle_queue", "spill_bytes");
+    REQUIRE(bytes > 0);
+    CHECK(of_memory("bytes_written").at(vcd.end) == bytes / 2);
+    CHECK(of_memory("bytes_read").at(vcd.end) == bytes / 2);
+    CHECK(of_memory("answers_due").at(vcd.end) == 0);
+    CHECK(of_memory("served").high_cycles(period, vcd.end) ==
+          2 * count(statistics, "timing.triangle_queue", "spilled"));
+    CHECK(of_memory("write").changes.size() > 1);
+    std::set<std::uint64_t> addresses;
+    for (const auto& [time, address] : of_memory("address").changes)
+        addresses.insert(address);
+    CHECK(addresses.size() > 4);
+
+    // A window that begins when memory has been at work begins with the request it served last.
+    const std::uint64_t middle = of_memory("address").changes[addresses.size()].first / period + 1;
+    require_fine(run_small(here, {"--vcd", "--trace", std::to_string(middle) + ":1000000", "--set",
+                                  "hardware.queue_capacity=4"}));
+    const VcdFile rest(here.path() / "out/trace.vcd");
+    for (const char* name : {"address", "write", "bytes_written"})
+        CHECK(rest["tessera.off_chip_memory." + std::string(name)].initial ==
+              of_memory(name).at(middle * period));
+}
+
+TEST_CASE("only the units named are traced") {
+    const TestFolder here;
+    require_fine(run_small(here, {"--vcd", "--trace-units", "normal,  triangle_queue"}));
+    for (const auto& [name, signal] : VcdFile(here.path() / "out/trace.vcd").signals) {
+        INFO(name);
+        CHECK((name == "tessera.passes_under_way" || name == "tessera.clock.cycle" ||
+               name.rfind("tessera.tessellation_tests_0.normal_test.", 0) == 0 ||
+               name.rfind("tessera.normal_map.", 0) == 0 || name.rfind("tessera.triangle_queue.", 0) == 0));
+    }
+}
+
+TEST_CASE("the timeline's stretches tile the window and agree with the statistics") {
+    const TestFolder here;
+    const auto [first, last] = GENERATE(std::pair<std::uint64_t, std::uint64_t>{0, 1000000},
+                                        std::pair<std::uint64_t, std::uint64_t>{500, 2000});
+    require_fine(
+        run_small(here, {"--timeline", "--trace", std::to_string(first) + ":" + std::to_string(last)}));
+    const nlohmann::json timeline = nlohmann::json::parse(read_all(here.path() / "out/timeline.json"));
+    const nlohmann::json statistics = statistics_of(here);
+    const std::uint64_t cycles = count(statistics, "timing", "cycles");
+    std::map<int, std::string> tracks;
+    std::map<int, std::uint64_t> reached;
+    std::map<std::pair<std::string, std::string>, std::uint64_t> spent;
+    std::uint64_t counters = 0;
+    // A cycle is a microsecond: whole numbers, which viewers add without rounding.
+    const auto in_cycles = [](const nlohmann::json& microseconds) {
+        REQUIRE(microseconds.is_number_unsigned());
+        return microseconds.get<std::uint64_t>();
+    };
+    for (const nlohmann::json& event : timeline.at("traceEvents")) {
+        const std::string phase = event.at("ph");
+        if (phase == "M" && event.at("name") == "thread_name")
+            tracks[event.at("tid")] = event.at("args").at("name");
+        counters += phase == "C";
+        if (phase != "X")
+            continue;
+        const int track = event.at("tid");
+        const std::uint64_t begin = in_cycles(event.at("ts"));
+        CHECK(begin == (reached.count(track) == 0 ? first : reached[track]));
+        reached[track] = begin + in_cycles(event.at("dur"));
+        spent[{tracks.at(track), event.at("name")}] += in_cycles(event.at("dur"));
+        if (event.at("name") == "blocked")
+            CHECK(event.contains("args"));
+    }
+    CHECK(tracks.size() == 18);
+    CHECK(counters > 10);
+    std::size_t with_states = 0;
+    for (const auto& [number, name] : tracks) {
+        INFO(name);
+        CHECK(reached[number] == std::min(last + 1, cycles));
+        if (first > 0 || !statistics.at("timing." + name).contains("busy"))
+            continue;
+        ++with_states;
+        for (const auto& [state, figure] :
+             std::map<std::string, std::string>{{"busy", "busy"},
+                                                {"starved", "starved"},
+                                                {"waiting for memory", "waiting_for_memory"},
+                                                {"blocked", "blocked"}})
+            CHECK((spent[{name, state}]) == count(statistics, "timing." + name, figure));
+    }
+    CHECK(with_states ==
+          (first > 0 ? 0 : tracks.size() - 2));  // all but queue and results, which have no states
+}
+
+TEST_CASE("a triangle can be followed through the timeline") {
+    const TestFolder here;
+    const auto design = GENERATE(
+        std::vector<std::string>{},
+        std::vector<std::string>{"--set", "timing.stalls_per_mille=200", "--set", "hardware.tests_units=3"},
+        std::vector<std::string>{"--set", "hardware.culling=back", "--set", "displacement.scale=0.6"});
+    const bool whole = GENERATE(true, false);
+    std::vector<std::string> arguments{"--timeline", "--trace", whole ? "0:1000000" : "500:2000"};
+    arguments.insert(arguments.end(), design.begin(), design.end());
+    require_fine(run_small(here, arguments));
+    const Timeline timeline(here.path() / "out/timeline.json");
+    const nlohmann::json statistics = statistics_of(here);
+
+    // Counted: of so many slices and steps, an assertion each takes minutes.
+    std::map<std::string, std::size_t> broken;
+    const auto require_each = [&](bool holds, const char* rule) {
+        if (!holds)
+            ++broken[rule];
+    };
+
+    // Each slice names a triangle of one base, and the units that take parts name each part once.
+    std::map<std::uint64_t, std::uint64_t> base_of;
+    std::map<std::string, std::set<std::pair<std::uint64_t, std::string>>> items;
+    for (const Timeline::Slice& slice : timeline.slices) {
+        if (!slice.arguments.contains("triangle"))
+            continue;
+        // These two hold a triangle as long as they are not starved.
+        if (slice.track == "get_triangle" || slice.track == "tessellation")
+            require_each(slice.state != "starved", "holds a triangle and is not starved");
+        const std::uint64_t triangle = slice.arguments.at("triangle");
+        const std::uint64_t base = slice.arguments.at("base");
+        require_each(base_of.emplace(triangle, base).first->second == base, "a triangle has one base");
+        items[slice.track].emplace(triangle, slice.arguments.value("part", ""));
+    }
+    CHECK(std::max_element(base_of.begin(), base_of.end(), [](const auto& a, const auto& b) {
+              return a.second < b.second;
+          })->second > 0);
+    const std::set<std::string> without{"triangle_queue", "displacement_map", "normal_map",
+                                        "summed_height_table", "off_chip_memory"};
+    const std::set<std::string> take_all{"get_triangle", "pass_or_tessellate", "tessellation", "lighting"};
+    for (const auto& [number, unit] : timeline.tracks) {
+        INFO(unit);
+        CHECK((items.count(unit) == 0) == (without.count(unit) == 1));
+        const std::string last = unit.substr(unit.rfind('.') + 1);
+        if (whole && last != "collect_tests" && without.count(unit) == 0)  // it may let several by in a cycle
+            CHECK(items[unit].size() == count(statistics, "timing." + unit, "items"));
+        for (const auto& [triangle, part] : items[unit])
+            require_each(part.empty() == (take_all.count(unit) == 1),
+                         "a part is named where parts are taken");
+    }
+
+    // Steps lie in their triangle's slices. A flow begins once, in Get Triangle; ends once, in its last unit.
+    std::map<std::string, std::uint64_t> ends;
+    std::size_t unfinished = 0;
+    for (const auto& [triangle, steps] : timeline.flows) {
+        std::set<std::string> units;
+        for (std::size_t k = 0; k < steps.size(); ++k) {
+            const Timeline::Step& step = steps[k];
+            require_each(units.insert(step.track).second, "a flow is in a unit once");
+            const Timeline::Slice* const slice = timeline.slice_at(step.track, step.time);
+            require_each(slice != nullptr && slice->arguments.value("triangle", UINT64_MAX) == triangle,
+                         "a step stands in a slice of its triangle");
+            require_each((step.phase == "s") == (k == 0), "a flow begins once");
+            require_each((step.phase == "s") == (step.track == "get_triangle"),
+                         "a flow begins in Get Triangle");
+            require_each(step.phase != "f" || k + 1 == steps.size(), "a flow ends once");
+            require_each(k == 0 || steps[k - 1].time <= step.time, "a flow goes forward");
+        }
+        if (steps.back().phase != "f") {
+            ++unfinished;
+            continue;
+        }
+        ++ends[steps.back().track];
+        for (const char* const unit :
+             {"calculate_new_p", "displace_vertex", "transform", "pass_or_tessellate"})
+            require_each(units.count(unit) == 1, "a flow that ends has been everywhere before");
+    }
+    CHECK(broken == std::map<std::string, std::size_t>{});
+    CHECK((unfinished == 0) == whole);
+    if (!whole)
+        return;
+    CHECK(timeline.flows.size() == count(statistics, "timing.get_triangle", "items"));
+    CHECK(ends["tessellation"] == count(statistics, "timing.tessellation", "items"));
+    CHECK(ends["lighting"] == count(statistics, "timing.lighting", "items"));
+    CHECK(ends["pass_or_tessellate"] == timeline.flows.size() - ends["tessellation"] - ends["lighting"]);
+    CHECK((ends["pass_or_tessellate"] > 0) == (design.size() > 1 && design[1] == "hardware.culling=back"));
+}
+
+TEST_CASE("a deadlock leaves its traces, and nothing of a run before it") {
+    const TestFolder here;
+    const std::vector<std::string> stall{"--set", "hardware.queue_capacity=4",
+                                         "--set", "hardware.queue_overflow=stall",
+                                         "--vcd", "--timeline"};
+    require_fine(run_small(here, {}));
+    const ProgramEnd end = run_small(here, stall);
+    INFO(end.text());
+    REQUIRE(end.exit_code == 3);
+    CHECK_THAT(end.err, Contains("trace.vcd") && Contains("timeline.json") && Contains("out"));
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(here.path() / "out"))
+        names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    CHECK(names == std::vector<std::string>{"job.toml", "timeline.json", "trace.vcd"});
+    const VcdFile vcd(here.path() / "out/trace.vcd");
+    CHECK(vcd["tessera.triangle_queue.stalled"].at(vcd.end) == 1);
+    CHECK(nlohmann::json::parse(read_all(here.path() / "out/timeline.json")).at("traceEvents").size() > 20);
+}
+
+TEST_CASE("traces that cannot be are refused, and leave nothing") {
+    const TestFolder here;
+    const auto refused = [&](const std::vector<std::string>& arguments,
+                             const std::vector<std::string>& words) {
+        std::vector<std::string> all{"run", "--set", "output.folder=out/of/it"};
+        all.insert(all.end(), arguments.begin(), arguments.end());
+        const ProgramEnd end = run_tessera(all, here.path());
+        INFO(end.text());
+        CHECK(end.exit_code == 2);
+        CHECK(end.out.empty());
+        CHECK(lines_of(end.err).size() == 1);
+        for (const std::string& word : words)
+            CHECK_THAT(end.err, Contains(word));
+        CHECK(here.names().empty());
+    };
+    for (const auto& [option, key] : std::vector<std::pair<std::string, std::string>>{
+             {"--vcd", "output.vcd"}, {"--timeline", "output.timeline"}, {"--fst", "output.vcd"}})
+        refused({option, "--set", "mode=functional"}, {key, "mode = \"timed\""});
+    const auto refused_timed = [&](std::vector<std::string> arguments,
+                                   const std::vector<std::string>& words) {
+        arguments.insert(arguments.begin(), "--vcd");
+        refused(arguments, words);
+    };
+    refused_timed({"--trace", "20:10"}, {"output.trace_from", "20", "output.trace_to", "10"});
+    refused_timed({"--trace", "20"}, {"--trace 20", "FROM:TO"});
+    refused_timed({"--trace", ":20"}, {"FROM:TO"});
+    refused_timed({"--trace", "1:2:3"}, {"output.trace_to"});
+    refused_timed({"--trace", "-1:3"}, {"output.trace_from"});
+    refused_timed(
+        {"--trace-units", "transform queue_level"},
+        {"output.trace_units", "\"queue_level\"", "triangle_queue", "tessellation_tests_0.view_test"});
+}
+
+TEST_CASE("a limit that ends a traced run leaves no trace") {
+    const TestFolder here;
+    const ProgramEnd end = run_small(here, {"--vcd", "--timeline", "--set", "limits.triangles=100"});
+    INFO(end.text());
+    CHECK(end.exit_code == 4);
+    CHECK(here.names().empty());
+
+    ProgramLimits limits;
+    limits.file_bytes = 2'000'000;
+    const ProgramEnd full = run_small(here, {"--vcd", "--trace", "0:1000000"}, limits);
+    INFO(full.text());
+    CHECK(full.signal == 0);
+    CHECK(full.exit_code == 4);
+    CHECK(lines_of(full.err).size() == 1);
+    CHECK_THAT(full.err, Contains("out/trace.vcd"));
+    CHECK(here.names().empty());
+}
+
+TEST_CASE("trace.fst: --fst compresses the waveforms, or says which package is missing") {
+    const TestFolder here;
+    fs::create_directory(here.path() / "tools");
+    const auto run = [&] {
+        return run_program({TESSERA_PROGRAM, "run", "--fst", "--set", "tests.generation_limit=2", "--set",
+                            "output.folder=out"},
+                           here.path(), {}, {{"PATH", (here.path() / "tools").string()}});
+    };
+    const ProgramEnd without = run();
+    require_fine(without);
+    CHECK_THAT(without.out, Contains("package gtkwave"));
+    CHECK(fs::exists(here.path() / "out/trace.vcd"));
+    CHECK_FALSE(fs::exists(here.path() / "out/trace.fst"));
+
+    const auto make_tool = [&](const std::string& script) {
+        write_all(here.path() / "tools/vcd2fst", script);
+        fs::permissions(here.path() / "tools/vcd2fst", fs::perms::owner_all);
+    };
+    make_tool("#!/bin/sh\nread line < \"$1\" && echo \"$line\" > \"$2\"\n");
+    require_fine(run());
+    CHECK(read_all(here.path() / "out/trace.fst") == "$version tessera $end\n");
+    make_tool("#!/bin/sh\nexit 1\n");
+    const ProgramEnd failed = run();
+    require_fine(failed);
+    CHECK_THAT(failed.out, Contains("vcd2fst failed"));
+    CHECK_FALSE(fs::exists(here.path() / "out/trace.fst"));
+}

@@ -1,0 +1,218 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cctype>
+#include <map>
+#include <regex>
+#include <set>
+
+#include "testbench/output/trace/recorder.h"
+#include "testbench/tests/output/trace/vcd_file.h"
+#include "testbench/tests/support/program_runner.h"
+
+using namespace tessera;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path waveforms() {
+    return source_folder() / "waveforms";
+}
+
+std::vector<fs::path> files_ending_in(const std::string& extension) {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(waveforms())) {
+        if (entry.path().extension() == extension)
+            files.push_back(entry.path());
+    }
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+/// What a translate filter says: number to text, colours left out.
+std::map<unsigned, std::string> read_filter(const std::string& name) {
+    std::map<unsigned, std::string> names;
+    for (const std::string& line : lines_of(read_all(waveforms() / name))) {
+        if (line[0] == '#')
+            continue;
+        std::smatch parts;
+        INFO(name << ": " << line);
+        REQUIRE(std::regex_match(line, parts, std::regex("([0-9A-F]+) (\\?[a-z0-9 ]+\\?)?(.+)")));
+        CHECK(names.emplace(std::stoul(parts[1], nullptr, 16), parts[3]).second);
+    }
+    return names;
+}
+
+/// The signals a save file shows: name and bits.
+std::vector<std::pair<std::string, unsigned>> signals_in(const fs::path& save_file) {
+    std::vector<std::pair<std::string, unsigned>> signals;
+    const std::regex signal("(?:\\+\\{[^}]*\\} )?(tessera\\.[\\w.]+)(?:\\[(\\d+):0\\])?");
+    for (const std::string& line : lines_of(read_all(save_file))) {
+        std::smatch parts;
+        if (std::regex_match(line, parts, signal))
+            signals.emplace_back(parts[1], parts[2].matched ? std::stoul(parts[2]) + 1 : 1);
+        else
+            CHECK_THAT(line, !Contains("tessera."));
+    }
+    return signals;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "every signal a save file shows is in the default job's waveforms and changes, but for thresholds") {
+    const TestFolder here;
+    const ProgramEnd end = run_tessera(
+        {"run", "--vcd", "--set", "output.folder=out", "--set", "check.golden=false", "--set",
+         "check.end_to_end=false", "--set", "output.picture=false", "--set", "tests.normal_threshold=0.125",
+         "--set", "tests.view_threshold=5", "--set", "tests.generation_limit=7"},
+        here.path());
+    INFO(end.text());
+    REQUIRE(end.exit_code == 0);
+    const VcdFile vcd(here.path() / "out/trace.vcd");
+    const std::vector<fs::path> views = files_ending_in(".gtkw");
+    std::set<std::string> names;
+    // Thresholds chosen such that their registers are exact: 14 fraction bits, and 8.
+    const std::map<std::string, std::uint64_t> constant{
+        {"tessera.tessellation_tests_0.normal_test.threshold", (1u << 14) / 8},
+        {"tessera.tessellation_tests_0.view_test.threshold", 5 << 8},
+        {"tessera.tessellation_tests_0.tex_coord_test.generation_limit", 7}};
+    std::size_t constants = 0;
+    for (const fs::path& view : views) {
+        INFO(view);
+        names.insert(view.stem());
+        const auto signals = signals_in(view);
+        CHECK(signals.size() >= 20);
+        for (const auto& [name, bits] : signals) {
+            INFO(name);
+            CHECK(vcd[name].bits == bits);
+            if (constant.count(name) == 0) {
+                CHECK_FALSE(vcd[name].changes.empty());
+                continue;
+            }
+            CHECK(vcd[name].changes.empty());
+            CHECK(vcd[name].initial == constant.at(name));
+            ++constants;
+        }
+    }
+    CHECK(names == std::set<std::string>{"memories", "overview", "queue", "tests"});
+    CHECK(constants == constant.size());
+}
+
+TEST_CASE("save files depend on no machine and on no file beside them but filters") {
+    const std::regex filter("\\^\\d+ (\\S+)");
+    for (const fs::path& view : files_ending_in(".gtkw")) {
+        std::set<std::string> filters;
+        for (const std::string& line : lines_of(read_all(view))) {
+            INFO(view << ": " << line);
+            CHECK(line.find('/') == std::string::npos);
+            CHECK(line.find('\\') == std::string::npos);
+            CHECK(line.rfind("[dumpfile", 0) == std::string::npos);
+            CHECK(line.rfind("[savefile", 0) == std::string::npos);
+            std::smatch parts;
+            if (std::regex_match(line, parts, filter)) {
+                filters.insert(parts[1]);
+                CHECK(fs::is_regular_file(waveforms() / parts[1].str()));
+            }
+        }
+        CHECK(filters.count("states.txt") == 1);
+    }
+}
+
+TEST_CASE("filters name every number as the code does") {
+    const std::map<unsigned, std::string> state_names = read_filter("states.txt");
+    REQUIRE(state_names.size() == states);
+    for (const State state : {State::starved, State::busy, State::waiting_for_memory, State::blocked})
+        CHECK(state_names.at(static_cast<unsigned>(state)) == state_name(state));
+
+    std::map<unsigned, std::string> units = read_filter("units.txt");
+    CHECK(units.size() == UnitNumbers::all().size() + 2);
+    CHECK(units.at(UnitNumbers::nobody) == "-");
+    CHECK(units.at(UnitNumbers::other) == "other");
+    for (const UnitNumbers::Entry& entry : UnitNumbers::all()) {
+        const std::string name = entry.name;
+        std::string shown = name.substr(name.rfind('.') + 1);
+        if (name.rfind("tessellation_tests_", 0) == 0 && name[19] != '0')
+            shown += std::string("_") + name[19];
+        CHECK(units.at(entry.number) == shown);
+        CHECK(entry.number < (1u << UnitNumbers::bits));
+    }
+
+    const std::map<unsigned, std::string> parts = read_filter("parts.txt");
+    CHECK(parts.size() == 9);
+    const auto check_parts = [&](Parts mask, const std::string& name) {
+        for (unsigned part = 0; part < 9; ++part) {
+            if ((mask >> part & 1u) == 0)
+                continue;
+            const PartTag tag{0, static_cast<std::uint8_t>(part), {}};
+            CHECK(parts.at(part) == name + std::to_string(tag.index()));
+        }
+    };
+    check_parts(vertex_parts, "vertex ");
+    check_parts(normal_parts, "normal ");
+    check_parts(edge_parts, "edge ");
+
+    CHECK(read_filter("ways.txt") ==
+          std::map<unsigned, std::string>{{0, "Tessellation"}, {1, "Lighting"}, {2, "culled"}});
+}
+
+TEST_CASE("every unit of both designs has a number of its own") {
+    const TestFolder here;
+    for (const std::string units : {"1", "3"}) {
+        const ProgramEnd end = run_tessera({"run", "--timeline", "--trace-units", "no_such_unit", "--set",
+                                            "hardware.tests_units=" + units, "--set", "output.folder=out"},
+                                           here.path());
+        INFO(end.text());
+        REQUIRE(end.exit_code == 2);
+        std::smatch found;
+        REQUIRE(std::regex_search(end.err, found, std::regex("the units are (.*)")));
+        std::set<std::string> numbered;
+        for (const UnitNumbers::Entry& entry : UnitNumbers::all())
+            numbered.insert(entry.name);
+        const std::string list = found[1];
+        const std::regex word("[\\w.]+");
+        std::size_t count = 0;
+        for (std::sregex_iterator it(list.begin(), list.end(), word); it != std::sregex_iterator();
+             ++it, ++count) {
+            INFO(it->str());
+            CHECK(numbered.count(it->str()) == 1);
+        }
+        CHECK(count == (units == "1" ? 18u : 30u));
+    }
+}
+
+TEST_CASE("scripts/waves opens a run in a view, from where the filters are") {
+    const TestFolder here;
+    fs::create_directories(here.path() / "run");
+    fs::create_directories(here.path() / "tools");
+    write_all(here.path() / "run/trace.vcd", "");
+    write_all(here.path() / "tools/gtkwave", "#!/bin/sh\npwd\nfor argument; do echo \"$argument\"; done\n");
+    fs::permissions(here.path() / "tools/gtkwave", fs::perms::owner_all);
+    const Environment environment{{"DISPLAY", ":0"},
+                                  {"PATH", (here.path() / "tools").string() + ":" + std::getenv("PATH")}};
+    const auto waves = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), (source_folder() / "scripts/waves").string());
+        return run_program(arguments, here.path(), {}, environment);
+    };
+    const ProgramEnd opened = waves({"run", "queue"});
+    INFO(opened.text());
+    CHECK(opened.exit_code == 0);
+    const std::vector<std::string> said = lines_of(opened.out);
+    REQUIRE(said.size() > 3);
+    CHECK(fs::equivalent(said.front(), waveforms()));
+    CHECK(said.back() == "queue.gtkw");
+    CHECK(said.at(said.size() - 2) == (here.path() / "run/trace.vcd").string());
+
+    write_all(here.path() / "run/trace.fst", "");
+    CHECK_THAT(waves({"run"}).out, Contains("run/trace.fst\noverview.gtkw\n"));
+    for (const auto& [arguments, words] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+             {{}, "run's folder"},
+             {{"run", "quewe"}, "memories overview queue tests"},
+             {{"absent"}, "absent"},
+             {{"tools"}, "--vcd"}}) {
+        const ProgramEnd refused = waves(arguments);
+        INFO(refused.text());
+        CHECK(refused.exit_code == 2);
+        CHECK_THAT(refused.err, Contains(words));
+    }
+}

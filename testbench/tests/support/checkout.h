@@ -1,0 +1,48 @@
+#pragma once
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "testbench/tests/support/program_runner.h"
+
+namespace tessera {
+
+/// A checkout to run commands in: the project's own scripts, everything else by link, the program of this build where
+/// scripts/run puts it. cmake and ctest do nothing there, so that nothing is built and no test runs tests; nor does
+/// gtkwave, which would wait for its user.
+class Checkout {
+  public:
+    Checkout() {
+        std::filesystem::create_directories(root() / "tools");
+        for (const char* const tool : {"cmake", "ctest", "gtkwave"}) {
+            write_all(root() / "tools" / tool, "#!/bin/sh\nexit 0\n");
+            std::filesystem::permissions(root() / "tools" / tool, std::filesystem::perms::owner_all);
+        }
+        for (const auto& entry : std::filesystem::directory_iterator(source_folder())) {
+            const std::string name = entry.path().filename().string();
+            if (name.rfind("build", 0) != 0 && name != ".git" && name != "scripts" && name != "runs")
+                std::filesystem::create_symlink(entry.path(), root() / name);
+        }
+        // Copied: a linked script would find its way back to the original.
+        std::filesystem::copy(source_folder() / "scripts", root() / "scripts",
+                              std::filesystem::copy_options::recursive);
+        for (const char* const preset : {"release", "debug", "asan"}) {
+            std::filesystem::create_directories(root() / "build" / preset / "testbench/commands");
+            std::filesystem::create_symlink(TESSERA_PROGRAM,
+                                            root() / "build" / preset / "testbench/commands/tessera");
+        }
+    }
+
+    std::filesystem::path root() const { return folder_.path() / "tessera"; }
+
+    ProgramEnd run(const std::string& command) const {
+        const std::string path = (root() / "tools").string() + ":" + std::getenv("PATH");
+        return run_program({"bash", "-euo", "pipefail", "-c", command}, root(), {},
+                           {{"PATH", path}, {"DISPLAY", ":0"}, {"TESSERA_SKIP_INSTALL", "1"}});
+    }
+
+  private:
+    TestFolder folder_;
+};
+
+}  // namespace tessera
