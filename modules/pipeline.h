@@ -6,10 +6,10 @@
 
 #include "modules/memories/off_chip_memory.h"
 #include "modules/memories/table_memory.h"
+#include "modules/tessellation_tests.h"
 #include "modules/timing/cycle_scheduler.h"
 #include "modules/timing/design.h"
 #include "modules/unit_factory.h"
-#include "modules/units/edge_tests/tessellation_tests.h"
 
 namespace tessera {
 

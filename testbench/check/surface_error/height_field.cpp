@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "testbench/check/surface_error/texel_centres.h"
 #include "testbench/common/error.h"
+#include "testbench/input/surface/texel_centres.h"
 
 namespace tessera {
 namespace {

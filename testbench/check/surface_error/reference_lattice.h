@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "testbench/check/surface_error/displaced_surface.h"
+#include "testbench/input/surface/displaced_surface.h"
 
 namespace tessera {
 

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <cstdint>
 
-#include "testbench/check/surface_error/displaced_surface.h"
-#include "testbench/check/surface_error/texel_centres.h"
 #include "testbench/common/error.h"
 #include "testbench/input/mesh/triangle_geometry.h"
+#include "testbench/input/surface/displaced_surface.h"
+#include "testbench/input/surface/texel_centres.h"
 
 namespace tessera {
 namespace {

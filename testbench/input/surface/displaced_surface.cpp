@@ -1,4 +1,4 @@
-#include "testbench/check/surface_error/displaced_surface.h"
+#include "testbench/input/surface/displaced_surface.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "modules/units/edge_tests/tessellation_tests.h"
+#include "modules/tessellation_tests.h"
 
 namespace tessera {
 
