@@ -91,7 +91,7 @@ void Pipeline::wire(UnitFactory& factory) {
     factory.join(triangle_queue.off_chip_memory, off_chip_memory);
 }
 
-/// On the clock: downstream first (clock.h); in the list: as the figures are read.
+/// Attached to the clock downstream first (cycle_scheduler.h); listed in the order of the figures.
 void Pipeline::attach() {
     units_ = {&get_triangle, &calculate_new_p, &displace_vertex, &transform};
     for (TessellationTests& tests : tessellation_tests)

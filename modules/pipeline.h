@@ -63,7 +63,7 @@ class Pipeline : public sc_core::sc_module {
     /// Nothing is in flight.
     bool idle() const;
 
-    /// Notified whenever the machine has nothing left to do and nothing in flight: all that came in has gone out.
+    /// Notified whenever nothing is left to do and nothing is in flight.
     const sc_core::sc_event& drained() const { return drained_; }
 
     /// Every unit and memory, in the order of the figures.
@@ -72,7 +72,7 @@ class Pipeline : public sc_core::sc_module {
     /// Items are held back at random.
     bool random_stalls() const { return random_stalls_; }
 
-    /// Triangles between Get Triangle and where their pass ends, in Tessellation or on the way to Lighting.
+    /// Triangles between Get Triangle and the end of their pass, in Tessellation or on the way to Lighting.
     std::uint64_t passes_under_way() const;
     std::uint64_t edges_tested() const { return 3 * pass_or_tessellate.counts().passes; }
     std::uint64_t displacement_map_reads() const { return displace_vertex.displacement_map.reads(); }

@@ -23,9 +23,8 @@
 namespace tessera {
 
 /// Makes a machine's units. Override a function to put a variant in a unit's place: a class derived from the unit,
-/// which has its sockets (modules/README.md, "How to replace a unit"). A variant may also be the same unit in another
-/// context: a context with stalls holds back what comes to that unit alone. Asked while the machine is built; costs a
-/// run nothing.
+/// which has its sockets (modules/README.md, "How to replace a unit"). A variant may also be the same unit with another
+/// context, for example one with stalls for that unit alone. Called during elaboration only.
 class UnitFactory {
   public:
     UnitFactory() = default;
@@ -77,7 +76,8 @@ class UnitFactory {
         return std::make_unique<Lighting>(name, context);
     }
 
-    /// Called with each module that has outputs, before they are bound: for who wants to interpose (StreamOutput).
+    /// Called with each module that has outputs, before they are bound. Override to interpose on its streams
+    /// (StreamOutput).
     virtual void made(sc_core::sc_module& /*module*/) {}
 
     /// Joins a unit's port to its memory.

@@ -13,9 +13,9 @@ namespace tessera {
 ///
 /// Banks:     entry k of the table lies in bank k mod `banks`.
 /// Interval:  each bank has `ports` ports; a port takes an entry's address every ceil(entry bytes / width) cycles.
-/// Latency:   an entry's data come `latency` cycles after the last of these; a request's, when its last entry's do.
-/// Order:     in the order of the calls. A request is ready when each bank it reads has a port free; its other entries
-///            then take the ports as they come free, and may hold up the requests after it.
+/// Latency:   an entry's data arrive `latency` cycles after the last of these; a request's with its last entry.
+/// Order:     order of the calls. A request starts when each bank it reads has a free port; its further entries take
+///            ports as these become free, and can delay the requests after it.
 class BankedPorts {
   public:
     BankedPorts(const MemoryTiming& timing, const datapath::TableLayout& layout)
@@ -28,7 +28,7 @@ class BankedPorts {
           port_free_(std::size_t{timing.banks} * timing.ports),
           bank_slots_(timing.banks) {}
 
-    /// The first cycle in which the entries at these addresses can be asked for; a past one: at once.
+    /// The first cycle in which the entries at these addresses can be read; a past cycle: at once.
     std::uint64_t ready(const std::uint64_t* addresses, unsigned count) const {
         if (banks_ == 1)
             return port_free_[first_free_port(0)];
@@ -38,7 +38,7 @@ class BankedPorts {
         return cycle;
     }
 
-    /// Asks for the entries, in `cycle` or as soon after as ports are free. Returns the cycle of the last one's data.
+    /// Reads the entries, from `cycle` on, as ports become free. Returns the cycle of the last entry's data.
     std::uint64_t serve(const std::uint64_t* addresses, unsigned count, std::uint64_t cycle) {
         std::uint64_t last = cycle;
         for (unsigned k = 0; k < count; ++k) {
@@ -57,7 +57,7 @@ class BankedPorts {
     std::uint64_t slots_taken() const { return slots_taken_; }
     /// Port slots a cycle, of all banks.
     std::uint64_t slots_per_cycle() const { return std::uint64_t{ports_} * banks_; }
-    /// Cycles that the busiest bank's ports need for what they took.
+    /// Cycles that the busiest bank's ports needed.
     std::uint64_t occupied_cycles() const {
         return *std::max_element(bank_slots_.begin(), bank_slots_.end()) / ports_;
     }

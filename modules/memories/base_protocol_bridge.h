@@ -11,17 +11,17 @@
 
 namespace tessera {
 
-/// Bridge from the memory protocol (memory_request.h) to a memory of the TLM-2.0 base protocol: stands in the place of
-/// a table's memory or of off-chip memory, and needs nothing of the other side but that protocol.
+/// Bridge from the memory protocol (memory_request.h) to a memory of the TLM-2.0 base protocol, in place of a table
+/// memory or of off-chip memory.
 ///
 /// In:        requests, as a MemoryServer. Out: `to_memory`, an ordinary read or write for each entry.
-/// Interval:  one entry a cycle, the next when END_REQ of the one before has come; the entries of a request one after
-///            another. Latency: that of the memory behind; a time that is no whole cycle counts to the next.
+/// Interval:  one entry a cycle, in order; the next entry only after END_REQ of the last.
+/// Latency:   that of the memory behind, rounded up to whole cycles.
 /// Accepts:   END_REQ by return, later, or implied by the answer; an answer by return (TLM_COMPLETED, or BEGIN_RESP, to
-///            which END_RESP is sent at once) or later; answers in any order. Requests are answered in theirs. A
-///            response other than OK becomes the request's.
+///            which END_RESP is sent at once) or later; answers in any order. Requests are answered in
+///            order. A response other than OK becomes the request's.
 /// Functional mode: b_transport for each entry; DMI and debug transport are passed on.
-/// To be made before the units that use it go on the clock: it attaches itself.
+/// Construct it before the units that use it: it attaches itself to the clock.
 class BaseProtocolBridge : public MemoryServer, public tlm::tlm_mm_interface {
   public:
     tlm_utils::simple_initiator_socket<BaseProtocolBridge> to_memory{"to_memory"};

@@ -16,17 +16,16 @@
 
 namespace tessera {
 
-/// What every memory does with requests: takes, queues and answers them. A derived memory moves the data and decides
-/// when a request is served (banked_ports.h, channel.h).
+/// Accepts, queues and answers a memory's requests. A derived memory moves the data and decides when a request is
+/// served (banked_ports.h, channel.h).
 ///
 /// In:        requests (memory_request.h), from several ports. Timed mode: nb_transport; breaches of the protocol are
 ///            SC_ERRORs. Functional mode: b_transport and DMI, not arbitrated.
 ///            `host`: TLM-2.0 base protocol, debug transport alone, for the preload.
-/// Capacity:  `buffer` requests wait to be served. Beyond that, END_REQ is withheld; ports of which a request is held
-///            back take turns.
-/// Order:     served in order of arrival, those of one cycle in the order of the units; answered in that order.
-/// Busy:      while an answer is due. Cycles held up: those in which the oldest request in the buffer could not be
-///            served.
+/// Capacity:  `buffer` requests wait to be served. Beyond that END_REQ is withheld, and ports with a request held back
+///            take turns.
+/// Order:     served and answered in order of arrival; within a cycle, in the order of the units.
+/// Busy:      while an answer is due. Held up: cycles in which the oldest request in the buffer could not be served.
 class MemoryServer : public Unit {
   public:
     tlm_utils::multi_passthrough_target_socket_optional<MemoryServer, 32, MemoryProtocol> socket{"socket"};
@@ -39,8 +38,8 @@ class MemoryServer : public Unit {
     MemoryServer(const sc_core::sc_module_name& name, CycleScheduler& clock, unsigned buffer,
                  const StallParameters& stalls);
 
-    /// The first cycle in which `request`, the oldest in the buffer, can be served; a past one: at once; ~0: not known,
-    /// the derived memory wakes itself.
+    /// The first cycle in which `request`, the oldest in the buffer, can be served; a past cycle: at once; ~0: not
+    /// known, the derived memory wakes itself.
     virtual std::uint64_t ready(const MemoryRequest& request) const = 0;
     /// Moves the data, sets the response, and returns the cycle of the answer; ~0: finish() will say.
     virtual std::uint64_t serve(MemoryRequest& request, std::uint64_t cycle) = 0;
@@ -51,7 +50,7 @@ class MemoryServer : public Unit {
     virtual unsigned transport_dbg(int id, MemoryRequest& request) = 0;
 
     void step() override;
-    /// The answer to a request that was served is due in `cycle`.
+    /// The answer to a served request is due in `cycle`.
     void finish(const MemoryRequest& request, std::uint64_t cycle);
 
     /// Reads or writes the entries and returns the bytes moved; 0: neither is meant, or not all are there.

@@ -6,7 +6,7 @@
 
 namespace tessera {
 
-/// A memory's bytes, at addresses [base, base + size): 0 until written. Room is taken up to the highest byte written.
+/// A memory's bytes, at addresses [base, base + size): 0 until written. Allocated up to the highest byte written.
 class Storage {
   public:
     Storage(std::uint64_t base, std::uint64_t size) : base_(base), size_(size) {}
@@ -17,7 +17,7 @@ class Storage {
         return length <= size_ && address - base_ <= size_ - length;
     }
 
-    /// Only what is covered may be read or written.
+    /// Only covered addresses may be read or written.
     void read(std::uint64_t address, unsigned char* to, std::size_t length) const {
         const std::uint64_t first = address - base_;
         if (first + length <= bytes_.size()) {
@@ -35,7 +35,7 @@ class Storage {
         std::copy_n(from, length, &bytes_[first]);
     }
 
-    /// All bytes, which stay where they are from now on.
+    /// All bytes; their address is fixed from now on.
     unsigned char* all() {
         bytes_.resize(size_);
         return bytes_.data();

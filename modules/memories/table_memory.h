@@ -14,8 +14,8 @@ namespace tessera {
 /// Address map: [layout.base, layout.base + layout.bytes()); entry (x, y) at layout.address(x, y), little endian.
 /// Read by units, written only by the host's debug transport before the run.
 /// Timing: banked_ports.h. b_transport, DMI: the latency, once a request.
-/// Utilisation: of the busiest bank's port slots those that were taken, or of the cycles those in which a request was
-/// held up, whichever is more: banks in conflict hold requests up with most of their ports idle.
+/// Utilisation: the share of the busiest bank's port slots taken, or of cycles in which a request was held up,
+/// whichever is greater: bank conflicts delay requests while most ports are idle.
 /// Errors: a write gives TLM_COMMAND_ERROR_RESPONSE, an address outside TLM_ADDRESS_ERROR_RESPONSE.
 class TableMemory : public MemoryServer {
   public:
@@ -23,7 +23,7 @@ class TableMemory : public MemoryServer {
                 const datapath::TableLayout& layout, const MemoryTiming& timing,
                 const StallParameters& stalls);
 
-    /// Entries read by transactions; what DMI reads is counted by the reader.
+    /// Entries read by transactions; reads through DMI are counted by the reader.
     std::uint64_t transactions() const { return transactions_; }
     std::uint64_t slots_taken() const { return ports_.slots_taken(); }
     std::uint64_t slots_per_cycle() const { return ports_.slots_per_cycle(); }

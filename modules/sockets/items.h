@@ -7,8 +7,8 @@
 #include "modules/datapath/triangle_pass.h"
 #include "modules/sockets/parts.h"
 
-// What travels on the streams. Each item describes its fields once (modules/datapath/fields.h): from that list follow
-// its packed form, its width, its signals in a waveform and its rows in modules/sockets/README.md.
+// The items of the streams. Each describes its fields once (modules/datapath/fields.h); its packed form, its width,
+// its signals in a waveform and its rows in modules/sockets/README.md follow from that list.
 
 namespace tessera {
 
@@ -284,7 +284,7 @@ struct TestedEdge {
     }
 };
 
-/// Get Triangle to Pass or Tessellate: a triangle whose parts have been sent, for what is not in its parts.
+/// Get Triangle to Pass or Tessellate: a triangle whose parts have been sent; carries what the parts do not.
 struct TakenTriangle {
     static constexpr const char* name = "taken triangle";
     Tag tag = 0;
@@ -400,7 +400,7 @@ struct QueueLevel {
     }
 };
 
-/// How an item describes itself: a triangle, which the datapath knows too, through QueuedTriangle.
+/// An item's description; a triangle of the datapath is described by QueuedTriangle.
 template <class Item>
 struct DescriptionOf {
     using Type = Item;

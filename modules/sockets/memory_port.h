@@ -18,7 +18,7 @@ namespace tessera {
 /// Functional mode: read(). DMI where the memory grants it and the unit may use it, else b_transport; the same values,
 /// the same added time and the same counts either way.
 /// Timed mode: requests (memory_request.h). One on offer at a time, several under way, answered in order. The unit is
-/// called when a request that had to wait is taken and when an answer comes.
+/// called when a delayed request is accepted and when an answer arrives.
 /// Errors: responses other than OK, and breaches of the protocol, are SC_ERRORs that name the port.
 class MemoryPort {
   public:
@@ -124,13 +124,13 @@ class MemoryPort {
     void bind(Memory& memory) {
         bind(memory, memory);
     }
-    /// The same through what stands before the memory.
+    /// The same through a module in front of the memory.
     template <class Interposer>
     void bind(Interposer& before, const sc_core::sc_object& memory) {
         socket.bind(before.socket);
         memory_ = &memory;
     }
-    /// The memory: who is waited for.
+    /// The memory, which the unit waits for.
     const sc_core::sc_object* memory() const { return memory_; }
 
   private:

@@ -7,9 +7,8 @@
 
 namespace tessera {
 
-/// A request to a memory: to read or write entries of one size at addresses of their own. The corners of a rectangle,
-/// which occupy a port one after another, are one request (a handshake for each would cost more host time than
-/// everything else together).
+/// A request to read or write entries of one size, each at its own address. The corners of a rectangle, which occupy a
+/// port one after another, are one request: a handshake for each would dominate simulation time.
 struct MemoryRequest {
     tlm::tlm_command command = tlm::TLM_READ_COMMAND;
     unsigned count = 1;                                                     ///< entries, at least 1
@@ -24,14 +23,15 @@ struct MemoryRequest {
     bool is_ok() const { return response == tlm::TLM_OK_RESPONSE; }
 };
 
-/// The protocol between a unit's MemoryPort and a MemoryServer: traits of its own, because a memory that knows of one
-/// address only would answer a gather wrongly. base_protocol_bridge.h leads to memories of the TLM-2.0 base protocol.
+/// The protocol between a unit's MemoryPort and a MemoryServer: traits of its own, because a memory
+/// of the base protocol, which reads one address, would answer a gather wrongly. base_protocol_bridge.h connects to
+/// memories of the TLM-2.0 base protocol.
 ///
 /// b_transport, DMI, debug transport: as in the base protocol; debug transport returns the bytes moved, all or 0.
 /// nb_transport: BEGIN_REQ offers a request; END_REQ, by return (TLM_UPDATED) or later on the backward path, takes it;
 /// BEGIN_RESP answers it and is completed by return (TLM_COMPLETED). Exclusion: no BEGIN_REQ before the last END_REQ.
-/// Answers come in the order of the requests. A request is its initiator's, and stays where and what it is until
-/// answered; the memory writes `data` of a read, `response` and `dmi_allowed`.
+/// Answers come in the order of the requests. The initiator owns a request, which stays in place and
+/// unchanged until answered; the memory writes `data` of a read, `response` and `dmi_allowed`.
 struct MemoryProtocol {
     using tlm_payload_type = MemoryRequest;
     using tlm_phase_type = tlm::tlm_phase;

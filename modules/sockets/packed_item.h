@@ -8,8 +8,8 @@
 
 namespace tessera {
 
-/// An item as the bits on its stream's wires, the lowest first, and beside them the annotations, which have no wires:
-/// what a unit sees that is described in another language.
+/// An item as the bits on its stream's wires, lowest first, and its annotations, which have no wires. This is what a
+/// unit written in another language sees.
 struct PackedItem {
     static constexpr std::size_t most_bytes = 416;
     static constexpr std::size_t most_annotations = 3;  // of a triangle with its origin

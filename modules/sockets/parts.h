@@ -18,8 +18,8 @@ constexpr Parts normal_parts = 0070;
 constexpr Parts edge_parts = 0700;
 constexpr Parts all_parts = 0777;
 
-/// The parts of a triangle that go down the branch of Calculate New P: what is not known of it yet, and its edges
-/// unless it is finished.
+/// The parts of a triangle that go down the branch of Calculate New P: what is not known yet, and its edges unless it is
+/// finished.
 constexpr Parts parts_of(const datapath::Triangle& triangle) {
     unsigned parts = triangle.finished ? 0 : edge_parts;
     for (unsigned k = 0; k < 3; ++k) {
@@ -39,7 +39,7 @@ constexpr Parts parts_for_tests(unsigned number, unsigned units) {
         return vertex_parts | edge_parts;
     return static_cast<Parts>(1u << (first_edge_part + number) | 1u << number | 1u << (number + 1) % 3);
 }
-/// Of some parts that come in order, the last.
+/// The last of some parts.
 constexpr Parts last_of(Parts parts) {
     while ((parts & (parts - 1)) != 0)
         parts = static_cast<Parts>(parts & (parts - 1));
@@ -47,7 +47,7 @@ constexpr Parts last_of(Parts parts) {
 }
 
 /// Names a triangle while it is between Get Triangle and Pass or Tessellate: its pass's number modulo 2^tag_bits
-/// (modules/timing/design.h), enough to tell apart those that can be there at a time.
+/// (modules/timing/design.h), enough to distinguish those that can be there at a time.
 using Tag = std::uint32_t;
 
 /// The model's names of a triangle, for waveforms and messages. No hardware has them.

@@ -11,7 +11,7 @@ void stream_protocol_error(const char* socket, const char* rule, const CycleSche
     if (clock != nullptr)
         message += ", in cycle " + std::to_string(clock->cycle());
     SC_REPORT_ERROR("tessera/protocol", message.c_str());
-    throw std::logic_error(message);  // where SC_ERROR was told not to throw
+    throw std::logic_error(message);  // where SC_ERROR is configured not to throw
 }
 
 const sc_core::sc_object* module_behind(const sc_core::sc_interface* interface) {

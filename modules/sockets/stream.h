@@ -6,16 +6,16 @@
 
 namespace tessera {
 
-/// Protocol of the streams between units: not memory-mapped, so a traits class of its own. The payload is the item
+/// Protocol of the streams between units: not memory-mapped, hence a traits class of its own. The payload is the item
 /// itself (items.h); the phases are TLM-2.0's; the producer initiates (StreamOutput), the consumer is the target
 /// (StreamInput).
 ///
-/// b_transport (functional mode): the consumer has done its work, and all that follows from it, on return; `delay` is
-/// added to, never overwritten. The payload is the producer's, and is not written.
+/// b_transport (functional mode): on return the consumer and everything downstream have finished; `delay` is added to,
+/// never overwritten. The producer owns the payload, which is not written.
 ///
 /// nb_transport (timed mode), two phases: BEGIN_REQ offers one item; END_REQ, by return (TLM_UPDATED) or later on the
-/// backward path, says that the consumer has taken it. Withheld END_REQ is back-pressure. Exclusion: no second
-/// BEGIN_REQ before END_REQ. The payload stays the producer's, unchanged, until END_REQ; the consumer copies it.
+/// backward path, says that the consumer has taken it. Withholding END_REQ is back-pressure. Exclusion: no
+/// second BEGIN_REQ before END_REQ. The payload stays unchanged until END_REQ; the consumer copies it.
 template <class Payload>
 struct Stream {
     using tlm_payload_type = Payload;
@@ -26,8 +26,8 @@ struct Stream {
 [[noreturn]] void stream_protocol_error(const char* socket, const char* rule,
                                         const CycleScheduler* clock = nullptr);
 
-/// The module on the other side of a bound socket or port, by what implements the interface there: the module itself or
-/// a socket of it; null: neither (as in TLM's convenience sockets).
+/// The module at the other end of a bound socket or port, if the module itself or one of its sockets implements the
+/// interface there; else null (TLM's convenience sockets).
 const sc_core::sc_object* module_behind(const sc_core::sc_interface* interface);
 
 }  // namespace tessera

@@ -12,8 +12,8 @@
 
 namespace tessera {
 
-/// A unit's input. Functional mode: hands b_transport to the unit. Timed mode: a buffer of `depth` items; an item that
-/// finds it full waits, its END_REQ withheld. Checks the producer's phases.
+/// A unit's input. Functional mode: hands b_transport to the unit. Timed mode: a buffer of `depth` items; while it
+/// is full the next item waits and END_REQ is withheld. Checks the producer's phases.
 template <class Payload>
 class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
                     public tlm::tlm_fw_transport_if<Stream<Payload>>,
@@ -34,7 +34,7 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
         };
     }
 
-    /// Timed mode: `unit` is called when an item has come. depth: at least 1. To be called once.
+    /// Timed mode: `unit` is called when an item arrives. depth: at least 1. Call once.
     void clocked_by(CycleScheduler& clock, CycleProcess& unit, std::size_t depth,
                     const StallParameters& stalls) {
         clock_ = &clock;
@@ -44,8 +44,8 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
         stalls_ = RandomStalls(stalls, this->name());
     }
 
-    /// Timed mode, for a unit that does nothing until there is an item in all of its inputs: it is called only then.
-    /// empty_inputs: how many of them are empty; shared by them, and theirs to count.
+    /// Timed mode, for a unit that does nothing until all of its inputs have an item: it is called only then.
+    /// empty_inputs: how many are empty; shared by the inputs, which count it.
     void waits_for_all(unsigned& empty_inputs) {
         empty_inputs_ = &empty_inputs;
         ++empty_inputs;
@@ -61,7 +61,7 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
     Payload& front() { return buffer_.front(); }
     const Payload& front() const { return buffer_.front(); }
 
-    /// Removes the first item, and takes one that waits into the buffer.
+    /// Removes the first item, and moves a waiting one into the buffer.
     void pop() {
         buffer_.pop();
         if (empty_inputs_ != nullptr && buffer_.empty())
@@ -71,7 +71,7 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
     }
 
   private:
-    /// Takes the item that waits, if its time has come and there is room.
+    /// Moves the waiting item into the buffer, if it is due and there is room.
     void admit() override {
         if (buffer_.full())
             return;

@@ -26,7 +26,7 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
         Socket::bind(static_cast<tlm::tlm_bw_transport_if<Stream<Payload>>&>(*this));
     }
 
-    /// Who binds this output to its input instead of bind(), and may put something in between: a unit, a fault.
+    /// Binds this output to its input in place of bind(), and may insert something: a unit, a fault.
     using Interposer = std::function<void(StreamOutput& from, StreamInput<Payload>& to)>;
     void interpose(Interposer interposer) { interposer_ = std::move(interposer); }
 
@@ -38,19 +38,19 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
             Socket::bind(input);
     }
 
-    /// Timed mode: `unit` is called when an item that had to wait is taken.
+    /// Timed mode: `unit` is called when a delayed item is taken.
     void clocked_by(CycleScheduler& clock, CycleProcess& unit) {
         clock_ = &clock;
         unit_ = &unit;
     }
-    /// The same for a unit of the machine, whose items may have to go through their packed form.
+    /// The same for a unit of the machine, whose items go through their packed form if the design asks for it.
     void clocked_by(const UnitContext& context, CycleProcess& unit) {
         clocked_by(context.clock, unit);
         if (context.design.packed_streams)
             wires_ = {&context.registers.formats, tag_bits_in_use(context.design)};
     }
 
-    /// Functional mode: hands an item over; the consumer has done all that follows from it on return.
+    /// Functional mode: hands an item over; on return everything downstream has finished.
     void transport(Payload& payload, sc_core::sc_time& delay) {
         if (wires_.formats == nullptr) {
             (*this)->b_transport(payload, delay);
@@ -89,7 +89,7 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
         return !delivering_;
     }
 
-    /// The module that takes the items: who blocks this one.
+    /// The module that takes the items, and can block this one.
     const sc_core::sc_object* consumer() const {
         if (consumer_ == nullptr)
             consumer_ = module_behind(this->get_base_port().get_interface());

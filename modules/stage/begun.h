@@ -5,9 +5,9 @@
 
 namespace tessera {
 
-/// The item a unit has begun on last, as a timeline names it.
+/// The item a unit began last, as the timeline names it.
 struct Begun {
-    std::uint64_t count = 0;  ///< items the unit has begun on; 0: it names none
+    std::uint64_t count = 0;  ///< items begun; 0: none is named
     Origin triangle;
     Parts parts = all_parts;  ///< the one part, or all: the whole triangle
 };

@@ -11,8 +11,8 @@
 
 namespace tessera {
 
-/// One item to one or several consumers, each of which gets what it needs of it and takes it when it can: delivered
-/// when all have.
+/// Sends one item to one or several consumers. Each gets the fields it needs and takes them when it can; the item is
+/// delivered when all have.
 template <class Item>
 class Fork {
   public:
@@ -21,7 +21,7 @@ class Fork {
     /// The whole item; only for these parts.
     void add(StreamOutput<Item>& output, Parts only = all_parts) { add<Item>(output, nullptr, only); }
 
-    /// What `select` takes of it; only for these parts.
+    /// `select` makes the consumer's item; only for these parts.
     template <class Payload>
     void add(StreamOutput<Payload>& output, Payload (*select)(const Item&), Parts only) {
         if (count_ == most) {
@@ -32,7 +32,7 @@ class Fork {
         only_[count_++] = only;
     }
 
-    /// Timed mode: delivers the item to those outputs it is for that have not taken it. True: all have.
+    /// Timed mode: offers the item on those of its outputs that have not taken it. True: all have.
     bool deliver(Item& item) {
         bool all = true;
         for (std::size_t k = 0; k < count_; ++k) {
@@ -49,7 +49,7 @@ class Fork {
         return all;
     }
 
-    /// Functional mode: all outputs from the same time on; `delay` is the last one's on return.
+    /// Functional mode: all outputs start at the same time; on return `delay` is that of the last.
     void transport(Item& item, sc_core::sc_time& delay) {
         const sc_core::sc_time start = delay;
         for (std::size_t k = 0; k < count_; ++k) {
@@ -61,7 +61,7 @@ class Fork {
         }
     }
 
-    /// The first that has not taken what it is offered; null: none.
+    /// The first consumer that has not taken its offer; null: none.
     const sc_core::sc_object* blocked_by() const {
         for (std::size_t k = 0; k < count_; ++k) {
             if (const sc_core::sc_object* consumer = to_[k]->blocked_by())

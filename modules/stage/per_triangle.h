@@ -6,8 +6,8 @@
 
 namespace tessera {
 
-/// What a unit keeps of each of a few triangles, found by the triangle's tag, in the order in which they came: a small
-/// content-addressed memory. In functional mode, where a triangle may overtake another that waits outside, it grows.
+/// State that a unit keeps for each of a few triangles, found by the triangle's tag, in order of arrival: a small
+/// content-addressed memory. It grows in functional mode, where triangles can overtake one another.
 template <class State>
 class PerTriangle {
   public:
@@ -17,7 +17,7 @@ class PerTriangle {
     bool full() const { return entries_.full(); }
     std::size_t size() const { return entries_.size(); }
 
-    /// Null: it keeps nothing of this triangle.
+    /// Null: no state for this triangle.
     State* find(Tag tag) {
         for (std::size_t k = 0; k < entries_.size(); ++k) {
             if (entries_.at(k).tag == tag)
@@ -27,7 +27,7 @@ class PerTriangle {
     }
     const State* find(Tag tag) const { return const_cast<PerTriangle*>(this)->find(tag); }
 
-    /// A place for this triangle, as another left it: to be filled in.
+    /// A place for this triangle, with another's contents: to be overwritten.
     State& open(Tag tag) {
         if (full())
             entries_.grow();
@@ -45,7 +45,7 @@ class PerTriangle {
     State& oldest() { return entries_.front().state; }
     const State& oldest() const { return entries_.front().state; }
     void close_oldest() { entries_.pop(); }
-    /// Nothing, if it keeps nothing of this triangle.
+    /// Does nothing if there is no state for this triangle.
     void close(Tag tag) {
         for (std::size_t k = 0; k < entries_.size(); ++k) {
             if (entries_.at(k).tag != tag)

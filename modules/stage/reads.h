@@ -4,8 +4,8 @@
 
 namespace tessera {
 
-/// The table entries that a unit's item needs: byte addresses, in requests that a memory serves one after another. To
-/// be filled in by the unit; empty: none.
+/// The table entries that an item needs: byte addresses, grouped in requests that a memory serves one after another.
+/// Filled in by the unit; empty: none.
 class Reads {
   public:
     static constexpr unsigned most_requests = 3;
@@ -36,7 +36,7 @@ class Reads {
     std::array<std::uint64_t, most_entries> address_;
 };
 
-/// What was read, in the order of the addresses, zero-extended.
+/// The entries read, in the order of the addresses, zero-extended.
 using Entries = std::array<std::uint64_t, Reads::most_entries>;
 
 }  // namespace tessera

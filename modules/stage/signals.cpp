@@ -90,7 +90,7 @@ Signals::Declared& Signals::find(const Name& name) {
     }
     const std::string message = scope_ + ": shows " + name.name + ", which it has not declared";
     SC_REPORT_ERROR("tessera/trace", message.c_str());
-    throw std::logic_error(message);  // where SC_ERROR was told not to throw
+    throw std::logic_error(message);  // where SC_ERROR is configured not to throw
 }
 
 bool Signals::changed(const char* name, std::uint64_t value) {

@@ -24,7 +24,7 @@ class UnitNumbers {
     static constexpr unsigned nobody = 0;
     static constexpr unsigned other = 63;  ///< not in all()
 
-    /// By its name, which is looked at once per object.
+    /// By its name, which is looked up once per object.
     unsigned of(const sc_core::sc_object* object);
 
   private:
@@ -33,7 +33,7 @@ class UnitNumbers {
 
 /// One unit's signals in a waveform file. Unit::trace_signals is called once to declare them, then at the end of each traced
 /// cycle in which the unit was called, to show their values. A signal is found by its name and scope, and keeps its
-/// value where a call is left out; one that was not declared is an SC_ERROR.
+/// value where a call is omitted; an undeclared one is an SC_ERROR.
 ///
 /// Signals stand in the unit's own scope unless a scope within it is given.
 class Signals {
@@ -46,7 +46,7 @@ class Signals {
         declaring_ = declaring;
         next_ = 0;
     }
-    /// False: what is shown is how the cycles before the traced ones left it, and nothing pulses.
+    /// False: shows the state before the first traced cycle, and nothing pulses.
     void set_running() { running_ = true; }
     bool running() const { return running_; }
 
@@ -60,10 +60,9 @@ class Signals {
     /// One cycle long when `count` has changed since the last call.
     void pulse(const char* name, std::uint64_t count) { pulse_or_level(name, changed(name, count), false); }
 
-    /// Whether `value` differs from what it was at the last call with this name, 0 before the first: that something
-    /// new has come.
+    /// Whether `value` differs from that of the last call with this name (0 before the first): something new came.
     bool changed(const char* name, std::uint64_t value);
-    /// Of signals that hold their values unless `known`: whether to show them now. They are declared in any case.
+    /// For signals that hold their values unless `known`: whether to show them now. They are declared in any case.
     bool when(bool known) const { return declaring_ || known; }
 
     /// A stream's input: valid, something is offered; ready, something is taken; stalled, something waits when the

@@ -13,12 +13,12 @@ namespace tessera {
 
 class MemoryPort;
 
-/// A unit that takes an item, reads table entries for it or none, works on it, and passes it on: most of the machine's.
-/// A derived unit names its sockets once and implements the functions below; both modes run these same functions.
+/// A unit that takes an item, reads table entries for it (or none), works on it, and passes it on. A derived unit names
+/// its sockets once and implements the functions below; both modes run the same functions.
 ///
-/// Timed mode: an item starts when the interval is over, a register stage is free and the memory has taken the requests
-/// of the item before. It is finished a latency after its start or, if it reads, after its last answer, and leaves in
-/// order. Register stages: ceil((latency + the memory's latency) / interval), so that neither holds anything up.
+/// Timed mode: an item starts when the interval is over, a register stage is free and the memory has accepted the
+/// requests of the item before. It is finished a latency after its start or, if it reads, after its last answer, and
+/// leaves in order. Register stages: ceil((latency + the memory's latency) / interval), so that neither holds anything up.
 /// Functional mode: reads, works on the item, adds the latency, and hands the result on.
 template <class In, class Out>
 class Stage : public Unit {
@@ -44,19 +44,19 @@ class Stage : public Unit {
     void reads_through(MemoryPort& port, unsigned most_requests);
     void may_wait() { may_wait_ = true; }
 
-    /// Of a unit that calls may_wait() in its constructor. False: the item waits for what another, earlier one brings.
-    /// Functional mode: that is an error.
+    /// For a unit that calls may_wait() in its constructor. False: the item waits for another input; in functional
+    /// mode that is an error.
     virtual bool may_start(const In&) const { return true; }
-    /// Who brings it; functional mode: when it came.
+    /// The unit that provides it; functional mode: when it came.
     virtual const sc_core::sc_object* awaited_unit() const { return nullptr; }
     virtual sc_core::sc_time may_start_after(const In&) const { return sc_core::SC_ZERO_TIME; }
 
     /// The entries an item needs.
     virtual void reads(const In&, Reads&) const {}
-    /// The unit's work on an item, with what was read for it: returns what is passed on.
+    /// The unit's work on an item and the entries read for it; returns what is passed on.
     virtual Out process(const In& item, const Entries& entries) = 0;
 
-    /// In traces, beside the items' own fields: of one that has started, and of one that has been worked on.
+    /// Signals beside the items' own fields: of an item that started, and of one that is finished.
     virtual void trace_started(Signals&, const In&) const {}
     virtual void trace_processed(Signals&, const In&, const Out&) const {}
 

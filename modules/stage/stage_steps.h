@@ -13,7 +13,7 @@
 
 namespace tessera {
 
-// How a Stage does what stage.h says. To be included where one is instantiated.
+// The implementation of stage.h. Include it where a Stage is instantiated.
 
 /// What a stage is made of.
 template <class In, class Out>
@@ -32,7 +32,7 @@ struct Stage<In, Out>::Machinery {
     Machinery(const UnitTiming& timing, unsigned pipelines, unsigned memory_latency)
         : servers(pipelines), pipeline(timing, pipelines, memory_latency) {}
 
-    /// Makes as many of the started items' requests as the memory takes. True: all.
+    /// Makes as many of the started items' requests as the memory accepts. True: all.
     bool ask(MemoryPort& port) {
         for (; asked < reads.requests(); ++asked) {
             if (!port.may_request())

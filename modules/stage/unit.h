@@ -13,18 +13,16 @@ namespace tessera {
 
 class Signals;
 
-/// What every box of the paper's figures 7 and 8 and every memory is: a module on the clock, with a record of what it
-/// did in each cycle.
+/// A box of the paper's figures 7 and 8, or a memory: a module on the clock, with a record of its state in each cycle.
 class Unit : public CycleProcess, public sc_core::sc_module {
   public:
     const Activity& activity() const { return activity_; }
     Activity& activity() { return activity_; }
 
-    /// For a deadlock's report: what is in the unit and waits at its inputs, in words; empty: nothing.
+    /// For the deadlock report: what is in the unit and waits at its inputs, in words; empty: nothing.
     virtual std::string describe_contents() const = 0;
 
-    /// Cycles the unit's work needs at its initiation interval, or at a memory's ports: of all cycles, those in which
-    /// it could not have taken more.
+    /// Cycles that the unit's work needs at its initiation interval, or at a memory's ports.
     virtual std::uint64_t occupied_cycles() const = 0;
 
     bool idle() const { return activity_.level() == 0; }
@@ -33,8 +31,8 @@ class Unit : public CycleProcess, public sc_core::sc_module {
     /// unit: its state, who blocks it or is waited for, and the items in it.
     virtual void trace_signals(Signals& signals) const;
 
-    /// Valid in a cycle in which the unit has begun on an item, and while it holds any. Units that hold many triangles
-    /// at once, memories and the Triangle Queue, name none.
+    /// Valid in a cycle in which the unit begins an item, and while it holds any. Memories and the Triangle Queue, which
+    /// hold many triangles at once, name none.
     virtual Begun begun() const { return {}; }
 
   protected:
@@ -50,8 +48,8 @@ class Unit : public CycleProcess, public sc_core::sc_module {
     Activity activity_;
 };
 
-/// occupied_cycles() of a unit that holds one item at a time and sends it on in parts: the first a latency after it has
-/// come, but an interval after the part before at least.
+/// occupied_cycles() of a unit that holds one item at a time and sends it on in parts: the first a latency after its
+/// arrival, each at least an interval after the last.
 constexpr std::uint64_t one_at_a_time_cycles(const UnitTiming& timing, std::uint64_t items,
                                              std::uint64_t parts) {
     const std::uint64_t first = timing.latency > timing.interval ? timing.latency : timing.interval;

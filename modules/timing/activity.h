@@ -7,20 +7,20 @@
 
 namespace tessera {
 
-/// What a unit does in a cycle. Exactly one of these, so that their cycles add up to the run's:
+/// What a unit does in a cycle: exactly one of these, so that their cycles add up to the run's.
 ///
 ///   blocked             a finished item waits for its consumer to take it
-///   busy                none is blocked, and an item is being worked on that has all it needs
-///   waiting for memory  none of the above, and an item's table entries have been asked for and have not come
-///   starved             nothing to work on, or its other half is missing (the screen positions the View Test
-///                       waits for, the other branch in Pass or Tessellate)
+///   busy                not blocked, and an item with all its operands is being worked on
+///   waiting for memory  neither, and an item's table entries are outstanding
+///   starved             nothing to work on, or an operand is missing (the View Test's screen positions, the other
+///                       branch in Pass or Tessellate)
 enum class State : std::uint8_t { starved, busy, waiting_for_memory, blocked };
 constexpr std::size_t states = 4;
 
-/// Told of every stretch of cycles a unit spent in one state, when it ends.
+/// Called at the end of each stretch of cycles that a unit spends in one state.
 class ActivityObserver {
   public:
-    /// [begin, end); by: who blocks or is waited for; may be null.
+    /// [begin, end); by: the module that blocks or is waited for; may be null.
     virtual void stretch(State state, const sc_core::sc_object* by, std::uint64_t begin,
                          std::uint64_t end) = 0;
     virtual ~ActivityObserver() = default;
@@ -76,7 +76,7 @@ class Activity {
     std::uint64_t items_out() const { return items_out_; }
     std::uint64_t level() const { return level_; }
     std::uint64_t high_water_mark() const { return high_water_mark_; }
-    /// Sum over all cycles of the items in the unit: occupancy times cycles, also the sum of all items' stays.
+    /// Sum over all cycles of the items in the unit: mean occupancy times cycles, or the sum of all residence times.
     std::uint64_t item_cycles() const { return item_cycles_; }
 
     void observe(ActivityObserver* observer) { observer_ = observer; }

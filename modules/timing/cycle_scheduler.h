@@ -11,7 +11,7 @@ class CycleScheduler;
 
 class CycleProcess;
 
-/// An input of a process, at which an item may have to wait: the scheduler admits it.
+/// An input of a process where an item may wait; the scheduler admits it.
 class CycleInput {
   public:
     virtual ~CycleInput() = default;
@@ -23,7 +23,7 @@ class CycleInput {
 
     /// Called before each step of its owner while an item waits.
     virtual void admit() = 0;
-    /// Whether an item waits: to be called when that changes.
+    /// Call when an item begins or ceases to wait.
     inline void set_waiting(bool waiting);
 
   private:
@@ -33,14 +33,14 @@ class CycleInput {
     bool waiting_ = false;
 };
 
-/// What the clock calls: a unit, a memory, a driver.
+/// A process that the scheduler calls: a unit, a memory, a driver.
 class CycleProcess {
   public:
-    /// Everything that can happen in the clock's present cycle. Called as often as something new may be possible, so
-    /// that a second call without cause changes nothing.
+    /// Does everything that can happen in the present cycle. May be called several times in a cycle; a call without
+    /// cause must change nothing.
     virtual void step() = 0;
 
-    /// `input` must live as long as its owner is stepped. To be called once for each input.
+    /// `input` must live as long as its owner is stepped. Call once for each input.
     void add_input(CycleInput& input) {
         input.owner_ = this;
         input.next_ = std::exchange(first_input_, &input);
@@ -76,26 +76,26 @@ void CycleInput::set_waiting(bool waiting) {
     waiting_ = waiting;
 }
 
-/// Told of the cycles in which something was called: tracing.
+/// Observes the cycles in which a process was called; for tracing.
 class CycleObserver {
   public:
-    /// Before the first observed cycle's calls: all is as the cycles before left it.
+    /// Before the calls of the first observed cycle.
     virtual void begin(std::uint64_t cycle) = 0;
-    /// called: the bits (CycleScheduler::bit_of) of those that were.
+    /// called: the bits (CycleScheduler::bit_of) of the processes called.
     virtual void end_of_cycle(std::uint64_t cycle, std::uint64_t called) = 0;
     virtual ~CycleObserver() = default;
 };
 
-/// A clock's period. SC_ERROR, naming the instance that wants it, if it is no multiple of SystemC's time resolution.
+/// A clock's period. SC_ERROR, naming the instance, if it is no multiple of SystemC's time resolution.
 sc_core::sc_time clock_period(const char* instance, unsigned picoseconds);
 
-/// The clock of timed mode: calls those that asked for a cycle, and skips the cycles nobody asked for.
+/// The clock of timed mode: calls the processes scheduled for a cycle, and skips cycles without any.
 ///
-/// Within a cycle the order is that of attachment, whatever the order of asking: attach downstream units first, so
-/// that a place freed in a cycle is filled in the same cycle, and the simulation is the same on every kernel. One
-/// SC_METHOD serves all: a wake-up costs a bit in a table, not an event.
+/// Within a cycle processes are called in the order of attachment: attach downstream units first, so that a place
+/// freed in a cycle is filled in the same cycle. The simulation is then the same on every kernel. One SC_METHOD serves
+/// all: a wake-up costs a bit in a table, not an event.
 ///
-/// Capacity: 64 attached. Nothing asked for means that nothing will ever happen: finished, or a deadlock.
+/// Capacity: 64 processes. Nothing scheduled: the run is finished, or in a deadlock.
 class CycleScheduler : public sc_core::sc_module {
   public:
     CycleScheduler(const sc_core::sc_module_name& name, const sc_core::sc_time& period);
@@ -103,7 +103,7 @@ class CycleScheduler : public sc_core::sc_module {
     /// SC_ERROR beyond the capacity.
     void attach(CycleProcess& unit);
 
-    /// Calls `unit` (once more) in the present cycle; from outside a cycle, in the first that begins not before now.
+    /// Calls `unit` (again) in the present cycle; from outside a cycle, in the first that begins now or later.
     void wake(const CycleProcess& unit) {
         if (running_)
             due_now_ |= unit.bit_;
@@ -126,8 +126,8 @@ class CycleScheduler : public sc_core::sc_module {
         }
     }
 
-    /// Nothing that `unit` could act upon has happened to it, but something an observer may want to see: calls it in
-    /// the present cycle if that is observed.
+    /// For a change that an observer may show but that `unit` cannot act upon: calls it in the present cycle if that is
+    /// observed.
     void wake_if_observed(const CycleProcess& unit) {
         if (observer_ != nullptr && cycle_ >= observed_first_)
             wake(unit);
@@ -136,36 +136,34 @@ class CycleScheduler : public sc_core::sc_module {
     /// The present cycle; between two cycles, the next.
     std::uint64_t cycle() const { return running_ ? cycle_ : first_cycle_not_before_now(); }
 
-    /// The cycle in which something was last called; within a step, the present one.
+    /// The last cycle in which a process was called; within a step, the present one.
     std::uint64_t last_cycle() const { return cycle_; }
 
-    /// Cycles from now on that `delay` spans, rounded up.
+    /// `delay` in cycles from now, rounded up.
     std::uint64_t cycles(const sc_core::sc_time& delay) const {
         return delay.value() == 0 ? 0 : (delay.value() + period_ - 1) / period_;
     }
     const sc_core::sc_time& period() const { return period_time_; }
 
-    /// Nobody asked for a later cycle.
+    /// Nothing is scheduled.
     bool idle() const { return !running_ && !scheduled_; }
 
-    /// Notified at the end of a cycle after which nobody has asked for a later one, or the clock has halted.
+    /// Notified at the end of a cycle after which nothing is scheduled, or the clock has halted.
     const sc_core::sc_event& quiet() const { return quiet_; }
 
-    /// Calls nobody after the present cycle any more.
+    /// Calls nothing after the present cycle.
     void halt() { halted_ = true; }
     bool halted() const { return halted_; }
 
-    /// Told when work is completed (a triangle decided, or lit). When something was called in more than `most` cycles
-    /// without it, 0: for ever, the clock halts. Cycles in which all just wait do not count: a latency,
-    /// however long, comes to its end.
+    /// Call when work is completed (a triangle decided, or lit). The clock halts after processes were called in more
+    /// than `most` cycles (0: no limit) without it. Cycles without calls do not count: a latency, however long, ends.
     void progress() { cycles_without_progress_ = 0; }
     void halt_without_progress_for(std::uint64_t most) { most_without_progress_ = most; }
     std::uint64_t most_without_progress() const { return most_without_progress_; }
-    /// The clock did that.
+    /// It halted for that reason.
     bool stalled() const { return stalled_; }
 
-    /// The clock halted because a cycle was asked for that begins after the end of SystemC's time, 2^64 - 1
-    /// time steps.
+    /// The clock halted because a scheduled cycle begins after the end of SystemC's time, 2^64 - 1 time steps.
     bool out_of_time() const { return out_of_time_; }
 
     /// From cycle `first` to cycle `last`; outside these an observer costs nothing.
@@ -175,7 +173,7 @@ class CycleScheduler : public sc_core::sc_module {
         observed_last_ = last;
         observer_began_ = false;
     }
-    /// Its bit in what an observer is told.
+    /// The process's bit in what an observer receives.
     static std::uint64_t bit_of(const CycleProcess& unit) { return unit.bit_; }
 
     /// SC_ERROR when one cycle takes more calls than this: a combinational loop.

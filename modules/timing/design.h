@@ -9,13 +9,13 @@
 
 namespace tessera {
 
-/// How the units talk to one another.
+/// How units communicate.
 enum class Transport {
     blocking,      ///< blocking transport: every result, no cycles (functional mode)
     non_blocking,  ///< non-blocking transport: the same results, to the cycle (timed mode)
 };
 
-/// The order in which the Triangle Queue gives its triangles away.
+/// The order in which the Triangle Queue outputs its triangles.
 enum class TriangleOrder {
     fifo,  ///< the paper's: breadth first
     lifo,  ///< depth first: the queue stays short
@@ -53,14 +53,14 @@ struct Design {
 };
 
 /// Register stages of a pipeline, all servers together. further_stages: cycles an item spends outside (in a memory)
-/// that other items must be able to follow it through.
+/// while others follow it.
 constexpr unsigned register_stages(const UnitTiming& timing, unsigned servers = 1,
                                    unsigned further_stages = 0) {
     return servers * std::max(1u, (timing.latency + further_stages + timing.interval - 1) / timing.interval);
 }
 
-/// Most triangles that Get Triangle has begun and of which no part has reached Pass or Tessellate: one in Get Triangle,
-/// and one part each in the places of the units between. So many wait in Pass or Tessellate for their parts.
+/// Most triangles that have left the queue while no part of them has reached Pass or Tessellate: one in Get Triangle,
+/// and one for each place of the units between. Pass or Tessellate has room for as many to wait for their parts.
 constexpr unsigned triangles_ahead_of_parts(const Design& design) {
     const Timing& t = design.timing;
     return 1 + t.calculate_new_p.buffer + register_stages(t.calculate_new_p) + t.displace_vertex.buffer +
@@ -68,8 +68,8 @@ constexpr unsigned triangles_ahead_of_parts(const Design& design) {
            register_stages(t.transform, design.transform_pipelines) + 1;
 }
 
-/// Wires of a triangle's tag: enough to tell apart all that Get Triangle has begun and Pass or Tessellate not decided:
-/// those that wait there, one that Get Triangle still offers, and those whose parts have begun to come.
+/// Wires of a triangle's tag: enough to distinguish all triangles between Get Triangle and Pass or Tessellate: those
+/// that wait there, one that Get Triangle still offers, and those whose parts have begun to arrive.
 constexpr int tag_bits(const Design& design) {
     const unsigned triangles = triangles_ahead_of_parts(design) + 1 + design.timing.pass_or_tessellate.buffer;
     int bits = 1;
@@ -78,8 +78,8 @@ constexpr int tag_bits(const Design& design) {
     return bits;
 }
 
-/// The same in a run. In functional mode, where a triangle may be overtaken by any number of others while its call
-/// waits, a tag is the pass's number itself.
+/// The same in a run. In functional mode, where any number of triangles may overtake a waiting one, a tag is
+/// the pass's number itself.
 constexpr int tag_bits_in_use(const Design& design) {
     return design.transport == Transport::blocking ? 32 : tag_bits(design);
 }

@@ -19,7 +19,7 @@ template <class Item>
 class ElasticPipeline {
   public:
     /// servers: pipelines side by side that take turns. further_stages: cycles an item spends outside (in a memory)
-    /// that other items must be able to follow it through.
+    /// while others follow it.
     explicit ElasticPipeline(const UnitTiming& timing, unsigned servers = 1, unsigned further_stages = 0)
         : latency_(timing.latency),
           interval_(timing.interval),
@@ -34,7 +34,7 @@ class ElasticPipeline {
 
     bool may_start(std::uint64_t cycle) const { return !full() && cycle >= next_start_[server_]; }
 
-    /// Starts an item; to be filled in. It is finished at cycle + latency, or when `finish` says.
+    /// Starts an item, to be filled in. It is finished at cycle + latency, or when `finish` says so.
     Item& start(std::uint64_t cycle) {
         next_start_[server_] = cycle + interval_;
         server_ = server_ + 1 == servers_ ? 0 : server_ + 1;
@@ -55,11 +55,11 @@ class ElasticPipeline {
 
     void pop() { stages_.pop(); }
 
-    /// The next cycle after `cycle` at which the first item is finished; `never` if that is not known or past.
+    /// The next cycle after `cycle` at which the first item is finished; `never` if unknown or past.
     std::uint64_t next_finished(std::uint64_t cycle) const {
         return !empty() && stages_.front().finished > cycle ? stages_.front().finished : never;
     }
-    /// The next cycle after `cycle` at which an item may be started; `never` if that waits for a place.
+    /// The next cycle after `cycle` at which an item may start; `never` if that depends on a free place.
     std::uint64_t next_start(std::uint64_t cycle) const {
         return !full() && next_start_[server_] > cycle ? next_start_[server_] : never;
     }

@@ -4,7 +4,7 @@
 
 namespace tessera {
 
-/// An item that was offered and not taken: it waits, its END_REQ withheld, for room and for a cycle.
+/// An item that was offered and not taken: END_REQ is withheld until there is room and its cycle has come.
 template <class Item>
 class PendingItem {
   public:

@@ -6,8 +6,8 @@
 namespace tessera {
 
 /// A queue of fixed capacity, oldest item first. Allocates only when constructed or grown. A popped item stays in its
-/// place until another is pushed there, so items may own storage that is reused. An empty ring begins again at its
-/// first place: one that is hardly used stays in the host's cache.
+/// place until another is pushed there, so items may own storage that is reused. An empty ring restarts at its
+/// first place, so that a rarely used one stays in the host's cache.
 template <class Item>
 class Ring {
   public:
@@ -27,7 +27,7 @@ class Ring {
     Item& back() { return items_[last_]; }
     const Item& back() const { return items_[last_]; }
 
-    /// Not when full. Returns the new item, which is as the place was left: to be filled in.
+    /// Not when full. Returns the new item, with the place's old contents: to be overwritten.
     Item& push() { return items_[last_ = place(size_++)]; }
     void push(const Item& item) { push() = item; }
     /// Not when empty.

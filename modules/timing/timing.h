@@ -28,9 +28,9 @@ struct OffChipTiming {
     unsigned buffer = 4;      ///< requests that may wait, at least 1
 };
 
-/// Clock period and the datasheet figures of every unit and memory. The defaults are the paper's design where it says
-/// (one port on the Summed Height Table: four cycles a rectangle; tests one edge after another) and plain choices
-/// where it is silent. The only place where they are declared: configuration and reports refer to this.
+/// Clock period and the datasheet figures of every unit and memory. Defaults follow the paper where it states them
+/// (one port on the Summed Height Table: four cycles a rectangle; tests one edge after another). Declared here only:
+/// configuration and reports refer to this.
 struct Timing {
     unsigned cycle_picoseconds = 5000;  ///< the clock's period
     UnitTiming get_triangle{1, 1, 1};
@@ -44,7 +44,7 @@ struct Timing {
     unsigned highlight_test_latency =
         1;  ///< N'.H: on top of the Normal Test's, in a design with a Highlight Test
     UnitTiming view_test{1, 1, 1};
-    UnitTiming pass_or_tessellate{1, 1, 8};  ///< buffer: triangles of which one branch has come
+    UnitTiming pass_or_tessellate{1, 1, 8};  ///< buffer: triangles of which one branch has arrived
     UnitTiming tessellation{1, 1, 1};
     UnitTiming triangle_queue{1, 1, 1};
     UnitTiming lighting{4, 1, 1};

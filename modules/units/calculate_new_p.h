@@ -8,10 +8,10 @@ namespace tessera {
 
 /// Calculate New P (paper figure 7): the midpoint of each edge's two positions.
 ///
-/// In:   GeometryOperands. Out: BasePoint: of an edge (P_i + P_j) >> 1, likewise t and, not yet of unit length, N:
-///       Displace Vertex needs all three; vertices and normals unchanged. (Decision: t_ij and the mean normal are
-///       formed here as well as in Tessellation Tests, so that the two branches need no stream between them; Pass or
-///       Tessellate checks that they agree.)
+/// In:   GeometryOperands.
+/// Out:  BasePoint: of an edge (P_i + P_j) >> 1, likewise t and N, the latter not yet of unit length; vertices and
+///       normals unchanged. (Decision: t_ij and the mean normal are formed here as well as in Tessellation Tests, so
+///       that the two branches need no stream between them; Pass or Tessellate checks that they agree.)
 /// Arithmetic: add, arithmetic shift right by 1.
 /// Timing: one vertex, normal or edge per interval; latency 1, interval 1 by default.
 /// Waits for nothing but its input; held back by Displace Vertex.

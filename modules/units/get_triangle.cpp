@@ -40,7 +40,7 @@ void make(TestOperands& item, const TakenTriangle& taken, Parts part) {
         item.ends[1] = edge_end(taken.triangle.vertices[(k + 1) % 3]);
 }
 
-/// Of a finished triangle nothing is tested again.
+/// Nothing of a finished triangle is tested again.
 Parts parts_to_test(const datapath::Triangle& triangle) {
     return triangle.finished ? Parts{0} : parts_of(triangle);
 }
@@ -115,7 +115,7 @@ void GetTriangle::b_transport_from_triangle_queue(datapath::Triangle& triangle, 
     send_whole(triangle, delay);
 }
 
-/// A host that waits goes before the queue.
+/// A waiting host has priority over the queue.
 void GetTriangle::b_transport_level(QueueLevel& level, sc_core::sc_time& delay) {
     below_watermark_ = level.below_watermark;
     if (!below_watermark_ || !host_waits_)

@@ -11,8 +11,7 @@
 namespace tessera {
 
 /// Get Triangle (paper figure 7): takes a triangle from the Triangle Queue or from the host and sends it down both
-/// branches, part by part. Knows which of its vertices and normals are already in screen space and sends only the new
-/// ones on:
+/// branches, part by part. Vertices and normals that are already in screen space are not sent again:
 ///
 ///   base triangle          three vertices to displace and transform (and to bump), then three edges
 ///   re-tessellated         normals that have no N's yet, then three edges
@@ -21,8 +20,8 @@ namespace tessera {
 /// In:   triangles; the queue's level. Out: to Calculate New P all parts, to Tessellation Tests vertices and edges;
 ///       with three Tessellation Tests units edge k and its two vertices to unit k. To Pass or Tessellate the triangle
 ///       itself, for what its parts do not carry.
-/// Timing: one part per interval (1) on each output, the first a latency (1) after the triangle was taken. Capacity:
-///       one triangle; the next is taken when all parts of the last have been.
+/// Timing: one part per interval (1) on each output, the first a latency (1) after the triangle was taken.
+/// Capacity: one triangle; the next is taken when all parts of the last have been taken.
 /// Waits for the Triangle Queue or the host; takes a host triangle only while the queue is below its watermark and has
 /// nothing to send. Held back by Calculate New P, Tessellation Tests and Pass or Tessellate.
 class GetTriangle : public Unit {

@@ -109,7 +109,7 @@ void PassOrTessellate::finish_if_complete(Incomplete& place, const PartTag& tag,
     if (!place.complete())
         return;
     delay = place.latest + latency_;
-    // The place is given up first: other triangles may come before transport returns.
+    // The place is freed first: other triangles may arrive before transport returns.
     const Way way = decide(place.triangle);
     if (way == Way::tessellation) {
         DecidedTriangle triangle = place.triangle;
@@ -332,7 +332,7 @@ PassOrTessellate::Way PassOrTessellate::finish(datapath::Triangle& triangle) {
     return Way::lighting;
 }
 
-/// Shows the triangle decided last; of one that only fetched normals, tests and split as it brought them.
+/// Shows the triangle decided last; for one that only fetched normals, with its earlier tests and split.
 void PassOrTessellate::trace_signals(Signals& signals) const {
     Unit::trace_signals(signals);
     signals.input(from_transform, "from_transform");

@@ -18,16 +18,16 @@ namespace tessera {
 /// Pass or Tessellate (paper figures 7 and 8, 3.1.5): joins Transform and Tessellation Tests, decides per edge, and
 /// culls finished triangles that face away.
 ///
-/// In:   each triangle from Get Triangle, and its parts from both branches; the last one to come completes it.
+/// In:   each triangle from Get Triangle, and its parts from both branches; the last part completes it.
 /// Out:  to Tessellation, a triangle with split != 0, or one that is finished but lacks N's of a vertex (it goes round
 ///       once more for its normals); to Lighting, a finished triangle.
 /// Arithmetic: logic; for culling two products of screen bits + 1 and a compare.
-/// Check: both branches' t_ij must agree, or the branches have lost step: an SC_ERROR.
-/// Timing: one triangle per interval; latency 1, interval 1 by default, from the arrival of its last part. Capacity:
-///       `buffer` triangles (8) that are not complete. A triangle waits behind the input from Get Triangle until its
-///       first part comes from Transform, which opens a place for it; there is room for all that can be ahead of their
-///       parts (triangles_ahead_of_parts). What Tessellation Tests brings before that waits at its own input, as many
-///       edges as there are places.
+/// Check: both branches' t_ij must agree, else SC_ERROR.
+/// Timing: one triangle per interval; latency 1, interval 1 by default, from the arrival of its last part.
+/// Capacity: `buffer` incomplete triangles (8). A triangle waits at the input from Get Triangle until its first part
+///       arrives from Transform and opens a place for it; there is room for all that can be ahead of their parts
+///       (triangles_ahead_of_parts). Edges from Tessellation Tests that arrive earlier wait at their own input, as many
+///       as there are places.
 /// Waits for both branches; held back by Tessellation and Lighting.
 class PassOrTessellate : public Unit {
   public:
@@ -80,7 +80,7 @@ class PassOrTessellate : public Unit {
 
   private:
     enum class Way : std::uint8_t { tessellation, lighting, dropped };
-    /// On its way out; of the two triangles the one that goes that way.
+    /// A decided triangle on its way out, for the unit it goes to.
     struct Decided {
         Way way = Way::dropped;
         DecidedTriangle to_tessellation;

@@ -15,10 +15,10 @@ namespace tessera {
 ///
 /// In:   DecidedTriangle. Out: its children, one after another; for a finished triangle on its way to fetch normals,
 ///       the triangle itself.
-/// Arithmetic: wiring; with the `shorter` diagonal two Manhattan lengths (6 subtractions, 4 adds) and a compare. The
-///       generations of new vertices saturate (counted), which only the Generation Test switched off lets happen.
+/// Arithmetic: wiring; with the `shorter` diagonal two Manhattan lengths (6 subtractions, 4 adds) and a compare. New
+///       vertices' generations saturate (counted), which can only happen with the Generation Test off.
 /// Timing: one child per interval, the first a latency after the triangle was taken; latency 1, interval 1 by default.
-///       Capacity: one triangle; the next is taken when its last child has been.
+///       Capacity: one triangle; the next is taken when its last child has been taken.
 /// Waits for nothing but its input; held back by the Triangle Queue.
 class Tessellation : public Unit {
   public:
@@ -27,7 +27,7 @@ class Tessellation : public Unit {
 
     Tessellation(const sc_core::sc_module_name& name, const UnitContext& context);
 
-    /// Triangles made into 2, 3, 4 children; index 1: passed unchanged.
+    /// Triangles split into 2, 3, 4 children; index 1: passed unchanged.
     const std::array<std::uint64_t, 5>& made_into() const { return made_into_; }
     std::uint64_t children() const {
         return made_into_[1] + 2 * made_into_[2] + 3 * made_into_[3] + 4 * made_into_[4];

@@ -8,7 +8,7 @@
 namespace tessera {
 
 namespace {
-// The work runs ahead of the kernel's time by so many triangles at most, so that a stop is heard.
+// Functional mode: triangles between two yields to the kernel, so that a stop takes effect.
 constexpr unsigned triangles_between_waits = 1024;
 }  // namespace
 
@@ -121,7 +121,7 @@ bool TriangleQueue::put(const datapath::Triangle& triangle) {
         return true;
     }
     if (refills_ > 0)
-        return false;  // what comes back is older than anything here
+        return false;  // returning triangles are older than anything here
     spill(store_.pop_oldest());
     store_.push(triangle);
     return true;
@@ -211,7 +211,7 @@ std::string TriangleQueue::describe_contents() const {
     return listed(text, "no place for the next" + capacity, "; ");
 }
 
-/// Shows the levels, what goes off chip and comes back, and the triangle that was read from the store last.
+/// Shows the levels, spills and refills, and the triangle last read from the store.
 void TriangleQueue::trace_signals(Signals& signals) const {
     Unit::trace_signals(signals);
     signals.input(from_tessellation);

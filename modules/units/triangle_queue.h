@@ -19,10 +19,9 @@ namespace tessera {
 /// In:   triangles from Tessellation. Out: triangles to Get Triangle, and whether fewer than the watermark wait,
 ///       whenever that changes.
 /// Capacity: `capacity` triangles on chip, unbounded by default and in functional mode; the high-water mark says what a
-///       design needs. Beyond it a triangle goes to off-chip memory: first in first out, the newest, behind those that
-///       are there; last in first out, the oldest on chip. They come back when there is room on chip (first in first
-///       out), or when no more than half of it is taken (last in first out, so that one triangle does not go back and
-///       forth).
+///       design needs. Beyond it triangles go to off-chip memory: the newest (first in first out), or the oldest on
+///       chip (last in first out). They return when there is room on chip (first in first out), or when at most half
+///       of it is taken (last in first out, so that a triangle does not go back and forth).
 /// Timing: one triangle in and one out per interval; latency 1, interval 1 by default, from store to output.
 /// Waits for Tessellation, and for off-chip memory; held back by Get Triangle, and when full by off-chip memory.
 class TriangleQueue : public Unit {
@@ -39,7 +38,7 @@ class TriangleQueue : public Unit {
     bool drained() const { return waiting() == 0 && !sending_; }
     /// Functional mode: notified when the last triangle that waited has gone through the machine.
     const sc_core::sc_event& emptied() const { return emptied_; }
-    /// Everywhere: on chip, off chip, and on its way.
+    /// Triangles on chip, off chip, and on their way.
     std::size_t waiting() const {
         return store_.size() + static_cast<std::size_t>(off_chip_) + refills_ + leaving_.size();
     }
@@ -50,10 +49,10 @@ class TriangleQueue : public Unit {
     std::uint64_t refilled() const { return refilled_; }
     const LevelHistory& history() const { return history_; }
     LevelHistory& history() { return history_; }
-    /// A triangle came that found no place, with QueueOverflow::error.
+    /// A triangle found no place, with QueueOverflow::error.
     bool overflowed() const { return overflowed_; }
 
-    /// A triangle was to be spilled when all places in off-chip memory were taken.
+    /// A triangle had to be spilled while off-chip memory was full.
     bool off_chip_memory_full() const { return off_chip_memory_full_; }
 
     std::string describe_contents() const override;

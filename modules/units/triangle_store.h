@@ -7,8 +7,8 @@
 
 namespace tessera {
 
-/// The Triangle Queue's memory: a ring that doubles when it is full, so that no triangle is allocated for once a run
-/// has reached its high-water mark.
+/// The Triangle Queue's memory: a ring that doubles when full, so that nothing is allocated once a run has reached
+/// its high-water mark.
 class TriangleStore {
   public:
     explicit TriangleStore(TriangleOrder order) : order_(order), ring_(1024) {}
@@ -30,7 +30,7 @@ class TriangleStore {
         return newest;
     }
 
-    /// Beside the order: the other end of what is stored, for spilling.
+    /// The other end of the store, for spilling.
     void push_oldest(const datapath::Triangle& triangle) {
         if (ring_.full())
             ring_.grow();

@@ -18,7 +18,7 @@ struct EdgeToTest : TestOperands {
     }
 };
 
-/// Calculate New U (paper figure 8, 3.1.2): the texture coordinate of the edge's midpoint, which all tests start from.
+/// Calculate New U (paper figure 8, 3.1.2): the texture coordinate of the edge's midpoint, for all tests.
 ///
 /// In:   TestOperands: edges, with t_i, t_j; vertices of a base triangle, which pass unchanged, to the Normal Test
 ///       alone.

@@ -10,8 +10,7 @@
 
 namespace tessera {
 
-/// Where the lines from the four tests meet on their way to Pass or Tessellate (paper figure 8): an edge goes on when
-/// all four have decided.
+/// Joins the four tests on the way to Pass or Tessellate (paper figure 8): an edge goes on when all four have decided.
 ///
 /// In:   each test's result. Out: TestedEdge, once.
 /// Timing: one edge a cycle, no latency of its own: wires. Capacity: per test `results_buffer` edges that wait for
@@ -33,7 +32,7 @@ class CollectTests : public Unit {
     Begun begun() const override { return {activity_.items_in(), leaving_.tag.origin, leaving_.tag.bit()}; }
 
   private:
-    /// Functional mode: what has been decided of the edge under way of a triangle, and when the last test had.
+    /// Functional mode: what has been decided for a triangle's edge under way, and when the last test decided.
     struct Decided {
         TestedEdge edge;
         unsigned tests = 0;

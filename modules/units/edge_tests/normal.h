@@ -10,8 +10,8 @@
 namespace tessera {
 
 /// Normal Test (paper figure 8, 2.2, 3.1.4): Calculate New N, Normalise, Bump, and the comparison of the displaced
-/// normals. And, in the same place because it needs the same three normals and their differences, the optional
-/// Highlight Test (golden/ALGORITHM.md 4.6), which asks for more where the Phong highlight is.
+/// normals. It includes the optional Highlight Test (golden/ALGORITHM.md 4.6), which needs the same three normals and
+/// their differences, and splits further where the Phong highlight is.
 ///
 /// In:   NormalOperands: edges; of a base triangle its vertices first, which are bumped and end here.
 /// Out:  NormalResult: N_ij, T_ij, N'_ij, the tests' bits, and N' of the edge's first end.
@@ -21,7 +21,7 @@ namespace tessera {
 ///       threshold and three with a cosine; the differences are the Normal Test's.
 /// Timing: one edge or vertex per interval; latency 9 plus the map read, interval 1 by default. A Highlight Test adds
 ///       its own latency, 1 by default, and nothing to the interval.
-///         An edge of a base triangle starts when the map entries of all corners that come to the unit have come.
+///       An edge of a base triangle starts when the map entries of all its corners in this unit have arrived.
 /// State: a base triangle's tag, and N' of its corners.
 /// Waits for Calculate New U and the normal map. Held back by the collection of the tests.
 class NormalTest : public Stage<NormalOperands, NormalResult> {

@@ -6,8 +6,8 @@
 
 namespace tessera {
 
-/// Tex Coord Test (paper figure 8, 2.5, 3.1.2): has the map's resolution been reached? And, in the same place because
-/// both bound the recursion, the generation test (golden/ALGORITHM.md 4.5).
+/// Tex Coord Test (paper figure 8, 2.5, 3.1.2): has the map's resolution been reached? It includes the
+/// generation test (golden/ALGORITHM.md 4.5), which also bounds the recursion.
 ///
 /// In:   TexCoordOperands. Out: TexCoordResult.
 /// Arithmetic: two compares of bit slices per axis; a maximum, an increment, a compare.

@@ -70,7 +70,7 @@ void ViewTest::trace_signals(Signals& signals) const {
     signals.value("threshold", 33, registers_.tests.view_threshold);
 }
 
-/// An edge that has no length on the screen, for an end is not in front of the near plane, shows 0.
+/// An edge with an end on or behind the near plane has no length on the screen and shows 0.
 void ViewTest::trace_processed(Signals& signals, const ViewOperands&, const ViewResult&) const {
     signals.screen("screen_i", ends_.i);
     signals.screen("screen_j", ends_.j);

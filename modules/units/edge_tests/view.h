@@ -10,14 +10,14 @@ namespace tessera {
 
 /// View Test (paper figure 8, 2.4, 3.1.1): is the edge long enough on the screen to be worth splitting?
 ///
-/// In:   ViewOperands; of a base triangle the three ScreenCorners besides. Out: ViewResult. An edge with one end on or
+/// In:   ViewOperands; for a base triangle also its three ScreenCorners. Out: ViewResult. An edge with one end on or
 ///       behind the near plane counts as long, with both as invisible.
 /// Arithmetic: two subtractions, absolute values, add, compare.
 /// Timing: one edge per interval; latency 1, interval 1 by default.
-/// State: for each base triangle under way between Transform and Pass or Tessellate its tag and the corners that have
-///        come: as many places as Pass or Tessellate has, and two for what waits at its input.
-/// Waits for Calculate New U, and for a base triangle's edge until Transform has sent the screen positions of its
-/// vertices, which it takes at any time. Held back by the collection of the tests.
+/// State: for each base triangle between Transform and Pass or Tessellate its tag and the corners that have arrived:
+///        as many places as Pass or Tessellate has, and two for what waits at its input.
+/// Waits for Calculate New U, and with a base triangle's edge for the screen positions of its vertices from Transform,
+/// which it takes at any time. Held back by the collection of the tests.
 class ViewTest : public Stage<ViewOperands, ViewResult> {
   public:
     StreamInput<ViewOperands> input{"input"};
