@@ -83,7 +83,6 @@ class Signals {
     void unit(const char* name, const sc_core::sc_object* object);
 
     /// Widths are those of the largest configuration, so that a save file fits all.
-    void position(const char* name, const datapath::Position& p) { fields().position(name, p, ""); }
     void direction(const char* name, const datapath::Direction& n) { fields().direction(name, n, ""); }
     void screen(const char* name, const datapath::ScreenPosition& s) { fields().screen(name, s, ""); }
 
