@@ -93,8 +93,8 @@ TEST_CASE("the datapath's README names every function of its headers, and no oth
         INFO(row.at(0));
         REQUIRE(row.size() == 7);
         for (const std::string& test : matches(row.at(6), "`(\\w+)`"))
-            CHECK(std::filesystem::exists(root / "testbench/tests" / (test + ".cpp")));
-        CHECK(row.at(6).find("`test_datapath_") != std::string::npos);
+            CHECK(std::filesystem::exists(root / "testbench/tests/modules/datapath" / (test + ".cpp")));
+        CHECK(row.at(6).find("`test_") != std::string::npos);
     }
 }
 
