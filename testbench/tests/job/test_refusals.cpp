@@ -232,14 +232,6 @@ TEST_CASE("keys that contradict each other") {
     CHECK_THAT(error_with({"map.source=file", "map.file=a.exr", "map.fingerprint=0123456789abcdef"}),
                Equals(""));
 
-    const std::string fault = "fault.kind=dropped", place = "fault.place=host.to_get_triangle";
-    CHECK_THAT(error_with({fault, place}), Equals(""));
-    CHECK_THAT(error_with({fault}), Contains("`fault.place` is empty"));
-    CHECK_THAT(error_with({place}), Contains("but `fault.kind` = \"none\""));
-    CHECK_THAT(error_with({fault, place, "frames.count=2"}), Contains("`frames.count` = 2"));
-    CHECK_THAT(error_with({fault, place, "output.vcd=true"}), Contains("`output.vcd` = true"));
-    CHECK_THAT(error_with({fault, place, "output.timeline=true"}), Contains("`output.timeline` = true"));
-
     Job out_of_range;  // made in code, past the checks of reading
     out_of_range.tests.normal_threshold = -1;
     out_of_range.camera.viewport_width = 0;
