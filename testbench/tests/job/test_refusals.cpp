@@ -121,6 +121,8 @@ TEST_CASE("mistyped names are reported with place and suggestion") {
     CHECK_THAT(parse_error_of("camera = {eye = [1, 2, 3]}\n"), Equals(""));
     CHECK_THAT(parse_error_of("\"\" = 1\n"), Contains("unknown key `\"\"`"));
     CHECK_THAT(parse_error_of("folder = \"x\"\n"), Contains("unknown key `folder`"));
+    CHECK_THAT(parse_error_of("[mesh]\n\n[fault]\nkind = \"none\"\n"),
+               StartsWith("job.toml:3:1: unknown table `fault`"));
     CHECK(nearest_name("mesh.file", {"mesh.file"}) == "mesh.file");
     CHECK(nearest_name(std::string(100000, 'a'), {"mesh.file"}).empty());
 }

@@ -71,7 +71,7 @@ char catcher_of(const sc_core::sc_report& report) {
     return type.substr(0, 8) == "tessera/" ? 'U' : '?';
 }
 
-/// With all checks, none of which may throw.
+/// With all checks.
 Outcome run_here(Mode mode, const std::optional<Fault>& fault) {
     const MachineSetup setup = setup_of(small_job(mode));
     const GoldenInputs golden(setup);
@@ -230,6 +230,7 @@ const std::vector<Place> memories = {
     {summed_height_table, 5, 0},
     {"triangle_queue.off_chip_memory", 5, 0},
 };
+
 /// A column of the table.
 struct Kind {
     FaultKind kind;
@@ -312,10 +313,7 @@ void compare_with_document(const std::string& heading, const std::string& found)
         std::ofstream(path) << document;
         return;
     }
-    INFO(
-        "testbench/prove/faults/FAULT_COVERAGE.md says something else; TESSERA_WRITE_FAULT_COVERAGE=1 has "
-        "the test write "
-        "it");
+    INFO(path << " says something else; TESSERA_WRITE_FAULT_COVERAGE=1 has the test write it");
     CHECK(document.substr(from, to - from) == found);
 }
 
@@ -341,7 +339,7 @@ TEST_CASE("faults at memories, timed mode: who catches which") {
 // the table have 33 entries of 4 bytes. Timed mode: functional mode asks for one entry at a time.
 TEST_CASE("read checks compare every entry of a rectangle, and name the address of the wrong one") {
     std::vector<std::uint64_t> wrong;
-    for (const std::uint64_t corner : {0, 1, 2, 3}) {
+    for (const std::uint64_t corner : {0U, 1U, 2U, 3U}) {
         const Outcome outcome =
             run(Mode::timed, Fault{FaultKind::bit_flip, summed_height_table, 1, 32 * corner});
         INFO(outcome.text);
