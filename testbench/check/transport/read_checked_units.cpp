@@ -15,8 +15,8 @@ void ReadCheckedUnits::join(MemoryPort& port, TableMemory& memory) {
 
 ReadResult ReadCheckedUnits::result() const {
     ReadResult all;
-    for (const auto& check : checks_) {
-        const ReadResult& one = check->result();
+    for (const auto& read_check : checks_) {
+        const ReadResult& one = read_check->result();
         all.entries += one.entries;
         all.wrong += one.wrong;
         if (all.first_wrong.empty())

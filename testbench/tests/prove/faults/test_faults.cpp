@@ -154,7 +154,7 @@ Outcome run(Mode mode, const std::optional<Fault>& fault) {
 struct FieldFinder {
     std::string name, component;
     std::uint64_t bits = 0;
-    std::optional<std::uint64_t> found;
+    std::optional<std::uint64_t> found = std::nullopt;
 
     std::int64_t field(const datapath::Field& field, std::int64_t value) {
         if (!found && field.index <= 0 && field.name == name && field.component == component)
