@@ -81,7 +81,7 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     app.require_subcommand(0, 1);  // none is told apart below, from one that does not exist
     app.footer(
         "exit codes: 0 fine, 1 conformance or an invariant violated, 2 bad input or usage, 3 deadlock,\n"
-        "            4 a stated resource limit, 5 an injected fault went undetected");
+        "            4 a stated resource limit");
 
     CLI::App* const run =
         app.add_subcommand("run", "run a job: tessellate, check against the golden model, report");

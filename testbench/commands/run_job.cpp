@@ -13,6 +13,7 @@
 #include "testbench/check/conformance/scoreboard.h"
 #include "testbench/check/conformance/texel_borders.h"
 #include "testbench/check/transport/conservation.h"
+#include "testbench/check/transport/read_checked_units.h"
 #include "testbench/commands/load_job.h"
 #include "testbench/commands/output_folder.h"
 #include "testbench/commands/progress.h"
@@ -32,8 +33,6 @@
 #include "testbench/output/report/statistics.h"
 #include "testbench/output/report/timing_report.h"
 #include "testbench/output/trace/traces.h"
-#include "testbench/prove/faults/checked_run.h"
-#include "testbench/prove/faults/faultless_run.h"
 
 namespace tessera {
 
@@ -125,72 +124,6 @@ struct Ending {
     std::string text;
 };
 
-/// A run with a fault, or of the same machine without it, and what its checks found.
-struct CheckedFaultRun {
-    FaultRun run;
-    Checks checks;
-
-    template <class T>
-    static const T* if_there(const std::optional<T>& part) {
-        return part ? &*part : nullptr;
-    }
-    std::vector<Caught> detected(const CheckedUnits& units) const {
-        return who_noticed(units, run, if_there(checks.conformance), if_there(checks.work),
-                           if_there(checks.invariants));
-    }
-};
-
-CheckedFaultRun check_fault_run(const Job& job, const MachineSetup& setup, Simulation& simulation,
-                                const CheckedUnits& units, const Scoreboard* scoreboard,
-                                const TransportCheck* work) {
-    CheckedFaultRun result;
-    result.run = run_with_fault(simulation);
-    Checks& checks = result.checks;
-    checks.allowed_flips = job.check.allowed_flips;
-    checks.remarks = setup.remarks;
-    checks.reads = read_result(units);
-    if (scoreboard != nullptr)
-        checks.conformance = scoreboard->result();
-    if (work != nullptr && !result.run.stopped)
-        checks.work = work_result(*work, simulation);
-    if (job.check.invariants && !result.run.stopped)
-        checks.invariants = check_invariants(simulation.monitor.mesh, setup.base_triangles, setup.registers);
-    return result;
-}
-
-/// A run with a fault leaves its conformance report and its job, and no mesh that anyone could take for a result.
-Ending run_faulty(const Job& job, const MachineSetup& setup, Simulation& simulation, CheckedUnits& units,
-                  const Scoreboard* scoreboard, const TransportCheck* work, Progress& progress) {
-    progress.show("running without the fault", 0);
-    require_sound_without_fault([&] {
-        units.disarm();
-        return check_fault_run(job, setup, simulation, units, scoreboard, work).detected(units);
-    });
-    progress.show("running with the fault", 0.5);
-    auto [run, checks] = check_fault_run(job, setup, simulation, units, scoreboard, work);
-    checks.fault = judge_fault(
-        job.fault, units, run, job.mode == Mode::timed, CheckedFaultRun::if_there(checks.conformance),
-        CheckedFaultRun::if_there(checks.work), CheckedFaultRun::if_there(checks.invariants));
-    const std::filesystem::path folder = job.output.folder;
-    OutputFolder output(folder);
-    AtomicSet files;
-    write_file(folder / "job.toml", dump_job(job, folder));
-    write_file(folder / "conformance.txt", conformance_text(checks));
-    write_file(folder / "conformance.json", conformance_json(checks));
-    replace_run(folder, files);
-    output.keep();
-    progress.clear();
-    if (run.stopped)
-        fmt::print(stderr, "tessera: {}\n", run.text);
-    ExitCode code = run.code;
-    if (checks.fault->caught.empty())
-        code = ExitCode::fault_missed;
-    else if (!run.stopped)
-        code = ExitCode::check_failed;
-    return {code, fmt::format("{}  results in {}\n", fault_text(*checks.fault),
-                              std::filesystem::absolute(folder).lexically_normal().string())};
-}
-
 /// `name` tells the run from others, on the line that shows its progress. What it leaves takes the place of an earlier
 /// run in `replaced`: job.output.folder, or one above it.
 Ending run_once(const Job& asked, const Command& command, const std::string& name,
@@ -205,14 +138,12 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
     const MachineSetup& setup = loaded.setup;
     const Job& job = inputs.resolved.job;
 
-    std::optional<CheckedUnits> checked_units;
-    if (CheckedUnits::wanted(job))
-        checked_units.emplace(job, setup.registers.formats, tag_bits_in_use(setup.design));
+    std::optional<ReadCheckedUnits> checked_units;
+    if (job.check.reads)
+        checked_units.emplace();
     Simulation simulation(setup, static_cast<std::uint64_t>(job.limits.triangles),
                           static_cast<std::uint64_t>(job.limits.cycles_without_progress),
                           checked_units ? &*checked_units : nullptr);
-    if (checked_units)
-        checked_units->require_placed();
     std::optional<GoldenInputs> golden;
     std::unique_ptr<Scoreboard> scoreboard;
     if (job.check.golden) {
@@ -227,8 +158,6 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
         simulation.pipeline.pass_or_tessellate.finished.bind(*work);
         simulation.rasteriser.taken.bind(*work);
     }
-    if (job.fault.kind != FaultKind::none)
-        return run_faulty(job, setup, simulation, *checked_units, scoreboard.get(), work.get(), progress);
     TexelBorders borders(setup.registers.formats);
     simulation.pipeline.pass_or_tessellate.decided.bind(borders);
     simulation.monitor.on_progress([&](std::size_t triangles) {
@@ -273,7 +202,7 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
     if (work)
         checks.work = work_result(*work, simulation);
     if (checked_units)
-        checks.reads = read_result(*checked_units);
+        checks.reads = checked_units->result();
     checks.texel_borders =
         texel_borders_warning(borders.count(), job, setup.registers.map.width, setup.registers.map.height);
     std::optional<GoldenJob> golden_job;

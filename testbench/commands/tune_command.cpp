@@ -105,11 +105,6 @@ void choose_tests(const TuneOrder& order, TuneRequest& request) {
             "frames.count = {}: thresholds are tuned for one frame; tune with --set frames.count=1 and "
             "set it in the tuned job, whose other frames may have more triangles",
             request.job.frames.count));
-    if (request.job.fault.kind != FaultKind::none)
-        throw InputError(fmt::format(
-            "fault.kind = \"{}\": thresholds are tuned for the machine as it should be; tune with --set "
-            "fault.kind=none --set fault.place=",
-            name_of(request.job.fault.kind)));
     if (tests.highlight)
         throw InputError(
             "tests.highlight = true: the search knows nothing of highlights; tune with --set "

@@ -88,12 +88,6 @@ WidthRequest request_of(const WidthsOrder& order) {
             "frames.count = {}: widths are swept for one frame; use --set frames.count=1, and --set "
             "displacement.scale for the frame",
             request.job.frames.count));
-    if (request.job.fault.kind != FaultKind::none)
-        throw InputError(
-            fmt::format("fault.kind = \"{}\": widths are swept of the machine as it should be; use --set "
-                        "fault.kind=none --set "
-                        "fault.place=",
-                        name_of(request.job.fault.kind)));
     request.threads = order.jobs;
     request.most_flips = order.most_flips;
     request.most_error = order.most_error;

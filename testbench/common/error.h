@@ -11,7 +11,6 @@ enum class ExitCode : int {
     bad_input = 2,       ///< bad input or usage
     deadlock = 3,        ///< the simulation starved or made no progress
     resource_limit = 4,  ///< a stated resource limit was reached
-    fault_missed = 5,    ///< a fault was injected and no check noticed it
 };
 
 /// Bad input or usage. The message names file, line or key, the value, the limit and what to do.

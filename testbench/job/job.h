@@ -18,23 +18,6 @@ enum class Culling { none, back };
 enum class SummedHeightUnit { sum, area };
 enum class Overflow { spill, stall, error };
 enum class Mode { functional, timed };
-/// What a fault does to one transaction: testbench/prove/faults/FAULT_COVERAGE.md.
-enum class FaultKind {
-    none,
-    bit_flip,
-    dropped,
-    doubled,
-    reordered,
-    back_pressure_ignored,
-    request_before_end,
-    end_request_doubled,
-    address_flip,
-    error_response,
-    response_lost,
-    response_doubled,
-    response_early,
-    response_reordered,
-};
 
 /// Whether a mesh of this source is what mesh.file names.
 constexpr bool reads_file(MeshSource source) {
@@ -162,13 +145,6 @@ struct Job {
         bool work = true;              // no triangle is lost, doubled or altered on its way
         bool reads = false;            // every table read against what the memory holds
     } check;
-
-    struct Fault {  // for tests of the checks themselves
-        FaultKind kind = FaultKind::none;
-        std::string place;             // the output or port of a unit, such as displace_vertex.to_transform
-        std::int64_t transaction = 1;  // of those at the place, or of those held back there
-        std::int64_t bit = 0;          // of the payload
-    } fault;
 
     struct Limits {
         std::int64_t cycles_without_progress = 1000000;  // timed mode; more ends the run with exit code 3

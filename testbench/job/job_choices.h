@@ -119,40 +119,6 @@ constexpr std::string_view name_of(Mode value) {
     return {};
 }
 
-constexpr std::string_view name_of(FaultKind value) {
-    switch (value) {
-        case FaultKind::none:
-            return "none";
-        case FaultKind::bit_flip:
-            return "bit_flip";
-        case FaultKind::dropped:
-            return "dropped";
-        case FaultKind::doubled:
-            return "doubled";
-        case FaultKind::reordered:
-            return "reordered";
-        case FaultKind::back_pressure_ignored:
-            return "back_pressure_ignored";
-        case FaultKind::request_before_end:
-            return "request_before_end";
-        case FaultKind::end_request_doubled:
-            return "end_request_doubled";
-        case FaultKind::address_flip:
-            return "address_flip";
-        case FaultKind::error_response:
-            return "error_response";
-        case FaultKind::response_lost:
-            return "response_lost";
-        case FaultKind::response_doubled:
-            return "response_doubled";
-        case FaultKind::response_early:
-            return "response_early";
-        case FaultKind::response_reordered:
-            return "response_reordered";
-    }
-    return {};
-}
-
 /// All names of an enumeration, in the enumerators' order; enumerators count from 0 without gaps.
 template <typename Enum>
 std::vector<std::string_view> names_of() {

@@ -413,13 +413,6 @@ std::vector<KeyTable> declare_keys() {
         key.add("work", &Check::work, "No triangle is lost, doubled or altered on its way through the machine, and what goes into a unit comes out of another");
         key.add("reads", &Check::reads, "Every table read against what the memory holds; in functional mode reads then go by transaction, which is slow");
     });
-    list.table("fault", &Job::fault, "For tests of tessera's own checks: one transaction is broken on purpose, and the run says which checks detect it (testbench/prove/faults/FAULT_COVERAGE.md).", [](const auto& key) {
-        using Fault = Job::Fault;
-        key.add("kind", &Fault::kind, "What is done to the transaction; none: nothing is in the way of any");
-        key.add("place", &Fault::place, KeyKind::text, "Where: an output or a memory port of a unit, such as displace_vertex.to_transform; a wrong name is answered with all that there are");
-        key.add("transaction", &Fault::transaction, "transactions", between(1, any_count), "Which one, of all at that place; with back_pressure_ignored, request_before_end and response_early of those that were held back");
-        key.add("bit", &Fault::bit, "bits", between(0, 100000), "Which bit, with bit_flip of the payload and with address_flip of the address");
-    });
     list.table("limits", &Job::limits, "Where a run gives up.", [](const auto& key) {
         using Limits = Job::Limits;
         key.add("cycles_without_progress", &Limits::cycles_without_progress, "cycles", between(1, any_count), "Timed mode: cycles in which units were at work and no triangle was decided or lit; more end the run with exit code 3");

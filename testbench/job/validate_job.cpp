@@ -211,40 +211,6 @@ void check_traces(const Job& job, Faults& faults) {
                   output.trace_from, output.trace_to);
 }
 
-void check_fault(const Job& job, Faults& faults) {
-    const Job::Fault& fault = job.fault;
-    faults.unless(fault.kind == FaultKind::none || !fault.place.empty(),
-                  "`fault.place` is empty, but `fault.kind` = \"{}\": say where, such as "
-                  "\"displace_vertex.to_transform\"",
-                  name_of(fault.kind));
-    faults.unless(
-        fault.kind != FaultKind::none || fault.place.empty(),
-        "`fault.place` = {}, but `fault.kind` = \"none\": say what happens there, such as \"dropped\", or "
-        "set fault.place = \"\"",
-        printable(toml_string(fault.place)));
-    // A run with a fault leaves neither frames nor traces: nobody is to take them for results.
-    faults.unless(
-        fault.kind == FaultKind::none || job.frames.count == 1,
-        "`fault.kind` = \"{}\", but `frames.count` = {}: a fault is put into one run: set frames.count = 1, "
-        "and displacement.scale to the frame's, or fault.kind = \"none\"",
-        name_of(fault.kind), job.frames.count);
-    const bool traced = job.output.vcd || job.output.timeline;
-    faults.unless(
-        fault.kind == FaultKind::none || !traced,
-        "`fault.kind` = \"{}\", but `output.{}` = true: a run with a fault leaves no traces: set it to "
-        "false, or fault.kind = \"none\"",
-        name_of(fault.kind), job.output.vcd ? "vcd" : "timeline");
-    const bool without_cycles = fault.kind == FaultKind::none || fault.kind == FaultKind::bit_flip ||
-                                fault.kind == FaultKind::dropped || fault.kind == FaultKind::doubled ||
-                                fault.kind == FaultKind::reordered || fault.kind == FaultKind::address_flip ||
-                                fault.kind == FaultKind::error_response ||
-                                fault.kind == FaultKind::response_lost;
-    faults.unless(
-        without_cycles || job.mode == Mode::timed,
-        "`fault.kind` = \"{}\" breaks the handshake, which only timed mode has: set mode = \"timed\"",
-        name_of(fault.kind));
-}
-
 }  // namespace
 
 void validate(const Job& job) {
@@ -260,7 +226,6 @@ void validate(const Job& job) {
     check_light(job.hardware, faults);
     check_hardware(job.hardware, faults);
     check_traces(job, faults);
-    check_fault(job, faults);
     faults.raise();
 }
 

@@ -65,12 +65,6 @@ void require_numbers(const fs::path& folder, const Job& job) {
 
 RecordedMesh read_mesh(const fs::path& folder, const Job& job) {
     const fs::path mesh_file = folder / "mesh.ply";
-    if (!is_there(mesh_file) && job.fault.kind != FaultKind::none)
-        throw InputError(
-            fmt::format("{}: the run left no mesh: its job.toml has fault.kind = \"{}\", and a run with a "
-                        "fault leaves none; "
-                        "run it again with --set fault.kind=none --set fault.place=",
-                        mesh_file.string(), name_of(job.fault.kind)));
     if (!is_there(mesh_file))
         throw InputError(fmt::format(
             "{}: the run left no mesh: {}", mesh_file.string(),

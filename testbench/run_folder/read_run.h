@@ -17,8 +17,8 @@ struct RecordedRun {
 /// job's mesh and map files are looked for, not read (inputs.h does that).
 ///
 /// Errors: InputError with file and what to do: no such folder, no job.toml (not a run's folder), a folder of frames, a
-/// job that is not valid, mesh or map no longer where the job says, no mesh.ply (the run had a fault, wrote none,
-/// output.ply = false, or got stuck), a mesh.ply that is not one (ply_reader.h).
+/// job that is not valid, mesh or map no longer where the job says, no mesh.ply (output.ply =
+/// false, or the run got stuck), a mesh.ply that is not one (ply_reader.h).
 RecordedRun read_run(const std::filesystem::path& folder, const std::filesystem::path& data_folder);
 
 /// The same for the mesh alone: what the run itself was made from need not be there any more.

@@ -179,19 +179,8 @@ Json conformance_part(const ConformanceResult& result, double allowed_flips) {
 
 }  // namespace
 
-std::string fault_text(const FaultReport& fault) {
-    std::string text = fmt::format("  fault injected: {}\n", fault.injected);
-    for (const Caught& caught : fault.caught)
-        text += fmt::format("  caught by: {}: {}\n", caught.by, caught.evidence);
-    if (fault.caught.empty())
-        text += "  caught by: NOBODY: it went undetected (masked, or a check is missing)\n";
-    return text;
-}
-
 std::string conformance_text(const Checks& checks) {
     std::string text = fmt::format("Conformance report: {}\n\n", verdict(checks.passed()));
-    if (checks.fault)
-        text += fault_text(*checks.fault) + "\n";
     text += checks.setup ? setup_text(*checks.setup) + "\n"
                          : "Set-up: not checked (check.golden and check.end_to_end = false).\n\n";
     if (checks.conformance)
@@ -264,11 +253,6 @@ std::string conformance_json(const Checks& checks) {
                          {"entries", checks.reads->entries},
                          {"wrong", checks.reads->wrong},
                          {"first_wrong", checks.reads->first_wrong}};
-    if (checks.fault) {
-        json["fault"] = {{"injected", checks.fault->injected}, {"caught", Json::array()}};
-        for (const Caught& caught : checks.fault->caught)
-            json["fault"]["caught"].push_back({{"by", caught.by}, {"evidence", caught.evidence}});
-    }
     return json.dump(2) + "\n";
 }
 

@@ -9,7 +9,6 @@
 #include "testbench/check/mesh/invariants.h"
 #include "testbench/check/transport/read_check.h"
 #include "testbench/check/transport/transport_check.h"
-#include "testbench/prove/faults/fault_report.h"
 
 namespace tessera {
 
@@ -21,15 +20,12 @@ struct Checks {
     std::optional<InvariantResult> invariants;
     std::optional<WorkResult> work;
     std::optional<ReadResult> reads;
-    std::optional<FaultReport> fault;  ///< one was injected
     double allowed_flips = 0.5;        ///< percent of edges
     std::vector<std::string> remarks;  ///< what was mended or is odd in mesh and map; one sentence each
     std::string texel_borders;         ///< a warning, see texel_borders.h; empty: none
 
-    /// A run with a fault never passes.
     bool passed() const {
-        return !fault && (!setup || setup->passed()) &&
-               (!conformance || conformance->passed(allowed_flips)) &&
+        return (!setup || setup->passed()) && (!conformance || conformance->passed(allowed_flips)) &&
                (!end_to_end || end_to_end->passed()) && (!invariants || invariants->passed()) &&
                (!work || work->passed()) && (!reads || reads->passed());
     }
@@ -37,9 +33,6 @@ struct Checks {
 
 /// The conformance report of a run, to be read.
 std::string conformance_text(const Checks& checks);
-
-/// "fault injected: ..." and who caught it, a line each.
-std::string fault_text(const FaultReport& fault);
 
 /// The same for programs.
 std::string conformance_json(const Checks& checks);

@@ -15,21 +15,15 @@ unsigned MemoryFault::transport_dbg(MemoryRequest& request) {
 }
 
 void MemoryFault::flip_data(const MemoryRequest& request) {
-    if (trigger_.bit() >= std::uint64_t{8} * request.bytes()) {
-        trigger_.has_no_such_bit();
-        return;
-    }
-    unsigned char& byte = request.data[trigger_.bit() / 8];
-    byte = static_cast<unsigned char>(byte ^ 1u << trigger_.bit() % 8);
+    const std::uint64_t bit = trigger_.fault().bit;
+    trigger_.require_bit(bit < std::uint64_t{8} * request.bytes());
+    unsigned char& byte = request.data[bit / 8];
+    byte = static_cast<unsigned char>(byte ^ 1u << bit % 8);
 }
 
 void MemoryFault::flip_address(MemoryRequest& request) {
-    if (trigger_.bit() >= 64) {
-        trigger_.has_no_such_bit();
-        return;
-    }
-    const std::uint64_t flip = std::uint64_t{1} << trigger_.bit();
-    request.address[0] ^= flip;
+    trigger_.require_bit(trigger_.fault().bit < 64);
+    request.address[0] ^= std::uint64_t{1} << trigger_.fault().bit;
 }
 
 void MemoryFault::b_transport(MemoryRequest& request, sc_core::sc_time& delay) {
@@ -50,14 +44,10 @@ void MemoryFault::b_transport(MemoryRequest& request, sc_core::sc_time& delay) {
         request.response = tlm::TLM_INCOMPLETE_RESPONSE;
 }
 
-/// Kinds that need a request which the memory does not take at once.
-bool MemoryFault::strikes_held_back() const {
-    return trigger_.kind() == FaultKind::request_before_end || trigger_.kind() == FaultKind::response_early;
-}
-
 tlm::tlm_sync_enum MemoryFault::nb_transport_fw(MemoryRequest& request, tlm::tlm_phase& phase,
                                                 sc_core::sc_time& delay) {
-    bool now = !strikes_held_back() && trigger_.strikes();
+    const bool when_held_back = strikes_held_back(trigger_.kind());
+    bool now = !when_held_back && trigger_.strikes();
     if (now) {
         struck_ = &request;
         if (trigger_.kind() == FaultKind::dropped) {
@@ -70,7 +60,7 @@ tlm::tlm_sync_enum MemoryFault::nb_transport_fw(MemoryRequest& request, tlm::tlm
             flip_data(request);
     }
     const tlm::tlm_sync_enum status = to_memory->nb_transport_fw(request, phase, delay);
-    if (strikes_held_back() && status == tlm::TLM_ACCEPTED)
+    if (when_held_back && status == tlm::TLM_ACCEPTED)
         now = trigger_.strikes();
     if (!now)
         return status;
@@ -117,7 +107,7 @@ tlm::tlm_sync_enum MemoryFault::answer(MemoryRequest& request, tlm::tlm_phase& p
         if (held_ != nullptr) {
             send_back(*held_, tlm::BEGIN_RESP);
             held_ = nullptr;
-            trigger_.waits_for_next(false);
+            trigger_.wait_for_next(false);
         }
         return status;
     }
@@ -127,7 +117,7 @@ tlm::tlm_sync_enum MemoryFault::answer(MemoryRequest& request, tlm::tlm_phase& p
             return tlm::TLM_COMPLETED;
         case FaultKind::response_reordered:
             held_ = &request;
-            trigger_.waits_for_next(true);
+            trigger_.wait_for_next(true);
             return tlm::TLM_COMPLETED;
         case FaultKind::error_response:
             request.response = tlm::TLM_GENERIC_ERROR_RESPONSE;

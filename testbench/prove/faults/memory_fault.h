@@ -6,7 +6,7 @@
 #include <tlm>
 
 #include "modules/sockets/memory_request.h"
-#include "testbench/prove/faults/fault_trigger.h"
+#include "testbench/prove/faults/fault.h"
 
 namespace tessera {
 
@@ -23,7 +23,7 @@ namespace tessera {
 ///   response_lost        the answer does not come
 ///   response_doubled     it comes twice
 ///   response_early       it comes while END_REQ is withheld
-///   response_reordered   the next request's comes first; the last of a run has none (judge_fault)
+///   response_reordered   the next request's comes first; the last of a run has none
 class MemoryFault : public sc_core::sc_module {
   public:
     tlm_utils::passthrough_target_socket<MemoryFault, 32, MemoryProtocol> socket{"socket"};
@@ -43,7 +43,6 @@ class MemoryFault : public sc_core::sc_module {
     tlm::tlm_sync_enum send_back(MemoryRequest& request, const tlm::tlm_phase& phase);
     void flip_data(const MemoryRequest& request);
     void flip_address(MemoryRequest& request);
-    bool strikes_held_back() const;
 
     FaultTrigger& trigger_;
     const MemoryRequest* struck_ = nullptr;  // its answer is still to be broken

@@ -7,7 +7,7 @@
 
 #include "modules/datapath/format.h"
 #include "modules/sockets/stream_input.h"
-#include "testbench/prove/faults/fault_trigger.h"
+#include "testbench/prove/faults/fault.h"
 #include "testbench/prove/faults/flip_bit.h"
 
 namespace tessera {
@@ -18,7 +18,7 @@ namespace tessera {
 ///   bit_flip               the consumer gets a copy with a bit flipped
 ///   dropped                END_REQ to the producer, nothing to the consumer
 ///   doubled                the consumer gets it twice, by the rules; the producer waits for both
-///   reordered              the next one goes first; the last of a run has none (judge_fault)
+///   reordered              the next one goes first; the last of a run has none
 ///   back_pressure_ignored  as dropped, when the consumer has no room: it is overwritten
 ///   request_before_end     a second BEGIN_REQ while the consumer withholds END_REQ
 ///   end_request_doubled    the producer gets END_REQ twice
@@ -84,21 +84,20 @@ class StreamFault : public sc_core::sc_module {
         if (held_) {
             copies_ = {payload, *held_};
             held_.reset();
-            trigger_.waits_for_next(false);
+            trigger_.wait_for_next(false);
             return;
         }
         copies_ = {payload};
         switch (trigger_.kind()) {
             case FaultKind::bit_flip:
-                if (!flip_bit(copies_.front(), formats_, tag_bits_, trigger_.bit()))
-                    trigger_.has_no_such_bit();
+                trigger_.require_bit(flip_bit(copies_.front(), formats_, tag_bits_, trigger_.fault().bit));
                 break;
             case FaultKind::doubled:
                 copies_.push_back(payload);
                 break;
             case FaultKind::reordered:
                 held_ = payload;
-                trigger_.waits_for_next(true);
+                trigger_.wait_for_next(true);
                 copies_.clear();
                 break;
             default:

@@ -182,7 +182,24 @@ TEST_CASE("checks and files that are switched off are left out") {
     CHECK(run.files().size() == 7);
     CHECK_FALSE(run.conformance.contains("conformance"));
     CHECK_FALSE(run.conformance.contains("invariants"));
-    CHECK_THAT(attempt.end.out, !Contains("all checks passed"));
+    CHECK_THAT(attempt.end.out, Contains("nothing was checked"));
+}
+
+TEST_CASE("read checks compare every table read, and change nothing") {
+    for (const char* const mode : {"mode=functional", "mode=timed"}) {
+        const std::vector<std::string> settings{mode, "check.golden=false", "check.end_to_end=false",
+                                                "check.invariants=false", "check.work=false"};
+        std::vector<std::string> with_reads = settings;
+        with_reads.emplace_back("check.reads=true");
+        const Attempt plain(settings), checked(with_reads);
+        CHECK_THAT(checked.end.out, Contains("all checks passed"));
+        const RunFolder run = checked.well();
+        CHECK(run.conformance["reads"]["wrong"] == 0);
+        CHECK(run.conformance["reads"]["entries"] == run.count("displacement_map", "reads") +
+                                                         run.count("normal_map", "reads") +
+                                                         run.count("summed_height_table", "reads"));
+        CHECK(run.files().at("mesh.ply") == plain.well().files().at("mesh.ply"));
+    }
 }
 
 TEST_CASE("a check that fails is exit code 1, and the results are there") {
@@ -192,5 +209,9 @@ TEST_CASE("a check that fails is exit code 1, and the results are there") {
     CHECK_THAT(attempt.end.out, Contains("more than the 0 % that check.allowed_flips allows"));
     CHECK_THAT(attempt.end.out, Contains("CHECKS FAILED, see conformance.txt"));
     CHECK_THAT(attempt.end.out, Contains("results in "));
-    CHECK(RunFolder(attempt.here.path() / "out").conformance["passed"] == false);
+    const RunFolder run(attempt.here.path() / "out");
+    CHECK(run.conformance["passed"] == false);
+    const std::map<std::string, std::string> files = run.files();
+    CHECK_THAT(files.at("conformance.txt"), Catch::StartsWith("Conformance report: FAILED\n"));
+    CHECK(run.read_ply().faces == finished(run));
 }

@@ -121,6 +121,8 @@ TEST_CASE("mistyped names are reported with place and suggestion") {
     CHECK_THAT(parse_error_of("camera = {eye = [1, 2, 3]}\n"), Equals(""));
     CHECK_THAT(parse_error_of("\"\" = 1\n"), Contains("unknown key `\"\"`"));
     CHECK_THAT(parse_error_of("folder = \"x\"\n"), Contains("unknown key `folder`"));
+    CHECK_THAT(parse_error_of("[mesh]\n\n[fault]\nkind = \"none\"\n"),
+               StartsWith("job.toml:3:1: unknown table `fault`"));
     CHECK(nearest_name("mesh.file", {"mesh.file"}) == "mesh.file");
     CHECK(nearest_name(std::string(100000, 'a'), {"mesh.file"}).empty());
 }
@@ -231,14 +233,6 @@ TEST_CASE("keys that contradict each other") {
                Contains("wanted are 16 hexadecimal digits"));
     CHECK_THAT(error_with({"map.source=file", "map.file=a.exr", "map.fingerprint=0123456789abcdef"}),
                Equals(""));
-
-    const std::string fault = "fault.kind=dropped", place = "fault.place=host.to_get_triangle";
-    CHECK_THAT(error_with({fault, place}), Equals(""));
-    CHECK_THAT(error_with({fault}), Contains("`fault.place` is empty"));
-    CHECK_THAT(error_with({place}), Contains("but `fault.kind` = \"none\""));
-    CHECK_THAT(error_with({fault, place, "frames.count=2"}), Contains("`frames.count` = 2"));
-    CHECK_THAT(error_with({fault, place, "output.vcd=true"}), Contains("`output.vcd` = true"));
-    CHECK_THAT(error_with({fault, place, "output.timeline=true"}), Contains("`output.timeline` = true"));
 
     Job out_of_range;  // made in code, past the checks of reading
     out_of_range.tests.normal_threshold = -1;

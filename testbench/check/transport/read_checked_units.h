@@ -1,0 +1,28 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "modules/unit_factory.h"
+#include "testbench/check/transport/read_check.h"
+
+namespace tessera {
+
+/// A machine with a read check before each table. Must be declared before the machine: the checks are modules within
+/// it, and are destroyed after it.
+class ReadCheckedUnits : public UnitFactory {
+  public:
+    using UnitFactory::join;
+    void join(MemoryPort& port, TableMemory& memory) override;
+
+    /// Over all tables.
+    ReadResult result() const;
+
+  protected:
+    /// Binds the port to a read check, whose to_memory is still to be bound.
+    ReadCheck& check(MemoryPort& port, TableMemory& memory);
+
+  private:
+    std::vector<std::unique_ptr<ReadCheck>> checks_;
+};
+
+}  // namespace tessera
