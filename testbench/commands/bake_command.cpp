@@ -112,12 +112,11 @@ ExitCode bake_command(const BakeRequest& request, const fs::path& data_folder) {
         job, folder,
         fmt::format("What `tessera bake` made of {}.", printable(request.surface.filename().string())));
 
-    OutputFolder output(folder, "--output");
     AtomicSet files;
+    files.make_folder(folder);
     write_file(request.output, file.bytes);
     write_file(job_file, job_text);
     files.commit();
-    output.keep();
     fmt::print("{}  {} and {}: tessera run {}\n", summary(map, file),
                request.output.lexically_normal().string(), job_file.filename().string(),
                job_file.lexically_normal().string());

@@ -43,27 +43,4 @@ void check_output_folder(const fs::path& folder, const std::string& key) {
         refuse(key, folder, fmt::format("{}: {}", there.string(), std::generic_category().message(errno)));
 }
 
-OutputFolder::OutputFolder(const fs::path& folder, const std::string& key) {
-    for (fs::path path = plain(folder); !is_there(path) && path.has_relative_path();
-         path = path.parent_path())
-        made_.push_back(path);
-    for (const fs::path& path : made_)
-        looked_after_.emplace_back(path);
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (!error)
-        return;
-    for (const fs::path& path : made_) {
-        std::error_code ignored;
-        fs::remove(path, ignored);  // there is no object yet to do so
-    }
-    refuse(key, folder, error.message());
-}
-
-OutputFolder::~OutputFolder() {
-    std::error_code ignored;
-    for (const fs::path& path : made_)
-        fs::remove(path, ignored);
-}
-
 }  // namespace tessera

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
 #include <system_error>
 #include <utility>
 
@@ -45,18 +44,12 @@ std::int64_t Progress::tens() const {
     return (display_.now() - display_.begin) / between_lines;
 }
 
-/// Signals are the main thread's: there an Interruption can hold them back.
 void Progress::begin_to_say() {
-    sigset_t all;
-    sigset_t before;
-    ::sigfillset(&all);
-    ::pthread_sigmask(SIG_SETMASK, &all, &before);
     try {
         speaker_ = std::thread([this] { say_until_stopped(); });
     } catch (const std::system_error&) {
         // No thread is to be had: show() says what it can.
     }
-    ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
 /// A log that cannot be written ends no run; fmt::print would throw, in the speaker's thread and in the destructor.

@@ -160,12 +160,11 @@ ExitCode render_command(const RenderRequest& asked, const fs::path& data_folder)
     }
     progress.show("rendering", 0);
     const std::vector<Picture> pictures = draw(request, mesh, camera);
-    OutputFolder folder(output.folder, "--output");
     AtomicSet files;
+    files.make_folder(output.folder);
     for (std::size_t i = 0; i < pictures.size(); ++i)
         write(output.path_of(request.views[i]), pictures[i], output.exr);
     files.commit();
-    folder.keep();
     progress.clear();
 
     for (std::size_t i = 0; i < pictures.size(); ++i)

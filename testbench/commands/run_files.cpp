@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "testbench/commands/render_command.h"
-#include "testbench/common/atomic_file.h"
 #include "testbench/common/error.h"
 #include "testbench/job/dump_job.h"
 #include "testbench/job/frame_job.h"
@@ -92,7 +91,7 @@ void take_away_run(const fs::path& folder, AtomicSet& files) {
         take_away_plain(folder / name, files);
 }
 
-std::vector<fs::path> take_away_frames(const fs::path& folder, AtomicSet& files) {
+void take_away_frames(const fs::path& folder, AtomicSet& files) {
     std::error_code failed;
     std::vector<fs::path> frames;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
@@ -101,21 +100,15 @@ std::vector<fs::path> take_away_frames(const fs::path& folder, AtomicSet& files)
             frames.push_back(frame);
     }
     for (const fs::path& frame : frames) {
-        remove_left_overs(frame);
         take_away_run(frame, files);
+        files.take_away_folder(frame);
     }
-    return frames;
 }
 
 void replace_run(const fs::path& folder, AtomicSet& files) {
-    const Interruption::Delay delay;
     take_away_run(folder, files);
-    const std::vector<fs::path> frames = take_away_frames(folder, files);
+    take_away_frames(folder, files);
     files.commit();
-    std::error_code holds_more;
-    for (const fs::path& frame : frames)
-        fs::remove(frame, holds_more);
-    Interruption::note("when the results were complete");
 }
 
 void require_run_folder(const Job& job) {

@@ -166,12 +166,11 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
             0.6 * static_cast<double>(simulation.host.sent()) / static_cast<double>(simulation.host.total()));
     });
 
-    std::optional<OutputFolder> output;
     AtomicSet files;
     std::optional<Traces> traces;
     if (Traces::wanted(job)) {
         const std::vector<const Unit*> units = units_to_trace(job.output.trace_units, simulation.pipeline);
-        output.emplace(folder);
+        files.make_folder(folder);
         traces.emplace(job, folder, simulation, units);
     }
 
@@ -185,7 +184,6 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
         if (traces) {
             write_file(folder / "job.toml", dump_job(job, folder));
             replace_run(replaced, files);
-            output->keep();
             fmt::print(stderr, "{}  in {}\n", traces_text,
                        std::filesystem::absolute(folder).lexically_normal().string());
         }
@@ -225,12 +223,10 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
             judged ? job.check.allowed_triangles : std::numeric_limits<double>::infinity(),
             [&](double part) { progress.show("golden model's own run and distances", 0.65 + 0.2 * part); });
     }
-    if (!output)
-        output.emplace(folder);
+    files.make_folder(folder);
     const MeshCounts counts = count_mesh(mesh);
     write_run_folder(folder, job, setup, simulation, counts, checks, progress);
     replace_run(replaced, files);
-    output->keep();
     progress.clear();
 
     return {checks.passed() ? ExitCode::fine : ExitCode::check_failed,

@@ -21,17 +21,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where the two files go, and the folder that is made for them, if any.
+/// Where the two files go.
 struct Output {
     fs::path folder, csv, json;
-    bool own_folder = false;
 };
 
 Output output_of(const WidthsOrder& order) {
     const fs::path wanted = order.output;
     Output output;
-    output.own_folder = wanted.extension() != ".csv";
-    if (output.own_folder) {
+    if (wanted.extension() != ".csv") {
         output.folder = wanted;
         output.csv = wanted / "widths.csv";
         output.json = wanted / "widths.json";
@@ -146,9 +144,8 @@ ExitCode widths_command(const WidthsOrder& order, const fs::path& data_folder) {
         request, mesh, map, [&](const std::string& what, double part) { progress.show(what, part); });
     progress.clear();
 
-    if (output.own_folder)
-        OutputFolder(output.folder, "--output").keep();
     AtomicSet files;
+    files.make_folder(output.folder);
     write_file(output.csv, widths_csv(sweep));
     write_file(output.json, widths_json(request, sweep));
     files.commit();

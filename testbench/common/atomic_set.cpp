@@ -2,15 +2,16 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <cerrno>
-#include <set>
-#include <string>
+#include <csignal>
+#include <regex>
 #include <system_error>
-#include <vector>
 
 #include "testbench/common/error.h"
 
@@ -21,6 +22,23 @@ namespace fs = std::filesystem;
 
 AtomicSet* living = nullptr;
 
+/// Whether the process that made a staging folder of this name has ended.
+bool is_left_over(const std::string& name) {
+    static const std::regex ours("\\.tessera-([0-9]{1,9})-[0-9]+\\.part");
+    std::smatch parts;
+    return std::regex_match(name, parts, ours) && ::kill(std::stoi(parts[1]), 0) != 0 && errno == ESRCH;
+}
+
+void remove_left_overs(const fs::path& folder) {
+    std::error_code failed;
+    std::vector<fs::path> left;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed))
+        if (is_left_over(entry.path().filename().string()) && fs::is_directory(entry.symlink_status(failed)))
+            left.push_back(entry.path());
+    for (const fs::path& staging : left)
+        fs::remove_all(staging, failed);
+}
+
 /// So that the names outlive a power cut too; file systems that cannot do this keep the files all the same.
 void synchronise(const fs::path& folder) {
     const int handle = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -30,141 +48,180 @@ void synchronise(const fs::path& folder) {
     ::close(handle);
 }
 
-/// Steps that are taken back, last first, unless all of them succeed.
-class Steps {
+/// Renames that can be taken back. False, with errno: one failed.
+class Moves {
   public:
-    Steps() = default;
-    Steps(const Steps&) = delete;
-    Steps& operator=(const Steps&) = delete;
-    ~Steps() {
-        for (const fs::path& file : kept_)
-            ::unlink(file.c_str());
+    bool put_aside(const fs::path& file, const fs::path& aside) {
+        return !aside.empty() &&
+               (move(file, aside, {aside, file}) || errno == ENOENT);  // another run took it
     }
 
-    /// `from` becomes `to`, of which a copy is kept if there is one.
-    void replace(const fs::path& from, const fs::path& to) {
-        fs::path copy = other_name(to);
-        bool copied = ::link(to.c_str(), copy.c_str()) == 0;
-        while (!copied && errno == EEXIST) {  // an earlier process of this number left it
-            copy = other_name(to);
-            copied = ::link(to.c_str(), copy.c_str()) == 0;
-        }
-        if (copied)
-            kept_.push_back(copy);
-        else if (errno != ENOENT && errno != EPERM && errno != EOPNOTSUPP)  // nothing there; no links here
-            fail(to, errno);
-        rename(from, to, to);
-        if (copied)
-            done_.back().copy = copy;
-    }
-
-    void put_aside(const fs::path& file) {
-        const fs::path aside = other_name(file);
-        rename(file, aside, file);
-        kept_.push_back(aside);
-    }
-
-  private:
-    struct Step {
-        fs::path from, to, copy;
-    };
-
-    static fs::path other_name(const fs::path& file) {
-        static unsigned number = 0;
-        return fs::path(file).replace_filename(fmt::format(".tessera-{}-{}.old", ::getpid(), number++));
-    }
-
-    void rename(const fs::path& from, const fs::path& to, const fs::path& known_as) {
-        if (::rename(from.c_str(), to.c_str()) != 0)
-            fail(known_as, errno);
-        done_.push_back({from, to, {}});
-    }
-
-    [[noreturn]] void fail(const fs::path& file, int error) {
-        throw InputError(
-            fmt::format("{}: cannot be replaced: {}; {}: make it and its folder writable, or write "
-                        "to another folder",
-                        file.string(), std::generic_category().message(error),
-                        take_back() ? "all is as it was" : "not all could be put back as it was"));
+    /// What stands at `to` is kept as `aside`.
+    bool replace(const fs::path& from, const fs::path& to, const fs::path& aside) {
+        const bool kept = ::link(to.c_str(), aside.c_str()) == 0;
+        if (!kept && errno != ENOENT && errno != EPERM &&
+            errno != EOPNOTSUPP)  // nothing there; no links here
+            return false;
+        return move(from, to, kept ? Move{aside, to} : Move{to, from});
     }
 
     bool take_back() {
         bool all = true;
-        for (auto step = done_.rbegin(); step != done_.rend(); ++step) {
-            all = ::rename(step->to.c_str(), step->from.c_str()) == 0 && all;
-            if (!step->copy.empty())
-                all = ::rename(step->copy.c_str(), step->to.c_str()) == 0 && all;
-        }
-        if (!all)
-            kept_.clear();  // what could not be put back is not to be lost
+        for (auto move = back_.rbegin(); move != back_.rend(); ++move)
+            all = ::rename(move->from.c_str(), move->to.c_str()) == 0 && all;
         return all;
     }
 
-    std::vector<Step> done_;
-    std::vector<fs::path> kept_;
+  private:
+    struct Move {
+        fs::path from, to;
+    };
+    bool move(const fs::path& from, const fs::path& to, const Move& back) {
+        if (::rename(from.c_str(), to.c_str()) != 0)
+            return false;
+        back_.push_back(back);
+        return true;
+    }
+    std::vector<Move> back_;
 };
 
 bool is_job(const fs::path& file) {
     return file.filename() == "job.toml";
 }
 
-fs::path folder_of(const fs::path& file) {
-    return file.has_parent_path() ? file.parent_path() : fs::path(".");
-}
-
 }  // namespace
 
-AtomicSet::AtomicSet() {
-    assert(living == nullptr);
-    living = this;
+void throw_file_error(const fs::path& path, const char* what, int error) {
+    const std::string message =
+        fmt::format("{}: {}: {}", path.string(), what, std::generic_category().message(error));
+    for (const int shortage : {ENOSPC, EDQUOT, EFBIG, EIO, ENOMEM, EMFILE, ENFILE})
+        if (error == shortage)
+            throw ResourceError(message);
+    throw InputError(message);
+}
+
+AtomicSet::AtomicSet(bool is_current) {
+    assert(!is_current || living == nullptr);
+    if (is_current)
+        living = this;
 }
 
 AtomicSet::~AtomicSet() {
-    living = nullptr;
-    for (const File& file : files_)
-        ::unlink(file.from.c_str());
+    if (living == this)
+        living = nullptr;
+    const Interruption::Delay delay;
+    discard();
 }
 
 AtomicSet* AtomicSet::current() {
     return living;
 }
 
-fs::path AtomicSet::waiting(const fs::path& path) const {
-    const auto file =
-        std::find_if(files_.begin(), files_.end(), [&](const File& each) { return each.to == path; });
-    return file == files_.end() ? path : file->from;
+void AtomicSet::discard() {
+    std::error_code ignored;
+    for (const auto& each : staging_)
+        fs::remove_all(each.second, ignored);
+    for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder)
+        fs::remove(*folder, ignored);  // unless it holds more
+    staging_.clear();
+    made_.clear();
 }
 
-void AtomicSet::add(const fs::path& from, const fs::path& to) {
-    files_.push_back({from, to, std::make_unique<Unfinished>(from)});
+void AtomicSet::make_folder(const fs::path& folder) {
+    const Interruption::Delay delay;
+    std::vector<fs::path> missing;
+    std::error_code absent;
+    for (fs::path path = fs::absolute(folder); !fs::exists(fs::symlink_status(path, absent));
+         path = path.parent_path())
+        missing.push_back(path);
+    for (auto path = missing.rbegin(); path != missing.rend(); ++path)
+        if (::mkdir(path->c_str(), 0777) == 0)
+            made_.push_back(*path);
+        else if (errno != EEXIST)
+            throw_file_error(folder, "cannot be made", errno);
+}
+
+/// Where the new or the old file of this path lies in the staging folder, which is made if need be. Empty, with errno:
+/// it cannot be.
+fs::path AtomicSet::in_staging(const char* what, const fs::path& path) {
+    static std::atomic<unsigned> number{0};
+    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    if (staging_.count(folder) == 0) {
+        remove_left_overs(folder);
+        fs::path staging;
+        bool made = false;
+        do {
+            staging = folder / fmt::format(".tessera-{}-{}.part", ::getpid(), number++);
+            made = ::mkdir(staging.c_str(), 0777) == 0;
+        } while (!made && errno == EEXIST);  // left by a process that had this number
+        if (!made)
+            return {};
+        staging_[folder] = staging;
+    }
+    return staging_[folder] / (what + path.filename().string());
+}
+
+fs::path AtomicSet::staged(const fs::path& path) {
+    const Interruption::Delay delay;
+    return in_staging("new-", path);
+}
+
+int AtomicSet::open(const fs::path& path) {
+    const Interruption::Delay delay;
+    const fs::path staged = in_staging("new-", path);
+    const int file =
+        staged.empty() ? -1 : ::open(staged.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (file < 0)
+        throw_file_error(path, "cannot write", errno);
+    return file;
+}
+
+void AtomicSet::add(const fs::path& path) {
+    files_.push_back(path);
 }
 
 void AtomicSet::take_away(const fs::path& file) {
-    taken_away_.insert(file);
+    taken_away_.push_back(file);
+}
+
+void AtomicSet::take_away_folder(const fs::path& folder) {
+    taken_away_folders_.push_back(folder);
 }
 
 void AtomicSet::commit() {
     const Interruption::Delay delay;
-    std::set<fs::path> folders;
-    {
-        Steps steps;
-        for (const bool job : {false, true})
-            for (const fs::path& file : taken_away_)
-                if (is_job(file) == job)
-                    steps.put_aside(file);
-        for (const bool job : {true, false})
-            for (const File& file : files_)
-                if (is_job(file.to) == job)
-                    steps.replace(file.from, file.to);
+    Moves moves;
+    const auto require = [&](bool moved, const fs::path& file) {
+        if (moved)
+            return;
+        const int error = errno;
+        const bool all = moves.take_back();
+        if (!all)
+            staging_.clear();  // what could not be put back is not to be lost
+        throw InputError(
+            fmt::format("{}: cannot be replaced: {}; {}: make it and its folder writable, or write to "
+                        "another folder",
+                        file.string(), std::generic_category().message(error),
+                        all ? "all is as it was" : "not all could be put back as it was"));
+    };
+    for (const bool job : {false, true})
+        for (const fs::path& file : taken_away_)
+            if (is_job(file) == job)
+                require(moves.put_aside(file, in_staging("old-", file)), file);
+    for (const bool job : {true, false})
+        for (const fs::path& file : files_)
+            if (is_job(file) == job)
+                require(moves.replace(in_staging("new-", file), file, in_staging("old-", file)), file);
+    for (const auto& each : staging_)
+        synchronise(each.first);
+    made_.clear();
+    discard();
+    std::error_code holds_more;
+    for (const fs::path& emptied : taken_away_folders_) {
+        remove_left_overs(emptied);
+        fs::remove(emptied, holds_more);
     }
-    for (const File& file : files_)
-        folders.insert(folder_of(file.to));
-    for (const fs::path& file : taken_away_)
-        folders.insert(folder_of(file));
-    files_.clear();
-    taken_away_.clear();
-    for (const fs::path& folder : folders)
-        synchronise(folder);
+    Interruption::note("when the results were complete");
 }
 
 }  // namespace tessera

@@ -3,13 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-namespace tessera {
+#include "testbench/common/hash.h"
 
-/// The hash of a sequence of words, word by word from 0.
-constexpr std::uint64_t mix_hash(std::uint64_t hash, std::uint64_t word) {
-    hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
-    return hash ^ (hash >> 29);
-}
+namespace tessera {
 
 /// Numbers distinct items from 0 in the order they come. The caller keeps the items. Open addressing, four
 /// bytes a slot, at most half of them taken. Fewer than 2^32 - 1 items.

@@ -1,174 +1,112 @@
 #include "testbench/common/interruption.h"
 
+#include <fmt/format.h>
 #include <pthread.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <cerrno>
-#include <climits>
 #include <csignal>
-#include <cstring>
+#include <string>
 #include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
 
 namespace tessera {
 
 namespace {
 
-// The handler may call little (signal-safety(7)) and come between any two instructions: so fixed places, and
-// a flag that is set when a place is complete.
-struct Place {
-    std::atomic<bool> taken{false};
-    std::atomic<bool> complete{false};
-    std::array<char, PATH_MAX> path{};
+struct State {
+    std::mutex mutex;  // held by a Delay, and for good by the thread that ends the process
+    std::vector<const Interruption::CleanUp*> clean_ups;
+    std::atomic<bool> arrived{false};
+    std::mutex note_mutex;
+    std::string note;
 };
-std::array<Place, 256> places;
-
-struct Note {
-    std::array<char, 400> text{};
-    std::size_t size = 0;
-};
-std::array<Note, 2> notes;  // one is written while the other holds
-std::atomic<std::size_t> current_note{0};
-
-std::atomic<int> delays{0};
-std::atomic<int> waiting_signal{0};
-pthread_t main_thread;
-
-static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free &&
-              std::atomic<std::size_t>::is_always_lock_free);
-
-void remove_unfinished() {
-    std::size_t folders = 0;
-    for (Place& place : places)
-        if (place.complete && ::unlink(place.path.data()) != 0 && errno == EISDIR)
-            ++folders;
-    // Inner ones first, wherever they stand.
-    for (; folders > 0; --folders)
-        for (Place& place : places)
-            if (place.complete)
-                ::rmdir(place.path.data());
-}
-
-const char* name_of(int signal) {
-    return signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "SIGHUP";
-}
-
-/// A line put together without allocating, and written at once.
-class Line {
-  public:
-    void add(const char* text, std::size_t size) {
-        size = std::min(size, text_.size() - size_);
-        std::memcpy(text_.data() + size_, text, size);
-        size_ += size;
-    }
-    void add(const char* text) { add(text, std::strlen(text)); }
-    void write() const {
-        const ssize_t ignored = ::write(STDERR_FILENO, text_.data(), size_);
-        static_cast<void>(ignored);  // there is nobody left to tell
-    }
-
-  private:
-    std::array<char, 600> text_;
-    std::size_t size_ = 0;
-};
+State* state = new State;  // never destroyed: the thread outlives main(). A forked process has its own.
 
 void write_line(int signal) {
-    Line line;
-    if (::isatty(STDERR_FILENO) != 0)
-        line.add("\r\x1b[K");
-    line.add("tessera: interrupted (");
-    line.add(name_of(signal));
-    line.add(")");
-    const Note& note = notes[current_note];
-    if (note.size > 0) {
-        line.add(" ");
-        line.add(note.text.data(), note.size);
-    }
-    line.add("; no unfinished file is left\n");
-    line.write();
+    const char* const name = signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "SIGHUP";
+    const std::lock_guard<std::mutex> lock(state->note_mutex);
+    const std::string line = fmt::format("{}tessera: interrupted ({}){}{}; no unfinished file is left\n",
+                                         ::isatty(STDERR_FILENO) != 0 ? "\r\x1b[K" : "", name,
+                                         state->note.empty() ? "" : " ", state->note);
+    const ssize_t ignored = ::write(STDERR_FILENO, line.data(), line.size());
+    static_cast<void>(ignored);  // there is nobody left to tell
 }
 
-void end_by(int signal) {
-    remove_unfinished();
+void end_on_signal(sigset_t signals) {
+    int signal = 0;
+    if (::sigwait(&signals, &signal) != 0)
+        return;
+    state->arrived = true;
+    state->mutex.lock();
+    for (const Interruption::CleanUp* const clean_up : state->clean_ups)
+        (*clean_up)();
     write_line(signal);
     std::signal(signal, SIG_DFL);
     sigset_t set;
     sigemptyset(&set);
     sigaddset(&set, signal);
-    pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
-    std::raise(signal);
+    ::pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+    ::raise(signal);
 }
 
-void handle(int signal) {
-    const int error = errno;
-    if (pthread_equal(pthread_self(), main_thread) == 0)
-        pthread_kill(main_thread, signal);  // the thread that writes must not go on beside this
-    else if (delays > 0)
-        waiting_signal = signal;
-    else
-        end_by(signal);
-    errno = error;
+void wait_for_signals() {
+    sigset_t signals;
+    sigemptyset(&signals);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        struct sigaction now {};
+        if (::sigaction(signal, nullptr, &now) == 0 && now.sa_handler != SIG_IGN)
+            sigaddset(&signals, signal);
+    }
+    ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    try {
+        std::thread(end_on_signal, signals).detach();
+    } catch (const std::system_error&) {
+        // No thread is to be had: a signal ends the process as it would any other.
+        ::pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+    }
+}
+
+/// Once a signal has arrived, the work goes no further.
+void stop_if_arrived() {
+    while (state->arrived)
+        ::pause();
 }
 
 }  // namespace
 
 void Interruption::expect() {
-    main_thread = pthread_self();
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-        struct sigaction now {};
-        if (::sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN)
-            continue;
-        struct sigaction ours {};
-        ours.sa_handler = handle;
-        ours.sa_flags = SA_RESTART;
-        sigfillset(&ours.sa_mask);
-        ::sigaction(signal, &ours, nullptr);
-    }
+    wait_for_signals();
+    ::pthread_atfork(nullptr, nullptr, [] {
+        state = new State;
+        wait_for_signals();
+    });
 }
 
 void Interruption::note(std::string_view progress) {
-    const std::size_t next = 1 - current_note;
-    Note& note = notes[next];
-    note.size = std::min(progress.size(), note.text.size());
-    std::copy_n(progress.data(), note.size, note.text.data());
-    current_note = next;
+    const std::lock_guard<std::mutex> lock(state->note_mutex);
+    state->note = progress;
 }
 
-Interruption::Delay::Delay() {
-    ++delays;
-}
+Interruption::Delay::Delay() : lock_(state->mutex) {}
 
 Interruption::Delay::~Delay() {
-    if (--delays > 0)
-        return;
-    if (const int signal = waiting_signal.exchange(0))
-        std::raise(signal);
+    lock_.unlock();
+    stop_if_arrived();
 }
 
-Unfinished::Unfinished(const std::filesystem::path& path) {
-    // The working folder may be another by then.
-    std::error_code error;
-    const std::string text = std::filesystem::absolute(path, error).string();
-    if (error || text.size() >= PATH_MAX)
-        return;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        if (places[i].taken.exchange(true))
-            continue;
-        std::memcpy(places[i].path.data(), text.c_str(), text.size() + 1);
-        places[i].complete = true;
-        place_ = static_cast<int>(i);
-        return;
-    }
+Interruption::CleanUp::CleanUp(std::function<void()> clean_up) : clean_up_(std::move(clean_up)) {
+    const Delay delay;
+    state->clean_ups.push_back(this);
 }
 
-Unfinished::~Unfinished() {
-    if (place_ < 0)
-        return;
-    Place& place = places[static_cast<std::size_t>(place_)];
-    place.complete = false;
-    place.taken = false;
+Interruption::CleanUp::~CleanUp() {
+    const Delay delay;
+    auto& all = state->clean_ups;
+    all.erase(std::remove(all.begin(), all.end(), this), all.end());
 }
 
 }  // namespace tessera

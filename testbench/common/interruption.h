@@ -1,42 +1,47 @@
 #pragma once
-#include <filesystem>
+#include <functional>
+#include <mutex>
 #include <string_view>
 
 namespace tessera {
 
-/// What a process leaves that is asked to end (Ctrl-C, SIGTERM, a terminal that closes): one line on standard
-/// error that says how far it was, no unfinished file, and the same signal as its end, so that a shell or
-/// script sees it.
+/// Handles SIGINT, SIGTERM and SIGHUP: removes unfinished files, reports progress on one line of standard error, and
+/// ends the process by the same signal. A thread waits for them with sigwait(), so all of this is ordinary code.
 class Interruption {
   public:
-    /// From now on. A signal that is ignored already (nohup) stays ignored.
+    /// From now on, in this process and those it forks. To be called first: every thread started later inherits the
+    /// blocked signals, and so does a program that is started, unless it is given another mask. A signal that is
+    /// ignored already (nohup) stays ignored.
     static void expect();
 
-    /// What the line will say of the work. At most 400 bytes are kept; cheap, and allocates nothing.
+    /// What the line will say of the work.
     static void note(std::string_view progress);
 
-    /// While one lives, a signal waits: for what must not be left half done.
+    /// While one lives, a signal waits: for what must not be left half done. One at a time in a thread.
     class Delay {
       public:
         Delay();
         ~Delay();
         Delay(const Delay&) = delete;
         Delay& operator=(const Delay&) = delete;
+
+      private:
+        std::unique_lock<std::mutex> lock_;
     };
-};
 
-/// A file or a folder that goes away should the process be interrupted while this lives; a folder only if it is empty
-/// by then. Nothing is removed by the destructor. More than 256 at a time, or a path beyond the system's limit, are not
-/// looked after.
-class Unfinished {
-  public:
-    explicit Unfinished(const std::filesystem::path& path);
-    ~Unfinished();
-    Unfinished(const Unfinished&) = delete;
-    Unfinished& operator=(const Unfinished&) = delete;
+    /// Called on a signal while this lives; never while a Delay lives.
+    class CleanUp {
+      public:
+        explicit CleanUp(std::function<void()> clean_up);
+        ~CleanUp();
+        CleanUp(const CleanUp&) = delete;
+        CleanUp& operator=(const CleanUp&) = delete;
 
-  private:
-    int place_ = -1;
+        void operator()() const { clean_up_(); }
+
+      private:
+        std::function<void()> clean_up_;
+    };
 };
 
 }  // namespace tessera

@@ -34,14 +34,16 @@ OnThreads::~OnThreads() {
     chosen_threads = 0;
 }
 
-void share_chunks(std::size_t chunks, const std::function<void(const NextChunk& next)>& work) {
+void share_chunks(std::size_t chunks, const std::function<void(const NextChunk& next)>& work,
+                  std::size_t threads) {
+    threads = sharing ? 1 : std::min(threads, chunks);
     std::atomic<std::size_t> handed_out{0};
     std::mutex failing;
     std::exception_ptr failure;
     std::size_t failed_chunk = chunks;
     const auto run = [&] {
         const bool outer = sharing;
-        sharing = true;
+        sharing = outer || threads > 1;
         std::size_t at = 0;
         try {
             work([&](std::size_t& chunk) {
@@ -59,7 +61,6 @@ void share_chunks(std::size_t chunks, const std::function<void(const NextChunk& 
         sharing = outer;
     };
     std::vector<std::thread> others;
-    const std::size_t threads = sharing ? 1 : std::min(thread_count(), chunks);
     others.reserve(threads);
     try {
         while (others.size() + 1 < threads)

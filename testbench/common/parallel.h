@@ -19,11 +19,12 @@ class OnThreads {
 /// The chunk 0, 1, ... that a thread is to work on next; false when there is none left.
 using NextChunk = std::function<bool(std::size_t& chunk)>;
 
-/// Calls work(next) once on each of at most thread_count() threads, the caller's among them, and returns when all have
+/// Calls work(next) once on each of at most that many threads, the caller's among them, and returns when all have
 /// returned. Which thread gets which chunk is a matter of chance: a result must be put where the chunk says, and sums
-/// over chunks made afterwards in their order. Within work, on one thread only. An exception ends the handing out of
-/// chunks; that of the lowest chunk is thrown again.
-void share_chunks(std::size_t chunks, const std::function<void(const NextChunk& next)>& work);
+/// over chunks made afterwards in their order. Work shared out within that of several threads stays on its thread. An
+/// exception ends the handing out of chunks; that of the lowest chunk is thrown again.
+void share_chunks(std::size_t chunks, const std::function<void(const NextChunk& next)>& work,
+                  std::size_t threads = thread_count());
 
 /// The same with a worker of its own, make_worker(), for each thread: worker(chunk) is called for every chunk.
 template <class MakeWorker>
@@ -33,6 +34,18 @@ void for_each_chunk(std::size_t chunks, const MakeWorker& make_worker) {
         for (std::size_t chunk; next(chunk);)
             worker(chunk);
     });
+}
+
+/// Calls work(k) for each k from 0 to count - 1, on at most this many threads.
+inline void parallel_for(std::size_t count, std::size_t threads,
+                         const std::function<void(std::size_t)>& work) {
+    share_chunks(
+        count,
+        [&](const NextChunk& next) {
+            for (std::size_t k; next(k);)
+                work(k);
+        },
+        threads);
 }
 
 }  // namespace tessera

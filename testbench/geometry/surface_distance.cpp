@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "testbench/common/distinct_table.h"
@@ -24,8 +23,8 @@ class Points {
         for (std::size_t corner = 0; corner < 3 * soup.size(); ++corner) {
             const glm::dvec3& p = position(corner);
             const std::uint32_t number = table.number_of(
-                hash(p), [&](std::uint32_t v) { return vertex(v) == p; },
-                [&](std::uint32_t v) { return hash(vertex(v)); });
+                point_hash(p), [&](std::uint32_t v) { return vertex(v) == p; },
+                [&](std::uint32_t v) { return point_hash(vertex(v)); });
             if (number == vertices_.size())
                 vertices_.push_back(static_cast<std::uint32_t>(corner));
         }
@@ -41,18 +40,6 @@ class Points {
     }
 
   private:
-    /// Of the bits; -0 and 0 are equal and have the same.
-    static std::uint64_t hash(const glm::dvec3& p) {
-        std::uint64_t result = 0;
-        for (int k = 0; k < 3; ++k) {
-            const double number = p[k] + 0.0;
-            std::uint64_t bits;
-            std::memcpy(&bits, &number, sizeof bits);
-            result = mix_hash(result, bits);
-        }
-        return result;
-    }
-
     const glm::dvec3& position(std::size_t corner) const { return soup_[corner / 3][corner % 3]; }
     const glm::dvec3& vertex(std::size_t number) const { return position(vertices_[number]); }
 

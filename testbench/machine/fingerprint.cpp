@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "testbench/common/error.h"
+#include "testbench/common/hash.h"
 
 namespace tessera {
 
@@ -39,12 +40,11 @@ std::string fingerprint_of(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
     if (!in)
         return {};
-    std::uint64_t hash = 0xcbf29ce484222325;
+    std::uint64_t hash = fnv1a_basis;
     std::array<char, 1 << 16> bytes;
     while (in) {
         in.read(bytes.data(), bytes.size());
-        for (std::streamsize i = 0; i < in.gcount(); ++i)
-            hash = (hash ^ static_cast<unsigned char>(bytes[static_cast<std::size_t>(i)])) * 0x100000001b3;
+        hash = fnv1a({bytes.data(), static_cast<std::size_t>(in.gcount())}, hash);
     }
     return in.bad() ? std::string{} : fmt::format("{:016x}", hash);
 }

@@ -6,6 +6,7 @@
 #include "modules/datapath/light.h"
 #include "modules/datapath/tessellate.h"
 #include "modules/datapath/transform.h"
+#include "testbench/common/hash.h"
 
 namespace tessera {
 
@@ -13,17 +14,14 @@ namespace {
 
 class Hash {
   public:
-    void add(std::uint64_t word) {
-        state_ = (state_ ^ word) * 0x9e3779b97f4a7c15u;
-        state_ ^= state_ >> 32;
-    }
+    void add(std::uint64_t word) { state_ = mix_hash(state_, word); }
     void add(std::int32_t high, std::int32_t low) {
         add(std::uint64_t{static_cast<std::uint32_t>(high)} << 32 | static_cast<std::uint32_t>(low));
     }
     std::uint64_t value() const { return state_; }
 
   private:
-    std::uint64_t state_ = 0x243f6a8885a308d3u;
+    std::uint64_t state_ = 1;  // so that an item of zeros counts
 };
 
 void add_screen(Hash& hash, const datapath::ScreenPosition& screen) {

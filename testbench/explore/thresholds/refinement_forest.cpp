@@ -7,6 +7,7 @@
 #include "modules/datapath/rectangle.h"
 #include "modules/datapath/triangle_pass.h"
 #include "modules/datapath/triangulate.h"
+#include "testbench/common/distinct_table.h"
 
 namespace tessera {
 
@@ -19,10 +20,8 @@ bool same(const Vertex& a, const Vertex& b) {
            a.texture == b.texture && a.handedness == b.handedness;
 }
 
-std::uint64_t first_hash(const Vertex& v) {
-    const auto word = [](std::int32_t value) { return std::uint64_t{static_cast<std::uint32_t>(value)}; };
-    return (word(v.position.x) * 0x9e3779b97f4a7c15u + word(v.position.y)) * 0x9e3779b97f4a7c15u +
-           word(v.position.z) + (std::uint64_t{v.texture.u} << 32) + v.texture.v;
+std::uint64_t hash_of(const Vertex& v) {
+    return mix_hash(point_hash(v.position), std::uint64_t{v.texture.u} << 32 | v.texture.v);
 }
 
 /// Which of Node::children a split with this mask and diagonal is.
@@ -50,15 +49,13 @@ std::uint32_t pixels(const datapath::ScreenPosition& i, const datapath::ScreenPo
 
 RefinementForest::RefinementForest(const MachineSetup& setup, const TexelError* errors)
     : datapath_(setup), setup_(setup), errors_(errors) {
-    std::unordered_multimap<std::uint64_t, std::uint32_t> known;
+    DistinctTable known;
     const auto number_of = [&](const Vertex& vertex) {
-        const auto [first, last] = known.equal_range(first_hash(vertex));
-        for (auto at = first; at != last; ++at)
-            if (same(vertices_[at->second], vertex))
-                return at->second;
-        const auto number = static_cast<std::uint32_t>(vertices_.size());
-        known.emplace(first_hash(vertex), number);
-        vertices_.push_back(vertex);
+        const std::uint32_t number = known.number_of(
+            hash_of(vertex), [&](std::uint32_t k) { return same(vertices_[k], vertex); },
+            [&](std::uint32_t k) { return hash_of(vertices_[k]); });
+        if (number == vertices_.size())
+            vertices_.push_back(vertex);
         return number;
     };
     std::vector<std::array<std::uint32_t, 3>> corners;

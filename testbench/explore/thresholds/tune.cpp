@@ -3,16 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
 #include <limits>
 #include <memory>
 #include <mutex>
 #include <numeric>
-#include <thread>
 #include <utility>
 
 #include "testbench/common/error.h"
+#include "testbench/common/parallel.h"
 #include "testbench/explore/thresholds/texel_error.h"
 #include "testbench/explore/thresholds/tuned_figures.h"
 #include "testbench/input/mesh/obj_reader.h"
@@ -46,30 +44,6 @@ struct Explored {
         finest;  // all thresholds searched at 0; of a budget, incomplete if there are more triangles than that
     bool too_large = false;  // the base mesh alone
 };
-
-/// Calls work(k) for 0..count-1, each once, on some threads; the first exception by number is thrown again.
-void on_threads(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& work) {
-    std::atomic<std::size_t> next{0};
-    std::vector<std::exception_ptr> failures(count);
-    const auto run = [&] {
-        for (std::size_t k = next++; k < count; k = next++) {
-            try {
-                work(k);
-            } catch (...) {
-                failures[k] = std::current_exception();
-            }
-        }
-    };
-    std::vector<std::thread> others;
-    for (unsigned k = 1; k < std::min<std::size_t>(threads, count); ++k)
-        others.emplace_back(run);
-    run();
-    for (std::thread& other : others)
-        other.join();
-    for (const std::exception_ptr& failure : failures)
-        if (failure)
-            std::rethrow_exception(failure);
-}
 
 /// Progress of several threads in one figure.
 class SharedProgress {
@@ -172,7 +146,7 @@ TuneResult tune(const TuneRequest& request, const HeightMap& map,
     const std::size_t bases = request.bases.size();
     std::vector<Explored> explored(bases);
     SharedProgress exploring(bases, on_progress);
-    on_threads(bases, request.threads, [&](std::size_t k) {
+    parallel_for(bases, request.threads, [&](std::size_t k) {
         Explored& e = explored[k];
         Ground ground(request, request.bases[k], map);
         e.base_triangles = ground.setup.base_triangles.size();
@@ -209,7 +183,7 @@ TuneResult tune(const TuneRequest& request, const HeightMap& map,
     order.resize(std::min(order.size(), most_refined));
     SharedProgress refining(order.size(), on_progress);
     std::vector<ThresholdSearch::Found> refined(order.size());
-    on_threads(order.size(), request.threads, [&](std::size_t k) {
+    parallel_for(order.size(), request.threads, [&](std::size_t k) {
         Ground ground(request, request.bases[order[k]], map);
         ThresholdSearch search(
             ground.forest, ground.setup, ground.job, goal, request.space, [&](double done) {

@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
 #include <mutex>
-#include <thread>
 
 #include "modules/datapath/widths.h"
 #include "testbench/common/error.h"
+#include "testbench/common/parallel.h"
 #include "testbench/job/validate_job.h"
 
 namespace tessera {
@@ -112,34 +110,17 @@ WidthSweep sweep_widths(const WidthRequest& request, const BaseMesh& mesh, const
     }
     result.exact_triangles = exact.triangles(4 * static_cast<std::uint64_t>(request.job.limits.triangles));
 
-    std::atomic<std::size_t> next{0};
     std::size_t done = 0;
     std::mutex mutex;
-    std::vector<std::exception_ptr> failures(tasks.size());
-    const auto work = [&] {
-        for (std::size_t k = next++; k < tasks.size(); k = next++) {
-            WidthTable& table = result.tables[tasks[k].table];
-            const Quantity& quantity = *table.swept.quantity;
-            const std::int64_t bits = table.swept.widths[tasks[k].row];
-            try {
-                table.rows[tasks[k].row] = make_row(quantity, bits, request.job, mesh, map, exact);
-            } catch (...) {
-                failures[k] = std::current_exception();
-            }
-            const std::lock_guard<std::mutex> lock(mutex);
-            on_progress(fmt::format("{}, {} bits", quantity.name, bits),
-                        static_cast<double>(++done) / static_cast<double>(tasks.size()));
-        }
-    };
-    std::vector<std::thread> others;
-    for (unsigned k = 1; k < std::min<std::size_t>(request.threads, tasks.size()); ++k)
-        others.emplace_back(work);
-    work();
-    for (std::thread& other : others)
-        other.join();
-    for (const std::exception_ptr& failure : failures)
-        if (failure)
-            std::rethrow_exception(failure);
+    parallel_for(tasks.size(), request.threads, [&](std::size_t k) {
+        WidthTable& table = result.tables[tasks[k].table];
+        const Quantity& quantity = *table.swept.quantity;
+        const std::int64_t bits = table.swept.widths[tasks[k].row];
+        table.rows[tasks[k].row] = make_row(quantity, bits, request.job, mesh, map, exact);
+        const std::lock_guard<std::mutex> lock(mutex);
+        on_progress(fmt::format("{}, {} bits", quantity.name, bits),
+                    static_cast<double>(++done) / static_cast<double>(tasks.size()));
+    });
     for (WidthTable& table : result.tables)
         table.knee = find_knee(request, table.rows);
     if (const WidthRow* const first = first_made(result))

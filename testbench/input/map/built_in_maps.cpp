@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "testbench/common/error.h"
+#include "testbench/common/random.h"
 #include "testbench/input/map/map_file.h"
 #include "testbench/input/map/stroke_font.h"
 
@@ -31,14 +32,6 @@ HeightMap map_of(std::int64_t width, std::int64_t height, Value&& value) {
         }
     }
     return map;
-}
-
-// The finaliser of splitmix64 (Vigna, public domain).
-std::uint64_t mix(std::uint64_t z) {
-    z += 0x9e3779b97f4a7c15U;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
-    return z ^ (z >> 31);
 }
 
 double squared_distance(const Stroke& stroke, double x, double y) {
@@ -114,10 +107,10 @@ HeightMap text_map(std::int64_t width, std::int64_t height, std::string_view tex
 }
 
 HeightMap noise_map(std::int64_t width, std::int64_t height, std::int64_t seed) {
-    const std::uint64_t key = mix(static_cast<std::uint64_t>(seed));
+    const std::uint64_t key = Random(static_cast<std::uint64_t>(seed)).bits();
     return map_of(width, height, [key](int x, int y) {
         const std::uint64_t place = static_cast<std::uint64_t>(y) << 32 | static_cast<std::uint64_t>(x);
-        return static_cast<double>(mix(key ^ place) >> 48) / 65535.0;
+        return static_cast<double>(Random(key ^ place).bits() >> 48) / 65535.0;
     });
 }
 

@@ -2,21 +2,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <glm/glm.hpp>
 #include <vector>
 
 #include "testbench/common/distinct_table.h"
 
 namespace tessera {
-
-/// The bits of x, with -0 taken as +0: two values are alike when their bits are.
-inline std::uint64_t alike_bits(double x) {
-    const double positive_zero = x + 0.0;
-    std::uint64_t bits;
-    std::memcpy(&bits, &positive_zero, sizeof bits);
-    return bits;
-}
 
 using PositionKey = std::array<std::uint64_t, 3>;
 inline PositionKey position_key(glm::dvec3 const& p) {
@@ -27,26 +18,22 @@ inline PositionKey position_key(glm::dvec3 const& p) {
 /// Takes fewer than 2^31 keys.
 template <std::size_t N>
 std::vector<std::uint32_t> first_equal(std::vector<std::array<std::uint64_t, N>> const& keys) {
-    constexpr std::uint32_t empty = UINT32_MAX;
-    std::size_t slots = 16;
-    while (slots < 2 * keys.size()) {
-        slots *= 2;
-    }
-    std::vector<std::uint32_t> table(slots, empty);
-    std::vector<std::uint32_t> first(keys.size());
-    for (std::size_t i = 0; i < keys.size(); ++i) {
+    const auto hash_of = [&](std::size_t i) {
         std::uint64_t hash = 0;
-        for (std::uint64_t word : keys[i]) {
+        for (const std::uint64_t word : keys[i])
             hash = mix_hash(hash, word);
-        }
-        std::size_t slot = (hash * 0xbf58476d1ce4e5b9u >> 20) & (slots - 1);
-        while (table[slot] != empty && keys[table[slot]] != keys[i]) {
-            slot = (slot + 1) & (slots - 1);
-        }
-        if (table[slot] == empty) {
-            table[slot] = static_cast<std::uint32_t>(i);
-        }
-        first[i] = table[slot];
+        return hash;
+    };
+    DistinctTable table;
+    std::vector<std::uint32_t> distinct, first;
+    first.reserve(keys.size());
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        const std::uint32_t number = table.number_of(
+            hash_of(i), [&](std::uint32_t k) { return keys[distinct[k]] == keys[i]; },
+            [&](std::uint32_t k) { return hash_of(distinct[k]); });
+        if (number == distinct.size())
+            distinct.push_back(static_cast<std::uint32_t>(i));
+        first.push_back(distinct[number]);
     }
     return first;
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 #include <utility>
 
 #include "testbench/common/distinct_table.h"
@@ -19,9 +18,9 @@ class VertexIndex {
 
     std::uint32_t index_of(const glm::vec3& position, const glm::vec3& normal) {
         const std::uint32_t index = table_.number_of(
-            hash(position),
+            point_hash(position),
             [&](std::uint32_t v) { return mesh_.positions[v] == position && mesh_.normals[v] == normal; },
-            [&](std::uint32_t v) { return hash(mesh_.positions[v]); });
+            [&](std::uint32_t v) { return point_hash(mesh_.positions[v]); });
         if (index == mesh_.positions.size()) {
             mesh_.positions.push_back(position);
             mesh_.normals.push_back(normal);
@@ -30,18 +29,6 @@ class VertexIndex {
     }
 
   private:
-    /// Of the bits: any number will do. -0 and 0 are equal, so they must be equal here.
-    static std::uint64_t hash(const glm::vec3& p) {
-        std::uint64_t result = 0;
-        for (int k = 0; k < 3; ++k) {
-            const float number = p[k] + 0.0f;
-            std::uint32_t bits;
-            std::memcpy(&bits, &number, sizeof bits);
-            result = mix_hash(result, bits);
-        }
-        return result;
-    }
-
     RenderMesh& mesh_;
     DistinctTable table_;
 };

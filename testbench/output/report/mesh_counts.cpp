@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "testbench/common/distinct_table.h"
+#include "testbench/common/hash.h"
 
 namespace tessera {
 

@@ -18,22 +18,15 @@ struct Colour {
 };
 
 // chrome://tracing knows colours by these names only (color_scheme.html has them all): green, red, yellow, light grey;
-// blue, orange, brown, turquoise, olive, dark grey.
+// dark grey.
 constexpr std::array<Colour, 4> state_colours = {
     {{"busy", "good"}, {"blocked", "terrible"}, {"waiting for memory", "yellow"}, {"starved", "grey"}}};
-constexpr std::array<const char*, 6> other_colours = {
-    "rail_response", "rail_idle", "thread_state_unknown", "background_memory_dump", "olive", "generic_work"};
+constexpr const char* other_colour = "generic_work";
 
-/// The same in every run for a state, known or not.
 const char* colour_of(std::string_view state) {
     const auto* const known = std::find_if(state_colours.begin(), state_colours.end(),
                                            [&](const Colour& colour) { return colour.state == state; });
-    if (known != state_colours.end())
-        return known->name;
-    std::uint32_t hash = 2166136261;  // FNV-1a
-    for (const char c : state)
-        hash = (hash ^ static_cast<unsigned char>(c)) * 16777619;
-    return other_colours[hash % other_colours.size()];
+    return known != state_colours.end() ? known->name : other_colour;
 }
 
 }  // namespace

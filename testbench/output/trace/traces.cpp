@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <exception>
 #include <optional>
 #include <ostream>
@@ -175,17 +176,23 @@ std::vector<std::string> Traces::text() const {
 }
 
 std::string make_fst(const fs::path& folder, AtomicSet& files) {
-    const std::string vcd = files.waiting(folder / "trace.vcd").string();
-    const std::string unfinished = (folder / fmt::format(".tessera-{}.fst.part", ::getpid())).string();
-    const Unfinished looked_after(unfinished);
     std::string program = "vcd2fst";
-    std::string from = vcd, to = unfinished;
+    std::string from = files.staged(folder / "trace.vcd").string();
+    std::string to = files.staged(folder / "trace.fst").string();
     char* const arguments[] = {program.data(), from.data(), to.data(), nullptr};
     posix_spawn_file_actions_t actions;
     ::posix_spawn_file_actions_init(&actions);
     ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    // Signals that this process waits for would be blocked in that one.
+    posix_spawnattr_t attributes;
+    ::posix_spawnattr_init(&attributes);
+    sigset_t none;
+    sigemptyset(&none);
+    ::posix_spawnattr_setsigmask(&attributes, &none);
+    ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
     pid_t child = 0;
-    const int error = ::posix_spawnp(&child, arguments[0], &actions, nullptr, arguments, environ);
+    const int error = ::posix_spawnp(&child, arguments[0], &actions, &attributes, arguments, environ);
+    ::posix_spawnattr_destroy(&attributes);
     ::posix_spawn_file_actions_destroy(&actions);
     if (error == ENOENT)
         return "no trace.fst: vcd2fst is not installed; it is in the package gtkwave (apt-get install "
@@ -196,15 +203,12 @@ std::string make_fst(const fs::path& folder, AtomicSet& files) {
     int status = 0;
     while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
-    std::error_code problem;
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-        fs::remove(unfinished, problem);
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
         return WIFEXITED(status) && WEXITSTATUS(status) == 127
                    ? "no trace.fst: vcd2fst is not installed; it is in the package gtkwave (apt-get install "
                      "gtkwave)"
                    : fmt::format("no trace.fst: vcd2fst failed on {}", (folder / "trace.vcd").string());
-    }
-    files.add(unfinished, folder / "trace.fst");
+    files.add(folder / "trace.fst");
     return {};
 }
 

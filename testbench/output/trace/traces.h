@@ -46,7 +46,7 @@ class Traces {
     TraceWindow window_;
 };
 
-/// Makes trace.fst of trace.vcd, which waits in the set of files, and adds it. Returns what went wrong, in words for the
+/// Makes trace.fst of trace.vcd, which is in the set of files, and adds it. Returns what went wrong, in words for the
 /// user; empty: nothing.
 std::string make_fst(const std::filesystem::path& folder, AtomicSet& files);
 

@@ -5,6 +5,8 @@
 #include "testbench/check/conformance/scoreboard.h"
 #include "testbench/check/conformance/setup_check.h"
 #include "testbench/check/mesh/invariants.h"
+#include "testbench/common/hash.h"
+#include "testbench/common/random.h"
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/simulation.h"
 #include "testbench/prove/random_machines/lineage_check.h"
@@ -13,25 +15,11 @@ namespace tessera {
 
 namespace {
 
-class Digest {
-  public:
-    void add(std::int64_t value) {
-        hash_ ^= static_cast<std::uint64_t>(value);
-        hash_ = (hash_ ^ (hash_ >> 30)) * 0xbf58476d1ce4e5b9U;
-        hash_ = (hash_ ^ (hash_ >> 27)) * 0x94d049bb133111ebU;
-        hash_ ^= hash_ >> 31;
-    }
-    std::uint64_t value() const { return hash_; }
-
-  private:
-    std::uint64_t hash_ = 0x9e3779b97f4a7c15U;
-};
-
 /// The sum over the triangles: the same in any order. The bare recursion and the machine set `culled` alike.
 std::uint64_t digest_of(const EmittedMesh& mesh) {
     std::uint64_t sum = 0;
     for (const EmittedTriangle& triangle : mesh.triangles) {
-        Digest digest;
+        std::uint64_t digest = 0;
         for (const auto& c : triangle.corners)
             for (const std::int64_t value :
                  {std::int64_t{c.position.x}, std::int64_t{c.position.y}, std::int64_t{c.position.z},
@@ -39,11 +27,11 @@ std::uint64_t digest_of(const EmittedMesh& mesh) {
                   std::int64_t{c.displaced_normal.x}, std::int64_t{c.displaced_normal.y},
                   std::int64_t{c.displaced_normal.z}, std::int64_t{c.texture.u}, std::int64_t{c.texture.v},
                   std::int64_t{c.generation}})
-                digest.add(value);
+                digest = mix_hash(digest, static_cast<std::uint64_t>(value));
         for (const std::int64_t value : {std::int64_t{triangle.base}, std::int64_t{triangle.split_by},
                                          std::int64_t{triangle.stopped_by}, std::int64_t{triangle.culled}})
-            digest.add(value);
-        sum += digest.value();
+            digest = mix_hash(digest, static_cast<std::uint64_t>(value));
+        sum += Random(digest).bits();
     }
     return sum;
 }

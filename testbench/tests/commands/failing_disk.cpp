@@ -2,7 +2,7 @@
 //
 // TESSERA_FAILING_DISK=N:WHAT does WHAT at the N-th of the calls that open for writing, write, synchronise, rename or
 // make a folder: "full" (no space left: every write from then on fails), "error" (that one fails), or the name of a
-// signal, which is raised before the call. TESSERA_DISK_LOG=FILE: how many calls there were.
+// signal, which the process is sent before the call. TESSERA_DISK_LOG=FILE: how many calls there were.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -63,7 +63,8 @@ int next_error(bool takes_space) {
     const int signal = std::strcmp(plan.what, "SIGINT") == 0    ? SIGINT
                        : std::strcmp(plan.what, "SIGTERM") == 0 ? SIGTERM
                                                                 : SIGKILL;
-    raise(signal);
+    kill(getpid(), signal);
+    usleep(100'000);  // for the thread that waits for it
     return 0;
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "testbench/common/hash.h"
 #include "testbench/tests/support/job_results.h"
 #include "testbench/tests/support/program_runner.h"
 #include "testbench/tests/support/run_folder.h"
@@ -16,10 +17,7 @@ std::uint64_t hash_of_mesh(const fs::path& ply) {
     const std::string file = read_all(ply), end = "end_header\n";
     const std::size_t header = file.find(end);
     REQUIRE(header != std::string::npos);
-    std::uint64_t hash = 0xcbf29ce484222325u;
-    for (std::size_t k = header + end.size(); k < file.size(); ++k)
-        hash = (hash ^ static_cast<unsigned char>(file[k])) * 0x100000001b3u;
-    return hash;
+    return fnv1a(std::string_view(file).substr(header + end.size()));
 }
 
 void check_result(const JobResult& expected, const fs::path& folder) {

@@ -25,7 +25,7 @@ Files files_in(const fs::path& folder) {
 }
 
 bool is_unfinished(const std::string& name) {
-    return fs::path(name).filename().string().rfind(".tessera-", 0) == 0;
+    return name.find("/.tessera-") != std::string::npos;
 }
 
 /// A run small enough to be made some hundred times, with every file there is but the picture, which takes long.
@@ -128,7 +128,7 @@ TEST_CASE("a run whose disk is full or fails at any call, or that is interrupted
         expected.before = files_after(run_arguments("2"), here.path());
         REQUIRE(expected.before != expected.after);
     }
-    for (const char* const what : {"full", "SIGINT"})
+    for (const char* const what : {"full", "error", "SIGINT"})
         check_ends_well(run_arguments("1"), here.path(), expected, what);
 }
 
@@ -228,6 +228,30 @@ TEST_CASE("an output that is a link is replaced, and what it leads to stays") {
     check_replaced({"widths", "--quantity", "normal", "--bits", "16..16", "--set", "map.width=16", "--set",
                     "map.height=16", "--output", "out/widths.csv"},
                    {out / "widths.csv", out / "widths.json"});
+}
+
+TEST_CASE("runs at once into one folder, a link to elsewhere, leave one run there") {
+    const TestFolder here;
+    const Files expected = files_after(run_arguments("1"), here.path());
+    fs::remove_all(here.path() / "out/run");
+    fs::create_directory(here.path() / "elsewhere");
+    fs::create_symlink("../elsewhere", here.path() / "out/run");
+    std::string line = std::string(TESSERA_PROGRAM);
+    for (const std::string& argument : run_arguments("1"))
+        line += " " + argument;
+    const std::string three_times = line + " & a=$!; " + line + " & b=$!; " + line + " && wait $a && wait $b";
+    for (int again = 0; again < 3; ++again) {
+        const ProgramEnd end = run_program({"sh", "-c", three_times}, here.path());
+        INFO(end.text());
+        CHECK(end.exit_code == 0);
+        CHECK(end.err.empty());
+        CHECK(fs::is_symlink(here.path() / "out/run"));
+        Files left;
+        for (const auto& [name, content] : files_in(here.path() / "elsewhere"))
+            left["run/" + name] = content;
+        left["run"] = "(folder)";
+        CHECK(left == expected);
+    }
 }
 
 TEST_CASE("an input whose name lies in the output folder stays, wherever it leads") {

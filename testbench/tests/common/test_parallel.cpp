@@ -1,3 +1,4 @@
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <numeric>
 #include <stdexcept>
@@ -34,6 +35,22 @@ TEST_CASE("work within work stays on its thread") {
         };
     });
     CHECK(std::accumulate(elsewhere.begin(), elsewhere.end(), 0) == 0);
+}
+
+TEST_CASE("work within work of one thread may use several") {
+    const OnThreads on(2);
+    for (const std::size_t tasks : {1U, 4U}) {
+        std::atomic<std::size_t> done{0}, workers{0};
+        parallel_for(tasks, 3, [&](std::size_t task) {
+            done += task + 1;
+            for_each_chunk(100, [&] {
+                ++workers;
+                return [](std::size_t) {};
+            });
+        });
+        CHECK(done == tasks * (tasks + 1) / 2);
+        CHECK(workers == (tasks == 1 ? 2 : tasks));
+    }
 }
 
 TEST_CASE("an exception on any thread reaches the caller, the lowest chunk's first") {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "testbench/common/random.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/job/nearest_name.h"
 #include "testbench/job/read_job.h"
@@ -169,10 +170,8 @@ TEST_CASE("files that are no job files") {
     const fs::path typo = folder.write("typo.toml", "[mesh]\ncolums = 3\n");
     CHECK_THAT(read_error(typo), StartsWith(typo.string() + ":2:1: unknown key"));
     std::string garbage;
-    for (std::uint32_t i = 0, state = 1; i < 100000; ++i) {
-        state = state * 1664525u + 1013904223u;
-        garbage += static_cast<char>(state >> 24);
-    }
+    for (Random random(1); garbage.size() < 100000;)
+        garbage += static_cast<char>(random.bits());
     const fs::path binary = folder.write("garbage.toml", garbage);
     CHECK_THAT(read_error(binary), StartsWith(binary.string() + ":1:"));
     const fs::path not_a_folder = folder.write("file", "") / "job.toml";

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "testbench/common/error.h"
+#include "testbench/common/hash.h"
 #include "testbench/input/map/built_in_maps.h"
 #include "testbench/input/map/read_height_map.h"
 #include "testbench/input/map/stroke_font.h"
@@ -18,11 +19,11 @@ namespace {
 
 // FNV-1a over the bits of the values.
 std::uint64_t fingerprint(const HeightMap& map) {
-    std::uint64_t hash = 0xcbf29ce484222325U;
+    std::uint64_t hash = fnv1a_basis;
     for (const float value : map.values) {
         std::uint32_t bits = 0;
         std::memcpy(&bits, &value, sizeof bits);
-        hash = (hash ^ bits) * 0x100000001b3U;
+        hash = fnv1a(hash, bits);
     }
     return hash;
 }

@@ -3,6 +3,7 @@
 
 #include "modules/datapath/cull.h"
 #include "modules/datapath/light.h"
+#include "testbench/common/hash.h"
 #include "testbench/prove/random_edges/datapath_edge.h"
 #include "testbench/prove/random_edges/datapath_random.h"
 #include "testbench/prove/random_edges/datapath_random_tables.h"
@@ -16,10 +17,8 @@ namespace {
 class Hash {
   public:
     void add(std::int64_t value) {
-        for (int k = 0; k < 8; ++k) {
-            state_ ^= static_cast<std::uint64_t>(value) >> (8 * k) & 255;
-            state_ *= 0x100000001b3U;  // FNV-1a
-        }
+        for (int k = 0; k < 8; ++k)
+            state_ = tessera::fnv1a(state_, static_cast<std::uint64_t>(value) >> (8 * k) & 255);
     }
     void add(const Direction& d) {
         add(d.x);
@@ -40,7 +39,7 @@ class Hash {
     std::uint64_t value() const { return state_; }
 
   private:
-    std::uint64_t state_ = 0xcbf29ce484222325U;
+    std::uint64_t state_ = tessera::fnv1a_basis;
 };
 
 }  // namespace

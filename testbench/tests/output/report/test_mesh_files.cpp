@@ -364,19 +364,20 @@ TEST_CASE("an atomic file appears complete or not at all") {
             ::_exit(0);
         REQUIRE(::waitpid(ended, nullptr, 0) == ended);
         const std::string dead = std::to_string(ended), alive = std::to_string(::getppid());
-        for (const std::string& name : {".tessera-" + dead + "-0.part", ".tessera-" + dead + "-12.old",
-                                        ".tessera-" + dead + ".fst.part"})
-            std::ofstream(folder.path / name) << "unfinished";
         const std::vector<std::string> others{
             ".tessera-" + alive + "-0.part", ".tessera-" + dead + "-0.party", "x.tessera-" + dead + "-0.part",
             ".tessera-" + dead + "-.part",   ".tessera-" + dead + "-0",       ".tessera--0.part"};
-        for (const std::string& name : others)
-            std::ofstream(folder.path / name) << "another's";
-        fs::create_directory(folder.path / (".tessera-" + dead + "-1.part"));
+        std::vector<std::string> all = others;
+        all.insert(all.end(), {".tessera-" + dead + "-0.part", ".tessera-" + dead + "-12.part"});
+        for (const std::string& name : all) {
+            fs::create_directory(folder.path / name);
+            std::ofstream(folder.path / name / "new-mesh.ply") << "unfinished";
+        }
+        std::ofstream(folder.path / (".tessera-" + dead + "-1.part")) << "no folder";
         write_file(path, "new");
         for (const std::string& name : others)
-            CHECK(fs::exists(folder.path / name));
-        CHECK(folder.entries() == others.size() + 2);  // the folder, and the new file
+            CHECK(fs::exists(folder.path / name / "new-mesh.ply"));
+        CHECK(folder.entries() == others.size() + 2);  // what is no folder, and the new file
     }
     SECTION("two at once for one name do not meet") {
         AtomicFile one(path), two(path);

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "testbench/check/mesh/invariants.h"
+#include "testbench/common/hash.h"
 #include "testbench/job/read_job.h"
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/inputs.h"
@@ -21,13 +22,6 @@ namespace {
 bool same(const datapath::Vertex& a, const datapath::Vertex& b) {
     return a.position == b.position && a.normal == b.normal && a.tangent == b.tangent &&
            a.texture == b.texture && a.handedness == b.handedness;
-}
-
-std::uint64_t digest(const std::string& text) {
-    std::uint64_t hash = 0xcbf29ce484222325U;
-    for (const char c : text)
-        hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
-    return hash;
 }
 
 ProgramEnd run_cases(const std::vector<std::string>& arguments, const std::filesystem::path& folder) {
@@ -65,7 +59,7 @@ TEST_CASE("random case: a seed gives the same bytes from every compiler") {
         const RandomCase made = make_random_case(seed);
         text += made.mesh.obj + made.map.pgm() + made.summary();
     }
-    CHECK(digest(text) == 0x09111fe19677cd64U);
+    CHECK(fnv1a(text) == 0x09111fe19677cd64U);
 }
 
 TEST_CASE("random cases: meshes of every kind, most of them split") {
