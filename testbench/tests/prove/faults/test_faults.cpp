@@ -80,7 +80,7 @@ Outcome run_here(const Job& job) {
     std::optional<InvariantResult> invariants;
     if (!run.stopped) {
         works = work_result(work, simulation);
-        invariants = check_invariants(simulation.monitor.mesh, setup.base_triangles, setup.registers);
+        invariants = check_invariants(simulation.monitor.mesh, setup);
     }
     Outcome outcome;
     outcome.mesh = mesh_hash(simulation.monitor.mesh);
