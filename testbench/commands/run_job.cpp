@@ -211,7 +211,7 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
     }
     if (job.check.invariants) {
         progress.show("checking the mesh", 0.62);
-        checks.invariants = check_invariants(mesh, setup.base_triangles, setup.registers);
+        checks.invariants = check_invariants(mesh, setup);
     }
     if (job.check.end_to_end) {
         // Golden's own run saturates nothing: with values that did there is nothing to judge it by.

@@ -71,10 +71,12 @@ std::string checks_rows(const Checks& checks) {
     }
     if (checks.invariants) {
         const InvariantResult& i = *checks.invariants;
+        const std::string wrong =
+            i.wrong_triangles() == 0 ? "" : fmt::format(", {} triangles wrong", count(i.wrong_triangles()));
         text +=
             check_row("invariants", i.passed(),
-                      fmt::format("{} cracks, {} T-vertices; in texture space {} collapsed, {} turned over",
-                                  i.cracks, i.t_vertices, i.collapsed, i.turned_over));
+                      fmt::format("{} cracks, {} T-vertices{}; in texture space {} collapsed, {} turned over",
+                                  i.cracks, i.t_vertices, wrong, i.collapsed, i.turned_over));
         if (i.open_texture_seam_edges > 0)
             text += row(
                 "texture seams",

@@ -25,6 +25,15 @@ class DistinctTable {
 
     std::size_t size() const { return size_; }
 
+    /// Forgets all, and makes room for this many items.
+    void clear(std::size_t expected) {
+        std::size_t slots = 16;
+        while (slots < 2 * (expected + 1))
+            slots *= 2;
+        slots_.assign(slots, empty);
+        size_ = 0;
+    }
+
   private:
     static constexpr std::uint32_t empty = UINT32_MAX;
 

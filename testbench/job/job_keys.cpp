@@ -407,7 +407,7 @@ std::vector<KeyTable> declare_keys() {
         using Check = Job::Check;
         key.add("golden", &Check::golden, "Every edge's decision against the golden model (scoreboard), and every register and table entry against what golden derives from the job by itself");
         key.add("end_to_end", &Check::end_to_end, "Golden run of the whole mesh, compared with the hardware's; also every register and table entry, as with check.golden");
-        key.add("invariants", &Check::invariants, "The emitted mesh is closed, without T-vertices, and covers the texture");
+        key.add("invariants", &Check::invariants, "The emitted mesh is the datapath's own, bit for bit, and closed, without T-vertices");
         key.add("allowed_flips", &Check::allowed_flips, "percent of edges", between(0, 100), "Decisions that differ within the formats' error bound; more fail the run");
         key.add("allowed_triangles", &Check::allowed_triangles, "percent of triangles", between(0, 1000), "Largest difference in the number of triangles between golden's own run and the hardware; beyond it the run fails, as it does if three times that share of the points lies farther from the other surface than rounding explains. A run whose positions saturate is not judged by it. Raise it for thresholds finer than the formats");
         key.add("work", &Check::work, "No triangle is lost, doubled or altered on its way through the machine, and what goes into a unit comes out of another");

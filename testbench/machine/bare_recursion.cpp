@@ -1,14 +1,12 @@
 #include "testbench/machine/bare_recursion.h"
 
 #include "modules/datapath/bump.h"
-#include "modules/datapath/cull.h"
 #include "modules/datapath/displace.h"
 #include "modules/datapath/edge_tests.h"
 #include "modules/datapath/map_address.h"
 #include "modules/datapath/map_entry.h"
 #include "modules/datapath/midpoint.h"
 #include "modules/datapath/rectangle.h"
-#include "modules/datapath/tessellate.h"
 #include "modules/datapath/transform.h"
 
 namespace tessera {
@@ -98,8 +96,9 @@ void BareRecursion::evaluate_edge(TrianglePass& pass, int k) {
     NewVertex& made = pass.new_vertex[static_cast<std::size_t>(k)];
     EdgeTests& edge = pass.edges[static_cast<std::size_t>(k)];
     made.position = midpoint(i.position, j.position);
-    made.texture = midpoint(i.texture, j.texture);
-    edge.normal = normalise(midpoint(i.normal, j.normal), r.formats, saturations_);
+    made.texture = edge.texture = midpoint(i.texture, j.texture);  // both branches calculate it
+    made.mean_normal = midpoint(i.normal, j.normal);
+    edge.normal = normalise(made.mean_normal, r.formats, saturations_);
     edge.tangent = normalise(midpoint(i.tangent, j.tangent), r.formats, saturations_);
     made.displaced =
         displace(made.position, edge.normal, code_at(made.texture), r.displacement, r.formats, saturations_);
@@ -126,7 +125,7 @@ void BareRecursion::evaluate_edge(TrianglePass& pass, int k) {
     edge.tests = static_cast<std::uint8_t>(tests);
 }
 
-std::uint8_t BareRecursion::evaluate(TrianglePass& pass) {
+void BareRecursion::evaluate(TrianglePass& pass) {
     unsigned split = 0;
     unsigned stopped_by = 0;
     for (int k = 0; k < 3; ++k) {
@@ -140,42 +139,45 @@ std::uint8_t BareRecursion::evaluate(TrianglePass& pass) {
             stopped_by |= ~tests & gating_tests;
     }
     pass.split = static_cast<std::uint8_t>(split);
-    return static_cast<std::uint8_t>(stopped_by);
+    pass.triangle.stopped_by = static_cast<std::uint8_t>(split == 0 ? stopped_by : 0);
 }
+
+ChildIndices BareRecursion::children_of(const TrianglePass& pass) const {
+    const auto displaced = [&](std::uint8_t index) -> const Position& {
+        return index < 3 ? pass.triangle.vertices[index].displaced : pass.new_vertex[index - 3u].displaced;
+    };
+    return triangulate(pass.split,
+                       choose_second_diagonal(pass.split, setup_.registers.triangulation, displaced));
+}
+
+void BareRecursion::transform_normals(Triangle& triangle) {
+    for (Vertex& v : triangle.vertices)
+        if (!v.screen_normal_known)
+            v.screen_normal = transform_normal(v.displaced_normal, setup_.registers.transform,
+                                               setup_.registers.formats, saturations_);
+}
+
+namespace {
+
+/// Keeps what is finished, and nothing else.
+struct Emit {
+    struct Note {};
+    EmittedMesh& mesh;
+
+    static Note begin(const Triangle&) { return {}; }
+    static void decided(const TrianglePass&, const ChildIndices&, const Note&) {}
+    static Note child(const std::array<std::uint8_t, 3>&) { return {}; }
+    void finished(const Triangle& triangle, bool culled) {
+        mesh.triangles.push_back(EmittedTriangle::from(triangle, culled));
+    }
+};
+
+}  // namespace
 
 std::uint64_t BareRecursion::run(EmittedMesh& mesh, std::uint64_t most_edges) {
     mesh.triangles.clear();
-    work_.clear();
-    std::uint64_t edges = 0;
-    TrianglePass pass;
-    for (const Triangle& base : setup_.base_triangles) {
-        work_.push_back(base);
-        complete_base(work_.back());
-        while (!work_.empty()) {
-            if (edges >= most_edges)
-                return edges;
-            pass.triangle = work_.back();
-            work_.pop_back();
-            const std::uint8_t stopped_by = evaluate(pass);
-            edges += 3;
-            if (pass.split != 0) {
-                tessellate(pass, setup_.registers.triangulation, setup_.registers.formats, saturations_,
-                           [&](const Triangle& child) { work_.push_back(child); });
-                continue;
-            }
-            Triangle& finished = pass.triangle;
-            finished.stopped_by = stopped_by;
-            for (Vertex& v : finished.vertices)
-                if (!v.screen_normal_known)
-                    v.screen_normal = transform_normal(v.displaced_normal, setup_.registers.transform,
-                                                       setup_.registers.formats, saturations_);
-            mesh.triangles.push_back(EmittedTriangle::from(
-                finished, setup_.registers.back_face_culling &&
-                              faces_away(finished.vertices[0].screen, finished.vertices[1].screen,
-                                         finished.vertices[2].screen)));
-        }
-    }
-    return edges;
+    Emit emit{mesh};
+    return walk(emit, most_edges);
 }
 
 }  // namespace tessera

@@ -2,14 +2,16 @@
 #include <cstdint>
 #include <vector>
 
+#include "modules/datapath/cull.h"
 #include "modules/datapath/parameters.h"
+#include "modules/datapath/tessellate.h"
 #include "testbench/machine/emitted_mesh.h"
 #include "testbench/machine/machine_setup.h"
 
 namespace tessera {
 
 /// The datapath without SystemC: the same functions on the same tables, called from one loop over a work list. What a
-/// simulation of the machine cannot be faster than; its mesh is the pipeline's, bit for bit (tested).
+/// simulation of the machine cannot be faster than; its mesh is the pipeline's, bit for bit (every run checks it).
 class BareRecursion {
   public:
     /// `setup` must outlive it.
@@ -22,16 +24,29 @@ class BareRecursion {
     /// kept. Gives up, the mesh incomplete, once `most_edges` have been.
     std::uint64_t run(EmittedMesh& mesh, std::uint64_t most_edges = UINT64_MAX);
 
-    /// Its parts, for who walks in another way. What the machine does to a base triangle's vertices on its first pass:
+    /// The same, shown to a visitor: depth first, one base triangle after the other. Returns the edges evaluated. A
+    /// Visitor has
+    ///   Note                  a type: what it keeps with each triangle that waits
+    ///   Note begin(base)      of a base triangle, its vertices complete
+    ///   void decided(pass, children, note)  of every pass, all its edges decided; `children` as datapath::triangulate
+    ///                         gives them, the triangle itself if no edge is split
+    ///   Note child(corners)   of each child of that pass; corners: one of children's
+    ///   void finished(triangle, culled)     of each triangle that is not split, complete
+    template <class Visitor>
+    std::uint64_t walk(Visitor& visitor, std::uint64_t most_edges = UINT64_MAX);
+
+    /// What the machine does to a base triangle's vertices on its first pass.
     void complete_base(datapath::Triangle& triangle);
     /// All that a pass finds out about edge k, and decides by the setup's registers; the Highlight Test is not in it.
     void evaluate_edge(datapath::TrianglePass& pass, int k);
-    /// All three edges with every test, and pass.split. Returns the tests that kept edges whole (Triangle::stopped_by).
-    std::uint8_t evaluate(datapath::TrianglePass& pass);
     /// The Summed Height Test's sum of the map's codes.
     std::uint64_t sum_around(const datapath::TexCoord& t, const datapath::RectangleSize& size) const;
 
   private:
+    /// All three edges with every test, pass.split, and the tests that kept edges whole (Triangle::stopped_by).
+    void evaluate(datapath::TrianglePass& pass);
+    datapath::ChildIndices children_of(const datapath::TrianglePass& pass) const;
+    void transform_normals(datapath::Triangle& triangle);
     datapath::Direction map_normal_at(const datapath::TexCoord& t) const;
     std::uint32_t code_at(const datapath::TexCoord& t) const;
 
@@ -40,8 +55,49 @@ class BareRecursion {
     std::vector<std::uint64_t> normals_;  // packed as the normal map's entries
     std::vector<std::uint32_t> sums_;     // narrow tables; else wide_sums_
     std::vector<std::uint64_t> wide_sums_;
-    std::vector<datapath::Triangle> work_;
     datapath::Saturations saturations_;
 };
+
+template <class Visitor>
+std::uint64_t BareRecursion::walk(Visitor& visitor, std::uint64_t most_edges) {
+    struct Waiting {
+        datapath::Triangle triangle;
+        typename Visitor::Note note;
+    };
+    const datapath::Registers& r = setup_.registers;
+    std::vector<Waiting> waiting;
+    datapath::TrianglePass pass;
+    std::uint64_t edges = 0;
+    for (datapath::Triangle base : setup_.base_triangles) {
+        complete_base(base);
+        waiting.push_back({base, visitor.begin(base)});
+        pass.new_vertices = 7;
+        while (!waiting.empty()) {
+            if (edges >= most_edges)
+                return edges;
+            pass.triangle = waiting.back().triangle;
+            const typename Visitor::Note note = waiting.back().note;
+            waiting.pop_back();
+            evaluate(pass);
+            edges += 3;
+            const datapath::ChildIndices children = children_of(pass);
+            visitor.decided(pass, children, note);
+            pass.new_vertices = 0;
+            if (pass.split != 0) {
+                std::size_t number = 0;
+                datapath::tessellate(
+                    pass, r.triangulation, r.formats, saturations_, [&](const datapath::Triangle& child) {
+                        waiting.push_back({child, visitor.child(children.children[number++])});
+                    });
+                continue;
+            }
+            transform_normals(pass.triangle);
+            const auto& v = pass.triangle.vertices;
+            visitor.finished(pass.triangle, r.back_face_culling &&
+                                                datapath::faces_away(v[0].screen, v[1].screen, v[2].screen));
+        }
+    }
+    return edges;
+}
 
 }  // namespace tessera

@@ -17,6 +17,11 @@ struct EmittedTriangle {
         datapath::Direction displaced_normal;  ///< N'
         datapath::TexCoord texture;            ///< t
         std::uint8_t generation = 0;
+        friend bool operator==(const Corner& a, const Corner& b) {
+            return a.position == b.position && a.displaced == b.displaced &&
+                   a.displaced_normal == b.displaced_normal && a.texture == b.texture &&
+                   a.generation == b.generation;
+        }
     };
     std::array<Corner, 3> corners;
     std::uint32_t base = 0;
@@ -35,6 +40,10 @@ struct EmittedTriangle {
         result.stopped_by = triangle.stopped_by;
         result.culled = culled;
         return result;
+    }
+    friend bool operator==(const EmittedTriangle& a, const EmittedTriangle& b) {
+        return a.corners == b.corners && a.base == b.base && a.split_by == b.split_by &&
+               a.stopped_by == b.stopped_by && a.culled == b.culled;
     }
 };
 

@@ -1,51 +1,95 @@
 #include "testbench/check/mesh/invariants.h"
 
-#include <algorithm>
-#include <string>
+#include <fmt/core.h>
 
-#include "testbench/check/mesh/base_edge_check.h"
-#include "testbench/check/mesh/patch_check.h"
-#include "testbench/common/error.h"
+#include <algorithm>
+
+#include "testbench/check/mesh/corner_text.h"
+#include "testbench/check/mesh/emitted_difference.h"
+#include "testbench/check/mesh/lineage.h"
+#include "testbench/machine/bare_recursion.h"
 
 namespace tessera {
+
 namespace {
 
-constexpr std::size_t most_triangles = 700'000'000;  // corner numbers, doubled, fit 32 bits
+__extension__ using Wide = __int128;
 
-/// The triangles' indices, by base triangle, in the mesh's order. offsets[b]: where those of base triangle b
-/// begin.
-struct Patches {
-    std::vector<std::uint32_t> order;
-    std::vector<std::uint32_t> offsets;
-};
-
-Patches sort_into_patches(const EmittedMesh& mesh, std::size_t base_triangles) {
-    Patches result;
-    result.offsets.assign(base_triangles + 2, 0);
-    for (const EmittedTriangle& triangle : mesh.triangles)
-        if (triangle.base < base_triangles)
-            ++result.offsets[triangle.base + 2];
-    for (std::size_t b = 2; b < result.offsets.size(); ++b)
-        result.offsets[b] += result.offsets[b - 1];
-    result.order.resize(result.offsets.back());
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-        if (mesh.triangles[i].base < base_triangles)
-            result.order[result.offsets[mesh.triangles[i].base + 1]++] = static_cast<std::uint32_t>(i);
-    return result;
+/// -1, 0 or 1.
+template <class HasTexture>
+int texture_side(const std::array<HasTexture, 3>& c) {
+    const auto u = [&](std::size_t k) { return Wide{c[k].texture.u} - c[0].texture.u; };
+    const auto v = [&](std::size_t k) { return Wide{c[k].texture.v} - c[0].texture.v; };
+    const Wide doubled_area = u(1) * v(2) - v(1) * u(2);
+    return doubled_area > 0 ? 1 : (doubled_area < 0 ? -1 : 0);
 }
+
+/// What can be said of each triangle by itself.
+void judge_triangles(const EmittedMesh& mesh, const MachineSetup& setup, InvariantResult& result) {
+    const datapath::TestParameters& tests = setup.registers.tests;
+    std::vector<std::int8_t> base_sides;
+    for (const datapath::Triangle& base : setup.base_triangles)
+        base_sides.push_back(static_cast<std::int8_t>(texture_side(base.vertices)));
+    for (const EmittedTriangle& triangle : mesh.triangles) {
+        const auto& c = triangle.corners;
+        const int side = texture_side(c);
+        if (side == 0)
+            ++result.collapsed;
+        else if (triangle.base < base_sides.size() && side * base_sides[triangle.base] < 0)
+            ++result.turned_over;
+        if (c[0].displaced == c[1].displaced || c[1].displaced == c[2].displaced ||
+            c[2].displaced == c[0].displaced)
+            ++result.displaced_collapsed;
+        const auto oldest = std::max_element(
+            c.begin(), c.end(), [](const auto& a, const auto& b) { return a.generation < b.generation; });
+        if (tests.generation_test && oldest->generation > tests.generation_limit) {
+            ++result.generation_violations;
+            if (result.first_violation.empty())
+                result.first_violation = fmt::format(
+                    "base triangle {}: a vertex is beyond the generation limit of {}: {}", triangle.base,
+                    tests.generation_limit, corner_text(*oldest, setup.registers.formats));
+        }
+    }
+}
+
+/// One walk for both: is this mesh closed, and is it the one that was emitted?
+struct Walk {
+    using Note = Lineage::Note;
+    Lineage lineage;
+    EmittedDifference difference;
+    bool begun = false;
+
+    void end() {
+        if (begun)
+            difference.end();
+    }
+    Note begin(const datapath::Triangle& base) {
+        end();
+        begun = true;
+        difference.begin(base.base);
+        return lineage.begin(base);
+    }
+    void decided(const datapath::TrianglePass& pass, const datapath::ChildIndices& children,
+                 const Note& note) {
+        lineage.decided(pass, children, note);
+    }
+    Note child(const std::array<std::uint8_t, 3>& corners) { return lineage.child(corners); }
+    void finished(const datapath::Triangle& triangle, bool culled) {
+        difference.expect(EmittedTriangle::from(triangle, culled));
+    }
+};
 
 }  // namespace
 
 std::uint64_t InvariantResult::violations() const {
-    return t_vertices + cracks + duplicate_triangles + area_mismatches + areas_beyond_rounding +
-           generation_violations + inconsistent_vertices + foreign_triangles +
-           (collapsed - collapsed_explained) + (turned_over - turned_over_explained);
+    return t_vertices + cracks + inconsistent_vertices + wrong_triangles() + generation_violations;
 }
 
 std::vector<InvariantFigure> invariant_figures(const InvariantResult& r) {
     using Kind = InvariantFigure::Kind;
     return {
         {"triangles", Kind::fact, r.triangles, "triangle", "looked at, culled ones included"},
+        {"edges", Kind::fact, r.edges, "edge", "evaluated by the datapath by itself"},
         {"base_triangles", Kind::fact, r.base_triangles, "triangle", "of the base mesh"},
         {"base_edges", Kind::fact, r.base_edges, "edge", "of the base mesh, by position"},
         {"border_base_edges", Kind::fact, r.border_base_edges, "edge", "of these with one base triangle"},
@@ -54,40 +98,24 @@ std::vector<InvariantFigure> invariant_figures(const InvariantResult& r) {
          "base edges whose two sides differ in texture coordinates by other than whole periods"},
         {"creases", Kind::fact, r.creases, "edge",
          "base edges whose two sides differ in normal or tangent only"},
-        {"t_vertices", Kind::violation, r.t_vertices, "vertex", "on an edge that its other side has whole"},
+        {"t_vertices", Kind::violation, r.t_vertices, "vertex",
+         "on an edge that another of its triangles has whole"},
         {"cracks", Kind::violation, r.cracks, "edge",
-         "other places where the surface is not closed: an edge without one triangle on each side, or whose "
-         "sides lie "
-         "at different displaced positions"},
-        {"duplicate_triangles", Kind::violation, r.duplicate_triangles, "triangle", "emitted more than once"},
-        {"area_mismatches", Kind::violation, r.area_mismatches, "triangle",
-         "base triangles whose triangles' texture areas do not add up exactly to what their border encloses"},
-        {"areas_beyond_rounding", Kind::violation, r.areas_beyond_rounding, "triangle",
-         "base triangles whose subdivided border encloses another area than they do, by more than rounding "
-         "explains"},
+         "without the triangles they should have on either side"},
+        {"inconsistent_vertices", Kind::violation, r.inconsistent_vertices, "vertex",
+         "that differ from one triangle to another"},
+        {"missing_triangles", Kind::violation, r.missing_triangles, "triangle",
+         "that the datapath by itself makes, and the machine did not emit"},
+        {"extra_triangles", Kind::violation, r.extra_triangles, "triangle",
+         "emitted, and not made by the datapath by itself"},
+        {"differing_triangles", Kind::violation, r.differing_triangles, "triangle",
+         "emitted in their place, but not bit for bit"},
         {"generation_violations", Kind::violation, r.generation_violations, "triangle",
          "with a vertex beyond the generation limit"},
-        {"inconsistent_vertices", Kind::violation, r.inconsistent_vertices, "vertex",
-         "different displaced position, normal or generation in different triangles"},
-        {"foreign_triangles", Kind::violation, r.foreign_triangles, "triangle",
-         "of a base triangle that does not exist"},
-        {"collapsed_unexplained", Kind::violation, r.collapsed - r.collapsed_explained, "triangle",
-         "no texture area, and rounding does not explain it"},
-        {"turned_over_unexplained", Kind::violation, r.turned_over - r.turned_over_explained, "triangle",
-         "turned over in texture space, and rounding does not explain it"},
         {"collapsed", Kind::rounding, r.collapsed, "triangle", "no area in texture space"},
-        {"collapsed_explained", Kind::rounding, r.collapsed_explained, "triangle",
-         "of these: the base triangle has none either, or it is thinner than midpoints' rounding"},
         {"turned_over", Kind::rounding, r.turned_over, "triangle", "turned over in texture space"},
-        {"turned_over_explained", Kind::rounding, r.turned_over_explained, "triangle",
-         "of these: thinner than midpoints' rounding"},
         {"displaced_collapsed", Kind::rounding, r.displaced_collapsed, "triangle",
          "two corners at one displaced position"},
-        {"coincident_vertices", Kind::rounding, r.coincident_vertices, "vertex",
-         "on collapsed or turned over triangles: different vertices rounded to one position and texture "
-         "coordinate"},
-        {"coincident_edges", Kind::rounding, r.coincident_edges, "edge",
-         "of more than two triangles, which still close in pairs, or cannot be told apart"},
         {"open_texture_seam_edges", Kind::input, r.open_texture_seam_edges, "edge",
          "emitted edges along texture seams that do not meet: the map is not continuous across the seam"},
         {"open_crease_edges", Kind::input, r.open_crease_edges, "edge",
@@ -95,36 +123,31 @@ std::vector<InvariantFigure> invariant_figures(const InvariantResult& r) {
     };
 }
 
-InvariantResult check_invariants(const EmittedMesh& mesh,
-                                 const std::vector<datapath::Triangle>& base_triangles,
-                                 const datapath::Registers& registers) {
-    if (std::max(mesh.triangles.size(), base_triangles.size()) > most_triangles)
-        throw ResourceError("check.invariants: cannot check more than " + std::to_string(most_triangles) +
-                            " triangles; set it to false for a run of this size");
+InvariantResult check_invariants(const EmittedMesh& mesh, const MachineSetup& setup) {
+    BareRecursion bare(setup);
+    Walk walk{Lineage(setup, bare),
+              EmittedDifference(mesh, setup.base_triangles.size(), setup.registers.formats)};
     InvariantResult result;
-    FirstViolation first;
+    result.edges = bare.walk(walk);
+    walk.end();
+    const LineageResult lineage = walk.lineage.finish();
     result.triangles = mesh.triangles.size();
-    result.base_triangles = base_triangles.size();
-
-    BaseEdgeChains chains(base_triangles.size());
-    {
-        const Patches patches = sort_into_patches(mesh, base_triangles.size());
-        result.foreign_triangles = mesh.triangles.size() - patches.order.size();
-        PatchCheck check(mesh, base_triangles, registers, result, first, chains);
-        for (std::uint32_t base = 0; base < base_triangles.size(); ++base)
-            check.check(base, patches.order.data() + patches.offsets[base],
-                        patches.offsets[base + 1] - patches.offsets[base]);
-    }
-    check_base_edges(mesh, base_triangles, registers, chains, result, first);
-    if (result.foreign_triangles > 0)
-        first.offer(base_triangles.size(), [&] {
-            const auto stray =
-                std::find_if(mesh.triangles.begin(), mesh.triangles.end(),
-                             [&](const auto& triangle) { return triangle.base >= base_triangles.size(); });
-            return "a triangle names base triangle " + std::to_string(stray->base) + ", of " +
-                   std::to_string(base_triangles.size());
-        });
-    result.first_violation = first.text();
+    result.base_triangles = setup.base_triangles.size();
+    result.base_edges = lineage.base_edges;
+    result.border_base_edges = lineage.border_base_edges;
+    result.non_manifold_base_edges = lineage.non_manifold_base_edges;
+    result.texture_seams = lineage.texture_seams;
+    result.creases = lineage.creases;
+    result.t_vertices = lineage.t_vertices;
+    result.cracks = lineage.cracks;
+    result.inconsistent_vertices = lineage.unlike_vertices;
+    result.missing_triangles = walk.difference.missing();
+    result.extra_triangles = walk.difference.extra();
+    result.differing_triangles = walk.difference.differing();
+    result.open_texture_seam_edges = lineage.open_texture_seam_edges;
+    result.open_crease_edges = lineage.open_crease_edges;
+    result.first_violation = lineage.first_fault.empty() ? walk.difference.first() : lineage.first_fault;
+    judge_triangles(mesh, setup, result);
     return result;
 }
 

@@ -109,9 +109,9 @@ std::string setup_text(const SetupResult& result) {
 
 std::string invariants_text(const InvariantResult& result) {
     std::string text = fmt::format(
-        "Invariants of the emitted mesh, on integers: {}. Violations must be 0; `rounding` and `input` "
-        "explain\n"
-        "themselves below.\n\n",
+        "Invariants: {}. The emitted mesh is the one that the datapath makes by itself, bit for bit, and "
+        "that "
+        "is closed, by\ndescent. Violations must be 0; `rounding` and `input` explain themselves below.\n\n",
         verdict(result.passed()));
     for (const InvariantFigure& figure : invariant_figures(result))
         text += fmt::format("  {:<28}{:>12}  {:<10} {}\n", figure.name, figure.value, kind_name(figure.kind),

@@ -7,15 +7,13 @@
 #include "testbench/check/mesh/invariants.h"
 #include "testbench/common/hash.h"
 #include "testbench/common/random.h"
-#include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/simulation.h"
-#include "testbench/prove/random_machines/lineage_check.h"
 
 namespace tessera {
 
 namespace {
 
-/// The sum over the triangles: the same in any order. The bare recursion and the machine set `culled` alike.
+/// The sum over the triangles: the same in any order.
 std::uint64_t digest_of(const EmittedMesh& mesh) {
     std::uint64_t sum = 0;
     for (const EmittedTriangle& triangle : mesh.triangles) {
@@ -75,7 +73,7 @@ CaseResult run_case(const RandomCase& random_case, Mode mode) {
         fail(stuck);
 
     const EmittedMesh& mesh = simulation.monitor.mesh;
-    const InvariantResult invariants = check_invariants(mesh, setup.base_triangles, setup.registers);
+    const InvariantResult invariants = check_invariants(mesh, setup);
     if (!invariants.passed())
         fail(fmt::format("{} violations of the invariants: {}", invariants.violations(),
                          invariants.first_violation));
@@ -87,37 +85,22 @@ CaseResult run_case(const RandomCase& random_case, Mode mode) {
     if (conformance.mismatches > 0)
         fail(fmt::format("{} mismatches: {}", conformance.mismatches, conformance.first_mismatch));
 
-    EmittedMesh bare_mesh;
-    const std::uint64_t bare_edges = BareRecursion(setup).run(bare_mesh);
     result.mesh_digest = digest_of(mesh);
-    if (simulation.pipeline.edges_tested() != bare_edges || conformance.edges != bare_edges)
+    if (simulation.pipeline.edges_tested() != invariants.edges || conformance.edges != invariants.edges)
         fail(
             fmt::format("the machine tested {} edges, the scoreboard saw {}, the datapath by itself needs {}",
-                        simulation.pipeline.edges_tested(), conformance.edges, bare_edges));
-    if (result.mesh_digest != digest_of(bare_mesh))
-        fail(fmt::format("the {} triangles are not the {} of the datapath by itself", mesh.triangles.size(),
-                         bare_mesh.triangles.size()));
-
-    // The same for both modes, which leave the same mesh.
-    const LineageResult lineage = mode == Mode::functional ? check_lineage(setup) : LineageResult{};
-    if (!lineage.passed())
-        fail("by descent: " + lineage.first_fault);
-    if (mode == Mode::functional &&
-        (lineage.edges != bare_edges || lineage.triangles != bare_mesh.triangles.size()))
-        fail(fmt::format(
-            "by descent there are {} edges and {} triangles, the datapath by itself has {} and {}",
-            lineage.edges, lineage.triangles, bare_edges, bare_mesh.triangles.size()));
+                        simulation.pipeline.edges_tested(), conformance.edges, invariants.edges));
 
     CaseFigures& figures = result.figures;
     figures.runs = 1;
     figures.base_triangles = setup.base_triangles.size();
     figures.triangles = mesh.triangles.size();
     figures.edges = conformance.edges;
-    figures.cracks = invariants.cracks + lineage.cracks + lineage.unlike_vertices;
-    figures.t_vertices = invariants.t_vertices + lineage.t_vertices;
+    figures.cracks = invariants.cracks;
+    figures.t_vertices = invariants.t_vertices;
     figures.other_violations = invariants.violations() - invariants.cracks - invariants.t_vertices;
-    figures.collapsed = invariants.collapsed_explained;
-    figures.turned_over = invariants.turned_over_explained;
+    figures.collapsed = invariants.collapsed;
+    figures.turned_over = invariants.turned_over;
     figures.open_input_edges = invariants.open_texture_seam_edges + invariants.open_crease_edges;
     figures.flips = conformance.flipped_edges;
     figures.mismatches = conformance.mismatches;

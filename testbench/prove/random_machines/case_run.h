@@ -14,9 +14,8 @@ struct CaseFigures {
     std::uint64_t edges = 0;  ///< evaluated
     std::uint64_t cracks = 0;
     std::uint64_t t_vertices = 0;
-    std::uint64_t other_violations =
-        0;  ///< of the invariants, collapsed and turned over triangles not explained included
-    std::uint64_t collapsed = 0;         ///< explained: rounding's, or the input's own
+    std::uint64_t other_violations = 0;  ///< of the invariants
+    std::uint64_t collapsed = 0;         ///< rounding's doing, or the input's
     std::uint64_t turned_over = 0;       ///< likewise
     std::uint64_t open_input_edges = 0;  ///< at texture seams and creases of the input
     std::uint64_t flips = 0;       ///< edges, allowed: golden within the formats' bound of its threshold
@@ -31,7 +30,7 @@ struct CaseResult {
     CaseFigures figures;
     /// Of the emitted triangles, all there is of each, in any order.
     std::uint64_t mesh_digest = 0;
-    /// Empty: invariants and conformance hold, the run ended, and the mesh is that of the datapath by itself.
+    /// Empty: invariants and conformance hold, and the run ended.
     std::string failure;
 };
 

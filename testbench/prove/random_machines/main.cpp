@@ -14,7 +14,7 @@
 #include "testbench/prove/random_machines/case_process.h"
 
 // Runs random cases, seed by seed, in both modes, each run in a process of its own. Every run must end, satisfy the
-// invariants, conform to the golden model and leave the datapath's own mesh; both modes must leave the same.
+// invariants and conform to the golden model; both modes must leave the same mesh.
 // Exit codes as tessera's: 0 all did, 1 some did not, 2 usage.
 
 namespace {
@@ -36,7 +36,7 @@ void print_totals(std::uint64_t first, std::uint64_t count, std::uint64_t failed
                number(all.runs), number(all.triangles), number(all.base_triangles), number(all.edges),
                number(all.cycles), number(all.spilled));
     fmt::print(
-        "  allowed: {} flipped edges, {} collapsed and {} turned over triangles explained by rounding, {} "
+        "  allowed: {} flipped edges, {} collapsed and {} turned over triangles, {} "
         "pieces open at the input's seams and creases\n",
         number(all.flips), number(all.collapsed), number(all.turned_over), number(all.open_input_edges));
     fmt::print("{} cases: {} cracks, {} T-vertices, {} other violations, {} mismatches, {} failed\n",

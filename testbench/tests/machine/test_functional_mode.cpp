@@ -48,7 +48,7 @@ void check_run(const MachineSetup& setup, Simulation& simulation) {
     CHECK(result.mismatches == 0);
     CHECK(result.passed(0.5));
     CHECK(result.edges == simulation.pipeline.edges_tested());
-    const InvariantResult invariants = check_invariants(mesh, setup.base_triangles, setup.registers);
+    const InvariantResult invariants = check_invariants(mesh, setup);
     INFO(invariants.first_violation);
     CHECK(invariants.passed());
     CHECK(invariants.collapsed == 0);

@@ -35,8 +35,7 @@ std::uint64_t expect_whole_run(const Job& job, bool splits = true) {
     const ConformanceResult result = scoreboard.result();
     INFO(result.first_mismatch);
     CHECK(result.mismatches == 0);
-    const InvariantResult invariants =
-        check_invariants(simulation.monitor.mesh, setup.base_triangles, setup.registers);
+    const InvariantResult invariants = check_invariants(simulation.monitor.mesh, setup);
     INFO(invariants.first_violation);
     CHECK(invariants.passed());
     BareRecursion bare(setup);

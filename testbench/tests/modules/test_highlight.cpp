@@ -63,8 +63,7 @@ void expect_conforming_mesh(const Job& job) {
     CHECK(result.mismatches == 0);
     CHECK(result.passed(0.5));
     CHECK(result.edges == simulation.pipeline.edges_tested());
-    const InvariantResult invariants =
-        check_invariants(simulation.monitor.mesh, setup.base_triangles, setup.registers);
+    const InvariantResult invariants = check_invariants(simulation.monitor.mesh, setup);
     INFO(invariants.first_violation);
     CHECK(invariants.passed());
     const auto& counts = simulation.pipeline.pass_or_tessellate.counts();

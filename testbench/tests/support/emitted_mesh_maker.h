@@ -12,7 +12,7 @@
 
 namespace tessera {
 
-/// The machine reduced to what the invariants look at: cuts by edge alone, and displaces by a function of t.
+/// A mesh that no datapath made: cut by edge alone, displaced by a function of t.
 struct MeshMaker {
     std::function<bool(const datapath::Vertex&, const datapath::Vertex&)> split;
     std::function<std::int32_t(const datapath::TexCoord&)> height;
@@ -72,14 +72,6 @@ struct MeshMaker {
         }
     }
 };
-
-/// Registers of a map of this size, for hand-made meshes.
-inline datapath::Registers registers_for(std::uint32_t width, std::uint32_t height) {
-    datapath::Registers registers;
-    registers.map.width = width;
-    registers.map.height = height;
-    return registers;
-}
 
 /// A grid of quads, cut from its (0,0) to its (1,1) corner. vertex(i, j) for i = 0..columns, j = 0..rows.
 template <class MakeVertex>

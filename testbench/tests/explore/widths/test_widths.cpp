@@ -63,7 +63,7 @@ void expect_the_simulation_figures(const Job& job) {
     EmittedMesh& mesh = simulation.monitor.mesh;
     mesh.sort();
     const ConformanceResult conformance = scoreboard.result();
-    const InvariantResult invariants = check_invariants(mesh, setup.base_triangles, setup.registers);
+    const InvariantResult invariants = check_invariants(mesh, setup);
     const EndToEndResult end_to_end = compare_end_to_end(setup, golden, mesh);
 
     CHECK(run.triangles == mesh.triangles.size());

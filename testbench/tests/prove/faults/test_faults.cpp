@@ -111,8 +111,7 @@ Outcome run_here(Mode mode, const std::optional<Fault>& fault) {
         const WorkResult conserved = work_result(work, simulation);
         if (!conserved.passed())
             outcome.catch_by('W', conserved.first_violation);
-        const InvariantResult invariants =
-            check_invariants(simulation.monitor.mesh, setup.base_triangles, setup.registers);
+        const InvariantResult invariants = check_invariants(simulation.monitor.mesh, setup);
         if (!invariants.passed())
             outcome.catch_by('I', invariants.first_violation);
     }

@@ -1,0 +1,149 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "modules/datapath/triangle_pass.h"
+#include "modules/datapath/triangulate.h"
+#include "testbench/machine/bare_recursion.h"
+#include "testbench/machine/machine_setup.h"
+
+namespace tessera {
+
+struct LineageResult {
+    std::uint64_t base_edges = 0;               ///< distinct by P; those of zero length left out
+    std::uint64_t border_base_edges = 0;        ///< of one base triangle
+    std::uint64_t non_manifold_base_edges = 0;  ///< of more than two
+    std::uint64_t texture_seams = 0;            ///< base edges whose sides differ in t: not joined
+    std::uint64_t creases = 0;  ///< base edges whose sides agree in t, not in N, T: not joined
+    std::uint64_t open_texture_seam_edges = 0;  ///< pieces of them that do not meet, on the finer side
+    std::uint64_t open_crease_edges = 0;        ///< likewise
+    std::uint64_t cracks = 0;                   ///< edges without the triangles they should have
+    std::uint64_t t_vertices = 0;               ///< on an edge that is whole in another triangle
+    std::uint64_t unlike_vertices = 0;          ///< that differ from one triangle to another
+    std::string first_fault;                    ///< empty: none
+};
+
+/// Whether a tessellation is closed, decided by descent, without looking at places: a visitor of BareRecursion::walk.
+///
+/// A vertex is known by the edge it was inserted on, so two that rounding puts on one place remain two. Base vertices
+/// are one if they agree in P, N, T, handedness, and in t but for whole periods of a repeated axis; base edges are one
+/// (*joined* sides) if their two ends are, and the way in t from one to the other. Then
+///   - a piece of a base edge must have the triangles on either side that its base edge has; an edge inside a base
+///     triangle one on each: else a crack;
+///   - no edge may be split by one of its triangles and whole in another: a T-vertex;
+///   - a vertex must be the same, all it carries but N's and whole periods of t, in all triangles that have it.
+/// Exact for any formats: nothing is excused. What comes apart between sides that are not joined is the input's doing:
+/// its map, or its normals, are not continuous there.
+///
+/// Memory: about 200 bytes a base triangle, and 130 a triangle emitted of the base triangle at hand.
+class Lineage {
+  public:
+    /// `setup` must outlive it; `bare` is of the same.
+    Lineage(const MachineSetup& setup, BareRecursion& bare);
+
+    /// After the walk.
+    LineageResult finish();
+
+    using Number = std::uint32_t;  ///< of a vertex or an edge, see Numbered
+    /// An edge as a triangle has it.
+    struct Side {
+        Number edge;
+        bool along;  ///< the triangle has it in the edge's own direction
+        Side turned() const { return {edge, !along}; }
+    };
+    struct Note {
+        std::array<Number, 3> vertices;
+        std::array<Side, 3> edges;
+    };
+    Note begin(const datapath::Triangle& base);
+    void decided(const datapath::TrianglePass& pass, const datapath::ChildIndices& children,
+                 const Note& note);
+    Note child(const std::array<std::uint8_t, 3>& corners);
+    void finished(const datapath::Triangle&, bool) {}
+
+  private:
+    static constexpr Number none = UINT32_MAX;
+
+    /// Items of base edges, which are kept, and of the inside of the base triangle at hand.
+    template <class Item>
+    class Numbered {
+      public:
+        Number add(bool inside, const Item& item) {
+            std::vector<Item>& items = inside ? inside_ : kept_;
+            items.push_back(item);
+            return static_cast<Number>(items.size() - 1) | (inside ? inside_bit : 0);
+        }
+        Item& operator[](Number number) {
+            return is_inside(number) ? inside_[number & ~inside_bit] : kept_[number];
+        }
+        const Item& operator[](Number number) const {
+            return is_inside(number) ? inside_[number & ~inside_bit] : kept_[number];
+        }
+        static bool is_inside(Number number) { return (number & inside_bit) != 0; }
+        const std::vector<Item>& kept() const { return kept_; }
+        const std::vector<Item>& inside() const { return inside_; }
+        void forget_inside() { inside_.clear(); }
+
+      private:
+        static constexpr Number inside_bit = Number{1} << 31;
+        std::vector<Item> kept_, inside_;
+    };
+
+    struct KnownVertex {
+        datapath::Vertex vertex;  // as first seen
+        bool unlike = false;
+    };
+    /// How many triangles have an edge along its direction, and against it.
+    struct Sides {
+        std::uint32_t along = 0, against = 0;
+        std::uint32_t& of(bool is_along) { return is_along ? along : against; }
+        friend bool operator==(const Sides& a, const Sides& b) {
+            return a.along == b.along && a.against == b.against;
+        }
+    };
+    struct Edge {
+        Number from, to;
+        Number middle = none;  // none: nobody has split it
+        Number pieces = none;  // from..middle; the next is middle..to
+        Sides wanted, found;   // found: of triangles that keep it whole
+    };
+    /// The way in t from one end of a base edge to the other.
+    struct Way {
+        std::int64_t u, v;
+        friend bool operator==(const Way& a, const Way& b) { return a.u == b.u && a.v == b.v; }
+        Way turned() const { return {-u, -v}; }
+    };
+
+    void name_base_mesh(BareRecursion& bare);
+    std::uint64_t within_period(std::uint32_t value, std::uint64_t period) const;
+    bool same_texture(const datapath::TexCoord& a, const datapath::TexCoord& b) const;
+    void meet(Number vertex, const datapath::Vertex& seen);
+    void split(const Side& side, const datapath::Vertex& inserted);
+    void judge(const std::vector<Edge>& edges);
+    void judge_patch();
+    void compare_base_edges();
+    std::uint64_t open_pieces(Side a, Side b) const;
+    std::uint64_t pieces_of(Number edge) const;
+    const datapath::Vertex& begin_of(const Side& side) const;
+    template <class Text>
+    void fault(std::uint64_t& count, Text&& text);
+    std::string vertex_text(const datapath::Vertex& vertex) const;
+    std::string where() const;
+
+    const MachineSetup& setup_;
+    std::uint64_t period_u_ = 0, period_v_ = 0;  // in LSB; 0: the axis does not repeat
+    LineageResult result_;
+    Numbered<KnownVertex> vertices_;
+    Numbered<Edge> edges_;
+    std::vector<Way> ways_;         // of the base edges, which are the first of the edges that are kept
+    std::vector<Note> base_notes_;  // of the base triangles
+    std::uint32_t base_ = none;     // at hand
+    // of the pass decided last, by the six indices of its corners and midpoints
+    std::array<Number, 6> corners_{};
+    std::array<std::array<Side, 6>, 6> sides_{};
+};
+
+}  // namespace tessera
