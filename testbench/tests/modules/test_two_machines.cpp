@@ -5,6 +5,7 @@
 
 #include "testbench/tests/modules/named_machine.h"
 #include "testbench/tests/support/job_results.h"
+#include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/timed_checks.h"
 
 // Machines of different clocks, modes and designs in one simulation: each does what it does alone.
@@ -20,21 +21,12 @@ MachineSetup with_clock(MachineSetup setup, unsigned picoseconds) {
 }
 
 Job three_tests_units_job() {
-    Job job = full_split_job(3, 3);
-    job.hardware.tests_units = 3;
-    job.hardware.queue_capacity = 16;
-    return job;
+    return with_settings(full_split_job(3, 3), "hardware.tests_units=3 hardware.queue_capacity=16");
 }
 
 const JobResult& default_result() {
     return *std::find_if(job_results.begin(), job_results.end(),
                          [](const JobResult& each) { return std::string(each.name) == "half_donut"; });
-}
-
-void expect_mesh(const NamedMachine& machine, const MachineSetup& setup) {
-    INFO(machine.name());
-    CHECK(machine.finished());
-    CHECK((keys(machine.monitor.mesh) == keys(bare_mesh(setup))));  // not to be printed
 }
 
 /// Once, in the last cycle of its own clock.
@@ -65,8 +57,8 @@ TEST_CASE("two machines: a timed one of 5 ns, and a functional one") {
     NamedMachine timed("timed", timed_setup);
     NamedMachine functional("functional", functional_setup);
     sc_core::sc_start();
-    expect_mesh(timed, timed_setup);
-    expect_mesh(functional, functional_setup);
+    expect_bare_mesh(timed);
+    expect_bare_mesh(functional);
     CHECK(timed.cycles() == default_result().cycles);
     CHECK(timed.monitor.mesh.triangles.size() == default_result().triangles);
     CHECK(functional.pipeline.clock.last_cycle() == 0);
@@ -83,8 +75,8 @@ TEST_CASE("two machines: timed ones of 5 ns and of 3.2 ns with three Tessellatio
     NamedMachine slow("slow", slow_setup);
     NamedMachine fast("fast", fast_setup);
     sc_core::sc_start();
-    expect_mesh(slow, slow_setup);
-    expect_mesh(fast, fast_setup);
+    expect_bare_mesh(slow);
+    expect_bare_mesh(fast);
     CHECK(slow.cycles() == default_result().cycles);
     CHECK(fast.cycles() == alone.cycles);
     CHECK(slow.pipeline.clock.period() == sc_core::sc_time(5000, sc_core::SC_PS));
@@ -115,7 +107,7 @@ TEST_CASE("two machines: one whose queue overflows halts alone, one whose queue 
         CHECK(stuck->drained.empty());
         CHECK(stuck->cycles() * stuck->pipeline.clock.period().value() < alone.drained);
     }
-    expect_mesh(sound, sound_setup);
+    expect_bare_mesh(sound);
     CHECK(sound.cycles() == alone.cycles);
     expect_drained_in_last_cycle(sound);
 }
