@@ -101,9 +101,15 @@ const CaseTable whole(
         {"all of it behind the camera: no edge is seen, none splits",
          "camera.eye=[0,-3,0.5] camera.target=[0,-6,0.5]"},
         {"all of it beyond the near plane's reach: likewise", "camera.near_plane=1e6"},
-        {"all of it seen from behind and culled: nothing is lit, the mesh is whole",
-         "map.source=constant camera.eye=[0,-3.2,-2.4] hardware.culling=back"},
     },
     [](const Row& row) { expect_whole_run(row, false); });
 
 }  // namespace
+
+TEST_CASE("limits: all of it seen from behind and culled: nothing is lit, the mesh is whole") {
+    const CheckedRun run(
+        with_settings(timed_job(), "map.source=constant camera.eye=[0,-3.2,-2.4] hardware.culling=back"));
+    CHECK(run.counts.edges_split == 0);
+    CHECK(run.counts.culled == run.setup.base_triangles.size());
+    CHECK(run.simulation.rasteriser.triangles() == 0);
+}

@@ -1,6 +1,4 @@
-#include <algorithm>
 #include <catch2/catch.hpp>
-#include <cstdint>
 #include <string>
 
 #include "testbench/tests/modules/named_machine.h"
@@ -15,19 +13,12 @@ using namespace tessera::testing;
 
 namespace {
 
-MachineSetup with_clock(MachineSetup setup, unsigned picoseconds) {
-    setup.design.timing.cycle_picoseconds = picoseconds;
-    return setup;
-}
-
 Job three_tests_units_job() {
-    return with_settings(full_split_job(3, 3), "hardware.tests_units=3 hardware.queue_capacity=16");
+    return with_settings(full_split_job(3, 3),
+                         "timing.clock_period=3200 hardware.tests_units=3 hardware.queue_capacity=16");
 }
 
-const JobResult& default_result() {
-    return *std::find_if(job_results.begin(), job_results.end(),
-                         [](const JobResult& each) { return std::string(each.name) == "half_donut"; });
-}
+const JobResult& default_result = result_of("half_donut");
 
 /// Once, in the last cycle of its own clock.
 void expect_drained_in_last_cycle(const NamedMachine& machine) {
@@ -37,21 +28,18 @@ void expect_drained_in_last_cycle(const NamedMachine& machine) {
           machine.pipeline.clock.period() * static_cast<double>(machine.pipeline.clock.last_cycle()));
 }
 
-MachineSetup full_queue_setup(Overflow overflow) {
-    Job job = timed_job();
-    job.hardware.queue_capacity = 8;
-    job.hardware.queue_overflow = overflow;
-    return setup_of(job);
+/// A queue that fills up; `overflow`: what happens then.
+MachineSetup full_queue_setup(const std::string& overflow) {
+    return setup_of(with_settings(
+        timed_job(), "hardware.queue_capacity=8 hardware.queue_overflow=" + overflow));
 }
 
 }  // namespace
 
 TEST_CASE("two machines: a timed one of 5 ns, and a functional one") {
     const MachineSetup timed_setup = setup_of(timed_job());
-    Job job;
-    job.mode = Mode::functional;
-    job.hardware.tests_units = 3;
-    const MachineSetup functional_setup = with_clock(setup_of(job), 3200);
+    const MachineSetup functional_setup =
+        setup_of(with_settings({}, "mode=functional hardware.tests_units=3 timing.clock_period=3200"));
     const AloneResult alone = run_alone(functional_setup);
 
     NamedMachine timed("timed", timed_setup);
@@ -59,8 +47,8 @@ TEST_CASE("two machines: a timed one of 5 ns, and a functional one") {
     sc_core::sc_start();
     expect_bare_mesh(timed);
     expect_bare_mesh(functional);
-    CHECK(timed.cycles() == default_result().cycles);
-    CHECK(timed.monitor.mesh.triangles.size() == default_result().triangles);
+    CHECK(timed.cycles() == default_result.cycles);
+    CHECK(timed.monitor.mesh.triangles.size() == default_result.triangles);
     CHECK(functional.pipeline.clock.last_cycle() == 0);
     expect_drained_in_last_cycle(timed);
     CHECK(functional.drained.back().value() == alone.drained);
@@ -69,7 +57,7 @@ TEST_CASE("two machines: a timed one of 5 ns, and a functional one") {
 
 TEST_CASE("two machines: timed ones of 5 ns and of 3.2 ns with three Tessellation Tests units") {
     const MachineSetup slow_setup = setup_of(timed_job());
-    const MachineSetup fast_setup = with_clock(setup_of(three_tests_units_job()), 3200);
+    const MachineSetup fast_setup = setup_of(three_tests_units_job());
     const AloneResult alone = run_alone(fast_setup);
 
     NamedMachine slow("slow", slow_setup);
@@ -77,7 +65,7 @@ TEST_CASE("two machines: timed ones of 5 ns and of 3.2 ns with three Tessellatio
     sc_core::sc_start();
     expect_bare_mesh(slow);
     expect_bare_mesh(fast);
-    CHECK(slow.cycles() == default_result().cycles);
+    CHECK(slow.cycles() == default_result.cycles);
     CHECK(fast.cycles() == alone.cycles);
     CHECK(slow.pipeline.clock.period() == sc_core::sc_time(5000, sc_core::SC_PS));
     CHECK(fast.pipeline.clock.period() == sc_core::sc_time(3200, sc_core::SC_PS));
@@ -88,9 +76,9 @@ TEST_CASE("two machines: timed ones of 5 ns and of 3.2 ns with three Tessellatio
 }
 
 TEST_CASE("two machines: one whose queue overflows halts alone, one whose queue stalls waits alone") {
-    const MachineSetup overflow_setup = full_queue_setup(Overflow::error);
-    const MachineSetup stall_setup = full_queue_setup(Overflow::stall);
-    const MachineSetup sound_setup = with_clock(setup_of(three_tests_units_job()), 3200);
+    const MachineSetup overflow_setup = full_queue_setup("error");
+    const MachineSetup stall_setup = full_queue_setup("stall");
+    const MachineSetup sound_setup = setup_of(three_tests_units_job());
     const AloneResult alone = run_alone(sound_setup);
 
     NamedMachine overflowing("overflowing", overflow_setup);

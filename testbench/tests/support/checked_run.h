@@ -30,7 +30,7 @@ struct CheckedRun {
         CHECK(invariants.passed());
         const BareRun bare(setup);
         CHECK(bare.edges == pipeline.edges_tested());
-        expect_mesh(mesh_without_culling(), bare.mesh);
+        expect_mesh(mesh, bare.mesh);
         CHECK(counts.finished == mesh.triangles.size());
         CHECK(counts.finished == setup.base_triangles.size() + counts.edges_split);
         CHECK(simulation.rasteriser.triangles() + counts.culled == counts.finished);
@@ -50,16 +50,6 @@ struct CheckedRun {
     const PassOrTessellate::Counts& counts = pipeline.pass_or_tessellate.counts();
     ConformanceResult conformance;
     InvariantResult invariants;
-
-  private:
-    /// The bare recursion does not cull.
-    EmittedMesh mesh_without_culling() const {
-        EmittedMesh result = mesh;
-        if (setup.registers.back_face_culling)
-            for (EmittedTriangle& triangle : result.triangles)
-                triangle.culled = false;
-        return result;
-    }
 };
 
 }  // namespace tessera::testing
