@@ -2,6 +2,7 @@
 #include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -30,6 +31,39 @@ namespace {
 
 std::string validate_error_of(const Job& job) {
     return error_of([&] { validate(job); });
+}
+
+/// Something a user wrote, and all that the message must say; nothing: it is accepted.
+struct Row {
+    std::string input;
+    std::vector<std::string> says;
+};
+
+void expect(const Row& row, const std::string& error) {
+    CAPTURE(row.input, error);
+    CHECK(error.empty() == row.says.empty());
+    for (const std::string& part : row.says)
+        CHECK_THAT(error, Contains(part));
+}
+
+/// Of the text of a job file.
+void expect_of_file(const Row& row) {
+    expect(row, parse_error_of(row.input));
+}
+void expect_whole(const std::string& input, const std::string& message) {
+    INFO(input);
+    CHECK(parse_error_of(input) == message);
+}
+
+/// Settings one after another, separated by "; ", and what validate() says of them together.
+void expect_of_settings(const Row& row) {
+    Job job;
+    for (std::size_t from = 0; from < row.input.size();) {
+        const std::size_t end = std::min(row.input.find("; ", from), row.input.size());
+        apply_setting(job, row.input.substr(from, end - from));
+        from = end + 2;
+    }
+    expect(row, validate_error_of(job));
 }
 
 }  // namespace
@@ -100,61 +134,68 @@ TEST_CASE("every number's range holds at its ends and refuses beyond them") {
 }
 
 TEST_CASE("mistyped names are reported with place and suggestion") {
-    CHECK_THAT(parse_error_of("[mesh]\nrows = 2\n\n  colums = 3\n"),
-               Equals("job.toml:4:3: unknown key `mesh.colums`; did you mean `mesh.columns`?"));
-    CHECK_THAT(parse_error_of("mesh.colums = 3"),
-               Equals("job.toml:1:6: unknown key `mesh.colums`; did you mean `mesh.columns`?"));
-    CHECK_THAT(parse_error_of("[mehs]\nrows = 2\n"), Contains("unknown table `mehs`; did you mean `mesh`?"));
-    CHECK_THAT(parse_error_of("[mesh]\naddress_u = \"clamp\"\n"), Contains("did you mean `map.address_u`?"));
-    CHECK_THAT(parse_error_of("queue_order = \"lifo\"\n"), Contains("did you mean `hardware.queue_order`?"));
-    CHECK_THAT(parse_error_of("\"mesh.rows\" = 2\n"),
-               Contains("unknown key `\"mesh.rows\"`; did you mean `mesh.rows`?"));
-    CHECK_THAT(parse_error_of("xyzzyplugh = 2\n"),
-               Contains("unknown key `xyzzyplugh`; `tessera keys` lists"));
-    CHECK_THAT(parse_error_of("[[mesh]]\nrows = 2\n"), Contains("`mesh` is an array of 1"));
-    CHECK_THAT(parse_error_of("mesh = 3\n"), Contains("`mesh` is 3, an integer") && Contains("write [mesh]"));
-    CHECK_THAT(parse_error_of("[mesh.rows]\nx = 2\n"),
-               Contains("`mesh.rows` is a table; wanted is an integer"));
-    CHECK_THAT(parse_error_of("[mesh.more]\nx = 2\n"), Contains("unknown table `mesh.more`"));
-    CHECK_THAT(parse_error_of("mesh.camera = {eye = [1, 2, 3]}\n"),
-               Contains("unknown table `mesh.camera`; did you mean the group `camera`?") &&
-                   Contains("write [camera]") && Contains("eye, target, "));
-    CHECK_THAT(parse_error_of("camera = {eye = [1, 2, 3]}\n"), Equals(""));
-    CHECK_THAT(parse_error_of("\"\" = 1\n"), Contains("unknown key `\"\"`"));
-    CHECK_THAT(parse_error_of("folder = \"x\"\n"), Contains("unknown key `folder`"));
-    CHECK_THAT(parse_error_of("[mesh]\n\n[fault]\nkind = \"none\"\n"),
-               StartsWith("job.toml:3:1: unknown table `fault`"));
+    const std::string suggestion = "unknown key `mesh.colums`; did you mean `mesh.columns`?";
+    expect_whole("[mesh]\nrows = 2\n\n  colums = 3\n", "job.toml:4:3: " + suggestion);
+    expect_whole("mesh.colums = 3", "job.toml:1:6: " + suggestion);
+    const Row rows[] = {
+        {"[mehs]\nrows = 2\n", {"unknown table `mehs`; did you mean `mesh`?"}},
+        {"[mesh]\naddress_u = \"clamp\"\n", {"did you mean `map.address_u`?"}},
+        {"queue_order = \"lifo\"\n", {"did you mean `hardware.queue_order`?"}},
+        {"\"mesh.rows\" = 2\n", {"unknown key `\"mesh.rows\"`; did you mean `mesh.rows`?"}},
+        {"xyzzyplugh = 2\n", {"unknown key `xyzzyplugh`; `tessera keys` lists"}},
+        {"[[mesh]]\nrows = 2\n", {"`mesh` is an array of 1"}},
+        {"mesh = 3\n", {"`mesh` is 3, an integer", "write [mesh]"}},
+        {"[mesh.rows]\nx = 2\n", {"`mesh.rows` is a table; wanted is an integer"}},
+        {"[mesh.more]\nx = 2\n", {"unknown table `mesh.more`"}},
+        {"mesh.camera = {eye = [1, 2, 3]}\n",
+         {"unknown table `mesh.camera`; did you mean the group `camera`?", "write [camera]", "eye, target, "}},
+        {"camera = {eye = [1, 2, 3]}\n", {}},
+        {"\"\" = 1\n", {"unknown key `\"\"`"}},
+        {"folder = \"x\"\n", {"unknown key `folder`"}},
+        {"[mesh]\n\n[fault]\nkind = \"none\"\n", {"job.toml:3:1: unknown table `fault`"}},
+    };
+    for (const Row& row : rows)
+        expect_of_file(row);
     CHECK(nearest_name("mesh.file", {"mesh.file"}) == "mesh.file");
     CHECK(nearest_name(std::string(100000, 'a'), {"mesh.file"}).empty());
 }
 
 TEST_CASE("values are reported with place, value and what is wanted") {
-    CHECK_THAT(parse_error_of("[mesh]\ncolumns = 99999\n"),
-               Equals("job.toml:2:1: `mesh.columns` = 99999 is out of range; the range is 0 .. 2048 quads"));
-    CHECK_THAT(
-        parse_error_of("[mesh]\ncolumns = \"three\"\n"),
-        Equals("job.toml:2:1: `mesh.columns` is \"three\", a string; wanted is an integer, 0 .. 2048 quads"));
-    CHECK_THAT(parse_error_of("[mesh]\ncolumns = 3.0\n"), Contains("is 3.0, a floating-point number"));
-    CHECK_THAT(
-        parse_error_of("[map]\nsource = \"half-donut\"\n"),
-        Equals(
-            "job.toml:2:1: `map.source` = \"half-donut\" is not a choice; the choices are half_donut, text, "
-            "noise, constant, ramp, file; did you mean \"half_donut\"?"));
-    CHECK_THAT(parse_error_of("[map]\ntext = \"a\\u0000b\"\n"), Contains("without NUL"));
-    CHECK_THAT(parse_error_of("[map]\ntext = \"" + std::string(5000, 'x') + "\"\n"),
-               Contains("has 5000 bytes"));
-    CHECK_THAT(parse_error_of("[output]\nfolder = \"\"\n"), Contains("`output.folder` = \"\" is empty"));
-    const std::string two = parse_error_of("[output]\nply = 1\n[mesh]\nrows = -1\n");
-    CHECK_THAT(two, StartsWith("job.toml:2:1: `output.ply`") && Contains("\njob.toml:4:1: `mesh.rows`"));
+    expect_whole("[mesh]\ncolumns = 99999\n",
+                 "job.toml:2:1: `mesh.columns` = 99999 is out of range; the range is 0 .. 2048 quads");
+    expect_whole(
+        "[mesh]\ncolumns = \"three\"\n",
+        "job.toml:2:1: `mesh.columns` is \"three\", a string; wanted is an integer, 0 .. 2048 quads");
+    expect_whole(
+        "[map]\nsource = \"half-donut\"\n",
+        "job.toml:2:1: `map.source` = \"half-donut\" is not a choice; the choices are half_donut, text, "
+        "noise, constant, ramp, file; did you mean \"half_donut\"?");
+    const Row rows[] = {
+        {"[mesh]\ncolumns = 3.0\n", {"is 3.0, a floating-point number"}},
+        {"[map]\ntext = \"a\\u0000b\"\n", {"without NUL"}},
+        {"[map]\ntext = \"" + std::string(5000, 'x') + "\"\n", {"has 5000 bytes"}},
+        {"[output]\nfolder = \"\"\n", {"`output.folder` = \"\" is empty"}},
+        {"[output]\nply = 1\n[mesh]\nrows = -1\n",
+         {"job.toml:2:1: `output.ply`", "\njob.toml:4:1: `mesh.rows`"}},
+    };
+    for (const Row& row : rows)
+        expect_of_file(row);
 }
 
 TEST_CASE("TOML's own errors carry file, line and column") {
-    CHECK_THAT(parse_error_of("[mesh]\nrows = \n"), StartsWith("job.toml:2:") && Contains("not TOML"));
-    CHECK_THAT(parse_error_of("[mesh]\nrows = 1\nrows = 2\n"), StartsWith("job.toml:3:"));
-    CHECK_THAT(parse_error_of("[mesh]\n[map]\n[mesh]\n"), StartsWith("job.toml:3:"));
-    CHECK_THAT(parse_error_of("[mesh\n"), StartsWith("job.toml:1:"));
-    CHECK_THAT(parse_error_of("[mesh]\nrows = 99999999999999999999\n"), StartsWith("job.toml:2:"));
-    CHECK_THAT(parse_error_of("[mesh]\nwidth = 1e999\n"), StartsWith("job.toml:2:"));
+    const std::pair<std::string, std::string> rows[] = {
+        {"[mesh]\nrows = \n", "job.toml:2:"},
+        {"[mesh]\nrows = 1\nrows = 2\n", "job.toml:3:"},
+        {"[mesh]\n[map]\n[mesh]\n", "job.toml:3:"},
+        {"[mesh\n", "job.toml:1:"},
+        {"[mesh]\nrows = 99999999999999999999\n", "job.toml:2:"},
+        {"[mesh]\nwidth = 1e999\n", "job.toml:2:"},
+    };
+    for (const auto& [text, place] : rows) {
+        INFO(text);
+        CHECK_THAT(parse_error_of(text), StartsWith(place));
+    }
+    CHECK_THAT(parse_error_of("[mesh]\nrows = \n"), Contains("not TOML"));
 }
 
 TEST_CASE("files that are no job files") {
@@ -181,57 +222,43 @@ TEST_CASE("files that are no job files") {
 }
 
 TEST_CASE("keys that contradict each other") {
-    const auto error_with = [](const std::vector<std::string>& settings) {
-        Job job;
-        for (const std::string& setting : settings) {
-            apply_setting(job, setting);
-        }
-        return validate_error_of(job);
-    };
-    CHECK_THAT(error_with({"mesh.source=file"}), Contains("`mesh.file` is empty"));
-    CHECK_THAT(error_with({"mesh.source=patches"}),
-               Contains("`mesh.file` is empty, but `mesh.source` = \"patches\""));
-    CHECK_THAT(error_with({"mesh.source=patches", "mesh.file=a.txt"}), Equals(""));
-    CHECK_THAT(error_with({"mesh.file=a.obj", "mesh.source=plane"}),
-               Contains("`mesh.file` = \"a.obj\", but `mesh.source` = \"plane\""));
-    CHECK_THAT(error_with({"map.source=file"}), Contains("`map.file` is empty"));
-    CHECK_THAT(error_with({"map.file=a.exr", "map.source=half_donut"}),
-               Contains("`map.source` = \"half_donut\" reads no file"));
-    CHECK_THAT(error_with({"map.source=file", "map.file=a.exr", "mesh.source=file", "mesh.file=a.obj"}),
-               Equals(""));
-    CHECK_THAT(error_with({"mesh.source=cylinder", "mesh.columns=2"}),
-               Contains("a cylinder closes around itself"));
-    CHECK_THAT(error_with({"mesh.source=sphere", "mesh.rows=1"}), Contains("a sphere has 2 or more"));
-    CHECK_THAT(error_with({"map.source=text", "map.text="}), Contains("`map.text` is empty"));
-    CHECK_THAT(error_with({"formats.texture_integer=8", "map.width=256", "map.height=256"}), Equals(""));
-    CHECK_THAT(error_with({"formats.texture_integer=7"}),
-               Contains("`formats.texture_integer` = 7 addresses at most 128"));
-    CHECK_THAT(error_with({"camera.eye=[0, 0, 0]", "camera.target=[0, 0, 0]"}),
-               Contains("are the same point"));
-    CHECK_THAT(error_with({"camera.up=[0, 0, 0]"}),
-               Contains("`camera.up` = [0.0, 0.0, 0.0] has no direction"));
-    CHECK_THAT(error_with({"camera.eye=[0, 0, 5]", "camera.target=[0, 0, 0]", "camera.up=[0, 0, 1]"}),
-               Contains("is parallel to the view direction [0.0, 0.0, -5.0]"));
-    CHECK_THAT(error_with({"camera.eye=[0, 0, 5]", "camera.up=[0, 1, 0]"}), Equals(""));
-    CHECK_THAT(error_with({"hardware.light=[0, 0, 0]"}), Contains("`hardware.light`"));
-    CHECK_THAT(error_with({"formats.position_bits=16"}),
-               Contains("`formats.position_fraction` = 16 must be less than"));
-    CHECK_THAT(error_with({"formats.position_bits=17"}), Equals(""));
-    CHECK_THAT(error_with({"formats.screen_bits=8"}),
-               Contains("`formats.screen_fraction` = 8 must be less than"));
-    CHECK_THAT(error_with({"formats.normal_bits=15"}), Contains("`formats.normal_fraction` = 14 leaves 1"));
-    CHECK_THAT(error_with({"formats.generation_bits=3"}),
-               Contains("`formats.generation_bits` = 3 counts to 7"));
-    CHECK_THAT(error_with({"formats.generation_bits=3", "tests.generation_limit=7"}), Equals(""));
-    CHECK_THAT(error_with({"formats.screen_bits=18"}), Contains("reaches only 512 pixels"));
-    CHECK_THAT(error_with({"mesh.source=file", "map.source=file"}),
-               Contains("`mesh.file`") && Contains("\n`map.file`"));
+    const Row rows[] = {
+        {"mesh.source=file", {"`mesh.file` is empty"}},
+        {"mesh.source=patches", {"`mesh.file` is empty, but `mesh.source` = \"patches\""}},
+        {"mesh.source=patches; mesh.file=a.txt", {}},
+        {"mesh.file=a.obj; mesh.source=plane", {"`mesh.file` = \"a.obj\", but `mesh.source` = \"plane\""}},
+        {"map.source=file", {"`map.file` is empty"}},
+        {"map.file=a.exr; map.source=half_donut", {"`map.source` = \"half_donut\" reads no file"}},
+        {"map.source=file; map.file=a.exr; mesh.source=file; mesh.file=a.obj", {}},
+        {"mesh.source=file; map.source=file", {"`mesh.file`", "\n`map.file`"}},
+        {"mesh.source=cylinder; mesh.columns=2", {"a cylinder closes around itself"}},
+        {"mesh.source=sphere; mesh.rows=1", {"a sphere has 2 or more"}},
+        {"map.source=text; map.text=", {"`map.text` is empty"}},
 
-    CHECK_THAT(error_with({"map.fingerprint=0123456789abcdef"}), Contains("`map.file` is empty"));
-    CHECK_THAT(error_with({"map.source=file", "map.file=a.exr", "map.fingerprint=0123456789ABCDEF"}),
-               Contains("wanted are 16 hexadecimal digits"));
-    CHECK_THAT(error_with({"map.source=file", "map.file=a.exr", "map.fingerprint=0123456789abcdef"}),
-               Equals(""));
+        {"formats.texture_integer=8; map.width=256; map.height=256", {}},
+        {"formats.texture_integer=7", {"`formats.texture_integer` = 7 addresses at most 128"}},
+        {"formats.position_bits=16", {"`formats.position_fraction` = 16 must be less than"}},
+        {"formats.position_bits=17", {}},
+        {"formats.screen_bits=8", {"`formats.screen_fraction` = 8 must be less than"}},
+        {"formats.screen_bits=18", {"reaches only 512 pixels"}},
+        {"formats.normal_bits=15", {"`formats.normal_fraction` = 14 leaves 1"}},
+        {"formats.generation_bits=3", {"`formats.generation_bits` = 3 counts to 7"}},
+        {"formats.generation_bits=3; tests.generation_limit=7", {}},
+
+        {"camera.eye=[0, 0, 0]; camera.target=[0, 0, 0]", {"are the same point"}},
+        {"camera.up=[0, 0, 0]", {"`camera.up` = [0.0, 0.0, 0.0] has no direction"}},
+        {"camera.eye=[0, 0, 5]; camera.target=[0, 0, 0]; camera.up=[0, 0, 1]",
+         {"is parallel to the view direction [0.0, 0.0, -5.0]"}},
+        {"camera.eye=[0, 0, 5]; camera.up=[0, 1, 0]", {}},
+        {"hardware.light=[0, 0, 0]", {"`hardware.light`"}},
+
+        {"map.fingerprint=0123456789abcdef", {"`map.file` is empty"}},
+        {"map.source=file; map.file=a.exr; map.fingerprint=0123456789ABCDEF",
+         {"wanted are 16 hexadecimal digits"}},
+        {"map.source=file; map.file=a.exr; map.fingerprint=0123456789abcdef", {}},
+    };
+    for (const Row& row : rows)
+        expect_of_settings(row);
 
     Job out_of_range;  // made in code, past the checks of reading
     out_of_range.tests.normal_threshold = -1;

@@ -1,139 +1,98 @@
 #include <catch2/catch.hpp>
 #include <memory>
-#include <tuple>
+#include <string>
 #include <vector>
 
-#include "testbench/check/conformance/scoreboard.h"
-#include "testbench/check/mesh/invariants.h"
 #include "testbench/common/error.h"
-#include "testbench/machine/bare_recursion.h"
-#include "testbench/machine/inputs.h"
-#include "testbench/machine/simulation.h"
-#include "testbench/tests/machine/mesh_keys.h"
+#include "testbench/tests/support/case_table.h"
+#include "testbench/tests/support/checked_run.h"
+#include "testbench/tests/support/job_settings.h"
 
 // The whole machine, from the host's triangles to the rasteriser. SystemC elaborates once a process, so each case runs
 // one simulation.
 
 using namespace tessera;
-using tessera::testing::keys;
+using namespace tessera::testing;
 
 namespace {
 
-/// In functional mode; test_timed_*.cpp have the other.
-MachineSetup setup_of(Job job) {
-    job.mode = Mode::functional;
-    const Inputs inputs = load_inputs(job);
-    return make_setup(inputs.resolved.job, inputs.mesh, inputs.map);
+/// In functional mode; test_timed_mode.cpp has the other.
+MachineSetup functional_setup(const std::string& settings = "") {
+    return setup_of(with_settings({}, "mode=functional " + settings));
 }
 
-void check_run(const MachineSetup& setup, Simulation& simulation) {
-    GoldenInputs golden(setup);
-    Scoreboard scoreboard(setup.registers, golden);
-    simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
-    REQUIRE(simulation.run().empty());
-
-    const auto& counts = simulation.pipeline.pass_or_tessellate.counts();
-    const EmittedMesh& mesh = simulation.monitor.mesh;
-    CHECK(counts.finished == mesh.triangles.size());
-    CHECK(simulation.rasteriser.triangles() + counts.culled == counts.finished);
-    // conservation: every split adds one triangle
-    CHECK(counts.finished == setup.base_triangles.size() + counts.edges_split);
-    const auto& made = simulation.pipeline.tessellation.made_into();
-    CHECK(simulation.pipeline.triangle_queue.taken() == made[1] + 2 * made[2] + 3 * made[3] + 4 * made[4]);
-    CHECK(simulation.pipeline.get_triangle.queue_triangles() == simulation.pipeline.triangle_queue.taken());
-    CHECK(simulation.pipeline.saturations().total() == 0);
-
-    const ConformanceResult result = scoreboard.result();
-    INFO(result.first_mismatch);
-    CHECK(result.mismatches == 0);
-    CHECK(result.passed(0.5));
-    CHECK(result.edges == simulation.pipeline.edges_tested());
-    const InvariantResult invariants = check_invariants(mesh, setup);
-    INFO(invariants.first_violation);
-    CHECK(invariants.passed());
-    CHECK(invariants.collapsed == 0);
-    CHECK(invariants.turned_over == 0);
-    CHECK(invariants.open_texture_seam_edges == 0);
+/// No value saturated and no base edge stays open, as it must not where the formats are the paper's or no narrower than
+/// the mesh needs.
+void expect_sound(const CheckedRun& run) {
+    CHECK(run.conformance.passed(0.5));
+    CHECK(run.pipeline.saturations().total() == 0);
+    run.expect_closed_in_texture();
+    const auto& made = run.pipeline.tessellation.made_into();
+    const std::uint64_t children = made[1] + 2 * made[2] + 3 * made[3] + 4 * made[4];
+    CHECK(run.pipeline.triangle_queue.taken() == children);
+    CHECK(run.pipeline.get_triangle.queue_triangles() == children);
 }
 
-void expect_bare_mesh(const MachineSetup& setup) {
-    Simulation simulation(setup, 1'000'000);
-    check_run(setup, simulation);
-    BareRecursion bare(setup);
-    EmittedMesh mesh;
-    CHECK(bare.run(mesh) == simulation.pipeline.edges_tested());
-    CHECK(mesh.triangles.size() > setup.base_triangles.size());
-    CHECK((keys(mesh) == keys(simulation.monitor.mesh)));  // not to be printed
-}
+struct Row {
+    std::string name;
+    std::string settings;
+};
 
-void expect_bare_mesh(const Job& job) {
-    expect_bare_mesh(setup_of(job));
-}
+const CaseTable meshes(
+    "",
+    {
+        Row{"half donut: the pipeline's mesh is the bare datapath's, bit for bit", ""},
+        {"half donut, last in first out: the same mesh", "hardware.queue_order=lifo"},
+        {"half donut, many host triangles at a time: the same mesh", "hardware.queue_watermark=1000"},
+        {"half donut, memories read by transactions: the same mesh", "hardware.direct_memory=false"},
+        {"half donut, always the first diagonal", "hardware.triangulation=first"},
+        {"half donut, always the second diagonal", "hardware.triangulation=second"},
+        {"narrow formats: wide SAT entries, few fraction bits",
+         "formats.summed_height_bits=44 formats.normal_bits=12 formats.normal_fraction=10 "
+         "formats.position_bits=24 formats.position_fraction=12 formats.texture_fraction=10 "
+         "formats.displacement_bits=10"},
+        {"cylinder in repeat: the seam stays closed",
+         "mesh.source=cylinder map.source=noise map.width=64 map.height=33 map.address_u=repeat "
+         "displacement.scale=0.1 tests.view_threshold=8"},
+    },
+    [](const Row& row) {
+        const CheckedRun run(functional_setup(row.settings));
+        expect_sound(run);
+        CHECK(run.mesh.triangles.size() > 1000);
+    });
 
-/// A constant map must leave every triangle of the mesh whole.
-void expect_whole(Job job, double value) {
-    job.map.source = MapSource::constant;
-    job.map.value = value;
-    job.map.width = 97;
-    job.map.height = 61;
-    job.tests.summed_height_threshold = 0;
-    job.tests.view_threshold = 0;
-    const MachineSetup setup = setup_of(job);
-    Simulation simulation(setup, 1'000'000);
-    REQUIRE(simulation.run().empty());
-    CHECK(simulation.monitor.mesh.triangles.size() == setup.base_triangles.size());
-    CHECK(simulation.pipeline.pass_or_tessellate.counts().edges_split == 0);
-    CHECK(simulation.rasteriser.triangles() == setup.base_triangles.size());
-}
-
-Job cylinder_job() {
-    Job job;
-    job.mesh.source = MeshSource::cylinder;
-    return job;
-}
-
-Job sphere_job() {
-    Job job;
-    job.mesh.source = MeshSource::sphere;
-    return job;
-}
+const CaseTable constant_maps(
+    "constant map splits nothing: ",
+    {
+        Row{"plane, clamp", "map.value=0"},
+        {"plane, repeat", "map.value=1 map.address_u=repeat map.address_v=repeat"},
+        {"cylinder, clamp", "map.value=0.37 mesh.source=cylinder"},
+        {"cylinder, repeat", "map.value=1 mesh.source=cylinder map.address_u=repeat"},
+        {"sphere, clamp", "map.value=0.5 mesh.source=sphere"},
+        {"sphere, repeat", "map.value=0.001 mesh.source=sphere map.address_u=repeat"},
+    },
+    [](const Row& row) {
+        const CheckedRun run(functional_setup(
+            row.settings +
+            " map.source=constant map.width=97 map.height=61 tests.summed_height_threshold=0 "
+            "tests.view_threshold=0"));
+        CHECK(run.mesh.triangles.size() == run.setup.base_triangles.size());
+        CHECK(run.counts.edges_split == 0);
+        CHECK(run.simulation.rasteriser.triangles() == run.setup.base_triangles.size());
+    });
 
 }  // namespace
 
-TEST_CASE("half donut: the pipeline's mesh is the bare datapath's, bit for bit") {
-    expect_bare_mesh(Job{});
-}
-
 TEST_CASE("half donut, every item through its packed form: the same mesh") {
-    MachineSetup setup = setup_of(Job{});
+    MachineSetup setup = functional_setup();
     setup.design.packed_streams = true;
-    expect_bare_mesh(setup);
-}
-
-TEST_CASE("half donut, last in first out: the same mesh") {
-    Job job;
-    job.hardware.queue_order = QueueOrder::lifo;
-    expect_bare_mesh(job);
-}
-
-TEST_CASE("half donut, many host triangles at a time: the same mesh") {
-    Job job;
-    job.hardware.queue_watermark = 1000;
-    expect_bare_mesh(job);
-}
-
-TEST_CASE("half donut, memories read by transactions: the same mesh, reads and time") {
-    Job job;
-    job.hardware.direct_memory = false;
-    expect_bare_mesh(job);
+    expect_sound(CheckedRun(setup));
 }
 
 TEST_CASE("reads through DMI and by transactions are counted alike") {
-    Job job;
-    job.hardware.direct_memory = false;
-    const MachineSetup setup = setup_of(job);
+    const MachineSetup setup = functional_setup("hardware.direct_memory=false");
     Simulation simulation(setup, 1'000'000);
-    REQUIRE(simulation.run().empty());
+    run_to_the_end(simulation);
     const Pipeline& p = simulation.pipeline;
     CHECK(p.displace_vertex.displacement_map.reads() == p.displacement_map.transactions());
     CHECK(p.normal_map_reads() == p.normal_map.transactions());
@@ -142,78 +101,11 @@ TEST_CASE("reads through DMI and by transactions are counted alike") {
     CHECK(p.displacement_map.transactions() == p.edges_tested() + 3 * setup.base_triangles.size());
 }
 
-TEST_CASE("half donut, always the first diagonal") {
-    Job job;
-    job.hardware.triangulation = Triangulation::first;
-    expect_bare_mesh(job);
-}
-
-TEST_CASE("half donut, always the second diagonal") {
-    Job job;
-    job.hardware.triangulation = Triangulation::second;
-    expect_bare_mesh(job);
-}
-
 TEST_CASE("half donut, culling: Lighting gets fewer, the mesh stays whole") {
-    Job job;
-    job.hardware.culling = Culling::back;
-    job.camera.eye = {0, -4, 0.6};
-    const MachineSetup setup = setup_of(job);
-    Simulation simulation(setup, 1'000'000);
-    check_run(setup, simulation);
-    CHECK(simulation.pipeline.pass_or_tessellate.counts().culled > 0);
-    CHECK(simulation.rasteriser.triangles() > 0);
-}
-
-TEST_CASE("narrow formats: wide SAT entries, few fraction bits") {
-    Job job;
-    job.formats.summed_height_bits = 44;
-    job.formats.normal_bits = 12;
-    job.formats.normal_fraction = 10;
-    job.formats.position_bits = 24;
-    job.formats.position_fraction = 12;
-    job.formats.texture_fraction = 10;
-    job.formats.displacement_bits = 10;
-    expect_bare_mesh(job);
-}
-
-TEST_CASE("cylinder in repeat: the seam stays closed") {
-    Job job = cylinder_job();
-    job.map.source = MapSource::noise;
-    job.map.width = 64;
-    job.map.height = 33;
-    job.map.address_u = Addressing::repeat;
-    job.displacement.scale = 0.1;
-    job.tests.view_threshold = 8;
-    const MachineSetup setup = setup_of(job);
-    Simulation simulation(setup, 1'000'000);
-    check_run(setup, simulation);
-    CHECK(simulation.monitor.mesh.triangles.size() > 1000);
-}
-
-TEST_CASE("constant map splits nothing: plane, clamp") {
-    expect_whole(Job{}, 0);
-}
-TEST_CASE("constant map splits nothing: plane, repeat") {
-    Job job;
-    job.map.address_u = job.map.address_v = Addressing::repeat;
-    expect_whole(job, 1);
-}
-TEST_CASE("constant map splits nothing: cylinder, clamp") {
-    expect_whole(cylinder_job(), 0.37);
-}
-TEST_CASE("constant map splits nothing: cylinder, repeat") {
-    Job job = cylinder_job();
-    job.map.address_u = Addressing::repeat;
-    expect_whole(job, 1);
-}
-TEST_CASE("constant map splits nothing: sphere, clamp") {
-    expect_whole(sphere_job(), 0.5);
-}
-TEST_CASE("constant map splits nothing: sphere, repeat") {
-    Job job = sphere_job();
-    job.map.address_u = Addressing::repeat;
-    expect_whole(job, 0.001);
+    const CheckedRun run(functional_setup("hardware.culling=back camera.eye=[0,-4,0.6]"));
+    expect_sound(run);
+    CHECK(run.counts.culled > 0);
+    CHECK(run.simulation.rasteriser.triangles() > 0);
 }
 
 namespace {
@@ -278,32 +170,23 @@ struct Detours : UnitFactory {
 }  // namespace
 
 TEST_CASE("functional mode: triangles may overtake one another on every stream, and the mesh is the same") {
-    Job job;
-    job.hardware.queue_watermark = 1000;  // so that the host sends while the queue does
-    const MachineSetup setup = setup_of(job);
     Detours detours;
-    Simulation simulation(setup, 1'000'000, 0, &detours);
-    check_run(setup, simulation);
-    BareRecursion bare(setup);
-    EmittedMesh mesh;
-    CHECK(bare.run(mesh) == simulation.pipeline.edges_tested());
-    CHECK((keys(mesh) == keys(simulation.monitor.mesh)));  // not to be printed
-    CHECK(simulation.pipeline.idle());
+    // many at a time, so that the host sends while the queue does
+    const CheckedRun run(functional_setup("hardware.queue_watermark=1000"), &detours);
+    expect_sound(run);
     CHECK(detours.overtaken > 0);
 }
 
 TEST_CASE("the triangle limit ends a run with a message that names its key") {
-    Job job;
-    const MachineSetup setup = setup_of(job);
+    const MachineSetup setup = functional_setup();
     Simulation simulation(setup, 500);
     CHECK_THROWS_AS(simulation.run(), ResourceError);
     CHECK(simulation.monitor.mesh.triangles.size() == 500);
 }
 
 TEST_CASE("a machine that is stopped with triangles in its queue is not idle") {
-    Job job;
-    job.mesh.columns = job.mesh.rows = 1;  // a base triangle that makes more than go without a pause
-    const MachineSetup setup = setup_of(job);
+    // a base triangle that makes more than go without a pause
+    const MachineSetup setup = functional_setup("mesh.columns=1 mesh.rows=1");
     Simulation simulation(setup, 500);
     CHECK(simulation.pipeline.idle());
     CHECK_THROWS_AS(simulation.run(), ResourceError);
@@ -312,9 +195,7 @@ TEST_CASE("a machine that is stopped with triangles in its queue is not idle") {
 }
 
 TEST_CASE("a read outside a table is an error that names the reader") {
-    Job job;
-    job.hardware.direct_memory = false;
-    MachineSetup setup = setup_of(job);
+    MachineSetup setup = functional_setup("hardware.direct_memory=false");
     Simulation simulation(setup, 1'000'000);
     setup.registers.map.height *= 2;  // the units now take the map to be larger than its memory
     try {
@@ -327,12 +208,10 @@ TEST_CASE("a read outside a table is an error that names the reader") {
 }
 
 TEST_CASE("a base triangle's View Test waits for its corners' screen positions") {
-    Job job;
-    job.mesh.columns = job.mesh.rows = 1;
-    job.map.source = MapSource::constant;
-    MachineSetup setup = setup_of(job);
+    MachineSetup setup = functional_setup(
+        "mesh.columns=1 mesh.rows=1 map.source=constant "
+        "timing.transform_latency=500");  // far more than the tests take
     setup.base_triangles.resize(1);
-    setup.design.timing.transform.latency = 500;  // far more than the tests take
     Simulation simulation(setup, 1'000'000);
     REQUIRE(simulation.run().empty());
     // The host's time, one base triangle's first pass: Get Triangle 1, Calculate New P 1, Displace Vertex 6 and a
@@ -343,15 +222,10 @@ TEST_CASE("a base triangle's View Test waits for its corners' screen positions")
 }
 
 TEST_CASE("time joins at the later branch, also for what follows the join") {
-    Job job;
-    job.mesh.columns = job.mesh.rows = 1;
-    job.map.source = MapSource::noise;
-    job.tests.normal_threshold = 0;
-    job.tests.view_threshold = 0;
-    job.tests.generation_limit = 1;
-    MachineSetup setup = setup_of(job);
+    MachineSetup setup = functional_setup(
+        "mesh.columns=1 mesh.rows=1 map.source=noise tests.normal_threshold=0 tests.view_threshold=0 "
+        "tests.generation_limit=1 timing.transform_latency=500");
     setup.base_triangles.resize(1);
-    setup.design.timing.transform.latency = 500;
     Simulation simulation(setup, 1'000'000);
     REQUIRE(simulation.run().empty());
     REQUIRE(simulation.monitor.mesh.triangles.size() == 4);
@@ -362,7 +236,7 @@ TEST_CASE("time joins at the later branch, also for what follows the join") {
 }
 
 TEST_CASE("a second frame gives the same triangles again") {
-    const MachineSetup setup = setup_of(Job{});
+    const MachineSetup setup = functional_setup();
     Simulation simulation(setup, 1'000'000);
     REQUIRE(simulation.run().empty());
     const auto first = keys(simulation.monitor.mesh);

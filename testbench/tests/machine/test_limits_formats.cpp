@@ -1,12 +1,15 @@
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
 
 #include "testbench/common/error.h"
 #include "testbench/explore/widths/width_run.h"
 #include "testbench/job/validate_job.h"
-#include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/resolve_job.h"
 #include "testbench/prove/random_edges/datapath_random.h"
-#include "testbench/tests/support/timed_checks.h"
+#include "testbench/tests/support/case_table.h"
+#include "testbench/tests/support/checked_run.h"
+#include "testbench/tests/support/job_settings.h"
 
 // The same machine with the narrowest and the widest formats, and with odd ones: no decision or value beyond its bound,
 // a closed mesh, and one mesh from both modes and from the bare datapath.
@@ -16,166 +19,88 @@ using namespace tessera::testing;
 
 namespace {
 
-Job::Formats narrowest() {
-    Job::Formats f;
-    f.position_bits = 8;
-    f.position_fraction = 0;
-    f.normal_bits = 6;
-    f.normal_fraction = 4;
-    f.texture_integer = 5;
-    f.texture_fraction = 0;
-    f.displacement_bits = 4;
-    f.screen_bits = 11;
-    f.screen_fraction = 0;
-    f.generation_bits = 3;
-    return f;
-}
-
-Job::Formats widest() {
-    Job::Formats f;
-    f.position_bits = 32;
-    f.position_fraction = 24;
-    f.normal_bits = 18;
-    f.normal_fraction = 16;
-    f.texture_integer = f.texture_fraction = 12;
-    f.displacement_bits = 16;
-    f.summed_height_bits = 48;
-    f.screen_bits = 31;
-    f.screen_fraction = 16;
-    f.generation_bits = 4;
-    return f;
-}
-
+const std::string narrowest =
+    "formats.position_bits=8 formats.position_fraction=0 formats.normal_bits=6 formats.normal_fraction=4 "
+    "formats.texture_integer=5 formats.texture_fraction=0 formats.displacement_bits=4 "
+    "formats.screen_bits=11 formats.screen_fraction=0 formats.generation_bits=3 ";
+const std::string widest =
+    "formats.position_bits=32 formats.position_fraction=24 formats.normal_bits=18 "
+    "formats.normal_fraction=16 formats.texture_integer=12 formats.texture_fraction=12 "
+    "formats.displacement_bits=16 formats.summed_height_bits=48 formats.screen_bits=31 "
+    "formats.screen_fraction=16 formats.generation_bits=4 ";
 /// Primes, where there are any.
-Job::Formats odd() {
-    Job::Formats f;
-    f.position_bits = 23;
-    f.position_fraction = 7;
-    f.normal_bits = 13;
-    f.normal_fraction = 7;
-    f.texture_integer = 7;
-    f.texture_fraction = 5;
-    f.displacement_bits = 11;
-    f.summed_height_bits = 37;
-    f.screen_bits = 19;
-    f.screen_fraction = 3;
-    f.generation_bits = 3;
-    return f;
-}
-
+const std::string odd =
+    "formats.position_bits=23 formats.position_fraction=7 formats.normal_bits=13 formats.normal_fraction=7 "
+    "formats.texture_integer=7 formats.texture_fraction=5 formats.displacement_bits=11 "
+    "formats.summed_height_bits=37 formats.screen_bits=19 formats.screen_fraction=3 "
+    "formats.generation_bits=3 ";
 /// All range and no fraction.
-Job::Formats whole_numbers() {
-    Job::Formats f;
-    f.position_bits = 32;
-    f.position_fraction = 0;
-    f.normal_bits = 18;
-    f.normal_fraction = 4;
-    f.texture_fraction = 0;
-    f.screen_bits = 31;
-    f.screen_fraction = 0;
-    return f;
-}
-
+const std::string whole_numbers =
+    "formats.position_bits=32 formats.position_fraction=0 formats.normal_bits=18 formats.normal_fraction=4 "
+    "formats.texture_fraction=0 formats.screen_bits=31 formats.screen_fraction=0 ";
 /// All fraction: positions within -1 .. 1.
-Job::Formats fractions() {
-    Job::Formats f;
-    f.position_bits = 32;
-    f.position_fraction = 31;
-    f.screen_bits = 31;
-    f.screen_fraction = 20;
-    return f;
-}
+const std::string fractions =
+    "formats.position_bits=32 formats.position_fraction=31 formats.screen_bits=31 "
+    "formats.screen_fraction=20 ";
 
-Job plane_job(const Job::Formats& formats, Mode mode) {
-    Job job;
-    job.mode = mode;
-    job.formats = formats;
-    job.map.width = job.map.height = 32;
-    job.tests.generation_limit = 5;
-    return job;
-}
+const std::string plane = "map.width=32 map.height=32 tests.generation_limit=5 ";
+const std::string cylinder =
+    plane +
+    "mesh.source=cylinder mesh.columns=8 mesh.rows=3 map.source=noise map.height=21 map.address_u=repeat "
+    "displacement.scale=0.1 hardware.queue_capacity=8 ";  // what is spilled is packed by the formats
 
-Job cylinder_job(const Job::Formats& formats, Mode mode) {
-    Job job = plane_job(formats, mode);
-    job.mesh.source = MeshSource::cylinder;
-    job.mesh.columns = 8;
-    job.mesh.rows = 3;
-    job.map.source = MapSource::noise;
-    job.map.height = 21;
-    job.map.address_u = Addressing::repeat;
-    job.displacement.scale = 0.1;
-    job.hardware.queue_capacity = 8;  // what is spilled is packed by the formats
-    return job;
-}
-
+/// The datapath without SystemC, which the machine equals, against exact arithmetic.
 void check(const WidthRun& run) {
     INFO(run.conformance.first_mismatch);
     CHECK(run.conformance.mismatches == 0);
     INFO(run.invariants.first_violation);
     CHECK(run.invariants.passed());
-    CHECK(run.invariants.cracks == 0);
-    CHECK(run.invariants.t_vertices == 0);
 }
 
-/// Both ways of the machine, and the datapath alone.
-void expect_one_mesh(const Job& job) {
+WidthRun width_run_of(const Job& job) {
     validate(job);
     const auto [mesh, map, resolved] = load_inputs(job);
-    const MachineSetup setup = make_setup(resolved.job, mesh, map);
-    CHECK(setup.input_saturations.position == 0);
-    CHECK(setup.input_saturations.normal == 0);
-    check(run_widths(setup, ExactModel(resolved.job, mesh, map), 1'000'000));
-
-    Simulation simulation(setup, 1'000'000, 100'000);
-    if (job.mode == Mode::timed)
-        run_timed(simulation);
-    else
-        REQUIRE(simulation.run().empty());
-    BareRecursion bare(setup);
-    EmittedMesh expected;
-    CHECK(bare.run(expected) == simulation.pipeline.edges_tested());
-    CHECK(keys(expected) == keys(simulation.monitor.mesh));
-    CHECK(expected.triangles.size() > setup.base_triangles.size());
-    const datapath::Saturations counted = simulation.pipeline.saturations();
-    // by validation: 1.0 fits a normal, the farthest corner fits w, the model fits half of the position's range
-    CHECK(counted.normal == 0);
-    CHECK(counted.screen_normal == 0);
-    CHECK(counted.view_distance == 0);
-    CHECK(counted.displaced_position == 0);
-    CHECK(counted.generation == 0);
+    return run_widths(make_setup(resolved.job, mesh, map), ExactModel(resolved.job, mesh, map), 1'000'000);
 }
+
+struct Row {
+    std::string name;
+    std::string mode;
+    std::string job;
+    std::string formats;
+};
+
+const CaseTable meshes(
+    "formats: ",
+    {
+        Row{"the narrowest, a plane, functional", "functional", plane, narrowest},
+        {"the narrowest, a plane, timed", "timed", plane, narrowest},
+        {"the narrowest, a cylinder in repeat that spills, timed", "timed", cylinder,
+         narrowest + "formats.texture_integer=6"},
+        {"the widest, a plane, functional", "functional", plane, widest},
+        {"the widest, a cylinder in repeat that spills, timed", "timed", cylinder, widest},
+        {"odd ones, a plane, functional", "functional", plane, odd},
+        {"odd ones, a cylinder in repeat that spills, timed", "timed", cylinder, odd},
+        {"whole numbers, a cylinder in repeat that spills, timed", "timed", cylinder, whole_numbers},
+        {"fractions only, a plane, timed", "timed", plane, fractions},
+    },
+    [](const Row& row) {
+        const Job job = with_settings({}, "mode=" + row.mode + " " + row.job + row.formats);
+        check(width_run_of(job));
+        const CheckedRun run(job);
+        CHECK(run.counts.edges_split > 0);
+        CHECK(run.setup.input_saturations.position == 0);
+        CHECK(run.setup.input_saturations.normal == 0);
+        const datapath::Saturations counted = run.pipeline.saturations();
+        // by validation: 1.0 fits a normal, the farthest corner fits w, the model fits half of the position's range
+        CHECK(counted.normal == 0);
+        CHECK(counted.screen_normal == 0);
+        CHECK(counted.view_distance == 0);
+        CHECK(counted.displaced_position == 0);
+        CHECK(counted.generation == 0);
+    });
 
 }  // namespace
-
-TEST_CASE("formats: the narrowest, a plane, functional") {
-    expect_one_mesh(plane_job(narrowest(), Mode::functional));
-}
-TEST_CASE("formats: the narrowest, a plane, timed") {
-    expect_one_mesh(plane_job(narrowest(), Mode::timed));
-}
-TEST_CASE("formats: the narrowest, a cylinder in repeat that spills, timed") {
-    Job job = cylinder_job(narrowest(), Mode::timed);
-    job.formats.texture_integer = 6;
-    expect_one_mesh(job);
-}
-TEST_CASE("formats: the widest, a plane, functional") {
-    expect_one_mesh(plane_job(widest(), Mode::functional));
-}
-TEST_CASE("formats: the widest, a cylinder in repeat that spills, timed") {
-    expect_one_mesh(cylinder_job(widest(), Mode::timed));
-}
-TEST_CASE("formats: odd ones, a plane, functional") {
-    expect_one_mesh(plane_job(odd(), Mode::functional));
-}
-TEST_CASE("formats: odd ones, a cylinder in repeat that spills, timed") {
-    expect_one_mesh(cylinder_job(odd(), Mode::timed));
-}
-TEST_CASE("formats: whole numbers, a cylinder in repeat that spills, timed") {
-    expect_one_mesh(cylinder_job(whole_numbers(), Mode::timed));
-}
-TEST_CASE("formats: fractions only, a plane, timed") {
-    expect_one_mesh(plane_job(fractions(), Mode::timed));
-}
 
 TEST_CASE("formats: what an intermediate of the datapath cannot hold is refused with its name") {
     Job job;
@@ -217,7 +142,7 @@ TEST_CASE("formats: any that a job may have, on any small job: within the bounds
     Random random(20);
     int ran = 0, refused = 0;
     for (int k = 0; k < 150; ++k) {
-        Job job = random.coin() ? plane_job({}, Mode::functional) : cylinder_job({}, Mode::functional);
+        Job job = with_settings({}, "mode=functional " + (random.coin() ? plane : cylinder));
         Job::Formats& f = job.formats;
         f.position_bits = random.integer(8, 32);
         f.position_fraction = random.integer(0, f.position_bits - 1);
@@ -238,10 +163,7 @@ TEST_CASE("formats: any that a job may have, on any small job: within the bounds
         job.tests.highlight = random.coin();
         INFO("case " << k);
         try {
-            validate(job);
-            const auto [mesh, map, resolved] = load_inputs(job);
-            const MachineSetup setup = make_setup(resolved.job, mesh, map);
-            check(run_widths(setup, ExactModel(resolved.job, mesh, map), 1'000'000));
+            check(width_run_of(job));
             ++ran;
         } catch (const InputError& error) {
             ++refused;

@@ -1,11 +1,14 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "testbench/common/error.h"
-#include "testbench/machine/bare_recursion.h"
 #include "testbench/output/report/saturation_figures.h"
 #include "testbench/tests/modules/datapath/datapath_reference.h"
+#include "testbench/tests/support/bare_mesh.h"
+#include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/timed_checks.h"
 
 // What does not fit its format is counted: as often as integers of another width, in another place, say.
@@ -31,17 +34,12 @@ Saturations run_watched(const MachineSetup& setup, const std::function<void(cons
     Simulation simulation(setup, 1'000'000, 100'000);
     Watcher watcher(look);
     simulation.pipeline.pass_or_tessellate.decided.bind(watcher);
-    const std::string stuck = simulation.run();
-    INFO(stuck);
-    REQUIRE(stuck.empty());
+    run_timed(simulation);
     return simulation.pipeline.saturations();
 }
 
-Job small_job() {
-    Job job = timed_job();
-    job.map.width = job.map.height = 32;
-    job.tests.generation_limit = 4;
-    return job;
+Job small_job(const std::string& settings = "") {
+    return with_settings(timed_job(), "map.width=32 map.height=32 tests.generation_limit=4 " + settings);
 }
 
 bool beyond(Wide value, const datapath::Format& format) {
@@ -111,11 +109,8 @@ TEST_CASE("saturations: displaced positions, as 128 bit integers count them") {
 }
 
 TEST_CASE("saturations: screen positions, as a division in doubles counts them") {
-    Job job = small_job();
-    job.formats.screen_bits = 13;
-    job.formats.screen_fraction = 2;
-    job.camera.eye = {0.2, -0.5, 0.4};
-    const MachineSetup setup = setup_of(job);
+    const MachineSetup setup =
+        setup_of(small_job("formats.screen_bits=13 formats.screen_fraction=2 camera.eye=[0.2,-0.5,0.4]"));
     const datapath::TransformParameters& transform = setup.registers.transform;
     const datapath::Format& screen = setup.registers.formats.screen;
     std::uint64_t certain = 0, possible = 0;
@@ -169,9 +164,7 @@ TEST_CASE("saturations: view distances, as 128 bit integers count them") {
 
 // The host's normals have two integer bits, so that 1.0 fits: only a format of one saturates.
 TEST_CASE("saturations: normals of one integer bit, where a plane's own do not fit") {
-    Job job = small_job();
-    job.map.source = MapSource::constant;
-    MachineSetup setup = setup_of(job);
+    MachineSetup setup = setup_of(small_job("map.source=constant"));
     datapath::Formats& formats = setup.registers.formats;
     formats.normal = datapath::Format::make_signed(16, 15);
     for (datapath::Triangle& triangle : setup.base_triangles)
@@ -221,16 +214,11 @@ TEST_CASE("saturations: opposite normals leave zero vectors, counted") {
 }
 
 TEST_CASE("saturations: generations beyond their field, with the Generation Test off") {
-    Job job = timed_job();
-    job.mesh.columns = job.mesh.rows = 1;
-    job.map.source = MapSource::noise;
-    job.map.width = job.map.height = 16;
-    job.tests.normal_threshold = job.tests.summed_height_threshold = job.tests.view_threshold = 0;
-    job.tests.generation = false;
-    job.tests.generation_limit = 3;
-    job.formats.generation_bits = 2;
-    job.hardware.queue_capacity = 4;  // spilled triangles are packed: what is in them fits their fields
-    const MachineSetup setup = setup_of(job);
+    // spilled triangles are packed: what is in them fits their fields
+    const MachineSetup setup = setup_of(
+        with_settings(full_split_job(1, 3),
+                      "map.width=16 map.height=16 tests.generation=false formats.generation_bits=2 "
+                      "hardware.queue_capacity=4"));
     std::uint64_t expected = 0;
     int deepest = 0;
     Simulation simulation(setup, 100'000, 100'000);
@@ -248,20 +236,14 @@ TEST_CASE("saturations: generations beyond their field, with the Generation Test
     CHECK(simulation.pipeline.saturations().generation == expected);
     CHECK(simulation.pipeline.triangle_queue.spilled() > 0);
 
-    BareRecursion bare(setup);
-    EmittedMesh mesh;
-    bare.run(mesh);
-    CHECK(bare.saturations().generation == expected);
-    CHECK(keys(mesh) == keys(simulation.monitor.mesh));
+    const BareRun bare(setup);
+    CHECK(bare.saturations.generation == expected);
+    expect_mesh(simulation.monitor.mesh, bare.mesh);
 }
 
 TEST_CASE("saturations: vertices that face the light fully") {
-    Job job = timed_job();
-    job.map.source = MapSource::constant;
-    job.camera.eye = {0, -3, 0};
-    job.camera.target = {0, 0, 0};
-    job.hardware.light = {0, 0, 1};
-    const MachineSetup setup = setup_of(job);
+    const MachineSetup setup = setup_of(with_settings(
+        timed_job(), "map.source=constant camera.eye=[0,-3,0] camera.target=[0,0,0] hardware.light=[0,0,1]"));
     Simulation simulation(setup, 1'000'000, 100'000);
     REQUIRE(simulation.run().empty());
     const Saturations counted = simulation.pipeline.saturations();
@@ -302,13 +284,9 @@ TEST_CASE(
 
 TEST_CASE("saturations: what the host rounds is counted too") {
     // S is twice the range of a map of one bit: 2^(bits - 1), one LSB more than its register holds
-    Job job = small_job();
-    job.formats.displacement_bits = 1;
-    job.tests.summed_height_threshold = 2;
-    job.displacement.scale = 1;
-    job.displacement.bias = -0.5;
-    job.mesh.width = job.mesh.depth = 0.5;
-    const MachineSetup setup = setup_of(job);
+    const MachineSetup setup = setup_of(
+        small_job("formats.displacement_bits=1 tests.summed_height_threshold=2 displacement.scale=1 "
+                  "displacement.bias=-0.5 mesh.width=0.5 mesh.depth=0.5"));
     CHECK(setup.registers.displacement.scale == setup.registers.formats.position.highest);
     CHECK(setup.input_saturations.registers == 1);
     CHECK(setup.input_saturations.position == 0);
@@ -318,43 +296,35 @@ TEST_CASE("saturations: what the host rounds is counted too") {
 }
 
 TEST_CASE("a threshold that its register cannot tell from 0 is refused with the register's step") {
-    const auto refusal = [](const std::function<void(Job&)>& change) -> std::string {
-        Job job;
-        change(job);
-        try {
-            setup_of(job);
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return {};
+    struct Row {
+        const char* settings;
+        std::vector<const char*> says;  ///< nothing: it is accepted
     };
-    using Catch::Contains;
-    const double step = 0x1p-14;
-    CHECK_THAT(refusal([](Job& job) { job.tests.normal_threshold = 1e-5; }),
-               Contains("tests.normal_threshold = 1e-05") && Contains("6.103515625e-05") &&
-                   Contains("formats.normal_fraction"));
-    CHECK_THAT(refusal([](Job& job) {
-                   job.tests.highlight = true;
-                   job.tests.highlight_normal_threshold = 6e-5;
-               }),
-               Contains("tests.highlight_normal_threshold = 6e-05") && Contains("6.103515625e-05"));
-    CHECK_THAT(refusal([](Job& job) { job.tests.view_threshold = 0.003; }),
-               Contains("tests.view_threshold = 0.003") && Contains("0.00390625"));
-    CHECK_THAT(refusal([](Job& job) { job.tests.summed_height_threshold = 3e-6; }),
-               Contains("tests.summed_height_threshold") && Contains("formats.displacement_bits"));
-    CHECK_THAT(refusal([](Job& job) {
-                   job.tests.summed_height_threshold = 0.4;
-                   job.tests.summed_height_unit = SummedHeightUnit::area;
-                   job.formats.displacement_bits = 1;
-               }),
-               Contains("tests.summed_height_threshold = 0.4"));
-    CHECK(refusal([=](Job& job) { job.tests.normal_threshold = step; }).empty());
-    CHECK(refusal([](Job& job) { job.tests.normal_threshold = 0; }).empty());
-    CHECK(refusal([](Job& job) {
-              job.tests.highlight_normal_threshold = 1e-5;
-          }).empty());  // there is no such test
-    CHECK(refusal([](Job& job) {
-              job.tests.normal = false;
-              job.tests.normal_threshold = 1e-5;
-          }).empty());
+    const Row rows[] = {
+        {"tests.normal_threshold=1e-5",
+         {"tests.normal_threshold = 1e-05", "6.103515625e-05", "formats.normal_fraction"}},
+        {"tests.highlight=true tests.highlight_normal_threshold=6e-5",
+         {"tests.highlight_normal_threshold = 6e-05", "6.103515625e-05"}},
+        {"tests.view_threshold=0.003", {"tests.view_threshold = 0.003", "0.00390625"}},
+        {"tests.summed_height_threshold=3e-6",
+         {"tests.summed_height_threshold", "formats.displacement_bits"}},
+        {"tests.summed_height_threshold=0.4 tests.summed_height_unit=area formats.displacement_bits=1",
+         {"tests.summed_height_threshold = 0.4"}},
+        {"tests.normal_threshold=6.103515625e-05", {}},
+        {"tests.normal_threshold=0", {}},
+        {"tests.highlight_normal_threshold=1e-5", {}},  // there is no such test
+        {"tests.normal=false tests.normal_threshold=1e-5", {}},
+    };
+    for (const Row& row : rows) {
+        std::string message;
+        try {
+            setup_of(with_settings({}, row.settings));
+        } catch (const InputError& error) {
+            message = error.what();
+        }
+        CAPTURE(row.settings, message);
+        CHECK(message.empty() == row.says.empty());
+        for (const char* const part : row.says)
+            CHECK_THAT(message, Catch::Contains(part));
+    }
 }

@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
-#include <set>
+#include <cstdint>
+#include <string>
 
-#include "testbench/check/conformance/scoreboard.h"
-#include "testbench/machine/bare_recursion.h"
-#include "testbench/tests/support/timed_checks.h"
+#include "testbench/tests/support/case_table.h"
+#include "testbench/tests/support/checked_run.h"
+#include "testbench/tests/support/job_settings.h"
 
 // Two modes, one mesh: whatever the timing, the stalls, the buffers and the queue's order, timed mode emits the bare
 // datapath's triangles, bit for bit.
@@ -13,342 +13,149 @@ using namespace tessera::testing;
 
 namespace {
 
-/// A timed run against the bare recursion on the same setup.
-void expect_bare_mesh(const MachineSetup& setup) {
-    Simulation simulation(setup, 1'000'000, 100'000);
-    run_timed(simulation);
-    BareRecursion bare(setup);
-    EmittedMesh mesh;
-    CHECK(bare.run(mesh) == simulation.pipeline.edges_tested());
-    CHECK(mesh.triangles.size() > 2 * setup.base_triangles.size());
-    CHECK((keys(mesh) == keys(simulation.monitor.mesh)));  // not to be printed
-}
-
-void expect_bare_mesh(const Job& job) {
-    expect_bare_mesh(setup_of(job));
-}
-
 /// About a thousand triangles of every size, and base triangles that do not split.
-Job small_job() {
-    Job job = timed_job();
-    job.map.width = job.map.height = 64;
-    job.tests.summed_height_threshold = 0.2;
-    return job;
+const std::string small = "map.width=64 map.height=64 tests.summed_height_threshold=0.2 ";
+
+const std::string cylinder =
+    "mesh.source=cylinder mesh.columns=8 mesh.rows=4 map.source=noise map.width=64 map.height=33 "
+    "map.address_u=repeat displacement.scale=0.1 tests.view_threshold=24 ";
+
+std::string stalls(int seed, int per_mille, int longest = 16) {
+    return "timing.stalls_seed=" + std::to_string(seed) +
+           " timing.stalls_per_mille=" + std::to_string(per_mille) +
+           " timing.stalls_longest=" + std::to_string(longest) + " ";
 }
 
-Job cylinder_job() {
-    Job job = timed_job();
-    job.mesh.source = MeshSource::cylinder;
-    job.mesh.columns = 8;
-    job.mesh.rows = 4;
-    job.map.source = MapSource::noise;
-    job.map.width = 64;
-    job.map.height = 33;
-    job.map.address_u = Addressing::repeat;
-    job.displacement.scale = 0.1;
-    job.tests.view_threshold = 24;
-    return job;
+std::string queue(const std::string& order, int capacity) {
+    return "hardware.queue_order=" + order + " hardware.queue_capacity=" + std::to_string(capacity) + " ";
 }
 
-void stall(Job& job, std::uint64_t seed, unsigned per_mille, unsigned longest = 16) {
-    job.timing.stalls = {seed, per_mille, longest};
-}
+struct Row {
+    std::string name;
+    std::string job;
+    std::string settings;
+    std::uint64_t more_edges_than = 0;
+};
 
-void set_queue(Job& job, QueueOrder order, std::int64_t capacity, Overflow overflow = Overflow::spill) {
-    job.hardware.queue_order = order;
-    job.hardware.queue_capacity = capacity;
-    job.hardware.queue_overflow = overflow;
-}
+const CaseTable meshes(
+    "timed mesh: ",
+    {
+        Row{"half donut, the paper's design", "", "", 50'000},
+        {"half donut, three tests units, four ports, stalls", "",
+         "hardware.tests_units=3 timing.summed_height_table_ports=4 " + stalls(3, 200), 50'000},
+        {"last in first out", small, "hardware.queue_order=lifo"},
+        {"three tests units", small, "hardware.tests_units=3"},
+        {"three tests units, four ports, last in first out, stalls", small,
+         "hardware.tests_units=3 hardware.queue_order=lifo timing.summed_height_table_ports=4 " +
+             stalls(11, 300)},
+        {"two ports", small, "timing.summed_height_table_ports=2"},
+        {"four ports, two banks, narrow", small,
+         "timing.summed_height_table_ports=4 timing.summed_height_table_banks=2 "
+         "timing.summed_height_table_width=3"},
+        {"a cylinder in repeat, three tests units, stalls", cylinder,
+         "hardware.tests_units=3 " + stalls(5, 400), 3000},
 
-void expect_spilled(const Job& job, std::size_t highest) {
-    const MachineSetup setup = setup_of(job);
-    Simulation simulation(setup, 1'000'000, 100'000);
-    run_timed(simulation);
-    BareRecursion bare(setup);
-    EmittedMesh mesh;
-    bare.run(mesh);
-    CHECK((keys(mesh) == keys(simulation.monitor.mesh)));  // not to be printed
-    const TriangleQueue& queue = simulation.pipeline.triangle_queue;
-    CHECK(queue.spilled() > 0);
-    CHECK(queue.on_chip_high_water_mark() == highest);
-    CHECK(queue.high_water_mark() > highest);
-    CHECK(simulation.pipeline.off_chip_memory.bytes_written() % queue.spilled() == 0);
-}
+        {"random stalls, seed 1, 100 per mille", small, stalls(1, 100)},
+        {"random stalls, seed 2, 300 per mille, up to 40 cycles", small, stalls(2, 300, 40)},
+        {"random stalls, seed 3, 500 per mille, last in first out", small,
+         "hardware.queue_order=lifo " + stalls(3, 500)},
+        {"every item of every channel stalled", small, "hardware.tests_units=3 " + stalls(4, 1000, 5)},
+
+        {"one place for an incomplete triangle", small,
+         "timing.pass_or_tessellate_buffer=1 timing.results_buffer=1"},
+        {"one place for an incomplete triangle, three tests units, stalls", small,
+         "timing.pass_or_tessellate_buffer=1 timing.results_buffer=1 hardware.tests_units=3 " +
+             stalls(8, 400)},
+        {"large buffers everywhere", small,
+         every_unit("buffer", 37) + every_table("buffer", 37) +
+             "timing.results_buffer=37 hardware.queue_watermark=1000 " + stalls(9, 200)},
+        {"intervals and latencies of all sizes", small,
+         every_unit("latency", [](int k) { return 1 + (k + 1) * 7 % 13; }) +
+             every_unit("interval", [](int k) { return 1 + (k + 1) * 5 % 11; }) +
+             "hardware.transform_pipelines=3"},
+        {"memories of latency 0", small, every_table("latency", 0)},
+        {"memories of latency 300, 100 and 30", small,
+         "timing.summed_height_table_latency=300 timing.displacement_map_latency=100 "
+         "timing.normal_map_latency=30 hardware.tests_units=3"},
+        {"tests switched off", small, "tests.summed_height=false tests.view=false " + stalls(12, 200)},
+
+        {"a queue large enough never overflows", small, queue("lifo", 64) + "hardware.queue_overflow=error"},
+        {"the watermark lets host triangles in while fewer wait", small, "hardware.queue_watermark=40"},
+    },
+    [](const Row& row) {
+        const CheckedRun run(with_settings(timed_job(), row.job + row.settings));
+        CHECK(run.conformance.passed(0.5));
+        CHECK(run.mesh.triangles.size() > 2 * run.setup.base_triangles.size());
+        CHECK(run.pipeline.edges_tested() > row.more_edges_than);
+    });
+
+struct Spill {
+    std::string name;
+    std::string settings;
+    std::size_t places;
+};
+
+const CaseTable spills(
+    "timed mesh: ",
+    {
+        Spill{"first in first out, one place, spills", queue("fifo", 1), 1},
+        {"first in first out, 8 places, spills and stalls", queue("fifo", 8) + stalls(21, 300), 8},
+        {"first in first out, 64 places, spills to a slow memory",
+         queue("fifo", 64) + "timing.off_chip_latency=500 timing.off_chip_bandwidth=3 timing.off_chip_buffer=1",
+         64},
+        {"last in first out, one place, spills", queue("lifo", 1), 1},
+        {"last in first out, 8 places, spills and stalls", queue("lifo", 8) + stalls(22, 300), 8},
+        {"last in first out, 8 places, many host triangles, a fast memory",
+         queue("lifo", 8) +
+             "hardware.queue_watermark=200 timing.off_chip_latency=0 timing.off_chip_bandwidth=4096 "
+             "timing.off_chip_buffer=1",
+         8},
+    },
+    [](const Spill& row) {
+        const CheckedRun run(with_settings(timed_job(), small + row.settings));
+        const TriangleQueue& its_queue = run.pipeline.triangle_queue;
+        CHECK(its_queue.spilled() > 0);
+        CHECK(its_queue.on_chip_high_water_mark() == row.places);
+        CHECK(its_queue.high_water_mark() > row.places);
+        CHECK(run.pipeline.off_chip_memory.bytes_written() % its_queue.spilled() == 0);
+    });
 
 }  // namespace
 
-TEST_CASE("timed mesh: half donut, the paper's design") {
-    expect_bare_mesh(timed_job());
-}
-
-TEST_CASE("timed mesh: half donut through the scoreboard, every decision as the golden model's") {
-    Job job = timed_job();
-    job.hardware.tests_units = 3;
-    job.timing.summed_height_table.ports = 4;
-    stall(job, 3, 200);
-    const MachineSetup setup = setup_of(job);
-    const GoldenInputs golden(setup);
-    Simulation simulation(setup, 1'000'000);
-    Scoreboard scoreboard(setup.registers, golden);
-    simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
-    run_timed(simulation);
-    const ConformanceResult result = scoreboard.result();
-    INFO(result.first_mismatch);
-    CHECK(result.mismatches == 0);
-    CHECK(result.passed(0.5));
-    CHECK(result.edges == simulation.pipeline.edges_tested());
-    CHECK(result.edges > 50'000);
-}
-
 TEST_CASE("timed mesh: every item through its packed form, three tests units, a Highlight Test") {
-    Job job = small_job();
-    job.hardware.tests_units = 3;
-    job.tests.highlight = true;
-    MachineSetup setup = setup_of(job);
+    MachineSetup setup =
+        setup_of(with_settings(timed_job(), small + "hardware.tests_units=3 tests.highlight=true"));
     setup.design.packed_streams = true;
-    expect_bare_mesh(setup);
-}
-
-TEST_CASE("timed mesh: last in first out") {
-    Job job = small_job();
-    job.hardware.queue_order = QueueOrder::lifo;
-    expect_bare_mesh(job);
-}
-
-TEST_CASE("timed mesh: three tests units") {
-    Job job = small_job();
-    job.hardware.tests_units = 3;
-    expect_bare_mesh(job);
-}
-
-TEST_CASE("timed mesh: three tests units, four ports, last in first out, stalls") {
-    Job job = small_job();
-    job.hardware.tests_units = 3;
-    job.hardware.queue_order = QueueOrder::lifo;
-    job.timing.summed_height_table.ports = 4;
-    stall(job, 11, 300);
-    expect_bare_mesh(job);
-}
-
-TEST_CASE("timed mesh: two ports") {
-    Job job = small_job();
-    job.timing.summed_height_table.ports = 2;
-    expect_bare_mesh(job);
-}
-
-TEST_CASE("timed mesh: four ports, two banks, narrow") {
-    Job job = small_job();
-    job.timing.summed_height_table.ports = 4;
-    job.timing.summed_height_table.banks = 2;
-    job.timing.summed_height_table.width = 3;
-    expect_bare_mesh(job);
+    const CheckedRun run(setup);
+    CHECK(run.mesh.triangles.size() > 2 * setup.base_triangles.size());
 }
 
 TEST_CASE("timed mesh: a cylinder in repeat, whose rectangles wrap") {
-    Job job = cylinder_job();
-    const MachineSetup setup = setup_of(job);
-    Simulation simulation(setup, 1'000'000, 100'000);
-    run_timed(simulation);
-    BareRecursion bare(setup);
-    EmittedMesh mesh;
-    bare.run(mesh);
-    CHECK((keys(mesh) == keys(simulation.monitor.mesh)));  // not to be printed
+    const CheckedRun run(with_settings(timed_job(), cylinder));
     // up to nine entries where one wraps
-    CHECK(simulation.pipeline.summed_height_table.transactions() > 12 * simulation.pipeline.edges_tested());
-    CHECK(simulation.pipeline.edges_tested() > 3000);
-}
-
-TEST_CASE("timed mesh: a cylinder in repeat, three tests units, stalls") {
-    Job job = cylinder_job();
-    job.hardware.tests_units = 3;
-    stall(job, 5, 400);
-    expect_bare_mesh(job);
+    CHECK(run.pipeline.summed_height_table.transactions() > 12 * run.pipeline.edges_tested());
+    CHECK(run.pipeline.edges_tested() > 3000);
 }
 
 TEST_CASE("timed mesh: culling") {
-    Job job = small_job();
-    job.hardware.culling = Culling::back;
-    job.camera.eye = {0, -4, 0.6};
-    stall(job, 6, 100);
-    const MachineSetup setup = setup_of(job);
-    Simulation simulation(setup, 1'000'000, 100'000);
-    run_timed(simulation);
-    CHECK(simulation.pipeline.pass_or_tessellate.counts().culled > 0);
-    CHECK(simulation.rasteriser.triangles() > 0);
-    BareRecursion bare(setup);
-    EmittedMesh mesh;
-    bare.run(mesh);
-    const auto without_culled = [](EmittedMesh its_mesh) {  // the bare recursion does not cull
-        for (EmittedTriangle& triangle : its_mesh.triangles)
-            triangle.culled = false;
-        return keys(its_mesh);
-    };
-    CHECK(without_culled(mesh) == without_culled(simulation.monitor.mesh));
+    const CheckedRun run(with_settings(
+        timed_job(), small + "hardware.culling=back camera.eye=[0,-4,0.6] " + stalls(6, 100)));
+    CHECK(run.counts.culled > 0);
+    CHECK(run.simulation.rasteriser.triangles() > 0);
 }
 
-TEST_CASE("timed mesh: random stalls, seed 1, 100 per mille") {
-    Job job = small_job();
-    stall(job, 1, 100);
-    expect_bare_mesh(job);
-}
-TEST_CASE("timed mesh: random stalls, seed 2, 300 per mille, up to 40 cycles") {
-    Job job = small_job();
-    stall(job, 2, 300, 40);
-    expect_bare_mesh(job);
-}
-TEST_CASE("timed mesh: random stalls, seed 3, 500 per mille, last in first out") {
-    Job job = small_job();
-    stall(job, 3, 500);
-    job.hardware.queue_order = QueueOrder::lifo;
-    expect_bare_mesh(job);
-}
-TEST_CASE("timed mesh: every item of every channel stalled") {
-    Job job = small_job();
-    stall(job, 4, 1000, 5);
-    job.hardware.tests_units = 3;
-    expect_bare_mesh(job);
-}
-
-TEST_CASE("timed mesh: one place for an incomplete triangle") {
-    Job job = small_job();
-    job.timing.pass_or_tessellate.buffer = 1;
-    job.timing.results_buffer = 1;
-    expect_bare_mesh(job);
-}
-TEST_CASE("timed mesh: one place for an incomplete triangle, three tests units, stalls") {
-    Job job = small_job();
-    job.timing.pass_or_tessellate.buffer = 1;
-    job.timing.results_buffer = 1;
-    job.hardware.tests_units = 3;
-    stall(job, 8, 400);
-    expect_bare_mesh(job);
-}
-TEST_CASE("timed mesh: large buffers everywhere") {
-    Job job = small_job();
-    Timing& t = job.timing;
-    for (UnitTiming* unit :
-         {&t.get_triangle, &t.calculate_new_p, &t.displace_vertex, &t.transform, &t.calculate_new_u,
-          &t.tex_coord_test, &t.summed_height_test, &t.normal_test, &t.view_test, &t.pass_or_tessellate,
-          &t.tessellation, &t.triangle_queue, &t.lighting})
-        unit->buffer = 37;
-    t.results_buffer = 37;
-    t.summed_height_table.buffer = t.displacement_map.buffer = t.normal_map.buffer = 37;
-    job.hardware.queue_watermark = 1000;
-    stall(job, 9, 200);
-    expect_bare_mesh(job);
-}
-TEST_CASE("timed mesh: intervals and latencies of all sizes") {
-    Job job = small_job();
-    Timing& t = job.timing;
-    unsigned number = 1;
-    for (UnitTiming* unit :
-         {&t.get_triangle, &t.calculate_new_p, &t.displace_vertex, &t.transform, &t.calculate_new_u,
-          &t.tex_coord_test, &t.summed_height_test, &t.normal_test, &t.view_test, &t.pass_or_tessellate,
-          &t.tessellation, &t.triangle_queue, &t.lighting}) {
-        unit->latency = 1 + number * 7 % 13;
-        unit->interval = 1 + number * 5 % 11;
-        ++number;
-    }
-    job.hardware.transform_pipelines = 3;
-    expect_bare_mesh(job);
-}
-
-TEST_CASE("timed mesh: memories of latency 0") {
-    Job job = small_job();
-    job.timing.summed_height_table.latency = job.timing.displacement_map.latency =
-        job.timing.normal_map.latency = 0;
-    expect_bare_mesh(job);
-}
-TEST_CASE("timed mesh: memories of latency 300, 100 and 30") {
-    Job job = small_job();
-    job.timing.summed_height_table.latency = 300;
-    job.timing.displacement_map.latency = 100;
-    job.timing.normal_map.latency = 30;
-    job.hardware.tests_units = 3;
-    expect_bare_mesh(job);
-}
-
-TEST_CASE("timed mesh: tests switched off") {
-    Job job = small_job();
-    job.tests.summed_height = false;
-    job.tests.view = false;
-    stall(job, 12, 200);
-    expect_bare_mesh(job);
-}
-
-TEST_CASE("timed mesh: first in first out, one place, spills") {
-    Job job = small_job();
-    set_queue(job, QueueOrder::fifo, 1);
-    expect_spilled(job, 1);
-}
-TEST_CASE("timed mesh: first in first out, 8 places, spills and stalls") {
-    Job job = small_job();
-    set_queue(job, QueueOrder::fifo, 8);
-    stall(job, 21, 300);
-    expect_spilled(job, 8);
-}
-TEST_CASE("timed mesh: first in first out, 64 places, spills to a slow memory") {
-    Job job = small_job();
-    set_queue(job, QueueOrder::fifo, 64);
-    job.timing.off_chip_memory = {500, 3, 1};
-    expect_spilled(job, 64);
-}
-TEST_CASE("timed mesh: last in first out, one place, spills") {
-    Job job = small_job();
-    set_queue(job, QueueOrder::lifo, 1);
-    expect_spilled(job, 1);
-}
-TEST_CASE("timed mesh: last in first out, 8 places, spills and stalls") {
-    Job job = small_job();
-    set_queue(job, QueueOrder::lifo, 8);
-    stall(job, 22, 300);
-    expect_spilled(job, 8);
-}
-TEST_CASE("timed mesh: last in first out, 8 places, many host triangles, a fast memory") {
-    Job job = small_job();
-    set_queue(job, QueueOrder::lifo, 8);
-    job.hardware.queue_watermark = 200;
-    job.timing.off_chip_memory = {0, 4096, 1};
-    expect_spilled(job, 8);
-}
+// Each split puts back three more triangles than it takes, along one path of at most 12 generations; with some passes
+// under way besides, and their children.
 TEST_CASE("timed mesh: last in first out, 64 places are enough: nothing is spilled") {
-    // each split puts back three more triangles than it takes, along one path of at most 12 generations; with some
-    // passes under way besides, and their children
-    Job job = small_job();
-    set_queue(job, QueueOrder::lifo, 64);
-    const MachineSetup setup = setup_of(job);
-    Simulation simulation(setup, 1'000'000, 100'000);
-    run_timed(simulation);
-    CHECK(simulation.pipeline.triangle_queue.spilled() == 0);
-    CHECK(simulation.pipeline.triangle_queue.high_water_mark() <= 64);
-    CHECK(simulation.pipeline.off_chip_memory.occupied_cycles() == 0);
-}
-TEST_CASE("timed mesh: a queue large enough never overflows, whatever happens beyond it") {
-    Job job = small_job();
-    set_queue(job, QueueOrder::lifo, 64, Overflow::error);
-    expect_bare_mesh(job);
+    const CheckedRun run(with_settings(timed_job(), small + queue("lifo", 64)));
+    CHECK(run.pipeline.triangle_queue.spilled() == 0);
+    CHECK(run.pipeline.triangle_queue.high_water_mark() <= 64);
+    CHECK(run.pipeline.off_chip_memory.occupied_cycles() == 0);
 }
 
-TEST_CASE("timed mesh: the watermark lets host triangles in while fewer wait") {
-    Job job = small_job();
-    job.hardware.queue_watermark = 40;
-    const MachineSetup setup = setup_of(job);
-    Simulation simulation(setup, 1'000'000, 100'000);
-    run_timed(simulation);
-    BareRecursion bare(setup);
-    EmittedMesh mesh;
-    bare.run(mesh);
-    CHECK((keys(mesh) == keys(simulation.monitor.mesh)));  // not to be printed
-}
-
+// The same counts as without; only time differs.
 TEST_CASE("timed mesh: stalls cost cycles and nothing else") {
-    // the same counts as without; only time differs
-    Job job = small_job();
-    stall(job, 31, 300);
-    const MachineSetup setup = setup_of(job);
-    Simulation simulation(setup, 1'000'000, 100'000);
-    run_timed(simulation);
-    const Pipeline& p = simulation.pipeline;
-    CHECK(p.summed_height_table.transactions() == 12 * p.edges_tested());
-    CHECK(simulation.cycles() > 36 * p.pass_or_tessellate.counts().passes + 17);
+    const CheckedRun run(with_settings(timed_job(), small + stalls(31, 300)));
+    CHECK(run.pipeline.summed_height_table.transactions() == 12 * run.pipeline.edges_tested());
+    CHECK(run.simulation.cycles() > 36 * run.counts.passes + 17);
 }

@@ -7,16 +7,16 @@
 #include <string>
 #include <vector>
 
-#include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/host.h"
 #include "testbench/machine/mesh_monitor.h"
 #include "testbench/machine/rasteriser.h"
-#include "testbench/tests/machine/mesh_keys.h"
+#include "testbench/tests/support/bare_mesh.h"
 
 namespace tessera::testing {
 
 /// A machine with all that surrounds it under a name of its own: several stand in one simulation, which the test starts.
 struct NamedMachine : sc_core::sc_module {
+    const MachineSetup& setup;
     Pipeline pipeline;
     Host host;
     Rasteriser rasteriser;
@@ -24,8 +24,10 @@ struct NamedMachine : sc_core::sc_module {
     std::vector<sc_core::sc_time> drained;  ///< when its event fired
 
     /// `setup` must outlive the machine.
-    NamedMachine(const sc_core::sc_module_name& name, const MachineSetup& setup, UnitFactory* units = nullptr)
+    NamedMachine(const sc_core::sc_module_name& name, const MachineSetup& its_setup,
+                 UnitFactory* units = nullptr)
         : sc_module(name),
+          setup(its_setup),
           pipeline("pipeline", setup.registers, setup.design, units),
           host("host", setup, pipeline.clock),
           rasteriser("rasteriser", pipeline.clock, setup.design.timing.stalls),
@@ -50,11 +52,14 @@ struct NamedMachine : sc_core::sc_module {
     void note_drained() { drained.push_back(sc_core::sc_time_stamp()); }
 };
 
-inline EmittedMesh bare_mesh(const MachineSetup& setup) {
-    BareRecursion bare(setup);
-    EmittedMesh mesh;
-    bare.run(mesh);
-    return mesh;
+/// It has drained and emitted these triangles.
+inline void expect_mesh(const NamedMachine& machine, const EmittedMesh& expected) {
+    INFO(machine.name());
+    CHECK(machine.finished());
+    expect_mesh(machine.monitor.mesh, expected);
+}
+inline void expect_bare_mesh(const NamedMachine& machine) {
+    expect_mesh(machine, bare_mesh(machine.setup));
 }
 
 /// What a machine comes to in a simulation of its own.

@@ -106,9 +106,7 @@ TEST_CASE("a machine that works and decides nothing within the bound is a livelo
 
 // Every item on every channel held back for up to a million cycles: slow, but whoever is called gets something done.
 TEST_CASE("a machine that waits for a million cycles is none") {
-    Job job = timed_job();
-    job.mesh.columns = job.mesh.rows = 1;
-    job.map.source = MapSource::constant;
+    Job job = one_quad_job();
     job.timing.stalls = {1, 1000, 1'000'000};
     const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000, 500);
@@ -137,11 +135,7 @@ TEST_CASE("a triangle lit is progress, though none is decided any more") {
 }
 
 TEST_CASE("the bound on progress does not end a run that just keeps it") {
-    Job job = timed_job();
-    job.mesh.columns = job.mesh.rows = 1;
-    job.map.source = MapSource::constant;
-    MachineSetup setup = setup_of(job);
-    setup.base_triangles.resize(1);
+    const MachineSetup setup = one_triangle();
     Simulation simulation(setup, 1'000'000, 46);
     run_timed(simulation);
 }

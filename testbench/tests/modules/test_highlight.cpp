@@ -1,11 +1,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <string>
 
 #include "testbench/benchmark/gouraud_error.h"
-#include "testbench/check/conformance/scoreboard.h"
-#include "testbench/check/mesh/invariants.h"
-#include "testbench/machine/bare_recursion.h"
-#include "testbench/tests/support/timed_checks.h"
+#include "testbench/tests/support/case_table.h"
+#include "testbench/tests/support/checked_run.h"
+#include "testbench/tests/support/job_settings.h"
 
 // The whole machine with a Highlight Test: its meshes, its cycles, and what it is for.
 
@@ -25,111 +25,65 @@ Job functional_job() {
     return job;
 }
 
-Job noisy_sphere_job() {
-    Job job = functional_job();
-    job.mesh.source = MeshSource::sphere;
-    job.mesh.columns = 24;
-    job.mesh.rows = 12;
-    job.map.source = MapSource::noise;
-    job.map.address_u = Addressing::repeat;
-    job.displacement.scale = 0.02;
-    job.formats.normal_bits = 12;
-    job.formats.normal_fraction = 10;
-    return job;
-}
+struct Row {
+    std::string name;
+    std::string settings;
+};
 
-EmittedMesh bare_mesh(const MachineSetup& setup) {
-    BareRecursion bare(setup);
-    EmittedMesh mesh;
-    bare.run(mesh);
-    return mesh;
-}
+/// Meshes of which some edges are split by HT alone.
+const CaseTable meshes(
+    "Highlight Test: ",
+    {
+        Row{"half donut, functional, conforms", "mode=functional"},
+        // whose thresholds leave edges to the Highlight Test
+        {"noisy sphere, narrow normals, functional, conforms",
+         "mode=functional mesh.source=sphere mesh.columns=24 mesh.rows=12 map.source=noise "
+         "map.address_u=repeat displacement.scale=0.02 formats.normal_bits=12 formats.normal_fraction=10 "
+         "tests.summed_height_threshold=2 tests.view_threshold=2"},
+        {"half donut, timed, conforms", "mode=timed"},
+        {"three tests units, stalls, and a queue that spills its bit, timed, conforms",
+         "mode=timed hardware.tests_units=3 hardware.queue_capacity=20 timing.summed_height_table_ports=4 "
+         "timing.stalls_seed=5 timing.stalls_per_mille=300"},
+    },
+    [](const Row& row) {
+        const CheckedRun run(with_settings(with_highlight({}), row.settings));
+        CHECK(run.conformance.passed(0.5));
+        const auto& counts = run.counts;
+        CHECK(counts.split_by_highlight > 100);
+        CHECK(counts.split_by_highlight <= counts.split_in_highlight);
+        CHECK(counts.split_by_normal + counts.split_by_summed_height + counts.split_by_both +
+                  counts.split_by_highlight ==
+              counts.edges_split);
+    });
 
-/// The bare recursion's mesh, no edge that the golden model does not explain, and some edges split by HT alone.
-void expect_conforming_mesh(const Job& job) {
-    const MachineSetup setup = setup_of(job);
-    const GoldenInputs golden(setup);
-    Simulation simulation(setup, 1'000'000, 100'000);
-    Scoreboard scoreboard(setup.registers, golden);
-    simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
-    if (job.mode == Mode::timed)
+struct Timed {
+    std::string name;
+    std::string settings;
+    std::uint64_t cycles;
+};
+
+const CaseTable cycles(
+    "Highlight Test: one triangle, ",
+    {
+        // test_one_triangle.cpp: edge 2 starts in the Normal Test in 32, is read in 33, and is through 9 + 1 later, in
+        // 43, before the Summed Height Test's 47.
+        Timed{"86 cycles, as without", "", 86},
+        // The Summed Height Test is through in 41, the Normal Test in 43: 43 + 38, and the cycle numbered 0.
+        {"two ports: one cycle more than the 81 without", "timing.summed_height_table_ports=2", 43 + 38 + 1},
+        // 33 + 9 + 300 = 342.
+        {"300 cycles for it", "timing.highlight_test_latency=300", 342 + 38 + 1},
+    },
+    [](const Timed& row) {
+        const MachineSetup setup =
+            one_triangle(with_settings(with_highlight(one_quad_job()), row.settings));
+        Simulation simulation(setup, 1000);
         run_timed(simulation);
-    else
-        REQUIRE(simulation.run().empty());
-    CHECK((keys(bare_mesh(setup)) == keys(simulation.monitor.mesh)));  // not to be printed
-
-    const ConformanceResult result = scoreboard.result();
-    INFO(result.first_mismatch);
-    CHECK(result.mismatches == 0);
-    CHECK(result.passed(0.5));
-    CHECK(result.edges == simulation.pipeline.edges_tested());
-    const InvariantResult invariants = check_invariants(simulation.monitor.mesh, setup);
-    INFO(invariants.first_violation);
-    CHECK(invariants.passed());
-    const auto& counts = simulation.pipeline.pass_or_tessellate.counts();
-    CHECK(counts.split_by_highlight > 100);
-    CHECK(counts.split_by_highlight <= counts.split_in_highlight);
-    CHECK(counts.split_by_normal + counts.split_by_summed_height + counts.split_by_both +
-              counts.split_by_highlight ==
-          counts.edges_split);
-}
-
-std::uint64_t cycles_of(const MachineSetup& setup) {
-    Simulation simulation(setup, 1'000'000, 100'000);
-    run_timed(simulation);
-    return simulation.cycles();
-}
-
-MachineSetup one_triangle(unsigned highlight_test_latency) {
-    Job job = with_highlight(timed_job());
-    job.mesh.columns = job.mesh.rows = 1;
-    job.map.source = MapSource::constant;
-    job.timing.highlight_test_latency = highlight_test_latency;
-    MachineSetup setup = setup_of(job);
-    setup.base_triangles.resize(1);
-    return setup;
-}
+        CHECK(simulation.cycles() == row.cycles);
+    });
 
 }  // namespace
 
-TEST_CASE("Highlight Test: half donut, functional, conforms") {
-    expect_conforming_mesh(with_highlight(functional_job()));
-}
-TEST_CASE("Highlight Test: noisy sphere, narrow normals, functional, conforms") {
-    Job job = noisy_sphere_job();
-    job.tests.summed_height_threshold = 2;  // leaves edges to the Highlight Test
-    job.tests.view_threshold = 2;
-    expect_conforming_mesh(with_highlight(job));
-}
-TEST_CASE("Highlight Test: half donut, timed, conforms") {
-    expect_conforming_mesh(with_highlight(timed_job()));
-}
-TEST_CASE("Highlight Test: three tests units, stalls, and a queue that spills its bit, timed, conforms") {
-    Job job = with_highlight(timed_job());
-    job.hardware.tests_units = 3;
-    job.hardware.queue_capacity = 20;
-    job.timing.summed_height_table.ports = 4;
-    job.timing.stalls = {5, 300, 16};
-    expect_conforming_mesh(job);
-}
-
-// test_timed_pipeline.cpp: edge 2 starts in the Normal Test in 32, is read in 33, and is through 9 + 1 later, in 43,
-// before the Summed Height Test's 47.
-TEST_CASE("Highlight Test: one triangle takes 86 cycles, as without") {
-    CHECK(cycles_of(one_triangle(1)) == 86);
-}
-// Two ports: the Summed Height Test is through in 41, the Normal Test in 43: 43 + 38, and the cycle numbered 0.
-TEST_CASE("Highlight Test: one triangle, two ports: one cycle more than the 81 without") {
-    MachineSetup setup = one_triangle(1);
-    setup.design.timing.summed_height_table.ports = 2;
-    CHECK(cycles_of(setup) == 43 + 38 + 1);
-}
-// 33 + 9 + 300 = 342.
-TEST_CASE("Highlight Test: one triangle, 300 cycles for it") {
-    CHECK(cycles_of(one_triangle(300)) == 342 + 38 + 1);
-}
-
-// 18 base triangles, each split into four until generation 4 (test_timed_throughput.cpp): the Summed Height Table's 36
+// 18 base triangles, each split into four until generation 4 (test_throughput.cpp): the Summed Height Table's 36
 // cycles a pass bound it, and the Highlight Test asks for what is split anyway.
 TEST_CASE("Highlight Test: the paper's design is as fast with it") {
     Job job = with_highlight(full_split_job(3, 4));

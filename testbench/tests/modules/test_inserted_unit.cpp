@@ -1,10 +1,10 @@
 #include <catch2/catch.hpp>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "modules/stage/stage_steps.h"
 #include "testbench/tests/modules/named_machine.h"
+#include "testbench/tests/modules/unit_behind.h"
 #include "testbench/tests/support/timed_checks.h"
 #include "testbench/tests/support/timed_modules.h"
 
@@ -25,46 +25,20 @@ class PassThrough : public Stage<DisplacedPoint, DisplacedPoint> {
   public:
     static constexpr UnitTiming timing{3, 1, 1};  // latency, interval, buffer
 
-    StreamInput<DisplacedPoint> from_displace_vertex{"from_displace_vertex"};
-    StreamOutput<DisplacedPoint> to_transform{"to_transform"};
+    StreamInput<DisplacedPoint> input{"input"};
+    StreamOutput<DisplacedPoint> output{"output"};
 
     PassThrough(const sc_core::sc_module_name& name, const UnitContext& context)
         : Stage(name, context, timing) {
-        takes_from(context, from_displace_vertex);
-        delivers_to(context, to_transform);
+        takes_from(context, input);
+        delivers_to(context, output);
     }
 
   protected:
     DisplacedPoint process(const DisplacedPoint& point, const Entries&) override { return point; }
 };
 
-/// Puts one behind Displace Vertex. One factory a machine, which it must outlive.
-class PassThroughUnits : public UnitFactory {
-  public:
-    const PassThrough& pass_through() const { return *pass_through_; }
-
-  private:
-    std::unique_ptr<DisplaceVertex> displace_vertex(Name name, const UnitContext& context) override {
-        pass_through_ = std::make_unique<PassThrough>("pass_through", context);
-        context.clock.attach(*pass_through_);
-        return UnitFactory::displace_vertex(name, context);
-    }
-    void made(sc_core::sc_module& module) override {
-        if (auto* const unit = dynamic_cast<DisplaceVertex*>(&module))
-            unit->to_transform.interpose([this](auto& from, auto& to) {
-                from.bind(pass_through_->from_displace_vertex);
-                pass_through_->to_transform.bind(to);
-            });
-    }
-
-    std::unique_ptr<PassThrough> pass_through_;
-};
-
-void expect_mesh(const NamedMachine& machine, const MachineSetup& setup) {
-    INFO(machine.name());
-    CHECK(machine.finished());
-    CHECK((keys(machine.monitor.mesh) == keys(bare_mesh(setup))));
-}
+using PassThroughUnits = UnitBehind<DisplaceVertex, PassThrough>;
 
 }  // namespace
 
@@ -78,8 +52,8 @@ TEST_CASE("pass-through alone: each item as it came, three cycles later, one a c
     PassThrough unit("pass_through", {clock, registers, design});
     clock.attach(unit);
     Sink<DisplacedPoint> sink("sink", clock);
-    driver.out.bind(unit.from_displace_vertex);
-    unit.to_transform.bind(sink.in);
+    driver.out.bind(unit.input);
+    unit.output.bind(sink.in);
     driver.items.resize(4);
     for (std::uint8_t k = 0; k < 4; ++k)
         driver.items[k].tag.part = k;
@@ -90,27 +64,23 @@ TEST_CASE("pass-through alone: each item as it came, three cycles later, one a c
         CHECK(sink.items[k].tag.part == k);
 }
 
-// test_timed_pipeline.cpp's derivation with D + 3 instead of D: V = 34, W = S = 35, J = 35 + 11 + 1 + 3 = 50; the normals
+// test_one_triangle.cpp's derivation with D + 3 instead of D: V = 34, W = S = 35, J = 35 + 11 + 1 + 3 = 50; the normals
 // come through once more: 38 + 3. Cycle 91. Nine parts, three cycles each.
 TEST_CASE("pass-through: one triangle, 92 cycles instead of 86") {
-    Job job = timed_job();
-    job.mesh.columns = job.mesh.rows = 1;
-    job.map.source = MapSource::constant;
-    MachineSetup setup = setup_of(job);
-    setup.base_triangles.resize(1);
+    const MachineSetup setup = one_triangle();
     PassThroughUnits units;
     NamedMachine own("own", setup);
     NamedMachine machine("machine", setup, &units);
     sc_core::sc_start();
     CHECK(own.cycles() == 86);
     CHECK(machine.cycles() == 92);
-    const Activity& activity = units.pass_through().activity();
+    const Activity& activity = units.inserted().activity();
     CHECK(activity.items_out() == 9);
     CHECK(activity.item_cycles() == 9 * PassThrough::timing.latency);
     CHECK(activity.cycles_in(State::blocked) == 0);
 }
 
-// The Summed Height Table binds (test_timed_throughput.cpp): 5 + 3 + 36 a pass + 9. The 3 are its only pause, for the
+// The Summed Height Table binds (test_throughput.cpp): 5 + 3 + 36 a pass + 9. The 3 are its only pause, for the
 // first triangle's third edge, which waits for Transform: 6 now. The last pass needs no normals: no more at the end.
 TEST_CASE("pass-through: the default job, three cycles more") {
     const MachineSetup setup = setup_of(timed_job());
@@ -120,8 +90,8 @@ TEST_CASE("pass-through: the default job, three cycles more") {
     const std::uint64_t passes = machine.pipeline.pass_or_tessellate.counts().passes;
     CHECK(passes == 19'700);
     CHECK(machine.cycles() == 5 + 6 + 36 * passes + 9);  // 709,220
-    CHECK(units.pass_through().activity().items_out() == machine.pipeline.get_triangle.parts_sent());
-    expect_mesh(machine, setup);
+    CHECK(units.inserted().activity().items_out() == machine.pipeline.get_triangle.parts_sent());
+    expect_bare_mesh(machine);
 }
 
 TEST_CASE("pass-through: the same mesh in both modes") {
@@ -133,6 +103,6 @@ TEST_CASE("pass-through: the same mesh in both modes") {
     NamedMachine timed("timed", timed_setup, &timed_units);
     NamedMachine functional("functional", functional_setup, &functional_units);
     sc_core::sc_start();
-    expect_mesh(timed, timed_setup);
-    expect_mesh(functional, timed_setup);
+    expect_bare_mesh(timed);
+    expect_bare_mesh(functional);
 }

@@ -1,7 +1,11 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
+#include <string>
+#include <utility>
 
+#include "testbench/tests/support/case_table.h"
+#include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/timed_checks.h"
 
 // One triangle through an idle machine: every cycle of its way, derived by hand.
@@ -40,20 +44,6 @@ using namespace tessera::testing;
 
 namespace {
 
-Job one_triangle_job() {
-    Job job = timed_job();
-    job.mesh.columns = job.mesh.rows = 1;
-    job.map.source = MapSource::constant;
-    return job;
-}
-
-MachineSetup one_triangle(const Timing& timing) {
-    MachineSetup setup = setup_of(one_triangle_job());
-    setup.base_triangles.resize(1);
-    setup.design.timing = timing;
-    return setup;
-}
-
 std::uint64_t derived_cycles(const Timing& t) {
     const std::uint64_t g = t.get_triangle.latency, p = t.calculate_new_p.latency;
     const std::uint64_t d = t.displace_vertex.latency, transform = t.transform.latency;
@@ -74,90 +64,84 @@ std::uint64_t derived_cycles(const Timing& t) {
     return lit + 1;
 }
 
-void expect_derived(const Timing& timing, std::uint64_t by_hand) {
-    const MachineSetup setup = one_triangle(timing);
-    Simulation simulation(setup, 1000);
-    run_timed(simulation);
-    CHECK(derived_cycles(timing) == by_hand);
-    CHECK(simulation.cycles() == by_hand);
-    CHECK(simulation.rasteriser.triangles() == 1);
-}
+struct Row {
+    std::string name;
+    std::string settings;
+    std::uint64_t cycles;
+};
+
+/// The derivation above, worked out by hand for each.
+const CaseTable derived(
+    "one triangle, ",
+    {
+        // V = 1 + 2 + 1 + 1 + 6 + 20 = 31; W = 32; S = max(5 + 24, 32) = 32; J = 32 + 11 + 1 + 3 = 47;
+        // then 1 + 1 + 1 + 1 + 2 + 1 + 6 + 20 + 1 + 4 = 38: cycle 85.
+        Row{"the paper's design: 86 cycles", "", 86},
+        // V = 12, W = 13, S = 29, J = 29 + 11 + 1 + 3 = 44, then 19: the tests take longer than Transform.
+        {"Transform of 1 cycle: the tests are what takes time", "timing.transform_latency=1", 64},
+        // V = 511, W = 512, J = 512 + 11 + 1 + 3 = 527, then 518.
+        {"Transform of 500 cycles: edge 2 waits for the screen positions", "timing.transform_latency=500",
+         527 + 518 + 1},
+        // S = 32, last address 43, data 143, test 146; then 38.
+        {"a Summed Height Table of latency 100", "timing.summed_height_table_latency=100", 146 + 38 + 1},
+        {"a Summed Height Table of latency 0", "timing.summed_height_table_latency=0", 46 + 38 + 1},
+        // The map's latency delays V to 130 = 1 + 2 + 1 + 100 + 6 + 20, W = 131, J = 131 + 15 = 146; normals read
+        // nothing: 38.
+        {"a displacement map of latency 100", "timing.displacement_map_latency=100", 146 + 38 + 1},
+        // A = 1 + 2 + 1 + 200 = 204, after V = 31: W = 205, edge 2 starts in 206, J = 206 + 200 + 9 = 415.
+        {"a normal map of latency 200: the Normal Test is the last", "timing.normal_map_latency=200",
+         415 + 38 + 1},
+        // J = 32 + 1 + 300 = 333.
+        {"a Normal Test of 300 cycles", "timing.normal_test_latency=300", 333 + 38 + 1},
+        // Edge 2 starts in V + 2 = 33, J = 103.
+        {"a View Test of 70 cycles", "timing.view_test_latency=70", 103 + 38 + 1},
+        // Two ports: 6 cycles an edge; S = 32, J = 32 + 5 + 1 + 3 = 41, before the Normal Test's 42 = 32 + 1 + 9.
+        {"two ports on the Summed Height Table: the Normal Test is the last",
+         "timing.summed_height_table_ports=2", 42 + 38 + 1},
+        {"four ports on the Summed Height Table: no faster than two", "timing.summed_height_table_ports=4",
+         42 + 38 + 1},
+    },
+    [](const Row& row) {
+        const MachineSetup setup = one_triangle(with_settings(one_quad_job(), row.settings));
+        Simulation simulation(setup, 1000);
+        run_timed(simulation);
+        CHECK(derived_cycles(setup.design.timing) == row.cycles);
+        CHECK(simulation.cycles() == row.cycles);
+        CHECK(simulation.rasteriser.triangles() == 1);
+    });
+
+/// Other designs, each with a derivation of its own.
+const CaseTable designs(
+    "one triangle, ",
+    {
+        // Each unit has an edge and its two vertices, sent in G, G + 1 and G + 2 on its branch; geometry as before. All
+        // three edges reach the Summed Height Tests in G + 2 + C = 4 and share the one port for 36 cycles: last address
+        // 39, data 40, test 43. The Normal Tests read six corners through the map's one port, in 2 to 7; the last has
+        // come in 8: edges read in 8 to 10 at the latest, are through in 20. View 32, geometry 34. J = 43, then 38.
+        Row{"three tests units: 82 cycles", "hardware.tests_units=3", 43 + 38 + 1},
+        // Nine gathers of one cycle each: last address 4 + 8 = 12, data 13, test 16: the last edge's geometry is later,
+        // in 34.
+        {"three tests units and four ports: the tests are hidden behind Transform",
+         "hardware.tests_units=3 timing.summed_height_table_ports=4", 34 + 38 + 1},
+        // Parts 4 cycles apart from G + P + Md + D = 9 on: vertices start in 9, 13, 17, on the screen in 29, 33, 37 =
+        // V; edges in 41, 45, 49. W = 38, S = 38, J = max(49, 38 + 15) = 53. Second round: normals enter Transform 4
+        // apart: 2 normals later 8 instead of 2: 38 + 6.
+        {"Transform every 4 cycles", "timing.transform_interval=4", 53 + 44 + 1},
+        // The two take turns, each every 4 cycles: starts in 9, 10, 13: V = 33, W = 34, edges 34, 37, 38. J = 34 + 15.
+        // Normals: the third starts 4 after the first: 38 + 2.
+        {"two Transform pipelines every 4 cycles",
+         "timing.transform_interval=4 hardware.transform_pipelines=2", 49 + 40 + 1},
+    },
+    [](const Row& row) {
+        const MachineSetup setup = one_triangle(with_settings(one_quad_job(), row.settings));
+        Simulation simulation(setup, 1000);
+        run_timed(simulation);
+        CHECK(simulation.cycles() == row.cycles);
+        const bool three_units = setup.design.tests_units == 3;  // which read six corners, not three
+        CHECK(simulation.pipeline.normal_map.transactions() == (three_units ? 6 : 3) + 3);
+    });
 
 }  // namespace
-
-// V = 1 + 2 + 1 + 1 + 6 + 20 = 31; W = 32; S = max(5 + 24, 32) = 32; J = 32 + 11 + 1 + 3 = 47;
-// then 1 + 1 + 1 + 1 + 2 + 1 + 6 + 20 + 1 + 4 = 38: cycle 85.
-TEST_CASE("one triangle, the paper's design: 86 cycles") {
-    expect_derived({}, 86);
-}
-
-// V = 12, W = 13, S = 29, J = 29 + 11 + 1 + 3 = 44, then 19: the tests take longer than Transform.
-TEST_CASE("one triangle, Transform of 1 cycle: the tests are what takes time") {
-    Timing timing;
-    timing.transform.latency = 1;
-    expect_derived(timing, 64);
-}
-
-// V = 511, W = 512, J = 512 + 11 + 1 + 3 = 527, then 518.
-TEST_CASE("one triangle, Transform of 500 cycles: edge 2 waits for the screen positions") {
-    Timing timing;
-    timing.transform.latency = 500;
-    expect_derived(timing, 527 + 518 + 1);
-}
-
-// S = 32, last address 43, data 143, test 146; then 38.
-TEST_CASE("one triangle, a Summed Height Table of latency 100") {
-    Timing timing;
-    timing.summed_height_table.latency = 100;
-    expect_derived(timing, 146 + 38 + 1);
-}
-
-TEST_CASE("one triangle, a Summed Height Table of latency 0") {
-    Timing timing;
-    timing.summed_height_table.latency = 0;
-    expect_derived(timing, 46 + 38 + 1);
-}
-
-// The map's latency delays V to 130 = 1 + 2 + 1 + 100 + 6 + 20, W = 131, J = 131 + 15 = 146; normals read nothing: 38.
-TEST_CASE("one triangle, a displacement map of latency 100") {
-    Timing timing;
-    timing.displacement_map.latency = 100;
-    expect_derived(timing, 146 + 38 + 1);
-}
-
-// A = 1 + 2 + 1 + 200 = 204, after V = 31: W = 205, edge 2 starts in 206, J = 206 + 200 + 9 = 415.
-TEST_CASE("one triangle, a normal map of latency 200: the Normal Test is the last") {
-    Timing timing;
-    timing.normal_map.latency = 200;
-    expect_derived(timing, 415 + 38 + 1);
-}
-
-// J = 32 + 1 + 300 = 333.
-TEST_CASE("one triangle, a Normal Test of 300 cycles") {
-    Timing timing;
-    timing.normal_test.latency = 300;
-    expect_derived(timing, 333 + 38 + 1);
-}
-
-// Edge 2 starts in V + 2 = 33, J = 103.
-TEST_CASE("one triangle, a View Test of 70 cycles") {
-    Timing timing;
-    timing.view_test.latency = 70;
-    expect_derived(timing, 103 + 38 + 1);
-}
-
-// Two ports: 6 cycles an edge; S = 32, J = 32 + 5 + 1 + 3 = 41, before the Normal Test's 42 = 32 + 1 + 9.
-TEST_CASE("one triangle, two ports on the Summed Height Table: the Normal Test is the last") {
-    Timing timing;
-    timing.summed_height_table.ports = 2;
-    expect_derived(timing, 42 + 38 + 1);
-}
-
-TEST_CASE("one triangle, four ports on the Summed Height Table: no faster than two") {
-    Timing timing;
-    timing.summed_height_table.ports = 4;
-    expect_derived(timing, 42 + 38 + 1);
-}
 
 // What the header of each unit says, and the sums above rest on. The tests' own figures do not hold the
 // defaults of units off the critical path.
@@ -208,27 +192,17 @@ TEST_CASE("the paper's design: latency, interval and buffer of every unit and me
 // J = max(71, 68 + 4 + 13, 68 + 11 + 9 + 17, 70 + 6) = 105,
 // then 8 + 10 + 12 + 3 + 2 + 5 + 11 + 40 + 8 + 14 = 113.
 TEST_CASE("one triangle, every latency another") {
-    Timing timing;
-    timing.get_triangle.latency = 3;
-    timing.calculate_new_p.latency = 5;
-    timing.displacement_map.latency = 7;
-    timing.displace_vertex.latency = 11;
-    timing.transform.latency = 40;
-    timing.calculate_new_u.latency = 2;
-    timing.normal_map.latency = 4;
-    timing.normal_test.latency = 13;
-    timing.summed_height_table.latency = 9;
-    timing.summed_height_test.latency = 17;
-    timing.view_test.latency = 6;
-    timing.tex_coord_test.latency = 3;
-    timing.pass_or_tessellate.latency = 8;
-    timing.tessellation.latency = 10;
-    timing.triangle_queue.latency = 12;
-    timing.lighting.latency = 14;
-    const MachineSetup setup = one_triangle(timing);
+    const MachineSetup setup = one_triangle(with_settings(
+        one_quad_job(),
+        "timing.get_triangle_latency=3 timing.calculate_new_p_latency=5 timing.displacement_map_latency=7 "
+        "timing.displace_vertex_latency=11 timing.transform_latency=40 timing.calculate_new_u_latency=2 "
+        "timing.normal_map_latency=4 timing.normal_test_latency=13 timing.summed_height_table_latency=9 "
+        "timing.summed_height_test_latency=17 timing.view_test_latency=6 timing.tex_coord_test_latency=3 "
+        "timing.pass_or_tessellate_latency=8 timing.tessellation_latency=10 "
+        "timing.triangle_queue_latency=12 timing.lighting_latency=14"));
     Simulation simulation(setup, 1000);
     run_timed(simulation);
-    CHECK(derived_cycles(timing) == 105 + 113 + 1);
+    CHECK(derived_cycles(setup.design.timing) == 105 + 113 + 1);
     CHECK(simulation.cycles() == 105 + 113 + 1);
 
     // and each unit keeps each item for its own latency, on the way or beside it
@@ -249,33 +223,9 @@ TEST_CASE("one triangle, every latency another") {
     }
 }
 
-// Three Tessellation Tests units: each has an edge and its two vertices, sent in G, G + 1 and G + 2 on its branch;
-// geometry as before. All three edges reach the Summed Height Tests in G + 2 + C = 4 and share the one port
-// for 36 cycles: last address 39, data 40, test 43. The Normal Tests read six corners through the map's one
-// port, in 2 to 7; the last has come in 8: edges read in 8 to 10 at the latest, are through in 20. View 32,
-// geometry 34. J = 43, then 38.
-TEST_CASE("one triangle, three tests units: 82 cycles") {
-    MachineSetup setup = one_triangle({});
-    setup.design.tests_units = 3;
-    Simulation simulation(setup, 1000);
-    run_timed(simulation);
-    CHECK(simulation.cycles() == 43 + 38 + 1);
-    CHECK(simulation.pipeline.normal_map.transactions() == 6 + 3);
-}
-
-// Nine gathers of one cycle each: last address 4 + 8 = 12, data 13, test 16: the last edge's geometry is later, in 34.
-TEST_CASE("one triangle, three tests units and four ports: the tests are hidden behind Transform") {
-    MachineSetup setup = one_triangle({});
-    setup.design.tests_units = 3;
-    setup.design.timing.summed_height_table.ports = 4;
-    Simulation simulation(setup, 1000);
-    run_timed(simulation);
-    CHECK(simulation.cycles() == 34 + 38 + 1);
-}
-
 // Normals only take part in the second round: three parts, read nothing, and skip the tests. Six parts in the first.
 TEST_CASE("one triangle: its parts and reads") {
-    const MachineSetup setup = one_triangle({});
+    const MachineSetup setup = one_triangle();
     Simulation simulation(setup, 1000);
     run_timed(simulation);
     const Pipeline& p = simulation.pipeline;
@@ -299,33 +249,9 @@ TEST_CASE("one triangle: its parts and reads") {
 
 // What a triangle's stages take cannot depend on the clock's period.
 TEST_CASE("one triangle: cycles do not depend on the clock's period, time does") {
-    Timing timing;
-    timing.cycle_picoseconds = 1234;
-    const MachineSetup setup = one_triangle(timing);
+    const MachineSetup setup = one_triangle(with_settings(one_quad_job(), "timing.clock_period=1234"));
     Simulation simulation(setup, 1000);
     run_timed(simulation);
     CHECK(simulation.cycles() == 86);
     CHECK(sc_core::sc_time_stamp().value() == 85 * 1234);
-}
-
-// Transform's interval 4, parts 4 cycles apart from G + P + Md + D = 9 on: vertices start in 9, 13, 17, on
-// the screen in 29, 33, 37 = V; edges in 41, 45, 49. W = 38, S = 38, J = max(49, 38 + 15) = 53. Second round:
-// normals enter Transform 4 apart: 2 normals later 8 instead of 2: 38 + 6.
-TEST_CASE("one triangle, Transform every 4 cycles") {
-    MachineSetup setup = one_triangle({});
-    setup.design.timing.transform.interval = 4;
-    Simulation simulation(setup, 1000);
-    run_timed(simulation);
-    CHECK(simulation.cycles() == 53 + 44 + 1);
-}
-
-// Two pipelines that take turns, each every 4 cycles: starts in 9, 10, 13: V = 33, W = 34, edges 34, 37, 38.
-// J = 34 + 15. Normals: the third starts 4 after the first: 38 + 2.
-TEST_CASE("one triangle, two Transform pipelines every 4 cycles") {
-    MachineSetup setup = one_triangle({});
-    setup.design.timing.transform.interval = 4;
-    setup.design.transform_pipelines = 2;
-    Simulation simulation(setup, 1000);
-    run_timed(simulation);
-    CHECK(simulation.cycles() == 49 + 40 + 1);
 }

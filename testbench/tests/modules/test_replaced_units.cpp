@@ -13,6 +13,7 @@
 #include "modules/stage/stage_steps.h"
 #include "testbench/tests/modules/named_machine.h"
 #include "testbench/tests/modules/rtl_displace_vertex.h"
+#include "testbench/tests/modules/unit_behind.h"
 #include "testbench/tests/support/timed_checks.h"
 #include "testbench/tests/support/timed_modules.h"
 
@@ -219,23 +220,7 @@ class HalfLight : public Stage<LitTriangle, LitTriangle> {
     }
 };
 
-/// Puts it behind Lighting.
-class HalfLitUnits : public UnitFactory {
-    std::unique_ptr<Lighting> lighting(Name name, const UnitContext& context) override {
-        half_light_ = std::make_unique<HalfLight>("half_light", context);
-        context.clock.attach(*half_light_);
-        return std::make_unique<Lighting>(name, context);
-    }
-    void made(sc_core::sc_module& module) override {
-        if (auto* lighting = dynamic_cast<Lighting*>(&module))
-            lighting->to_rasteriser.interpose([this](auto& from, auto& to) {
-                from.bind(half_light_->input);
-                half_light_->output.bind(to);
-            });
-    }
-
-    std::unique_ptr<HalfLight> half_light_;
-};
+using HalfLitUnits = UnitBehind<Lighting, HalfLight>;
 
 struct LitTriangles : tlm::tlm_analysis_if<LitTriangle> {
     std::vector<LitTriangle> all;
@@ -269,13 +254,6 @@ void expect_same_cycles(NamedMachine& left, NamedMachine& right) {
         for (const State state : {State::starved, State::busy, State::waiting_for_memory, State::blocked})
             CHECK(one.activity().cycles_in(state) == other.activity().cycles_in(state));
     }
-}
-
-void expect_mesh(const NamedMachine& machine, const EmittedMesh& mesh) {
-    INFO(machine.name());
-    CHECK(machine.finished());
-    CHECK(machine.monitor.mesh.triangles.size() == mesh.triangles.size());
-    CHECK((keys(machine.monitor.mesh) == keys(mesh)));  // not to be printed
 }
 
 /// With which the machine's own Summed Height Test decides as the halved one.

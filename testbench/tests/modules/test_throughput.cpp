@@ -1,7 +1,11 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
+#include <string>
 
 #include "testbench/output/report/timing_report.h"
+#include "testbench/tests/support/case_table.h"
+#include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/timed_checks.h"
 
 // Long runs: the slowest unit's interval times its work, and the cycles the machine takes to fill and to drain, to the
@@ -28,12 +32,12 @@ constexpr std::uint64_t fill = 5;
 constexpr std::uint64_t fill_of_three = 4;
 // After the last address: data 1, Summed Height Test 3, Pass or Tessellate 1, Lighting 4.
 constexpr std::uint64_t drain = 9;
-// From the cycle a base triangle is taken in until its corners are on the screen (test_timed_pipeline.cpp): the longest
+// From the cycle a base triangle is taken in until its corners are on the screen (test_one_triangle.cpp): the longest
 // that the View Test, waiting for one, can keep its edges from the other tests.
 constexpr std::uint64_t until_on_screen = 31;
 
-MachineSetup full_split() {
-    return setup_of(full_split_job(3, 4));
+MachineSetup full_split(const std::string& settings = "") {
+    return setup_of(with_settings(full_split_job(3, 4), settings));
 }
 
 void run_full_split(Simulation& simulation) {
@@ -50,10 +54,96 @@ void require_sole_bottleneck(const Simulation& simulation, const Unit* unit) {
           std::vector<const Unit*>{unit});
 }
 
+const Unit& unit_named(const Pipeline& pipeline, const std::string& name) {
+    const auto units = pipeline.units();
+    return **std::find_if(units.begin(), units.end(),
+                          [&](const Unit* unit) { return unit->basename() == name; });
+}
+
+/// Cycles, from `least` to `most`, and for how many of them one unit is occupied.
+struct Row {
+    std::string name;
+    std::string settings;
+    std::uint64_t least, most;
+    std::string unit;
+    std::uint64_t occupied;
+    bool sole_bottleneck = false;
+};
+
+constexpr std::uint64_t splits = (passes - base) / 4;
+// With ports to spare, the first part leaves Get Triangle in cycle 1; the last takes Calculate New P 1, the map 1,
+// Displace Vertex 6, Transform 20, Pass or Tessellate 1, Lighting 4 to come out.
+constexpr std::uint64_t a_part_a_cycle = 1 + parts + 1 + 1 + 6 + 20 + 1 + 4;
+// Transform every 8 cycles starts a part first in cycle 9 (Get Triangle 1, Calculate New P 1, map 1, Displace Vertex
+// 6); the last, 8 * (parts - 1) later, is out 20 later, the triangle decided 1, lit 4 later.
+constexpr std::uint64_t transform_every_8 = 9 + 8 * (parts - 1) + 20 + 1 + 4 + 1;
+// Two pipelines: parts 0, 2, 4 ... start in 9, 17, 25 ...; parts 1, 3, 5 ... in 10, 18, 26 ...; the last one is odd.
+constexpr std::uint64_t two_every_8 = 10 + 8 * (parts / 2 - 1) + 20 + 1 + 4 + 1;
+
+const CaseTable rates(
+    "",
+    {
+        // 18 cycles a pass; the first triangle's first two edges are through in 5 to 16, its third comes in 32.
+        Row{"two ports on the Summed Height Table: 18 cycles a pass", "timing.summed_height_table_ports=2",
+            fill + 15 + 18 * passes + drain, fill + 15 + 18 * passes + drain, "summed_height_table",
+            18 * passes},
+        // 9 cycles a pass: still more than a pass has parts (at most 6). A base triangle's 31 cycles to the screen are
+        // now longer than the work on the ones before it, so each of 18 may hold the table up for so long at most.
+        {"four ports on the Summed Height Table: 9 cycles a pass, still bound by it",
+         "timing.summed_height_table_ports=4", fill + 9 * passes + drain,
+         fill + 9 * passes + drain + base * until_on_screen, "summed_height_table", 9 * passes},
+        // 64 ports: a rectangle takes no more than its cycle, and what binds is one part a cycle, out of Get Triangle
+        // and through Calculate New P, Displace Vertex and Transform alike.
+        {"with ports to spare a part a cycle is what binds", "timing.summed_height_table_ports=64",
+         a_part_a_cycle, a_part_a_cycle + base * until_on_screen, "get_triangle", parts},
+        // They share the one port: nothing gained but the first triangle's three cycles and one vertex.
+        {"three tests units on one port: 36 cycles a pass as before", "hardware.tests_units=3",
+         fill_of_three + 36 * passes + drain, fill_of_three + 36 * passes + drain, "summed_height_table",
+         36 * passes},
+        {"three tests units on four ports: 9 cycles a pass",
+         "hardware.tests_units=3 timing.summed_height_table_ports=4", fill_of_three + 9 * passes + drain,
+         fill_of_three + 9 * passes + drain + base * until_on_screen, "summed_height_table", 9 * passes},
+        // The table, with four ports, needs 9 cycles of the 24 and more that three edges take here.
+        {"Transform every 8 cycles binds: 8 cycles a part",
+         "timing.summed_height_table_ports=4 timing.transform_interval=8", transform_every_8,
+         transform_every_8, "transform", 8 * parts},
+        {"two Transform pipelines every 8 cycles: 4 cycles a part",
+         "timing.summed_height_table_ports=4 timing.transform_interval=8 hardware.transform_pipelines=2",
+         two_every_8, two_every_8, "transform", 4 * parts},
+        // 6120 children, one every 20 cycles, also from one pass's last to the next one's first. When the last is made,
+        // the finished ones may still wait for the table, nine cycles each.
+        {"Tessellation every 20 cycles binds where the tests take less",
+         "timing.summed_height_table_ports=4 timing.tessellation_interval=20", 20 * (passes - base - 1),
+         20 * (passes - base) + 9 * finished + 500, "tessellation", 20 * (passes - base), true},
+        // One pass at a time: a latency of 300 before its first child, and the other three in the cycles after it.
+        {"Tessellation of latency 300 binds: 303 cycles a split",
+         "timing.summed_height_table_ports=4 timing.tessellation_latency=300", 303 * splits,
+         303 * splits + 9 * finished + 500, "tessellation", 303 * splits, true},
+        {"Get Triangle every 100 cycles binds: 100 cycles a part", "timing.get_triangle_interval=100",
+         100 * (parts - 1), 100 * parts + 1000, "get_triangle", 100 * parts, true},
+    },
+    [](const Row& row) {
+        const MachineSetup setup = full_split(row.settings);
+        Simulation simulation(setup, 1'000'000);
+        run_full_split(simulation);
+        CHECK(simulation.cycles() >= row.least);
+        CHECK(simulation.cycles() <= row.most);
+        const Pipeline& p = simulation.pipeline;
+        CHECK(p.tessellation.children() == passes - base);
+        const Unit& unit = unit_named(p, row.unit);
+        CHECK(unit.occupied_cycles() == row.occupied);
+        if (&unit == &p.summed_height_table)
+            CHECK(unit.activity().cycles_in(State::busy) == row.occupied);
+        if (&unit == &p.transform)  // ceil(20 / 8) register stages in each
+            CHECK(unit.activity().high_water_mark() == 3 * setup.design.transform_pipelines);
+        if (row.sole_bottleneck)
+            require_sole_bottleneck(simulation, &unit);
+    });
+
 }  // namespace
 
 // One port takes 3 edges x 3 rectangles x 4 entries = 36 cycles a pass, without a break but for one: the
-// first triangle's third edge comes in cycle 32 (test_timed_pipeline.cpp), 3 after the first two's 24 entries
+// first triangle's third edge comes in cycle 32 (test_one_triangle.cpp), 3 after the first two's 24 entries
 // have been read in 5 to 28. From then on the next triangle's edges wait when one is through.
 TEST_CASE("the paper's design is bound by the Summed Height Table: 36 cycles a pass") {
     const MachineSetup setup = full_split();
@@ -80,145 +170,18 @@ TEST_CASE("half donut, the paper's design: 36 cycles a pass") {
     CHECK(simulation.cycles() == fill + 3 + 36 * its_passes + drain);
 }
 
-// 18 cycles a pass; the first triangle's first two edges are through in 5 to 16, its third comes in 32.
-TEST_CASE("two ports on the Summed Height Table: 18 cycles a pass") {
-    MachineSetup setup = full_split();
-    setup.design.timing.summed_height_table.ports = 2;
-    Simulation simulation(setup, 1'000'000);
-    run_full_split(simulation);
-    CHECK(simulation.cycles() == fill + 15 + 18 * passes + drain);
-    CHECK(simulation.pipeline.summed_height_table.activity().cycles_in(State::busy) == 18 * passes);
-}
-
-// 9 cycles a pass: still more than a pass has parts (at most 6). A base triangle's 31 cycles to the screen are now
-// longer than the work on the ones before it, so each of 18 may hold the table up for so long at most.
-TEST_CASE("four ports on the Summed Height Table: 9 cycles a pass, still bound by it") {
-    MachineSetup setup = full_split();
-    setup.design.timing.summed_height_table.ports = 4;
-    Simulation simulation(setup, 1'000'000);
-    run_full_split(simulation);
-    CHECK(simulation.cycles() >= fill + 9 * passes + drain);
-    CHECK(simulation.cycles() <= fill + 9 * passes + drain + base * until_on_screen);
-    CHECK(simulation.pipeline.summed_height_table.activity().cycles_in(State::busy) == 9 * passes);
-}
-
 // Four banks instead: a rectangle's corners lie in banks as they fall, so no better than four ports, and with one port
 // each no worse than one.
 TEST_CASE("four banks of the Summed Height Table are between one port and four") {
-    MachineSetup setup = full_split();
-    setup.design.timing.summed_height_table.banks = 4;
+    const MachineSetup setup = full_split("timing.summed_height_table_banks=4");
     Simulation simulation(setup, 1'000'000);
     run_full_split(simulation);
     CHECK(simulation.cycles() > fill + 9 * passes + drain);
     CHECK(simulation.cycles() < fill + 3 + 36 * passes + drain);
 }
 
-// 64 ports: a rectangle takes no more than its cycle, and what binds is one part a cycle, out of Get Triangle
-// and through Calculate New P, Displace Vertex and Transform alike. The first leaves in cycle 1, the last
-// takes Calculate New P 1, the map 1, Displace Vertex 6, Transform 20, Pass or Tessellate 1, Lighting 4 to
-// come out.
-TEST_CASE("with ports to spare a part a cycle is what binds") {
-    MachineSetup setup = full_split();
-    setup.design.timing.summed_height_table.ports = 64;
-    Simulation simulation(setup, 1'000'000);
-    run_full_split(simulation);
-    const std::uint64_t least = 1 + parts + 1 + 1 + 6 + 20 + 1 + 4;
-    CHECK(simulation.cycles() >= least);
-    CHECK(simulation.cycles() <= least + base * until_on_screen);
-    CHECK(simulation.pipeline.get_triangle.occupied_cycles() == parts);
-}
-
-// Three Tessellation Tests units share the one port: nothing gained but the first triangle's three cycles and
-// one vertex.
-TEST_CASE("three tests units on one port: 36 cycles a pass as before") {
-    MachineSetup setup = full_split();
-    setup.design.tests_units = 3;
-    Simulation simulation(setup, 1'000'000);
-    run_full_split(simulation);
-    CHECK(simulation.cycles() == fill_of_three + 36 * passes + drain);
-}
-
-TEST_CASE("three tests units on four ports: 9 cycles a pass") {
-    MachineSetup setup = full_split();
-    setup.design.tests_units = 3;
-    setup.design.timing.summed_height_table.ports = 4;
-    Simulation simulation(setup, 1'000'000);
-    run_full_split(simulation);
-    CHECK(simulation.cycles() >= fill_of_three + 9 * passes + drain);
-    CHECK(simulation.cycles() <= fill_of_three + 9 * passes + drain + base * until_on_screen);
-}
-
-// Transform starts a part every 8 cycles, the first in cycle 9 (Get Triangle 1, Calculate New P 1, map 1,
-// Displace Vertex 6); the last, 8 * (parts - 1) later, is out 20 later, the triangle decided 1, lit 4 later.
-// The table, with four ports, needs 9 cycles of the 24 and more that three edges take here.
-TEST_CASE("Transform every 8 cycles binds: 8 cycles a part") {
-    MachineSetup setup = full_split();
-    setup.design.timing.summed_height_table.ports = 4;
-    setup.design.timing.transform.interval = 8;
-    Simulation simulation(setup, 1'000'000);
-    run_full_split(simulation);
-    CHECK(simulation.cycles() == 9 + 8 * (parts - 1) + 20 + 1 + 4 + 1);
-    CHECK(simulation.pipeline.transform.occupied_cycles() == 8 * parts);
-    // ceil(20 / 8) register stages
-    CHECK(simulation.pipeline.transform.activity().high_water_mark() == 3);
-}
-
-// Two pipelines: parts 0, 2, 4 ... start in 9, 17, 25 ...; parts 1, 3, 5 ... in 10, 18, 26 ...; the last one is odd.
-TEST_CASE("two Transform pipelines every 8 cycles: 4 cycles a part") {
-    MachineSetup setup = full_split();
-    setup.design.timing.summed_height_table.ports = 4;
-    setup.design.timing.transform.interval = 8;
-    setup.design.transform_pipelines = 2;
-    Simulation simulation(setup, 1'000'000);
-    run_full_split(simulation);
-    CHECK(simulation.cycles() == 10 + 8 * (parts / 2 - 1) + 20 + 1 + 4 + 1);
-    CHECK(simulation.pipeline.transform.occupied_cycles() == 4 * parts);
-    CHECK(simulation.pipeline.transform.activity().high_water_mark() == 6);
-}
-
-// Tessellation: 6120 children, one every 20 cycles, also from one pass's last to the next one's first.
-TEST_CASE("Tessellation every 20 cycles binds where the tests take less") {
-    MachineSetup setup = full_split();
-    setup.design.timing.summed_height_table.ports = 4;
-    setup.design.timing.tessellation.interval = 20;
-    Simulation simulation(setup, 1'000'000);
-    run_full_split(simulation);
-    CHECK(simulation.pipeline.tessellation.children() == passes - base);
-    CHECK(simulation.cycles() >= 20 * (passes - base - 1));
-    // and when the last is made, the finished ones may still wait for the table, nine cycles each
-    CHECK(simulation.cycles() < 20 * (passes - base) + 9 * finished + 500);
-    CHECK(simulation.pipeline.tessellation.occupied_cycles() == 20 * (passes - base));
-    require_sole_bottleneck(simulation, &simulation.pipeline.tessellation);
-}
-
-// One pass at a time: a latency of 300 before its first child, and the other three in the cycles after it.
-TEST_CASE("Tessellation of latency 300 binds: 303 cycles a split") {
-    MachineSetup setup = full_split();
-    setup.design.timing.summed_height_table.ports = 4;
-    setup.design.timing.tessellation.latency = 300;
-    Simulation simulation(setup, 1'000'000);
-    run_full_split(simulation);
-    const std::uint64_t splits = (passes - base) / 4;
-    CHECK(simulation.pipeline.tessellation.occupied_cycles() == 303 * splits);
-    CHECK(simulation.cycles() >= 303 * splits);
-    CHECK(simulation.cycles() < 303 * splits + 9 * finished + 500);
-    require_sole_bottleneck(simulation, &simulation.pipeline.tessellation);
-}
-
-TEST_CASE("Get Triangle every 100 cycles binds: 100 cycles a part") {
-    MachineSetup setup = full_split();
-    setup.design.timing.get_triangle.interval = 100;
-    Simulation simulation(setup, 1'000'000);
-    run_full_split(simulation);
-    CHECK(simulation.cycles() >= 100 * (parts - 1));
-    CHECK(simulation.cycles() < 100 * parts + 1000);
-    CHECK(simulation.pipeline.get_triangle.occupied_cycles() == 100 * parts);
-    require_sole_bottleneck(simulation, &simulation.pipeline.get_triangle);
-}
-
 TEST_CASE("Get Triangle of latency 200 binds: 200 cycles a pass") {
-    MachineSetup setup = full_split();
-    setup.design.timing.get_triangle.latency = 200;
+    const MachineSetup setup = full_split("timing.get_triangle_latency=200");
     Simulation simulation(setup, 1'000'000);
     run_full_split(simulation);
     CHECK(simulation.cycles() >= 200 * passes);
@@ -227,9 +190,7 @@ TEST_CASE("Get Triangle of latency 200 binds: 200 cycles a pass") {
 
 // Eight triangles may be under way at the join, so one a 400 / 8 cycles at most, where the tests take nine.
 TEST_CASE("a Transform of latency 400 is what the join waits for") {
-    MachineSetup setup = full_split();
-    setup.design.timing.summed_height_table.ports = 4;
-    setup.design.timing.transform.latency = 400;
+    const MachineSetup setup = full_split("timing.summed_height_table_ports=4 timing.transform_latency=400");
     Simulation simulation(setup, 1'000'000);
     run_full_split(simulation);
     const Pipeline& p = simulation.pipeline;
@@ -254,9 +215,8 @@ TEST_CASE("banks in conflict are a bottleneck though their ports idle") {
 }
 
 TEST_CASE("an interval that lasts is no lack of work") {
-    MachineSetup setup = full_split();
-    setup.design.timing.displace_vertex = {1, 100, 1};
-    setup.design.timing.pass_or_tessellate.interval = 50;
+    const MachineSetup setup = full_split(
+        "timing.displace_vertex_latency=1 timing.displace_vertex_interval=100 timing.pass_or_tessellate_interval=50");
     Simulation simulation(setup, 1'000'000);
     run_full_split(simulation);
     const Pipeline& p = simulation.pipeline;

@@ -1,10 +1,9 @@
-#include <algorithm>
 #include <catch2/catch.hpp>
-#include <cstdint>
 #include <string>
 
 #include "testbench/tests/modules/named_machine.h"
 #include "testbench/tests/support/job_results.h"
+#include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/timed_checks.h"
 
 // Machines of different clocks, modes and designs in one simulation: each does what it does alone.
@@ -14,28 +13,12 @@ using namespace tessera::testing;
 
 namespace {
 
-MachineSetup with_clock(MachineSetup setup, unsigned picoseconds) {
-    setup.design.timing.cycle_picoseconds = picoseconds;
-    return setup;
-}
-
 Job three_tests_units_job() {
-    Job job = full_split_job(3, 3);
-    job.hardware.tests_units = 3;
-    job.hardware.queue_capacity = 16;
-    return job;
+    return with_settings(full_split_job(3, 3),
+                         "timing.clock_period=3200 hardware.tests_units=3 hardware.queue_capacity=16");
 }
 
-const JobResult& default_result() {
-    return *std::find_if(job_results.begin(), job_results.end(),
-                         [](const JobResult& each) { return std::string(each.name) == "half_donut"; });
-}
-
-void expect_mesh(const NamedMachine& machine, const MachineSetup& setup) {
-    INFO(machine.name());
-    CHECK(machine.finished());
-    CHECK((keys(machine.monitor.mesh) == keys(bare_mesh(setup))));  // not to be printed
-}
+const JobResult& default_result = result_of("half_donut");
 
 /// Once, in the last cycle of its own clock.
 void expect_drained_in_last_cycle(const NamedMachine& machine) {
@@ -45,30 +28,27 @@ void expect_drained_in_last_cycle(const NamedMachine& machine) {
           machine.pipeline.clock.period() * static_cast<double>(machine.pipeline.clock.last_cycle()));
 }
 
-MachineSetup full_queue_setup(Overflow overflow) {
-    Job job = timed_job();
-    job.hardware.queue_capacity = 8;
-    job.hardware.queue_overflow = overflow;
-    return setup_of(job);
+/// A queue that fills up; `overflow`: what happens then.
+MachineSetup full_queue_setup(const std::string& overflow) {
+    return setup_of(with_settings(
+        timed_job(), "hardware.queue_capacity=8 hardware.queue_overflow=" + overflow));
 }
 
 }  // namespace
 
 TEST_CASE("two machines: a timed one of 5 ns, and a functional one") {
     const MachineSetup timed_setup = setup_of(timed_job());
-    Job job;
-    job.mode = Mode::functional;
-    job.hardware.tests_units = 3;
-    const MachineSetup functional_setup = with_clock(setup_of(job), 3200);
+    const MachineSetup functional_setup =
+        setup_of(with_settings({}, "mode=functional hardware.tests_units=3 timing.clock_period=3200"));
     const AloneResult alone = run_alone(functional_setup);
 
     NamedMachine timed("timed", timed_setup);
     NamedMachine functional("functional", functional_setup);
     sc_core::sc_start();
-    expect_mesh(timed, timed_setup);
-    expect_mesh(functional, functional_setup);
-    CHECK(timed.cycles() == default_result().cycles);
-    CHECK(timed.monitor.mesh.triangles.size() == default_result().triangles);
+    expect_bare_mesh(timed);
+    expect_bare_mesh(functional);
+    CHECK(timed.cycles() == default_result.cycles);
+    CHECK(timed.monitor.mesh.triangles.size() == default_result.triangles);
     CHECK(functional.pipeline.clock.last_cycle() == 0);
     expect_drained_in_last_cycle(timed);
     CHECK(functional.drained.back().value() == alone.drained);
@@ -77,15 +57,15 @@ TEST_CASE("two machines: a timed one of 5 ns, and a functional one") {
 
 TEST_CASE("two machines: timed ones of 5 ns and of 3.2 ns with three Tessellation Tests units") {
     const MachineSetup slow_setup = setup_of(timed_job());
-    const MachineSetup fast_setup = with_clock(setup_of(three_tests_units_job()), 3200);
+    const MachineSetup fast_setup = setup_of(three_tests_units_job());
     const AloneResult alone = run_alone(fast_setup);
 
     NamedMachine slow("slow", slow_setup);
     NamedMachine fast("fast", fast_setup);
     sc_core::sc_start();
-    expect_mesh(slow, slow_setup);
-    expect_mesh(fast, fast_setup);
-    CHECK(slow.cycles() == default_result().cycles);
+    expect_bare_mesh(slow);
+    expect_bare_mesh(fast);
+    CHECK(slow.cycles() == default_result.cycles);
     CHECK(fast.cycles() == alone.cycles);
     CHECK(slow.pipeline.clock.period() == sc_core::sc_time(5000, sc_core::SC_PS));
     CHECK(fast.pipeline.clock.period() == sc_core::sc_time(3200, sc_core::SC_PS));
@@ -96,9 +76,9 @@ TEST_CASE("two machines: timed ones of 5 ns and of 3.2 ns with three Tessellatio
 }
 
 TEST_CASE("two machines: one whose queue overflows halts alone, one whose queue stalls waits alone") {
-    const MachineSetup overflow_setup = full_queue_setup(Overflow::error);
-    const MachineSetup stall_setup = full_queue_setup(Overflow::stall);
-    const MachineSetup sound_setup = with_clock(setup_of(three_tests_units_job()), 3200);
+    const MachineSetup overflow_setup = full_queue_setup("error");
+    const MachineSetup stall_setup = full_queue_setup("stall");
+    const MachineSetup sound_setup = setup_of(three_tests_units_job());
     const AloneResult alone = run_alone(sound_setup);
 
     NamedMachine overflowing("overflowing", overflow_setup);
@@ -115,7 +95,7 @@ TEST_CASE("two machines: one whose queue overflows halts alone, one whose queue 
         CHECK(stuck->drained.empty());
         CHECK(stuck->cycles() * stuck->pipeline.clock.period().value() < alone.drained);
     }
-    expect_mesh(sound, sound_setup);
+    expect_bare_mesh(sound);
     CHECK(sound.cycles() == alone.cycles);
     expect_drained_in_last_cycle(sound);
 }

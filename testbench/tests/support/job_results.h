@@ -1,6 +1,8 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <stdexcept>
+#include <string>
 
 namespace tessera {
 
@@ -23,5 +25,12 @@ inline constexpr std::array<JobResult, 5> job_results{{
     {"head", 21030, 19230, 99663, 1197630, 0x31756b521c938bb6},
     {"teapot", 83959, 82967, 402216, 4826617, 0xe43464d87e28f74b},
 }};
+
+inline const JobResult& result_of(const std::string& job) {
+    for (const JobResult& result : job_results)
+        if (result.name == job)
+            return result;
+    throw std::invalid_argument(job);
+}
 
 }  // namespace tessera

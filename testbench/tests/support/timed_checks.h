@@ -35,6 +35,21 @@ inline Job full_split_job(int side, int limit) {
     return job;
 }
 
+/// A plane of one quad that a constant map leaves whole.
+inline Job one_quad_job() {
+    Job job = timed_job();
+    job.mesh.columns = job.mesh.rows = 1;
+    job.map.source = MapSource::constant;
+    return job;
+}
+
+/// Its first triangle alone.
+inline MachineSetup one_triangle(const Job& job = one_quad_job()) {
+    MachineSetup setup = setup_of(job);
+    setup.base_triangles.resize(1);
+    return setup;
+}
+
 /// A unit's four states make up the run, and what it was blocked by makes up the cycles it was blocked.
 inline void require_cycles_add_up(const Unit& unit, std::uint64_t cycles) {
     INFO(unit.name());
@@ -114,6 +129,16 @@ inline void run_timed(Simulation& simulation) {
     INFO(stuck);
     REQUIRE(stuck.empty());
     require_timed_identities(simulation);
+}
+
+/// In either mode, to its end.
+inline void run_to_the_end(Simulation& simulation) {
+    if (simulation.setup.design.transport == Transport::non_blocking) {
+        run_timed(simulation);
+        return;
+    }
+    REQUIRE(simulation.run().empty());
+    CHECK(simulation.pipeline.idle());
 }
 
 }  // namespace tessera::testing

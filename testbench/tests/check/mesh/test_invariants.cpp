@@ -55,7 +55,7 @@ struct Plane {
         job.map.width = job.map.height = 32;
         job.tests.view = false;
         job.tests.generation_limit = 4;
-        const Inputs inputs = load_inputs(job, {});
+        const Inputs inputs = load_inputs(job);
         return make_setup(inputs.resolved.job, inputs.mesh, inputs.map);
     }
 };

@@ -30,7 +30,7 @@ Job small_job() {
 }
 
 MachineSetup setup_of(const Job& job) {
-    const Inputs inputs = load_inputs(job, {});
+    const Inputs inputs = load_inputs(job);
     return make_setup(inputs.resolved.job, inputs.mesh, inputs.map);
 }
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "modules/memories/base_protocol_bridge.h"
-#include "modules/sockets/memory_port.h"
 #include "testbench/tests/modules/memories/base_protocol_memories.h"
-#include "testbench/tests/support/timed_modules.h"
+#include "testbench/tests/modules/memories/memory_reader.h"
+#include "testbench/tests/support/case_table.h"
 
 // Memories of the base protocol, which know nothing of gathers, behind the bridge: the rules of the protocol,
 // one by one.
@@ -27,39 +27,6 @@ namespace {
 
 const sc_time period(10, SC_PS);
 
-/// Makes its requests as soon as it may, from cycle 10 on.
-struct Reader : sc_core::sc_module {
-    MemoryPort port{"port", 4, true};
-    std::vector<std::vector<std::uint64_t>> reads;  ///< addresses of each request
-    Cycles offered, answered;
-    std::vector<std::uint64_t> values;
-
-    Reader(const sc_core::sc_module_name& name, CycleScheduler& clock)
-        : sc_module(name), clock_(clock), caller_(clock) {
-        port.clocked_by(clock, caller_, 8);
-        caller_.on_step = [this] { step(); };
-    }
-
-  private:
-    void start_of_simulation() override { clock_.wake_at(caller_, 10); }
-    void step() {
-        while (port.answered()) {
-            answered.push_back(clock_.cycle());
-            for (std::size_t k = 0; k < reads[answered.size() - 1].size(); ++k)
-                values.push_back(port.entry(static_cast<unsigned>(k)));
-            port.pop_answer();
-        }
-        while (clock_.cycle() >= 10 && offered.size() < reads.size() && port.may_request()) {
-            const auto& addresses = reads[offered.size()];
-            offered.push_back(clock_.cycle());
-            port.request(addresses.data(), static_cast<unsigned>(addresses.size()));
-        }
-    }
-
-    CycleScheduler& clock_;
-    Caller caller_;
-};
-
 std::uint64_t own_address(std::uint64_t address) {
     return (address & 255) | (address + 1 & 255) << 8 | (address + 2 & 255) << 16 | (address + 3 & 255) << 24;
 }
@@ -68,12 +35,12 @@ std::uint64_t own_address(std::uint64_t address) {
 struct Bench {
     CycleScheduler clock;
     BaseProtocolBridge bridge;
-    Reader reader;
+    MemoryReader reader;
 
     explicit Bench(unsigned buffer = 1, const std::string& prefix = "")
         : clock((prefix + "clock").c_str(), period),
           bridge((prefix + "bridge").c_str(), clock, buffer),
-          reader((prefix + "reader").c_str(), clock) {
+          reader((prefix + "reader").c_str(), clock, 8, true) {
         reader.port.bind(bridge);
     }
 
@@ -81,7 +48,7 @@ struct Bench {
         sc_core::sc_start();
         std::vector<std::uint64_t> expected;
         for (const auto& addresses : reader.reads)
-            for (const std::uint64_t address : addresses)
+            for (const std::uint32_t address : addresses)
                 expected.push_back(own_address(address));
         CHECK(reader.values == expected);
         CHECK(bridge.describe_contents().empty());
@@ -89,42 +56,44 @@ struct Bench {
     }
 };
 
-std::vector<std::vector<std::uint64_t>> gathers(unsigned count, unsigned entries) {
-    std::vector<std::vector<std::uint64_t>> reads(count);
+std::vector<std::vector<std::uint32_t>> gathers(unsigned count, unsigned entries) {
+    std::vector<std::vector<std::uint32_t>> reads(count);
     for (unsigned k = 0; k < count; ++k)
         for (unsigned entry = 0; entry < entries; ++entry)
-            reads[k].push_back(std::uint64_t{68} * k + std::uint64_t{20} * (entry + 1));
+            reads[k].push_back(68 * k + 20 * (entry + 1));
     return reads;
 }
 
+struct Row {
+    std::string name;
+    unsigned latency;  ///< picoseconds
+    std::vector<std::vector<std::uint32_t>> reads;
+    Cycles answered;
+};
+
+// As test_table_memory.cpp expects of a table with one port: entries are sent in cycles 10, 11, 12 ...
+const CaseTable blocking(
+    "bridge: ",
+    {
+        Row{"a blocking memory of one cycle is a table of one port and latency 1",
+            10,
+            gathers(5, 4),
+            {14, 18, 22, 26, 30}},
+        {"a part of a cycle counts as a cycle", 7, gathers(5, 4), {14, 18, 22, 26, 30}},
+        // entries in 10, 13, 16 ...
+        {"no entry is sent before the END_REQ that an answer implies", 30, gathers(3, 2), {16, 22, 28}},
+    },
+    [](const Row& row) {
+        Bench bench;
+        BlockingMemory memory("memory", sc_time(row.latency, SC_PS));
+        bench.bridge.to_memory.bind(memory.socket);
+        bench.reader.reads = row.reads;
+        bench.run();
+        CHECK(bench.reader.answered == row.answered);
+        CHECK(bench.bridge.occupied_cycles() == memory.accesses);
+    });
+
 }  // namespace
-
-namespace {
-
-/// What a blocking memory's answers to `reads` are.
-void expect_blocking(const sc_time& latency, const std::vector<std::vector<std::uint64_t>>& reads,
-                     const Cycles& answered) {
-    Bench bench;
-    BlockingMemory memory("memory", latency);
-    bench.bridge.to_memory.bind(memory.socket);
-    bench.reader.reads = reads;
-    bench.run();
-    CHECK(bench.reader.answered == answered);
-    CHECK(bench.bridge.occupied_cycles() == memory.accesses);
-}
-
-}  // namespace
-
-// As test_timed_memories expects of a table with one port: entries are sent in cycles 10, 11, 12 ...
-TEST_CASE("bridge: a blocking memory of one cycle is a table of one port and latency 1") {
-    expect_blocking(period, gathers(5, 4), {14, 18, 22, 26, 30});
-}
-TEST_CASE("bridge: a part of a cycle counts as a cycle") {
-    expect_blocking(sc_time(7, SC_PS), gathers(5, 4), {14, 18, 22, 26, 30});
-}
-TEST_CASE("bridge: no entry is sent before the END_REQ that an answer implies") {
-    expect_blocking(sc_time(30, SC_PS), gathers(3, 2), {16, 22, 28});  // entries in 10, 13, 16 ...
-}
 
 TEST_CASE("bridge: requests wait in its buffer while entries are sent") {
     Bench bench(2);

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <functional>
 #include <map>
@@ -9,9 +8,10 @@
 
 #include "modules/datapath/pack_triangle.h"
 #include "modules/memories/base_protocol_bridge.h"
-#include "testbench/machine/bare_recursion.h"
 #include "testbench/tests/modules/memories/base_protocol_memories.h"
+#include "testbench/tests/support/bare_mesh.h"
 #include "testbench/tests/support/job_results.h"
+#include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/timed_checks.h"
 
 // The machine with memories of the base protocol in the places of its own: the same mesh, and with the same
@@ -91,13 +91,6 @@ struct BridgedMachine {
     }
 };
 
-void expect_bare_mesh(const MachineSetup& setup, const EmittedMesh& machines) {
-    BareRecursion bare(setup);
-    EmittedMesh mesh;
-    bare.run(mesh);
-    CHECK((keys(mesh) == keys(machines)));  // not to be printed
-}
-
 std::unique_ptr<sc_core::sc_module> blocking_5_ns(BaseProtocolBridge& bridge, const std::string& name) {
     return bound<BlockingMemory>(bridge, name, sc_core::sc_time(5, sc_core::SC_NS));
 }
@@ -119,8 +112,8 @@ void expect_same_cycles(const Job& job) {
     bridged.require_drained();
     CHECK(bridged.cycles() == simulation.cycles());
     CHECK(bridged.pipeline.triangle_queue.spilled() == simulation.pipeline.triangle_queue.spilled());
-    CHECK((keys(bridged.monitor.mesh) == keys(simulation.monitor.mesh)));
-    expect_bare_mesh(setup, bridged.monitor.mesh);
+    expect_mesh(bridged.monitor.mesh, simulation.monitor.mesh);
+    expect_mesh(bridged.monitor.mesh, bare_mesh(setup));
 }
 
 }  // namespace
@@ -130,36 +123,24 @@ TEST_CASE("bridged machine: blocking memories of 5 ns, the same mesh and the sam
     BridgedMachine machine(setup, blocking_5_ns);
     sc_core::sc_start();
     machine.require_drained();
-    const auto* const expected =
-        std::find_if(job_results.begin(), job_results.end(),
-                     [](const JobResult& each) { return std::string(each.name) == "half_donut"; });
-    REQUIRE(expected != job_results.end());
-    CHECK(machine.cycles() == expected->cycles);
-    CHECK(machine.monitor.mesh.triangles.size() == expected->triangles);
-    expect_bare_mesh(setup, machine.monitor.mesh);
+    CHECK(machine.cycles() == result_of("half_donut").cycles);
+    CHECK(machine.monitor.mesh.triangles.size() == result_of("half_donut").triangles);
+    expect_mesh(machine.monitor.mesh, bare_mesh(setup));
 }
 
 TEST_CASE("bridged machine: functional mode, the same mesh") {
-    Job job;
-    job.mode = Mode::functional;
-    const MachineSetup setup = setup_of(job);
+    const MachineSetup setup = setup_of(with_settings({}, "mode=functional"));
     BridgedMachine machine(setup, blocking_5_ns);
     sc_core::sc_start();
     machine.require_drained();
-    expect_bare_mesh(setup, machine.monitor.mesh);
+    expect_mesh(machine.monitor.mesh, bare_mesh(setup));
 }
 
 TEST_CASE("bridged machine: pipelined memories and a queue that spills") {
-    Job job = full_split_job(3, 3);
-    job.hardware.queue_capacity = 16;
-    for (MemoryTiming* table :
-         {&job.timing.displacement_map, &job.timing.normal_map, &job.timing.summed_height_table})
-        table->latency = 7;
-    expect_same_cycles(job);
+    expect_same_cycles(
+        with_settings(full_split_job(3, 3), "hardware.queue_capacity=16 " + every_table("latency", 7)));
 }
 
 TEST_CASE("bridged machine: three Tessellation Tests units share the bridges") {
-    Job job = full_split_job(3, 3);
-    job.hardware.tests_units = 3;
-    expect_same_cycles(job);
+    expect_same_cycles(with_settings(full_split_job(3, 3), "hardware.tests_units=3"));
 }

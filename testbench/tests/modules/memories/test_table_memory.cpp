@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "modules/memories/table_memory.h"
-#include "modules/sockets/memory_port.h"
-#include "testbench/tests/support/timed_modules.h"
+#include "testbench/tests/modules/memories/memory_reader.h"
+#include "testbench/tests/support/case_table.h"
 
 // A table's memory to the cycle: ports, banks, latency, width, gathers, arbitration, back-pressure.
 
@@ -21,59 +21,25 @@ namespace {
 const sc_time period(10, SC_PS);
 const datapath::TableLayout layout{4096, 16, 16, 4};
 
-/// A unit that makes each of its reads as soon as it may, from a cycle on, and notes when they were taken and answered.
-struct Reader : sc_core::sc_module {
-    MemoryPort port;
-    std::vector<std::vector<std::uint32_t>> reads;  ///< entries of each request
-    std::uint64_t from = 10;
-    Cycles offered, answered;
-    std::vector<std::uint64_t> values;
-
-    Reader(const sc_core::sc_module_name& name, CycleScheduler& clock, std::size_t most_under_way)
-        : sc_module(name), port("port", 4, false), clock_(clock), caller_(clock) {
-        port.clocked_by(clock, caller_, most_under_way);
-        caller_.on_step = [this] { step(); };
-    }
-
-  private:
-    void start_of_simulation() override { clock_.wake_at(caller_, from); }
-    void step() {
-        while (port.answered()) {
-            answered.push_back(clock_.cycle());
-            for (std::size_t k = 0; k < reads[answered.size() - 1].size(); ++k)
-                values.push_back(port.entry(static_cast<unsigned>(k)));
-            port.pop_answer();
-        }
-        while (clock_.cycle() >= from && offered.size() < reads.size() && port.may_request()) {
-            std::vector<std::uint64_t> addresses;
-            for (const std::uint32_t entry : reads[offered.size()])
-                addresses.push_back(layout.base + std::uint64_t{entry} * port.entry_bytes());
-            offered.push_back(clock_.cycle());
-            port.request(addresses.data(), static_cast<unsigned>(addresses.size()));
-        }
-    }
-
-    CycleScheduler& clock_;
-    Caller caller_;
-};
-
 /// A memory in which entry k holds 3 * k + 1, and its readers.
 struct Bench {
     CycleScheduler clock{"clock", period};
     TableMemory memory;
-    std::vector<std::unique_ptr<Reader>> readers;
+    std::vector<std::unique_ptr<MemoryReader>> readers;
 
     explicit Bench(const MemoryTiming& timing, unsigned count = 1, const StallParameters& stalls = {},
                    std::size_t most_under_way = 64)
         : memory("memory", clock, layout, timing, stalls) {
         clock.attach(memory);
         for (unsigned k = 0; k < count; ++k) {
-            readers.push_back(
-                std::make_unique<Reader>(("reader_" + std::to_string(k)).c_str(), clock, most_under_way));
+            readers.push_back(std::make_unique<MemoryReader>(("reader_" + std::to_string(k)).c_str(), clock,
+                                                             most_under_way, false));
+            readers.back()->base = layout.base;
+            readers.back()->entry_bytes = readers.back()->port.entry_bytes();
             readers.back()->port.bind(memory);
         }
     }
-    Reader& reader(std::size_t k = 0) { return *readers[k]; }
+    MemoryReader& reader(std::size_t k = 0) { return *readers[k]; }
 
     void run() {
         sc_core::sc_start(sc_core::SC_ZERO_TIME);
@@ -134,85 +100,74 @@ MemoryTiming timing(unsigned ports, unsigned banks, unsigned latency, unsigned w
     return {ports, banks, latency, width, buffer};
 }
 
-void expect_answers(const MemoryTiming& its_timing, const std::vector<std::vector<std::uint32_t>>& reads,
-                    const Cycles& answers) {
-    Bench bench(its_timing);
-    bench.reader().reads = reads;
-    bench.run();
-    CHECK(bench.reader().answered == answers);
-    std::uint64_t entries = 0;
-    for (const auto& read : reads)
-        entries += read.size();
-    CHECK(bench.memory.transactions() == entries);
-    CHECK(bench.reader().port.reads() == entries);
-}
-
-}  // namespace
+struct Row {
+    std::string name;
+    MemoryTiming timing;
+    std::vector<std::vector<std::uint32_t>> reads;
+    Cycles answers;
+};
 
 // Request k of one entry takes the port in cycle 10 + k; its data comes `latency` cycles after.
-TEST_CASE("memory: one port takes an address a cycle, data come a latency later") {
-    expect_answers(timing(1, 1, 1), single_reads(20), every(11, 1, 20));
-}
-TEST_CASE("memory: latency 0 answers in the cycle of the address") {
-    expect_answers(timing(1, 1, 0), single_reads(20), every(10, 1, 20));
-}
-TEST_CASE("memory: latency 100 does not lower the throughput") {
-    expect_answers(timing(1, 1, 100), single_reads(60), every(110, 1, 60));
-}
-TEST_CASE("memory: latency 2000 is beyond the clock's table") {
-    expect_answers(timing(1, 1, 2000), single_reads(3), every(2010, 1, 3));
-}
-TEST_CASE("memory: a gather of four keeps one port for four cycles") {
-    // addresses in cycles 10 to 13, 14 to 17 ...; the last one's data is the answer
-    expect_answers(timing(1, 1, 1), gathers(10, 4), every(14, 4, 10));
-}
-TEST_CASE("memory: a gather of nine keeps one port for nine cycles") {
-    expect_answers(timing(1, 1, 3), gathers(5, 9), every(21, 9, 5));
-}
-TEST_CASE("memory: two ports halve a gather of four") {
-    expect_answers(timing(2, 1, 1), gathers(10, 4), every(12, 2, 10));
-}
-TEST_CASE("memory: four ports take a gather of four a cycle") {
-    expect_answers(timing(4, 1, 1), gathers(10, 4), every(11, 1, 10));
-}
-TEST_CASE("memory: four ports and gathers of nine share cycles") {
-    // nine slots, four a cycle: gather k ends in slot 9 k + 8, in cycle 10 + floor((9 k + 8) / 4)
-    expect_answers(timing(4, 1, 1), gathers(6, 9), {13, 15, 17, 19, 22, 24});
-}
-TEST_CASE("memory: a port narrower than an entry takes it in pieces") {
-    expect_answers(timing(1, 1, 1, 2), single_reads(10), every(12, 2, 10));  // 4 bytes at 2 a cycle
-}
-TEST_CASE("memory: a width that does not divide the entry rounds up") {
-    expect_answers(timing(1, 1, 1, 3), gathers(4, 4), every(18, 8, 4));  // 2 cycles an entry, 8 a gather
-}
-TEST_CASE("memory: two narrow ports take two entries in pieces, and no entry in one cycle") {
-    // 4 bytes at 2 a cycle: entries 0 and 1 in cycles 10 and 11, one on each port
-    expect_answers(timing(2, 1, 1, 2), single_reads(6), {12, 12, 14, 14, 16, 16});
-}
-TEST_CASE("memory: a gather of four through two narrow ports") {
-    expect_answers(timing(2, 1, 1, 2), gathers(3, 4), every(14, 4, 3));
-}
-TEST_CASE("memory: a port wider than an entry takes one a cycle all the same") {
-    expect_answers(timing(1, 1, 1, 64), single_reads(10), every(11, 1, 10));
-}
+const CaseTable answers(
+    "memory: ",
+    {
+        Row{"one port takes an address a cycle, data come a latency later", timing(1, 1, 1), single_reads(20),
+            every(11, 1, 20)},
+        {"latency 0 answers in the cycle of the address", timing(1, 1, 0), single_reads(20),
+         every(10, 1, 20)},
+        {"latency 100 does not lower the throughput", timing(1, 1, 100), single_reads(60), every(110, 1, 60)},
+        {"latency 2000 is beyond the clock's table", timing(1, 1, 2000), single_reads(3), every(2010, 1, 3)},
+        // addresses in cycles 10 to 13, 14 to 17 ...; the last one's data is the answer
+        {"a gather of four keeps one port for four cycles", timing(1, 1, 1), gathers(10, 4),
+         every(14, 4, 10)},
+        {"a gather of nine keeps one port for nine cycles", timing(1, 1, 3), gathers(5, 9), every(21, 9, 5)},
+        {"two ports halve a gather of four", timing(2, 1, 1), gathers(10, 4), every(12, 2, 10)},
+        {"four ports take a gather of four a cycle", timing(4, 1, 1), gathers(10, 4), every(11, 1, 10)},
+        // nine slots, four a cycle: gather k ends in slot 9 k + 8, in cycle 10 + floor((9 k + 8) / 4)
+        {"four ports and gathers of nine share cycles",
+         timing(4, 1, 1),
+         gathers(6, 9),
+         {13, 15, 17, 19, 22, 24}},
+        // 4 bytes at 2 a cycle
+        {"a port narrower than an entry takes it in pieces", timing(1, 1, 1, 2), single_reads(10),
+         every(12, 2, 10)},
+        // 2 cycles an entry, 8 a gather
+        {"a width that does not divide the entry rounds up", timing(1, 1, 1, 3), gathers(4, 4),
+         every(18, 8, 4)},
+        // 4 bytes at 2 a cycle: entries 0 and 1 in cycles 10 and 11, one on each port
+        {"two narrow ports take two entries in pieces, and no entry in one cycle",
+         timing(2, 1, 1, 2),
+         single_reads(6),
+         {12, 12, 14, 14, 16, 16}},
+        {"a gather of four through two narrow ports", timing(2, 1, 1, 2), gathers(3, 4), every(14, 4, 3)},
+        {"a port wider than an entry takes one a cycle all the same", timing(1, 1, 1, 64), single_reads(10),
+         every(11, 1, 10)},
+        // Entries 0, 1, 2, 3 lie in banks 0, 1, 2, 3: one cycle; 0, 4, 8, 12 all in bank 0: four. Gather 2 keeps bank 0
+        // in cycles 12 to 15. Requests are served in order, as soon as any bank is free: gather 3 in cycle 13, in banks
+        // 1 (twice), 2, 3, until 14; answers stay in order, behind gather 2's in 16.
+        {"entries in different banks are read at the same time",
+         timing(1, 4, 1),
+         {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 4, 8, 12}, {1, 2, 3, 5}},
+         {11, 12, 16, 16}},
+        // two in each bank, cycles 10 and 11; {0, 2} bank 0 in 12, 13; {1, 3} as bank 1 is free in 12: 12, 13
+        {"requests wait while every bank is taken",
+         timing(1, 2, 1),
+         {{0, 1, 2, 3}, {0, 2}, {1, 3}},
+         {12, 14, 14}},
+    },
+    [](const Row& row) {
+        Bench bench(row.timing);
+        bench.reader().reads = row.reads;
+        bench.run();
+        CHECK(bench.reader().answered == row.answers);
+        std::uint64_t entries = 0;
+        for (const auto& read : row.reads)
+            entries += read.size();
+        CHECK(bench.memory.transactions() == entries);
+        CHECK(bench.reader().port.reads() == entries);
+    });
 
-TEST_CASE("memory: entries in different banks are read at the same time") {
-    // entries 0, 1, 2, 3 lie in banks 0, 1, 2, 3: one cycle; 0, 4, 8, 12 all in bank 0: four
-    Bench bench(timing(1, 4, 1));
-    bench.reader().reads = {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 4, 8, 12}, {1, 2, 3, 5}};
-    bench.run();
-    // gather 2 keeps bank 0 in cycles 12 to 15. Requests are served in order, as soon as any bank is free: gather 3 in
-    // cycle 13, in banks 1 (twice), 2, 3, until 14; answers stay in order, behind gather 2's in 16
-    CHECK(bench.reader().answered == Cycles{11, 12, 16, 16});
-}
-
-TEST_CASE("memory: requests wait while every bank is taken") {
-    Bench bench(timing(1, 2, 1));
-    bench.reader().reads = {{0, 1, 2, 3}, {0, 2}, {1, 3}};
-    bench.run();
-    // two in each bank, cycles 10 and 11; {0, 2} bank 0 in 12, 13; {1, 3} as bank 1 is free in 12: 12, 13
-    CHECK(bench.reader().answered == Cycles{12, 14, 14});
-}
+}  // namespace
 
 TEST_CASE("memory: an idle bank does not let requests past one that is taken") {
     // all in bank 0 of two: one a cycle, as with one bank, and the buffer (1) leaves the rest waiting at the inputs

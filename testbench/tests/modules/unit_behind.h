@@ -1,0 +1,45 @@
+#pragma once
+#include <memory>
+#include <type_traits>
+
+#include "modules/pipeline.h"
+
+namespace tessera::testing {
+
+/// Puts an Inserted, which has `input` and `output`, behind the machine's Before: Displace Vertex or Lighting. One
+/// factory a machine, which it must outlive.
+template <class Before, class Inserted>
+class UnitBehind : public UnitFactory {
+  public:
+    const Inserted& inserted() const { return *inserted_; }
+
+  private:
+    std::unique_ptr<DisplaceVertex> displace_vertex(Name name, const UnitContext& context) override {
+        insert_behind<DisplaceVertex>(context);
+        return UnitFactory::displace_vertex(name, context);
+    }
+    std::unique_ptr<Lighting> lighting(Name name, const UnitContext& context) override {
+        insert_behind<Lighting>(context);
+        return UnitFactory::lighting(name, context);
+    }
+    template <class Made>
+    void insert_behind(const UnitContext& context) {
+        if (!std::is_same_v<Made, Before>)
+            return;
+        inserted_ = std::make_unique<Inserted>("inserted", context);
+        context.clock.attach(*inserted_);
+    }
+    void made(sc_core::sc_module& module) override {
+        if (auto* const before = dynamic_cast<Before*>(&module))
+            output_of(*before).interpose([this](auto& from, auto& to) {
+                from.bind(inserted_->input);
+                inserted_->output.bind(to);
+            });
+    }
+    static auto& output_of(DisplaceVertex& unit) { return unit.to_transform; }
+    static auto& output_of(Lighting& unit) { return unit.to_rasteriser; }
+
+    std::unique_ptr<Inserted> inserted_;
+};
+
+}  // namespace tessera::testing

@@ -1,0 +1,55 @@
+#pragma once
+#include <utility>
+
+#include "testbench/check/conformance/scoreboard.h"
+#include "testbench/check/mesh/invariants.h"
+#include "testbench/tests/support/bare_mesh.h"
+#include "testbench/tests/support/timed_checks.h"
+
+namespace tessera::testing {
+
+/// A job set up, simulated in its mode to its end, and checked: every decision against the golden model's, the mesh
+/// closed and the bare recursion's, nothing lost on the way. Its figures are for the test to look at.
+struct CheckedRun {
+    explicit CheckedRun(const Job& job) : CheckedRun(setup_of(job)) {}
+    explicit CheckedRun(MachineSetup its_setup, UnitFactory* units = nullptr)
+        : setup(std::move(its_setup)), simulation(setup, 1'000'000, 1'000'000, units) {
+        const GoldenInputs golden(setup);
+        Scoreboard scoreboard(setup.registers, golden);
+        auto& decided = simulation.pipeline.pass_or_tessellate.decided;
+        decided.bind(scoreboard);
+        run_to_the_end(simulation);
+        decided.unbind(scoreboard);
+
+        conformance = scoreboard.result();
+        INFO(conformance.first_mismatch);
+        CHECK(conformance.mismatches == 0);
+        CHECK(conformance.edges == pipeline.edges_tested());
+        invariants = check_invariants(mesh, setup);
+        INFO(invariants.first_violation);
+        CHECK(invariants.passed());
+        const BareRun bare(setup);
+        CHECK(bare.edges == pipeline.edges_tested());
+        expect_mesh(mesh, bare.mesh);
+        CHECK(counts.finished == mesh.triangles.size());
+        CHECK(counts.finished == setup.base_triangles.size() + counts.edges_split);
+        CHECK(simulation.rasteriser.triangles() + counts.culled == counts.finished);
+    }
+
+    /// No triangle without area, none turned over, no seam of the texture open.
+    void expect_closed_in_texture() const {
+        CHECK(invariants.collapsed == 0);
+        CHECK(invariants.turned_over == 0);
+        CHECK(invariants.open_texture_seam_edges == 0);
+    }
+
+    const MachineSetup setup;
+    Simulation simulation;
+    const Pipeline& pipeline = simulation.pipeline;
+    const EmittedMesh& mesh = simulation.monitor.mesh;
+    const PassOrTessellate::Counts& counts = pipeline.pass_or_tessellate.counts();
+    ConformanceResult conformance;
+    InvariantResult invariants;
+};
+
+}  // namespace tessera::testing
