@@ -12,7 +12,6 @@
 #include "testbench/common/atomic_set.h"
 #include "testbench/job/validate_job.h"
 #include "testbench/output/picture/error_range.h"
-#include "testbench/output/picture/overview.h"
 #include "testbench/output/picture/png_writer.h"
 #include "testbench/output/picture/view_picture.h"
 #include "testbench/run_folder/read_run.h"
@@ -86,18 +85,12 @@ View choose_camera(const RenderRequest& request, Job job) {
 
 void check_size(const RenderRequest& request, const RenderMesh& mesh, const View& camera) {
     std::int64_t pixels = 0;
-    for (const PictureView view : request.views) {
-        const int height = request.picture.height > 0 ? request.picture.height
-                           : view == PictureView::overview
-                               ? overview_height(mesh, camera, request.picture)
-                               : picture_height(mesh, camera, view, request.picture);
-        pixels += std::int64_t{request.picture.width} * height;
-    }
+    for (const PictureView view : request.views)
+        pixels += std::int64_t{request.picture.width} * picture_height(mesh, camera, view, request.picture);
     if (pixels > most_picture_pixels)
         throw InputError(fmt::format(
-            "--size: {} pixels in {} picture{}; {} are the most for all views together: make them smaller, "
-            "or "
-            "ask for fewer views at once",
+            "--size: {} pixels in {} picture{}; the limit for all views together is {}: make the pictures "
+            "smaller or render fewer views at once",
             pixels, request.views.size(), request.views.size() == 1 ? "" : "s", most_picture_pixels));
 }
 
@@ -116,20 +109,6 @@ void add_errors(const RecordedRun& run, const fs::path& data_folder, RenderMesh&
         scale.largest = error_of_most(mesh, 0.99);
     if (scale.largest == 0)
         scale.largest = scale.beyond;
-}
-
-std::vector<Picture> draw(const RenderRequest& request, const RenderMesh& mesh, const View& camera) {
-    std::vector<PictureView> single;
-    for (const PictureView view : request.views)
-        if (view != PictureView::overview)
-            single.push_back(view);
-    std::vector<Picture> singles = render_views(mesh, camera, single, request.picture);
-    std::vector<Picture> pictures;
-    auto next = singles.begin();
-    for (const PictureView view : request.views)
-        pictures.push_back(view == PictureView::overview ? render_overview(mesh, camera, request.picture)
-                                                         : std::move(*next++));
-    return pictures;
 }
 
 void write(const fs::path& path, const Picture& picture, const std::optional<ExrSamples>& exr) {
@@ -159,7 +138,7 @@ ExitCode render_command(const RenderRequest& asked, const fs::path& data_folder)
         add_errors(run, data_folder, mesh, request.picture.errors);
     }
     progress.show("rendering", 0);
-    const std::vector<Picture> pictures = draw(request, mesh, camera);
+    const std::vector<Picture> pictures = render_views(mesh, camera, request.views, request.picture);
     OutputFolder folder(output.folder, "--output");
     AtomicSet files;
     for (std::size_t i = 0; i < pictures.size(); ++i)

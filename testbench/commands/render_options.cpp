@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "testbench/commands/parse_side.h"
-#include "testbench/input/map/stroke_font.h"
 
 namespace tessera {
 
@@ -15,7 +14,6 @@ namespace {
 constexpr double thinnest_line = 0.1, widest_line = 50;
 constexpr double largest_error_scale = 1e9;
 constexpr double least_zoom = 0.1, most_zoom = 10000;
-constexpr std::size_t longest_caption = 200;
 
 std::string view_names() {
     std::string names;
@@ -56,22 +54,6 @@ void apply_zoom(const std::vector<double>& zoom, PictureOptions& picture) {
     picture.zoom = {zoom[0], zoom[1], zoom[2]};
 }
 
-void check_caption(const std::string& caption) {
-    if (caption.size() > longest_caption)
-        throw InputError(
-            fmt::format("--caption: {} characters; {} are the most", caption.size(), longest_caption));
-    for (const char c : caption) {
-        const char capital = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-        if (stroke_font_characters().find(capital) == std::string_view::npos)
-            throw InputError(fmt::format(
-                "--caption: the built-in font has no {}; it has \"{}\", and shows lower-case letters as "
-                "capitals",
-                c > ' ' && c <= '~' ? fmt::format("\"{}\"", c)
-                                    : fmt::format("character of code {}", static_cast<unsigned char>(c)),
-                stroke_font_characters()));
-    }
-}
-
 std::optional<std::array<double, 3>> point(const std::vector<double>& numbers) {
     if (numbers.empty())
         return std::nullopt;
@@ -106,7 +88,6 @@ void RenderOptions::add_to(CLI::App& render) {
                         "what the darkest colour of the view `error` stands for, model units; without, what "
                         "all but 1 % of the surface keeps")
             ->group(picture);
-    render.add_option("--caption", caption_, "text below the picture")->group(picture);
     const std::string camera = "Camera, instead of the run's own";
     render
         .add_flag("--whole-viewport", whole_viewport_,
@@ -162,8 +143,6 @@ RenderRequest RenderOptions::request() const {
                             error_scale_));
         picture.errors.largest = error_scale_;
     }
-    check_caption(caption_);
-    picture.caption = caption_;
     picture.whole_viewport = whole_viewport_;
     request.eye = point(eye_);
     request.target = point(target_);

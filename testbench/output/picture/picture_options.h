@@ -1,6 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <string>
 
 #include "testbench/output/picture/style.h"
 
@@ -20,11 +19,10 @@ struct Zoom {
 
 struct PictureOptions {
     int width = 1600;
-    int height = 0;               ///< 0: what the mesh's proportions ask for, 0.3 to 1.3 times the width
+    int height = 0;               ///< 0: from the mesh's proportions, 0.3 to 1.3 times the width
     bool whole_viewport = false;  ///< all the camera saw; else what there is of the mesh, as large as it fits
     Zoom zoom;
     double line_width = 0;  ///< pixels; 0: suits the picture's size
-    std::string caption;    ///< below the picture; in capitals, characters the font lacks are left blank
     ErrorScale errors;      ///< for PictureView::error
     bool linear = false;    ///< linear light, too
 };

@@ -8,7 +8,6 @@
 
 #include "testbench/common/parallel.h"
 #include "testbench/output/picture/illumination.h"
-#include "testbench/output/picture/legend.h"
 #include "testbench/output/picture/palette.h"
 #include "testbench/output/picture/ray_scene.h"
 #include "testbench/output/picture/wireframe.h"
@@ -93,14 +92,8 @@ class Paint {
     }
 
     const glm::dvec3& error_paint(const ShadingPoint& point) const {
-        double error = 0;
-        if (!mesh_.triangle_errors.empty())
-            error = static_cast<double>(mesh_.triangle_errors[point.triangle]);
-        else if (!mesh_.vertex_errors.empty())
-            for (int k = 0; k < 3; ++k)
-                error += point.weights[k] *
-                         static_cast<double>(mesh_.vertex_errors[mesh_.triangles[point.triangle]
-                                                                     .vertices[static_cast<std::size_t>(k)]]);
+        const double error =
+            mesh_.triangle_errors.empty() ? 0 : static_cast<double>(mesh_.triangle_errors[point.triangle]);
         const double fraction = style_.errors.largest > 0 ? error / style_.errors.largest : 0;
         return errors_[static_cast<std::size_t>(
             std::lround(std::clamp(fraction, 0.0, 1.0) * (error_steps - 1)))];
@@ -121,7 +114,7 @@ class Renderer {
         : mesh_(mesh), view_(view), scene_(mesh), illumination_(view, styles.front(), scene_) {
         for (const Style& style : styles) {
             paints_.emplace_back(style, mesh);
-            pictures_.push_back(plain_picture(view.width, view.height, style.background, linear));
+            pictures_.push_back(to_picture(Image(view.width, view.height, style.background), linear));
             if (style.wireframe)
                 line_width_ = style.line_width;
         }
@@ -323,13 +316,7 @@ std::vector<Picture> render_pictures(const RenderMesh& mesh, const View& view,
                                      const std::vector<Style>& styles, bool linear) {
     if (styles.empty())
         return {};
-    std::vector<Picture> pictures = Renderer(mesh, view, styles, linear).run();
-    for (std::size_t s = 0; s < styles.size(); ++s)
-        if (styles[s].legend) {
-            draw_legend(pictures[s].image, 16, view.height - 16 - legend_descent, mesh, styles[s]);
-            take_over_annotations(pictures[s]);
-        }
-    return pictures;
+    return Renderer(mesh, view, styles, linear).run();
 }
 
 std::vector<Image> render_styles(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles) {

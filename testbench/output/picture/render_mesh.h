@@ -24,10 +24,8 @@ struct RenderMesh {
     std::vector<glm::vec3> positions;  ///< P'
     std::vector<glm::vec3> normals;    ///< N', about unit length; zero where the hardware had none
     std::vector<Triangle> triangles;
-    /// Distance to a reference, model units: per vertex, interpolated, or per triangle, which goes first;
-    /// empty: unknown.
-    std::vector<float> vertex_errors, triangle_errors;
-    std::uint64_t base_triangles = 0;  ///< how many these descend from, for the caption; 0: unknown
+    std::vector<float> triangle_errors;  ///< distance of each to a reference, model units; empty: unknown
+    std::uint64_t base_triangles = 0;    ///< how many these descend from, for the legend; 0: unknown
 };
 
 /// What a run emitted. Culled triangles are left out, as they are of mesh.ply: the picture of a run and one made of its

@@ -121,7 +121,7 @@ TEST_CASE("render: several views at once, the same as one by one and again") {
     CHECK(files == 6);
 }
 
-TEST_CASE("render: camera, zoom, lines, caption and error scale change the picture") {
+TEST_CASE("render: camera, zoom, lines and error scale change the picture") {
     const TestFolder here;
     make_run(here.path());
     const auto picture = [&](std::vector<std::string> arguments) {
@@ -137,8 +137,7 @@ TEST_CASE("render: camera, zoom, lines, caption and error scale change the pictu
                                                {"--up", "1", "0", "0"},
                                                {"--whole-viewport", "--field-of-view", "60"},
                                                {"--zoom", "0.5", "0.5", "4"},
-                                               {"--line-width", "3"},
-                                               {"--caption", "half a donut"}}) {
+                                               {"--line-width", "3"}}) {
         INFO(change.front());
         std::vector<std::string> arguments{"--view", "wireframe"};
         arguments.insert(arguments.end(), change.begin(), change.end());
@@ -212,8 +211,6 @@ TEST_CASE("render: hostile arguments are refused in one line") {
     refused({"run", "--view", "test,wireframe", "--error-scale", "0.5"}, here, {"--view error"});
     refused({"run", "--view", "shadow"}, here, {"shadow", "shaded"});
     refused({"run", "--view", ""}, here, {"--view"});
-    refused({"run", "--caption", "caf\xc3\xa9"}, here, {"--caption", "195"});
-    refused({"run", "--caption", std::string(201, 'a')}, here, {"--caption", "200"});
     refused({"run", "--exr", "double"}, here, {"--exr", "half"});
 }
 
