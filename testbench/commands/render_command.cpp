@@ -48,16 +48,15 @@ Output choose_output(const RenderRequest& request) {
     const std::string ending = lower_case(request.output.extension().string());
     if (ending != ".png" && ending != ".exr")
         throw InputError(fmt::format(
-            "--output {}: pictures are written as FILE.png or FILE.exr; a folder that is not there "
-            "yet is named with a / at its end",
+            "--output {}: pictures are written as FILE.png or FILE.exr; to name a new folder, end "
+            "it with a /",
             request.output.string()));
     if (request.views.size() > 1)
-        throw InputError(
-            fmt::format("--output {}: {} views make {} pictures and this is one file; name a folder",
-                        request.output.string(), request.views.size(), request.views.size()));
+        throw InputError(fmt::format("--output {}: {} views need {} files; name a folder",
+                                     request.output.string(), request.views.size(), request.views.size()));
     if (ending == ".png" && request.exr)
-        throw InputError(fmt::format("--output {}: --exr asks for another kind of file; name it FILE.exr",
-                                     request.output.string()));
+        throw InputError(
+            fmt::format("--output {}: does not agree with --exr; name it FILE.exr", request.output.string()));
     if (ending == ".exr" && !output.exr)
         output.exr = ExrSamples::half;
     output.folder = request.output.has_parent_path() ? request.output.parent_path() : fs::path(".");
@@ -76,8 +75,7 @@ View choose_camera(const RenderRequest& request, Job job) {
         validate(job);
     } catch (const InputError& error) {
         throw InputError(fmt::format(
-            "a camera with this --eye, --target, --up and --field-of-view (without one, the run's) "
-            "cannot be: {}",
+            "invalid camera from --eye, --target, --up and --field-of-view (default: the run's): {}",
             error.what()));
     }
     return make_view(job.camera);
@@ -98,8 +96,8 @@ bool asks_for(const RenderRequest& request, PictureView view) {
     return std::find(request.views.begin(), request.views.end(), view) != request.views.end();
 }
 
-/// The colours span what all but a hundredth of the surface keeps, or what was asked for: a few triangles on a step of
-/// the map, where errors are as large as the step, leave no colour for the rest.
+/// The darkest colour stands for --error-scale or, by default, the error exceeded by 1 % of the area: the largest
+/// errors, of a few triangles on a step of the map, would leave no colours for the rest.
 void add_errors(const RecordedRun& run, const fs::path& data_folder, RenderMesh& mesh, ErrorScale& scale) {
     RunError error = measure_run_error(run, data_folder);
     mesh.triangle_errors = std::move(error.triangles);
@@ -154,7 +152,7 @@ ExitCode render_command(const RenderRequest& asked, const fs::path& data_folder)
                                       [](const Picture& picture) { return picture.mesh_in_sight; });
     if (!in_sight)
         fmt::print("  {}\n", mesh.triangles.empty() ? "the run's mesh is empty: all of it was culled"
-                                                    : "nothing of the mesh is in sight of this camera");
+                                                    : "no part of the mesh is in this camera's view");
     return ExitCode::fine;
 }
 

@@ -5,13 +5,13 @@
 
 namespace tessera {
 
-// What pictures may be, in pixels: room for a legend, and no more than a few minutes and a gigabyte.
+// Limits of pictures, in pixels: room for a legend; at most a few minutes and a gigabyte.
 inline constexpr int least_picture_side = 64;
 inline constexpr int most_picture_side = 16384;
 inline constexpr std::int64_t most_picture_pixels = 33'554'432;  // of all views together
 
-/// A close-up: the point that is to be the middle, from the left (0..1) and the top (0..1) of the picture without
-/// zoom, and how many times larger everything becomes.
+/// A close-up: its centre, from the left (0..1) and the top (0..1) of the picture without zoom, and the
+/// magnification.
 struct Zoom {
     double across = 0.5, down = 0.5;
     double factor = 1;

@@ -28,8 +28,8 @@ struct RenderMesh {
     std::uint64_t base_triangles = 0;    ///< how many these descend from, for the legend; 0: unknown
 };
 
-/// What a run emitted. Culled triangles are left out, as they are of mesh.ply: the picture of a run and one made of its
-/// folder are the same. Vertices are shared where position and normal agree, in the order of their first use.
+/// What a run emitted, without culled triangles, as in mesh.ply: the picture of a run and one rendered from its folder
+/// are the same. Vertices are shared where position and normal agree, in the order of their first use.
 RenderMesh make_render_mesh(const EmittedMesh& mesh, const MachineSetup& setup);
 
 /// The same from a run's mesh.ply: equal in every number if the emitted mesh had the file's order

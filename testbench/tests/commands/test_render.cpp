@@ -173,7 +173,7 @@ TEST_CASE(
     CHECK_THAT(rendered({"run", "--size", "100x80", "--view", "shaded", "--eye", "0", "0", "5", "--target",
                          "0", "0", "9", "--up", "0", "1", "0", "--output", "behind.png"},
                         here.path()),
-               Contains("nothing of the mesh is in sight"));
+               Contains("no part of the mesh is in this camera's view"));
     CHECK(all_background(read_png(here.path() / "behind.png")));
     // The plane from below, back faces culled.
     make_run(here.path(), {"map.source=constant", "hardware.culling=back", "camera.eye=[0.1, 0.2, -4]"});

@@ -113,7 +113,7 @@ TEST_CASE("mistyped names are reported with place and suggestion") {
     CHECK_THAT(parse_error_of("[[mesh]]\nrows = 2\n"), Contains("`mesh` is an array of 1"));
     CHECK_THAT(parse_error_of("mesh = 3\n"), Contains("`mesh` is 3, an integer") && Contains("write [mesh]"));
     CHECK_THAT(parse_error_of("[mesh.rows]\nx = 2\n"),
-               Contains("`mesh.rows` is a table; wanted is an integer"));
+               Contains("`mesh.rows` is a table; expected an integer"));
     CHECK_THAT(parse_error_of("[mesh.more]\nx = 2\n"), Contains("unknown table `mesh.more`"));
     CHECK_THAT(parse_error_of("mesh.camera = {eye = [1, 2, 3]}\n"),
                Contains("unknown table `mesh.camera`; did you mean the group `camera`?") &&
@@ -130,7 +130,7 @@ TEST_CASE("values are reported with place, value and what is wanted") {
                Equals("job.toml:2:1: `mesh.columns` = 99999 is out of range; the range is 0 .. 2048 quads"));
     CHECK_THAT(
         parse_error_of("[mesh]\ncolumns = \"three\"\n"),
-        Equals("job.toml:2:1: `mesh.columns` is \"three\", a string; wanted is an integer, 0 .. 2048 quads"));
+        Equals("job.toml:2:1: `mesh.columns` is \"three\", a string; expected an integer, 0 .. 2048 quads"));
     CHECK_THAT(parse_error_of("[mesh]\ncolumns = 3.0\n"), Contains("is 3.0, a floating-point number"));
     CHECK_THAT(
         parse_error_of("[map]\nsource = \"half-donut\"\n"),
@@ -228,7 +228,7 @@ TEST_CASE("keys that contradict each other") {
 
     CHECK_THAT(error_with({"map.fingerprint=0123456789abcdef"}), Contains("`map.file` is empty"));
     CHECK_THAT(error_with({"map.source=file", "map.file=a.exr", "map.fingerprint=0123456789ABCDEF"}),
-               Contains("wanted are 16 hexadecimal digits"));
+               Contains("expected 16 hexadecimal digits"));
     CHECK_THAT(error_with({"map.source=file", "map.file=a.exr", "map.fingerprint=0123456789abcdef"}),
                Equals(""));
 
