@@ -23,8 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The job whose map is to be baked: the base mesh's, or the default one on a plane of the surface's size.
-Job base_job(const BakeRequest& request, const Surface& surface, const fs::path& data_folder) {
+/// The job to bake a map for: the base mesh's, or the default one on a plane of the surface's size.
+Job base_job(const BakeRequest& request, const Surface& surface) {
     Job job;
     if (request.mesh_job.empty()) {
         job.mesh.width = surface.high.x - surface.low.x;
@@ -41,7 +41,7 @@ BakedMap bake(const BakeRequest& request, const Surface& surface, const Job& job
     return bake_over_mesh(*quadric, load_mesh(job), job.map, request.width, request.height);
 }
 
-/// The job must not be written over what it is made from.
+/// Refuses to write the job over one of its inputs.
 void check_job_file(const BakeRequest& request, const fs::path& job_file) {
     for (const fs::path& read : {request.surface, request.mesh_job}) {
         std::error_code absent;
@@ -110,7 +110,7 @@ ExitCode bake_command(const BakeRequest& request, const fs::path& data_folder) {
     require_inputs_stay(job);
     const std::string job_text = dump_short_job(
         job, folder,
-        fmt::format("What `tessera bake` made of {}.", printable(request.surface.filename().string())));
+        fmt::format("Written by `tessera bake` from {}.", printable(request.surface.filename().string())));
 
     AtomicSet files;
     files.make_folder(folder);

@@ -6,7 +6,7 @@
 
 namespace tessera {
 
-/// What `tessera bake` is to do.
+/// The arguments of `tessera bake`.
 struct BakeRequest {
     std::filesystem::path surface;   ///< surface file (surface_file.h)
     std::filesystem::path mesh_job;  ///< job whose base mesh the surface lies over; empty: the plane z = 0
@@ -15,13 +15,12 @@ struct BakeRequest {
     int width = 256, height = 256;  ///< texels
 };
 
-/// Samples a curved surface into a displacement map, and writes the map and, beside it, OUTPUT's name ending
-/// in .job.toml, a job that displaces the base mesh by it: the one given, or a plane as large as the
-/// surface's domain. Prints scale and bias and what became of texels without surface. A NURBS patch is the
-/// same map over whatever base mesh.
+/// Samples a curved surface into a displacement map. Writes the map and, beside it, a job of the same name ending in
+/// .job.toml that displaces a base mesh by it: the given one, or a plane as large as the surface's domain. Prints
+/// scale, bias and how texels without surface were filled. A NURBS patch gives the same map over any base mesh.
 ///
-/// Throws what reading the surface, the job and the mesh throws, and what bake.h throws; InputError and
-/// ResourceError where a file cannot be written.
+/// Throws the errors of reading surface, job and mesh, and of bake.h; InputError or ResourceError if a file cannot be
+/// written.
 ExitCode bake_command(const BakeRequest& request, const std::filesystem::path& data_folder);
 
 }  // namespace tessera

@@ -33,12 +33,12 @@ void BakeOptions::add_to(CLI::App& bake) {
     bake.add_option("SURFACE", surface_, "surface file (TOML): [quadric], [nurbs] or [bezier]")->required();
     bake.add_option(
             "--output", output_,
-            "the map, FILE.pgm or FILE.png (16 bit) or FILE.exr (float); FILE.job.toml comes beside it")
+            "the map, FILE.pgm or FILE.png (16 bit) or FILE.exr (float); FILE.job.toml is written beside it")
         ->required();
-    bake.add_option("--size", size_, "WIDTHxHEIGHT of the map in texels; without, 256x256");
+    bake.add_option("--size", size_, "WIDTHxHEIGHT of the map in texels; default: 256x256");
     mesh_given_ = bake.add_option(
         "--mesh", mesh_,
-        "JOB whose base mesh the surface lies over, along its normals; without, the plane z = 0");
+        "JOB whose base mesh the surface lies over, along its normals; default: the plane z = 0");
 }
 
 BakeRequest BakeOptions::request() const {
@@ -56,9 +56,9 @@ BakeRequest BakeOptions::request() const {
     request.height = by == std::string::npos ? -1 : side_of(size_.substr(by + 1));
     const auto allowed = [](int side) { return side >= 1 && side <= largest_map_side; };
     if (!allowed(request.width) || !allowed(request.height))
-        throw InputError(fmt::format(
-            "--size {}: wanted is WIDTHxHEIGHT in texels, each from 1 to {}, as in --size 256x256", size_,
-            largest_map_side));
+        throw InputError(
+            fmt::format("--size {}: expected WIDTHxHEIGHT in texels, each from 1 to {}, as in --size 256x256",
+                        size_, largest_map_side));
     return request;
 }
 

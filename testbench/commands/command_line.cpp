@@ -21,7 +21,7 @@ std::filesystem::path default_data_folder() {
                                        : std::filesystem::path(TESSERA_SOURCE_DIR) / ".." / "shared" / "data";
 }
 
-/// What the options for traces stand for: settings, and a flag of the command's own.
+/// The trace options: shorthands for settings, and --fst.
 class TraceOptions {
   public:
     void add_to(CLI::App& run) {
@@ -33,7 +33,7 @@ class TraceOptions {
                      "write activity per unit, timeline.json: as --set output.timeline=true")
             ->group(group);
         run.add_option("--trace", window_,
-                       "cycles FROM:TO of both: as --set output.trace_from=FROM --set output.trace_to=TO")
+                       "cycles to trace, FROM:TO: as --set output.trace_from=FROM --set output.trace_to=TO")
             ->group(group);
         run.add_option(
                "--trace-units", units_,
@@ -56,7 +56,7 @@ class TraceOptions {
             const std::size_t colon = window_.find(':');
             if (colon == std::string::npos || colon == 0 || colon + 1 == window_.size())
                 throw InputError(
-                    fmt::format("--trace {}: wanted are two cycles, FROM:TO, as in --trace 0:5000", window_));
+                    fmt::format("--trace {}: expected two cycles, FROM:TO, as in --trace 0:5000", window_));
             set("trace_from", window_.substr(0, colon));
             set("trace_to", window_.substr(colon + 1));
         }
@@ -78,7 +78,7 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     CLI::App app{
         "tessera: a SystemC model of hardware that renders displacement maps by adaptive tessellation"};
     app.set_version_flag("--version", TESSERA_VERSION);
-    app.require_subcommand(0, 1);  // none is told apart below, from one that does not exist
+    app.require_subcommand(0, 1);  // a missing verb is reported below
     app.footer(
         "exit codes: 0 fine, 1 conformance or an invariant violated, 2 bad input or usage, 3 deadlock,\n"
         "            4 a stated resource limit");
@@ -86,48 +86,46 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     CLI::App* const run =
         app.add_subcommand("run", "run a job: tessellate, check against the golden model, report");
     CLI::Option* const job = run->add_option(
-        "JOB", command.job_file, "job file (TOML); without one, the half donut on the plane of 18 triangles");
+        "JOB", command.job_file, "job file (TOML); default: the half donut on the plane of 18 triangles");
     run->add_option("--set", command.settings, "set one key of the job, as in --set tests.view_threshold=2")
         ->take_all()
         ->allow_extra_args(false);
-    run->add_option("--data", data, "folder that `data:` paths of a job begin at; $TESSERA_DATA likewise");
+    run->add_option("--data", data, "folder of `data:` paths in the job; default: $TESSERA_DATA");
     run->add_flag("--dump-config", command.dump_config,
-                  "print the effective job, every key documented, and stop");
+                  "print the effective job with every key documented, then exit");
 
     TraceOptions traces;
     traces.add_to(*run);
 
-    CLI::App* const compare = app.add_subcommand(
-        "compare",
-        "measure a run's mesh against the displaced surface: error.json and error.txt in its folder");
+    CLI::App* const compare = app.add_subcommand("compare",
+                                                 "measure a run's mesh against the displaced surface; writes "
+                                                 "error.json and error.txt into its folder");
     compare->add_option("RUN", command.run_folder, "folder that `tessera run` left")->required();
-    compare->add_option("--data", data,
-                        "folder that `data:` paths of its job begin at; $TESSERA_DATA likewise");
+    compare->add_option("--data", data, "folder of `data:` paths in its job; default: $TESSERA_DATA");
 
-    CLI::App* const render =
-        app.add_subcommand("render", "pictures of a finished run, from its folder, as PNG or EXR");
+    CLI::App* const render = app.add_subcommand("render", "render a finished run's mesh to PNG or EXR");
     RenderOptions render_options;
     render_options.add_to(*render);
-    render->add_option("--data", data, "folder that `data:` paths of the run's job begin at");
+    render->add_option("--data", data, "folder of `data:` paths in the run's job; default: $TESSERA_DATA");
 
     CLI::App* const bake = app.add_subcommand(
         "bake", "sample a curved surface, a quadric or NURBS patch, into a displacement map");
     BakeOptions bake_options;
     bake_options.add_to(*bake);
-    bake->add_option("--data", data, "folder that `data:` paths of the base mesh's job begin at");
+    bake->add_option("--data", data,
+                     "folder of `data:` paths in the base mesh's job; default: $TESSERA_DATA");
 
     CLI::App* const tune = app.add_subcommand(
         "tune", "find a job's thresholds for a number of triangles or a bound on the error");
     TuneOptions tune_options;
     tune_options.add_to(*tune);
-    tune->add_option("--data", data, "folder that `data:` paths of the job begin at; $TESSERA_DATA likewise");
+    tune->add_option("--data", data, "folder of `data:` paths in the job; default: $TESSERA_DATA");
 
     CLI::App* const widths = app.add_subcommand(
-        "widths", "how many bits each quantity needs: width against flipped decisions, error and triangles");
+        "widths", "sweep the widths of number formats: flipped decisions, error and triangles at each width");
     WidthsOptions widths_options;
     widths_options.add_to(*widths);
-    widths->add_option("--data", data,
-                       "folder that `data:` paths of the job begin at; $TESSERA_DATA likewise");
+    widths->add_option("--data", data, "folder of `data:` paths in the job; default: $TESSERA_DATA");
 
     CLI::App* const keys =
         app.add_subcommand("keys", "print every key of a job file: unit, default, range, meaning");
@@ -144,10 +142,8 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     }
     if (app.get_subcommands().empty())
         throw InputError(
-            "say what to do: `tessera run`, `tessera compare`, `tessera render`, `tessera bake`, `tessera "
-            "tune`, `tessera widths` or `tessera "
-            "keys`; "
-            "see `tessera --help`");
+            "no command given: use `tessera run`, `tessera compare`, `tessera render`, `tessera bake`, "
+            "`tessera tune`, `tessera widths` or `tessera keys`; see `tessera --help`");
     if (job->count() > 0 && command.job_file.empty())
         throw InputError("JOB is empty: name a job file, or leave it out for the default job");
     command.verb = keys->parsed()      ? Command::Verb::keys

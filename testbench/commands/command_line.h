@@ -11,7 +11,7 @@
 
 namespace tessera {
 
-/// What the user asked for.
+/// The command line's contents.
 struct Command {
     enum class Verb { run, compare, render, bake, tune, widths, keys } verb = Verb::run;
     std::string job_file;               ///< empty: the default job
@@ -24,10 +24,10 @@ struct Command {
     BakeRequest bake;                   ///< Verb::bake
     TuneOrder tune;                     ///< Verb::tune
     WidthsOrder widths;                 ///< Verb::widths
-    std::string trace_option;           ///< --trace or --trace-units, if given: it wants something to trace
+    std::string trace_option;  ///< --trace or --trace-units, if given: it requires --vcd, --fst or --timeline
 };
 
-/// Reads the command line. Prints help or version itself and gives nothing then. Throws InputError on wrong usage.
+/// Reads the command line. Prints help or version itself; the result is then empty. Throws InputError on wrong usage.
 std::optional<Command> read_command_line(int argc, const char* const* argv);
 
 }  // namespace tessera

@@ -4,8 +4,8 @@
 
 namespace tessera {
 
-/// `tessera compare`: measures the mesh of a run's folder against the surface it stands for (measure_error.h), prints a
-/// table and leaves error.json and error.txt beside the mesh. Throws what reading and measuring throw.
+/// `tessera compare`: measures the mesh of a run's folder against the displaced surface (measure_error.h), prints a
+/// table and writes error.json and error.txt beside the mesh. Throws the errors of reading and measuring.
 ExitCode compare_run(const Command& command);
 
 }  // namespace tessera

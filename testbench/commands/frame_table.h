@@ -9,23 +9,23 @@
 
 namespace tessera {
 
-/// What a run of several frames says of one.
+/// One frame's row in the table of a run of several frames.
 struct FrameRow {
     std::string name;  ///< frame_000
     double scale = 0;  ///< displacement.scale, model units
-    HostTraffic sent;  ///< what the host sends for it after the frame before
+    HostTraffic sent;  ///< what the host sends for it, given the frame before
     std::uint64_t triangles = 0, edges_tested = 0, edges_split = 0;
     std::optional<std::uint64_t> cycles;  ///< timed mode
-    std::uint64_t tessellated_bytes = 0;  ///< the mesh, had the host to send it tessellated (indexed)
+    std::uint64_t tessellated_bytes = 0;  ///< if the host sent the tessellated mesh instead (indexed)
 };
 
-/// Takes what the frame counted from the statistics.json in its folder.
+/// Reads the frame's counts from the statistics.json in its folder.
 void read_counts(const std::filesystem::path& folder, FrameRow& row);
 
-/// frames.csv: a heading, then a row a frame. No cycles in functional mode: the cell is empty.
+/// frames.csv: a heading and one row per frame. In functional mode the cell for cycles is empty.
 std::string frames_csv(const std::vector<FrameRow>& rows);
 
-/// The table on a terminal, and what the host sends for the first frame, a later one, and all.
+/// The table for a terminal, and the host's traffic for the first frame, a later one and all.
 std::string frames_heading();
 std::string frames_line(const FrameRow& row);
 std::string frames_traffic(const std::vector<FrameRow>& rows);

@@ -28,7 +28,7 @@ int failed(tessera::ExitCode code, const char* message) {
     return static_cast<int>(code);
 }
 
-tessera::ExitCode obey(const std::optional<tessera::Command>& command) {
+tessera::ExitCode execute(const std::optional<tessera::Command>& command) {
     if (!command)
         return tessera::ExitCode::fine;
     if (command->verb == tessera::Command::Verb::run)
@@ -51,11 +51,11 @@ tessera::ExitCode obey(const std::optional<tessera::Command>& command) {
 
 int sc_main(int argc, char** argv) {
     using tessera::ExitCode;
-    // Reaching a limit stops the simulation: SystemC need not say so on standard output.
+    // Reaching a limit stops the simulation; SystemC would report that on standard output.
     sc_core::sc_report_handler::set_actions(sc_core::SC_INFO, sc_core::SC_DO_NOTHING);
     try {
-        const ExitCode code = obey(tessera::read_command_line(argc, argv));
-        // What was printed may still wait, and a full disk be found out only now.
+        const ExitCode code = execute(tessera::read_command_line(argc, argv));
+        // Output may still be buffered: a full disk may show only now.
         if (std::fflush(stdout) != 0)
             return failed(ExitCode::resource_limit,
                           fmt::format("standard output: {}", std::generic_category().message(errno)).c_str());

@@ -38,7 +38,7 @@ void check_output_folder(const fs::path& folder, const std::string& key) {
     while (!is_there(there) && there.has_relative_path())
         there = there.parent_path();
     if (!fs::is_directory(there, error))
-        refuse(key, folder, fmt::format("{} is no folder", there.string()));
+        refuse(key, folder, fmt::format("{} is not a folder", there.string()));
     if (access(there.c_str(), W_OK | X_OK) != 0)
         refuse(key, folder, fmt::format("{}: {}", there.string(), std::generic_category().message(errno)));
 }

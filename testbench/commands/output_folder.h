@@ -4,8 +4,8 @@
 
 namespace tessera {
 
-/// Finds out before a long run whether its folder can be written, and leaves no trace: a run that fails leaves nothing.
-/// `key` is what names the folder, for messages. Throws InputError.
+/// Checks before a long run that its folder can be written, without creating it. `key` is what names the folder in
+/// messages. Throws InputError.
 void check_output_folder(const std::filesystem::path& folder, const std::string& key = "output.folder");
 
 }  // namespace tessera

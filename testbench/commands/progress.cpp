@@ -26,18 +26,18 @@ Progress::Progress(std::string before)
 }
 
 Progress::Progress(std::string before, const Display& display)
-    : before_(std::move(before)), display_(display), next_(display.now()), said_(tens()) {}
+    : before_(std::move(before)), display_(display), next_(display.now()), reported_(tens()) {}
 
 Progress::~Progress() {
     clear();
-    if (!speaker_.joinable())
+    if (!reporter_.joinable())
         return;
     {
         const std::lock_guard lock(mutex_);
         stopped_ = true;
     }
     stop_.notify_one();
-    speaker_.join();
+    reporter_.join();
 }
 
 std::int64_t Progress::tens() const {
@@ -46,34 +46,35 @@ std::int64_t Progress::tens() const {
 
 void Progress::begin_to_say() {
     try {
-        speaker_ = std::thread([this] { say_until_stopped(); });
+        reporter_ = std::thread([this] { report_until_stopped(); });
     } catch (const std::system_error&) {
-        // No thread is to be had: show() says what it can.
+        // No thread can be started: only show() reports.
     }
 }
 
-/// A log that cannot be written ends no run; fmt::print would throw, in the speaker's thread and in the destructor.
+/// A log that cannot be written must not end a run; fmt::print would throw, in the thread and in the destructor.
 void Progress::write(const std::string& text) {
     std::fwrite(text.data(), 1, text.size(), display_.file);
     std::fflush(display_.file);
 }
 
-void Progress::say_until_stopped() {
+void Progress::report_until_stopped() {
     std::unique_lock lock(mutex_);
-    while (!stop_.wait_until(lock, display_.begin + (said_ + 1) * between_lines, [&] { return stopped_; }))
-        say_if_due_locked();
+    while (
+        !stop_.wait_until(lock, display_.begin + (reported_ + 1) * between_lines, [&] { return stopped_; }))
+        report_if_due_locked();
 }
 
-void Progress::say_if_due() {
+void Progress::report_if_due() {
     const std::lock_guard lock(mutex_);
-    say_if_due_locked();
+    report_if_due_locked();
 }
 
-void Progress::say_if_due_locked() {
+void Progress::report_if_due_locked() {
     const std::int64_t now = tens();
-    if (display_.terminal || now <= said_)
+    if (display_.terminal || now <= reported_)
         return;
-    said_ = now;
+    reported_ = now;
     if (text_size_ == 0)
         return;
     const auto elapsed =
@@ -87,7 +88,7 @@ void Progress::show(const std::string& what, double part) {
         fmt::format_to_n(text_.data(), text_.size(), "at {:.0f} %, {}{}", 100 * part, before_, what);
     text_size_ = std::min(end.size, text_.size());
     Interruption::note(text());
-    say_if_due_locked();
+    report_if_due_locked();
     if (display_.terminal)
         show_on_terminal(what, part);
 }

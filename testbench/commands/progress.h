@@ -12,13 +12,13 @@
 
 namespace tessera {
 
-/// Says how far long work is. On a terminal: one line that is overwritten. Elsewhere, in a log: a line at every tenth
-/// second since the program began, whether or not show() is called there, and so none for shorter work. An Interruption
-/// says it too.
+/// Reports the progress of long work. On a terminal: one line that is overwritten. Elsewhere, in a log: a line every
+/// ten seconds since the program began, whether or not show() is called then; none for shorter work. An Interruption
+/// reports it too.
 class Progress {
   public:
     using Clock = std::chrono::steady_clock;
-    /// Where it is said, and the time.
+    /// Where it is shown, and the clock.
     struct Display {
         std::FILE* file;
         bool terminal;
@@ -26,9 +26,9 @@ class Progress {
         Clock::time_point (*now)();
     };
 
-    /// On standard error. `before`: what every line says first.
+    /// On standard error. `before`: the beginning of every line.
     explicit Progress(std::string before = {});
-    /// Elsewhere; no line is written but by show() and say_if_due().
+    /// Elsewhere; lines are written by show() and report_if_due() only.
     Progress(std::string before, const Display& display);
     ~Progress();
     Progress(const Progress&) = delete;
@@ -38,18 +38,18 @@ class Progress {
     void show(const std::string& what, double part);
     void clear();
 
-    /// Not on a terminal: writes the line if it is time for it.
-    void say_if_due();
+    /// In a log: writes the line if it is due.
+    void report_if_due();
 
   private:
     /// Whole tens of seconds since the program began.
     std::int64_t tens() const;
     std::string_view text() const { return {text_.data(), text_size_}; }
-    void say_if_due_locked();
+    void report_if_due_locked();
     void show_on_terminal(const std::string& what, double part);
     void begin_to_say();
     void write(const std::string& text);
-    void say_until_stopped();
+    void report_until_stopped();
 
     std::string before_;
     Display display_;
@@ -57,12 +57,12 @@ class Progress {
     Clock::time_point next_;
 
     std::mutex mutex_;              // for what is below
-    std::array<char, 400> text_{};  // what show() said last
+    std::array<char, 400> text_{};  // what show() was last given
     std::size_t text_size_ = 0;     // 0: nothing since clear()
-    std::int64_t said_;             // tens of seconds for which no line is due any more
+    std::int64_t reported_;         // ten-second marks up to which no line is due any more
     bool stopped_ = false;
     std::condition_variable stop_;
-    std::thread speaker_;
+    std::thread reporter_;
 };
 
 }  // namespace tessera

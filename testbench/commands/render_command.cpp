@@ -12,7 +12,6 @@
 #include "testbench/common/atomic_set.h"
 #include "testbench/job/validate_job.h"
 #include "testbench/output/picture/error_range.h"
-#include "testbench/output/picture/overview.h"
 #include "testbench/output/picture/png_writer.h"
 #include "testbench/output/picture/view_picture.h"
 #include "testbench/run_folder/read_run.h"
@@ -49,16 +48,15 @@ Output choose_output(const RenderRequest& request) {
     const std::string ending = lower_case(request.output.extension().string());
     if (ending != ".png" && ending != ".exr")
         throw InputError(fmt::format(
-            "--output {}: pictures are written as FILE.png or FILE.exr; a folder that is not there "
-            "yet is named with a / at its end",
+            "--output {}: pictures are written as FILE.png or FILE.exr; to name a new folder, end "
+            "it with a /",
             request.output.string()));
     if (request.views.size() > 1)
-        throw InputError(
-            fmt::format("--output {}: {} views make {} pictures and this is one file; name a folder",
-                        request.output.string(), request.views.size(), request.views.size()));
+        throw InputError(fmt::format("--output {}: {} views need {} files; name a folder",
+                                     request.output.string(), request.views.size(), request.views.size()));
     if (ending == ".png" && request.exr)
-        throw InputError(fmt::format("--output {}: --exr asks for another kind of file; name it FILE.exr",
-                                     request.output.string()));
+        throw InputError(
+            fmt::format("--output {}: does not agree with --exr; name it FILE.exr", request.output.string()));
     if (ending == ".exr" && !output.exr)
         output.exr = ExrSamples::half;
     output.folder = request.output.has_parent_path() ? request.output.parent_path() : fs::path(".");
@@ -77,8 +75,7 @@ View choose_camera(const RenderRequest& request, Job job) {
         validate(job);
     } catch (const InputError& error) {
         throw InputError(fmt::format(
-            "a camera with this --eye, --target, --up and --field-of-view (without one, the run's) "
-            "cannot be: {}",
+            "invalid camera from --eye, --target, --up and --field-of-view (default: the run's): {}",
             error.what()));
     }
     return make_view(job.camera);
@@ -86,18 +83,12 @@ View choose_camera(const RenderRequest& request, Job job) {
 
 void check_size(const RenderRequest& request, const RenderMesh& mesh, const View& camera) {
     std::int64_t pixels = 0;
-    for (const PictureView view : request.views) {
-        const int height = request.picture.height > 0 ? request.picture.height
-                           : view == PictureView::overview
-                               ? overview_height(mesh, camera, request.picture)
-                               : picture_height(mesh, camera, view, request.picture);
-        pixels += std::int64_t{request.picture.width} * height;
-    }
+    for (const PictureView view : request.views)
+        pixels += std::int64_t{request.picture.width} * picture_height(mesh, camera, view, request.picture);
     if (pixels > most_picture_pixels)
         throw InputError(fmt::format(
-            "--size: {} pixels in {} picture{}; {} are the most for all views together: make them smaller, "
-            "or "
-            "ask for fewer views at once",
+            "--size: {} pixels in {} picture{}; the limit for all views together is {}: make the pictures "
+            "smaller or render fewer views at once",
             pixels, request.views.size(), request.views.size() == 1 ? "" : "s", most_picture_pixels));
 }
 
@@ -105,8 +96,8 @@ bool asks_for(const RenderRequest& request, PictureView view) {
     return std::find(request.views.begin(), request.views.end(), view) != request.views.end();
 }
 
-/// The colours span what all but a hundredth of the surface keeps, or what was asked for: a few triangles on a step of
-/// the map, where errors are as large as the step, leave no colour for the rest.
+/// The darkest colour stands for --error-scale or, by default, the error exceeded by 1 % of the area: the largest
+/// errors, of a few triangles on a step of the map, would leave no colours for the rest.
 void add_errors(const RecordedRun& run, RenderMesh& mesh, ErrorScale& scale) {
     RunError error = measure_run_error(run);
     mesh.triangle_errors = std::move(error.triangles);
@@ -116,20 +107,6 @@ void add_errors(const RecordedRun& run, RenderMesh& mesh, ErrorScale& scale) {
         scale.largest = error_of_most(mesh, 0.99);
     if (scale.largest == 0)
         scale.largest = scale.beyond;
-}
-
-std::vector<Picture> draw(const RenderRequest& request, const RenderMesh& mesh, const View& camera) {
-    std::vector<PictureView> single;
-    for (const PictureView view : request.views)
-        if (view != PictureView::overview)
-            single.push_back(view);
-    std::vector<Picture> singles = render_views(mesh, camera, single, request.picture);
-    std::vector<Picture> pictures;
-    auto next = singles.begin();
-    for (const PictureView view : request.views)
-        pictures.push_back(view == PictureView::overview ? render_overview(mesh, camera, request.picture)
-                                                         : std::move(*next++));
-    return pictures;
 }
 
 void write(const fs::path& path, const Picture& picture, const std::optional<ExrSamples>& exr) {
@@ -159,7 +136,7 @@ ExitCode render_command(const RenderRequest& asked, const fs::path& data_folder)
         add_errors(run, mesh, request.picture.errors);
     }
     progress.show("rendering", 0);
-    const std::vector<Picture> pictures = draw(request, mesh, camera);
+    const std::vector<Picture> pictures = render_views(mesh, camera, request.views, request.picture);
     AtomicSet files;
     files.make_folder(output.folder);
     for (std::size_t i = 0; i < pictures.size(); ++i)
@@ -174,7 +151,7 @@ ExitCode render_command(const RenderRequest& asked, const fs::path& data_folder)
                                       [](const Picture& picture) { return picture.mesh_in_sight; });
     if (!in_sight)
         fmt::print("  {}\n", mesh.triangles.empty() ? "the run's mesh is empty: all of it was culled"
-                                                    : "nothing of the mesh is in sight of this camera");
+                                                    : "no part of the mesh is in this camera's view");
     return ExitCode::fine;
 }
 

@@ -12,7 +12,7 @@
 
 namespace tessera {
 
-/// What `tessera render` is to do.
+/// The arguments of `tessera render`.
 struct RenderRequest {
     std::filesystem::path run;                              ///< the run's folder
     std::vector<PictureView> views{PictureView::overview};  ///< each once
@@ -23,14 +23,14 @@ struct RenderRequest {
     std::optional<ExrSamples> exr;  ///< EXR files instead of PNG
 };
 
-/// Reads a run's folder back and writes one picture a view: VIEW.png or VIEW.exr in a folder, or the one file asked
-/// for. Prints what it wrote. The overview by the run's own camera is the run's picture.png, byte for byte.
+/// Reads a run's folder and writes one picture per view: VIEW.png or VIEW.exr in a folder, or the one file asked for.
+/// Prints their names and sizes. The overview by the run's own camera is the run's picture.png, byte for byte.
 ///
-/// Throws InputError: no run there, a camera that cannot be, an output that cannot be written, several views for one
+/// Throws InputError: no run there, an invalid camera, an output that cannot be written, several views for one
 /// file, a picture larger than picture_options.h allows; ResourceError: memory or disk ran out.
 ExitCode render_command(const RenderRequest& request, const std::filesystem::path& data_folder);
 
-/// The files that render leaves in a run's folder unless told another place.
+/// The names of the files that render writes into a run's folder by default.
 std::vector<std::string> picture_names();
 
 }  // namespace tessera

@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "testbench/commands/parse_side.h"
-#include "testbench/input/map/stroke_font.h"
 
 namespace tessera {
 
@@ -15,7 +14,6 @@ namespace {
 constexpr double thinnest_line = 0.1, widest_line = 50;
 constexpr double largest_error_scale = 1e9;
 constexpr double least_zoom = 0.1, most_zoom = 10000;
-constexpr std::size_t longest_caption = 200;
 
 std::string view_names() {
     std::string names;
@@ -28,7 +26,7 @@ PictureView view_of(const std::string& name) {
     for (const PictureView view : picture_views)
         if (name_of(view) == name)
             return view;
-    throw InputError(fmt::format("--view {}: there is no such view; there are {}", name, view_names()));
+    throw InputError(fmt::format("--view {}: no such view; the views are {}", name, view_names()));
 }
 
 void apply_size(const std::string& text, PictureOptions& picture) {
@@ -38,7 +36,7 @@ void apply_size(const std::string& text, PictureOptions& picture) {
     const auto allowed = [](int side) { return side >= least_picture_side && side <= most_picture_side; };
     if (!allowed(picture.width) || !(by == std::string::npos || allowed(picture.height)))
         throw InputError(fmt::format(
-            "--size {}: wanted is WIDTHxHEIGHT in pixels, or WIDTH alone, each from {} to {}, as in "
+            "--size {}: expected WIDTHxHEIGHT in pixels, or WIDTH alone, each from {} to {}, as in "
             "--size 1600x1200",
             text, least_picture_side, most_picture_side));
 }
@@ -46,30 +44,13 @@ void apply_size(const std::string& text, PictureOptions& picture) {
 void apply_zoom(const std::vector<double>& zoom, PictureOptions& picture) {
     const auto inside = [](double x) { return x >= 0 && x <= 1; };
     if (!inside(zoom[0]) || !inside(zoom[1]))
-        throw InputError(fmt::format(
-            "--zoom {} {} {}: the centre is a part of the picture, from 0 (left, top) to 1 (right, "
-            "bottom)",
-            zoom[0], zoom[1], zoom[2]));
+        throw InputError(
+            fmt::format("--zoom {} {} {}: the centre must be from 0 (left, top) to 1 (right, bottom)",
+                        zoom[0], zoom[1], zoom[2]));
     if (!(zoom[2] >= least_zoom && zoom[2] <= most_zoom))
         throw InputError(fmt::format("--zoom {} {} {}: the enlargement must be from {} to {}", zoom[0],
                                      zoom[1], zoom[2], least_zoom, most_zoom));
     picture.zoom = {zoom[0], zoom[1], zoom[2]};
-}
-
-void check_caption(const std::string& caption) {
-    if (caption.size() > longest_caption)
-        throw InputError(
-            fmt::format("--caption: {} characters; {} are the most", caption.size(), longest_caption));
-    for (const char c : caption) {
-        const char capital = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-        if (stroke_font_characters().find(capital) == std::string_view::npos)
-            throw InputError(fmt::format(
-                "--caption: the built-in font has no {}; it has \"{}\", and shows lower-case letters as "
-                "capitals",
-                c > ' ' && c <= '~' ? fmt::format("\"{}\"", c)
-                                    : fmt::format("character of code {}", static_cast<unsigned char>(c)),
-                stroke_font_characters()));
-    }
 }
 
 std::optional<std::array<double, 3>> point(const std::vector<double>& numbers) {
@@ -83,34 +64,34 @@ std::optional<std::array<double, 3>> point(const std::vector<double>& numbers) {
 void RenderOptions::add_to(CLI::App& render) {
     render.add_option("RUN", run_, "folder of a run, with its job.toml and mesh.ply")->required();
     render
-        .add_option(
-            "--view", views_,
-            fmt::format("what to show: {} (--view may be repeated; without one, overview)", view_names()))
+        .add_option("--view", views_,
+                    fmt::format("what to show: {}; may be repeated; default: overview", view_names()))
         ->take_all()
         ->delimiter(',')
         ->allow_extra_args(false);
     output_given_ = render.add_option(
-        "--output", output_, "FILE.png, FILE.exr (linear light), or a folder for VIEW.png; without one, RUN");
+        "--output", output_, "FILE.png, FILE.exr (linear light), or a folder for VIEW.png; default: RUN");
     exr_given_ = render.add_option("--exr", exr_, "write EXR instead of PNG, with samples `half` or `float`");
     const std::string picture = "Picture";
     size_given_ =
-        render.add_option("--size", size_, "WIDTHxHEIGHT in pixels, or WIDTH; without, 1600")->group(picture);
+        render.add_option("--size", size_, "WIDTHxHEIGHT in pixels, or WIDTH; default: 1600")->group(picture);
     render.add_option("--zoom", zoom_, "U V FACTOR: close-up around U, V (0..1 from the left and the top)")
         ->expected(3)
         ->group(picture);
     line_width_given_ =
-        render.add_option("--line-width", line_width_, "of triangles' edges, in pixels")->group(picture);
+        render.add_option("--line-width", line_width_, "width of the triangles' edges, in pixels")
+            ->group(picture);
     error_scale_given_ =
         render
-            .add_option("--error-scale", error_scale_,
-                        "what the darkest colour of the view `error` stands for, model units; without, what "
-                        "all but 1 % of the surface keeps")
+            .add_option(
+                "--error-scale", error_scale_,
+                "error shown in the darkest colour of the view `error`, model units; default: exceeded "
+                "by 1 % of the area")
             ->group(picture);
-    render.add_option("--caption", caption_, "text below the picture")->group(picture);
     const std::string camera = "Camera, instead of the run's own";
     render
         .add_flag("--whole-viewport", whole_viewport_,
-                  "all that the camera sees, not only where there is something of the mesh")
+                  "show all that the camera sees, not only the part with the mesh")
         ->group(camera);
     render.add_option("--eye", eye_, "X Y Z, model units")->expected(3)->group(camera);
     render.add_option("--target", target_, "X Y Z, model units")->expected(3)->group(camera);
@@ -155,15 +136,11 @@ RenderRequest RenderOptions::request() const {
             throw InputError(fmt::format("--error-scale {}: must be above 0, and at most {} model units",
                                          error_scale_, largest_error_scale));
         if (std::find(request.views.begin(), request.views.end(), PictureView::error) == request.views.end())
-            throw InputError(
-                fmt::format("--error-scale {}: is of the view `error` alone, which is not asked for; add "
-                            "--view error, or leave "
-                            "it out",
-                            error_scale_));
+            throw InputError(fmt::format(
+                "--error-scale {}: applies to the view `error` only; add --view error, or leave it out",
+                error_scale_));
         picture.errors.largest = error_scale_;
     }
-    check_caption(caption_);
-    picture.caption = caption_;
     picture.whole_viewport = whole_viewport_;
     request.eye = point(eye_);
     request.target = point(target_);

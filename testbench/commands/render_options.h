@@ -21,7 +21,7 @@ class RenderOptions {
     RenderRequest request() const;
 
   private:
-    std::string run_, output_, size_, exr_, caption_;
+    std::string run_, output_, size_, exr_;
     std::vector<std::string> views_;
     std::vector<double> eye_, target_, up_, zoom_;
     double field_of_view_ = 0, line_width_ = 0, error_scale_ = 0;

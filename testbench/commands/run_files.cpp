@@ -26,7 +26,7 @@ constexpr const char* run_file_names[] = {
     "error.json",      "error.txt",        "trace.vcd",  "trace.fst",        "timeline.json",
     "frames.csv",      "frames.txt"};
 
-/// Whether a run, or what is done with it, writes or takes away a file of this name.
+/// Whether a run, or a command on it, writes or removes a file of this name.
 bool is_run_file(const std::string& name) {
     const std::vector<std::string> pictures = picture_names();
     const auto among = [&](const auto& names) {
@@ -48,7 +48,7 @@ bool is_run_folder(const fs::path& folder) {
     return std::getline(job, first) && first == run_job_heading;
 }
 
-/// The names of a run's files that are taken in a folder, by whatever it is.
+/// The names of a run's files that exist in a folder, files or not.
 std::vector<std::string> names_taken(const fs::path& folder) {
     std::vector<std::string> names(std::begin(run_file_names), std::end(run_file_names));
     const std::vector<std::string> pictures = picture_names();
@@ -62,7 +62,7 @@ std::vector<std::string> names_taken(const fs::path& folder) {
     return names;
 }
 
-/// Whether a run into `output` has `folder` to itself: it is that, or a frame in it.
+/// Whether a run into `output` owns `folder`: the same folder, or a frame in it.
 bool is_of(const fs::path& folder, const fs::path& output) {
     return folder == output || (folder.parent_path() == output && is_frame_name(folder.filename().string()));
 }
@@ -136,7 +136,7 @@ void require_inputs_stay(const Job& job) {
     const fs::path output = real_place(job.output.folder);
     const auto refuse = [&](const char* what, const char* key, const std::string& file) {
         throw InputError(
-            fmt::format("output.folder = \"{}\": the run would take away its own {}, that of {} = \"{}\"; "
+            fmt::format("output.folder = \"{}\": the run would remove its own {}, {} = \"{}\"; "
                         "choose another output.folder",
                         job.output.folder, what, key, file));
     };

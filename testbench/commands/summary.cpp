@@ -96,7 +96,7 @@ std::string checks_rows(const Checks& checks) {
     return text;
 }
 
-/// What was done over and over, beside what the mesh needs of it.
+/// Repeated work, beside what the mesh needs.
 std::string work_rows(const Simulation& simulation, const MeshCounts& mesh) {
     const Pipeline& p = simulation.pipeline;
     const double tests = mesh.tested_edges() == 0 ? 0

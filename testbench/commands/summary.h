@@ -8,11 +8,11 @@
 
 namespace tessera {
 
-/// The values that the job left to the program, each with its rule.
+/// The values that the job left open ("auto"), each with the rule that chose it.
 std::string found_text(const std::vector<FoundValue>& found);
 
-/// The table a run prints: what came out, what it cost, what was checked.
-/// mesh: of the simulation's. seconds: the run took.
+/// The table a run prints: results, cost and checks.
+/// mesh: counts of the simulation's mesh. seconds: run time.
 std::string summary(const MachineSetup& setup, const Simulation& simulation, const MeshCounts& mesh,
                     const Checks& checks, double seconds);
 

@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t largest_base_for_error = 2048;
 constexpr int most_rounds = 20;
 
-/// A positive whole number; 0 if it is none.
+/// A positive whole number; 0 for anything else.
 std::int64_t number_in(const std::string& text) {
     const bool digits = !text.empty() && text.size() <= 6 &&
                         std::all_of(text.begin(), text.end(),
@@ -44,7 +44,7 @@ void add_grid(const std::string& grid, const TuneRequest& request, const HeightM
         throw InputError(fmt::format("--grid {}: {}", grid, why));
     };
     if (request.job.mesh.source != MeshSource::plane)
-        refuse("only a plane (mesh.source = \"plane\") has other grids; leave --grid out");
+        refuse("applies to a plane (mesh.source = \"plane\") only; leave --grid out");
     if (grid == "auto") {
         bases.emplace_back();
         const std::uint64_t most = request.goal.triangles > 0
@@ -72,7 +72,7 @@ void add_grid(const std::string& grid, const TuneRequest& request, const HeightM
         plane.rows = number_in(grid.substr(x + 1));
     }
     if (plane.columns == 0 || plane.rows == 0)
-        refuse("wanted is auto, COLUMNSxROWS as in 16x22, or latticeSPACING as in lattice32");
+        refuse("expected auto, COLUMNSxROWS as in 16x22, or latticeSPACING as in lattice32");
     bases.push_back(plane);
 }
 
@@ -86,7 +86,7 @@ void choose_tests(const TuneOrder& order, TuneRequest& request) {
     request.space.normal = by_job ? tests.normal : listed("normal");
     request.space.summed_height = by_job ? tests.summed_height : listed("summed_height");
     request.space.view = by_job ? tests.view : listed("view");
-    // a test whose threshold is looked for is on
+    // searching a test's threshold switches the test on
     tests.normal = tests.normal || request.space.normal;
     tests.summed_height = tests.summed_height || request.space.summed_height;
     tests.view = tests.view || request.space.view;
@@ -107,7 +107,7 @@ void choose_tests(const TuneOrder& order, TuneRequest& request) {
             request.job.frames.count));
     if (tests.highlight)
         throw InputError(
-            "tests.highlight = true: the search knows nothing of highlights; tune with --set "
+            "tests.highlight = true: the search does not consider highlights; tune with --set "
             "tests.highlight=false and set it in the tuned job, which then has more triangles");
     if (request.job.hardware.culling != Culling::none)
         throw InputError(
@@ -131,7 +131,7 @@ TuneRequest request_of(const TuneOrder& order, const fs::path& data_folder) {
     return request;
 }
 
-/// A file that will be written at the end: found out before the work.
+/// Checks before the work that a file can be written after it.
 void check_output(const std::string& option, const fs::path& file) {
     const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
     std::error_code error;
@@ -147,20 +147,20 @@ std::string own_run_folder(const fs::path& job_file) {
     return (fs::path("runs") / job_file.stem()).generic_string();
 }
 
-/// Nothing that is written may take the place of something read, of another file written, or of somebody's mesh.
-void check_places(const TuneOrder& order, const Job& job, const std::vector<fs::path>& written, ,
+/// No output may overwrite an input, another output, or an OBJ file that tessera tune did not write.
+void check_places(const TuneOrder& order, const Job& job, const std::vector<fs::path>& written,
                   const fs::path& obj_file) {
     require_inputs_kept(order.output, written, order.job_file, job);
     for (std::size_t k = 0; k < written.size(); ++k)
         for (std::size_t other = 0; other < k; ++other)
             if (place_of_name(written[k]) == place_of_name(written[other]))
-                throw InputError(fmt::format("--tried {}: is written with the tuned job; choose another name",
-                                             order.tried));
+                throw InputError(fmt::format(
+                    "--tried {}: the tuned job's files include this name; choose another", order.tried));
     std::ifstream mesh(obj_file);
     std::string first;
     if (!order.grids.empty() && std::getline(mesh, first) && first.rfind("# tessera tune:", 0) != 0)
         throw InputError(
-            fmt::format("--output {}: a lattice would overwrite {}, which tessera tune has not made; choose "
+            fmt::format("--output {}: a lattice would overwrite {}, which tessera tune did not write; choose "
                         "another name",
                         order.output, obj_file.string()));
     Job tuned = job;
@@ -187,10 +187,10 @@ ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
     };
     const fs::path json_file = beside(".json"), obj_file = beside(".obj");
     if (job_file.extension() != ".toml")
-        throw InputError(fmt::format(
-            "--output {}: is the tuned job, with figures and a lattice beside it as .json and .obj: name a "
-            ".toml, as in tuned.toml",
-            job_file.string()));
+        throw InputError(
+            fmt::format("--output {}: the tuned job's name must end in .toml, as in tuned.toml (figures and "
+                        "a lattice are written beside it as .json and .obj)",
+                        job_file.string()));
     check_output("--output", job_file);
     if (!order.tried.empty())
         check_output("--tried", order.tried);
@@ -209,7 +209,7 @@ ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
     for (const std::string& grid : order.grids)
         add_grid(grid, request, map, request.bases);
 
-    // The search's error and the measured one differ by rounding; a bound holds for the measured one.
+    // The search's error and the measured one differ by rounding; the bound applies to the measured one.
     TuneResult result;
     TunedFigures figures;
     ErrorUnit unit;
@@ -234,7 +234,7 @@ ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
         const double measured = request.goal.largest ? figures.max_model : figures.rms_model;
         if (order.error == 0 || !unit.height_field || measured <= bound)
             break;
-        // Not this mesh again.
+        // Excludes this mesh from the next round.
         request.goal.error = std::min(bound, request.goal.error_of(result.point.outcome)) * (1 - 1e-9);
         if (round + 1 == most_rounds)
             throw InputError(
@@ -243,7 +243,7 @@ ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
                             order.error, measured / unit.model_units));
     }
 
-    // The figures of record: functional mode's own mesh, of the job as it will be written.
+    // The figures reported are of functional mode's mesh, from the job as it will be written.
     progress.show("functional mode", 0.98);
     const Job job = finished_job(result, job_file, obj_file);
     Job functional = job;
@@ -259,7 +259,7 @@ ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
     figures = measure_tuned(job, base, map, setup, mesh);
     if (figures.triangles != expected || figures.triangles != result.point.outcome.triangles)
         throw std::runtime_error(fmt::format(
-            "functional mode's mesh has {} triangles, the search's {}: this is a fault of tessera tune",
+            "functional mode's mesh has {} triangles, the search's {}: this is a bug in tessera tune",
             figures.triangles, result.point.outcome.triangles));
     progress.clear();
 

@@ -12,7 +12,7 @@ namespace tessera {
 /// Of one tuned mesh: some gigabytes of a forest.
 inline constexpr std::uint64_t most_tuned_triangles = std::uint64_t{1} << 22;
 
-/// What `tessera tune` is asked for.
+/// The arguments of `tessera tune`.
 struct TuneOrder {
     std::string job_file;               ///< empty: the default job
     std::vector<std::string> settings;  ///< --set

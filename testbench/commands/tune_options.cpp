@@ -17,7 +17,7 @@ void refuse(const std::string& what) {
     throw InputError(what + "; see `tessera tune --help`");
 }
 
-/// Of the text: what does not fit 64 bits would come out of the conversion as another number.
+/// Checks the text: the conversion would turn a number beyond 64 bits into another one.
 std::string triangles_complaint(const std::string& text) {
     if (text.rfind('-', 0) == 0)
         return text + " is negative";
@@ -31,15 +31,15 @@ std::string triangles_complaint(const std::string& text) {
 }  // namespace
 
 void TuneOptions::add_to(CLI::App& tune) {
-    job_given_ = tune.add_option("JOB", order_.job_file, "job file (TOML); without one, the default job");
+    job_given_ = tune.add_option("JOB", order_.job_file, "job file (TOML); default: the half donut");
     triangles_given_ = tune.add_option("--triangles", order_.triangles,
-                                       "find the least error with at most so many triangles")
+                                       "find the least error with at most this many triangles")
                            ->check(triangles_complaint);
     error_given_ =
         tune.add_option("--error", order_.error,
                         "find the fewest triangles with at most this error: units of the map's file on "
                         "a height field, else model units");
-    tune.add_option("--metric", metric_, "error: rms, or max");
+    tune.add_option("--metric", metric_, "error to use: rms or max");
     tune.add_option(
             "--tests", order_.tests,
             "thresholds to search: normal, summed_height, view; default: of the tests the job enables")
@@ -52,13 +52,13 @@ void TuneOptions::add_to(CLI::App& tune) {
                       ->allow_extra_args(false);
     tune.add_option(
             "--grid", order_.grids,
-            "of a plane, base meshes to try: COLUMNSxROWS, latticeSPACING (vertices at texel centres, so "
-            "many texels apart, written as OBJ), or auto; default: the job's own")
+            "base meshes to try, for a plane: COLUMNSxROWS, latticeSPACING (vertices at texel centres, "
+            "SPACING texels apart, written as OBJ), or auto; default: the job's own")
         ->delimiter(',')
         ->allow_extra_args(false);
     tune.add_option("--output", order_.output,
                     "the tuned job; its figures beside it as .json, a lattice as .obj");
-    tune.add_option("--tried", order_.tried, "write a table of all that was tried, CSV");
+    tune.add_option("--tried", order_.tried, "CSV file for a table of everything tried");
     tune.add_option("--jobs", order_.jobs, "threads; the result does not depend on them");
     tune.add_option("--set", order_.settings, "set one key of the job first")
         ->take_all()
@@ -76,11 +76,11 @@ TuneOrder TuneOptions::order() const {
     if (error_given_->count() > 0 && !(order.error > 0 && std::isfinite(order.error)))
         refuse(fmt::format("--error {}: must be above 0", order.error));
     if (metric_ != "rms" && metric_ != "max")
-        refuse(fmt::format("--metric {}: there are rms and max", metric_));
+        refuse(fmt::format("--metric {}: must be rms or max", metric_));
     order.largest = metric_ == "max";
     for (const std::string& test : order.tests)
         if (test != "normal" && test != "summed_height" && test != "view")
-            refuse(fmt::format("--tests {}: there are normal, summed_height and view", test));
+            refuse(fmt::format("--tests {}: must be normal, summed_height or view", test));
     if (vary_given_->count() > 0) {
         order.vary.summed_height_unit = order.vary.generation_limit = order.vary.triangulation = false;
         for (const std::string& choice : vary_) {
@@ -91,7 +91,7 @@ TuneOrder TuneOptions::order() const {
             else if (choice == "triangulation")
                 order.vary.triangulation = true;
             else if (choice != "none" || vary_.size() > 1)
-                refuse(fmt::format("--vary {}: there are unit, generation, triangulation, and none alone",
+                refuse(fmt::format("--vary {}: must be unit, generation or triangulation, or none alone",
                                    choice));
         }
     }

@@ -61,7 +61,7 @@ const Quantity& quantity_named(const std::string& name) {
         list += fmt::format("{}{}", list.empty() ? "" : ", ", quantity.name);
     }
     const std::string near = nearest_name(name, names);
-    throw InputError(fmt::format("--quantity {}: there are {}{}", name, list,
+    throw InputError(fmt::format("--quantity {}: must be one of {}{}", name, list,
                                  near.empty() ? "" : fmt::format("; did you mean {}?", near)));
 }
 
@@ -118,7 +118,7 @@ std::string first_failure(const WidthSweep& sweep) {
     return {};
 }
 
-/// If no width of any quantity makes a design: why not the widest; else empty.
+/// Why the widest was refused, if every width of every quantity was; else empty.
 std::string all_refused(const WidthSweep& sweep) {
     for (const WidthTable& table : sweep.tables)
         for (const WidthRow& row : table.rows)

@@ -10,7 +10,7 @@
 
 namespace tessera {
 
-/// What `tessera widths` is asked for.
+/// The arguments of `tessera widths`.
 struct WidthsOrder {
     std::string job_file;                 ///< empty: the default job
     std::vector<std::string> settings;    ///< --set

@@ -18,7 +18,7 @@ void refuse(const std::string& what) {
     throw InputError(what + "; see `tessera widths --help`");
 }
 
-/// A positive whole number; 0 if it is none.
+/// A positive whole number; 0 for anything else.
 std::int64_t number_in(const std::string& text) {
     const bool digits = !text.empty() && text.size() <= 3 &&
                         std::all_of(text.begin(), text.end(),
@@ -31,8 +31,8 @@ std::pair<std::int64_t, std::int64_t> range_in(const std::string& text) {
     const std::int64_t from = number_in(text.substr(0, dots));
     const std::int64_t to = dots == std::string::npos ? from : number_in(text.substr(dots + 2));
     if (from < 1 || to < 1)
-        refuse(
-            fmt::format("--bits {}: wanted is a range of widths in bits, as in --bits 8..16, or one", text));
+        refuse(fmt::format("--bits {}: expected a range of widths in bits, as in --bits 8..16, or one width",
+                           text));
     if (from > to)
         refuse(fmt::format("--bits {}: ends before it begins; write {}..{}", text, to, from));
     if (to > most_bits)
@@ -43,7 +43,7 @@ std::pair<std::int64_t, std::int64_t> range_in(const std::string& text) {
 }  // namespace
 
 void WidthsOptions::add_to(CLI::App& widths) {
-    job_given_ = widths.add_option("JOB", order_.job_file, "job file (TOML); without one, the default job");
+    job_given_ = widths.add_option("JOB", order_.job_file, "job file (TOML); default: the half donut");
     widths
         .add_option("--quantity", order_.quantities,
                     "sweep only these: position, normal, texture, displacement, summed_height, screen, "
@@ -52,15 +52,15 @@ void WidthsOptions::add_to(CLI::App& widths) {
         ->allow_extra_args(false);
     bits_given_ =
         widths.add_option("--bits", bits_,
-                          "widths to try, all bits counted, as in 8..16; default: all that a format may "
-                          "have, in steps where there are many");
+                          "total widths to try, in bits, as in 8..16; default: all that the format allows, "
+                          "in steps where there are many");
     flips_given_ =
         widths.add_option("--flips", flips_,
-                          "what a knee may cost: percent of the edges whose split decision differs from "
-                          "exact arithmetic's; default: 0.5 more than the widest's");
+                          "limit for the knee: percent of the edges whose split decision differs from exact "
+                          "arithmetic; default: 0.5 more than at the widest");
     error_given_ = widths.add_option("--error", error_,
-                                     "what a knee may cost: RMS error of displaced positions in model units; "
-                                     "default: 1.25 times the widest's");
+                                     "limit for the knee: RMS error of displaced positions in model units; "
+                                     "default: 1.25 times that of the widest");
     widths.add_option("--output", order_.output,
                       "folder for widths.csv and widths.json, or a .csv file, with a .json beside it");
     widths.add_option("--jobs", order_.jobs, "threads; the result does not depend on them");

@@ -7,7 +7,7 @@
 
 namespace tessera {
 
-/// The first line of what dump_job() gives; of a run's own job, by which its folder is told from others.
+/// The first line of dump_job()'s output; that of a run's own job identifies a run folder.
 inline constexpr std::string_view dumped_job_heading = "# A tessera job: every key with its value.";
 inline constexpr std::string_view run_job_heading = "# The job of a tessera run: every key with its value.";
 

@@ -7,9 +7,10 @@
 
 namespace tessera {
 
-/// Frame k of n = frames.count: displacement.scale is first_scale + (scale - first_scale) * k / (n - 1), that
-/// of the last frame the job's own to the bit; the folder is frame_name(k) in the job's; the rest, the bias
-/// too, is the job's. A plain job, of one frame. Needs 0 <= k < n, n > 1.
+/// The job of frame k of n = frames.count, a job of one frame: displacement.scale is first_scale + (scale -
+/// first_scale)
+/// * k / (n - 1), for the last frame exactly the job's own; the folder is frame_name(k) in the job's; the rest, the
+/// bias too, is unchanged. Needs 0 <= k < n, n > 1.
 Job frame_job(const Job& job, std::int64_t k);
 
 /// frame_000, frame_001, ...

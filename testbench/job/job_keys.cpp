@@ -292,13 +292,13 @@ void add_timing(const Writer& key) {
         between(1, most_places), "Off-chip memory: requests that may wait");
     key.add_deep(
         "stalls_per_mille", [](auto& t) -> auto& { return t.stalls.per_mille; }, "per mille of items",
-        between(0, 1000), "For tests: on every channel, items held back at random");
+        between(0, 1000), "For tests: items delayed at random on every channel");
     key.add_deep(
         "stalls_longest", [](auto& t) -> auto& { return t.stalls.longest; }, "cycles", between(1, 1000000),
-        "For tests: the longest time one is held back");
+        "For tests: the longest of these delays");
     key.add_deep(
         "stalls_seed", [](auto& t) -> auto& { return t.stalls.seed; }, "-", between(0, any_count),
-        "For tests: what the stalls follow from");
+        "For tests: seed of these delays");
 }
 
 // The declaration of every key. The default is the member's initialiser in job.h.
@@ -306,11 +306,11 @@ std::vector<KeyTable> declare_keys() {
     TableList list;
     // clang-format off
     list.top_level("How the model runs.", [](const auto& key) {
-        key.add("mode", &Job::mode, "How the hardware model keeps time; functional: every result but no cycles, the fastest; timed: to the cycle");
+        key.add("mode", &Job::mode, "functional: every result but no cycle counts, fastest; timed: accurate to the cycle");
     });
     list.table("mesh", &Job::mesh, "The base mesh.", [](const auto& key) {
         using Mesh = Job::Mesh;
-        key.add("source", &Mesh::source, "Built-in shape, file for the mesh in mesh.file (what it is if mesh.file alone is given), patches for the Bezier patches in it, or run for the mesh that an earlier run left");
+        key.add("source", &Mesh::source, "A built-in shape; file: the mesh in mesh.file (the default if mesh.file is given); patches: the Bezier patches in it; run: the mesh of an earlier run");
         key.add("file", &Mesh::file, KeyKind::file, "OBJ file, with mesh.source = \"file\"; with \"patches\" one of bicubic Bezier patches as Newell's teapot has it; with \"run\" the folder of an earlier run");
         key.add("fingerprint", &Mesh::fingerprint, KeyKind::text, "64-bit FNV-1a hash of the file (of a run's mesh.ply), 16 hexadecimal digits; another file is refused. A run writes it into its job.toml; empty: any file");
         key.add("columns", &Mesh::columns, "quads", between(0, 2048), "Quads along u; 0: 3 for the plane, 4 for each patch, 32 for cylinder and sphere, which need 3 or more");
@@ -322,7 +322,7 @@ std::vector<KeyTable> declare_keys() {
     });
     list.table("map", &Job::map, "The displacement map.", [](const auto& key) {
         using Map = Job::Map;
-        key.add("source", &Map::source, "Built-in map, or file for the image in map.file (what it is if map.file alone is given)");
+        key.add("source", &Map::source, "A built-in map; file: the image in map.file (the default if map.file is given)");
         key.add("file", &Map::file, KeyKind::file, "EXR, PNG or PGM file, with map.source = \"file\"");
         key.add("fingerprint", &Map::fingerprint, KeyKind::text, "64-bit FNV-1a hash of the file, 16 hexadecimal digits; another file is refused. A run writes it into its job.toml; empty: any file");
         key.add("channel", &Map::channel, KeyKind::text, "Channel of an EXR file; empty: Y, else R, else the only one");
@@ -330,7 +330,7 @@ std::vector<KeyTable> declare_keys() {
         key.add("height", &Map::height, "texels", between(1, 4096), "Height of a built-in map");
         key.add("value", &Map::value, "full scale", between(0, 1), "Value of the constant map");
         key.add("seed", &Map::seed, "-", between(0, 4294967295.0), "Seed of the noise map");
-        key.add("text", &Map::text, KeyKind::text, "What the text map says");
+        key.add("text", &Map::text, KeyKind::text, "Text of the text map");
         key.add("range", &Map::range, "the map's own units", coordinate_range, "Which map values displacement.scale spans: full, what the source can hold (0 to the maximum value of a PGM, to 255 or 65535 of a PNG; 0 to 1 of an EXR and of built-in maps); data, the lowest to the highest that occurs; or [low, high]. Values outside it extrapolate linearly. With data or [low, high] the displacement codes span the values that occur, and so does the full scale of tests.summed_height_threshold");
         key.add("address_u", &Map::address_u, "Beyond the map's left and right border; repeat closes a cylinder's seam");
         key.add("address_v", &Map::address_v, "Beyond the map's lower and upper border");
@@ -347,8 +347,8 @@ std::vector<KeyTable> declare_keys() {
     });
     list.table("camera", &Job::camera, "The view, on which the View Test depends.", [](const auto& key) {
         using Camera = Job::Camera;
-        key.add("eye", &Camera::eye, "model units", auto_or(coordinate_range), "Where the camera stands; auto: 20 degrees to the right of the front and 38 degrees above it, as near as the displaced model's bounding box, of all frames together, fits into 90 % of the picture's width and height. Front is -y, or z where up is y");
-        key.add("target", &Camera::target, "model units", auto_or(coordinate_range), "What it looks at; auto: the centre of that bounding box");
+        key.add("eye", &Camera::eye, "model units", auto_or(coordinate_range), "Position of the camera; auto: 20 degrees to the right of the front and 38 degrees above it, as near as the displaced model's bounding box, of all frames together, fits into 90 % of the picture's width and height. Front is -y, or z where up is y");
+        key.add("target", &Camera::target, "model units", auto_or(coordinate_range), "Point it looks at; auto: the centre of that bounding box");
         key.add("up", &Camera::up, "-", auto_or(coordinate_range), "Direction that is up in the picture, of any length; auto: y for an OBJ file that is not flat, the axis it is flat in (on the side of its normals) for one that is, the earlier run's camera.up for a run on an OBJ file (or on a run), z for every other source; if the camera looks along that axis, away from the model's front");
         key.add("field_of_view", &Camera::field_of_view, "degrees", between(0.1, 179), "Vertical opening angle");
         key.add("near_plane", &Camera::near_plane, "model units", auto_or(distance_range), "Distance of the near plane; vertices on or behind it have no screen position; auto: a thousandth of the distance from eye to target");
@@ -357,9 +357,9 @@ std::vector<KeyTable> declare_keys() {
     });
     list.table("tests", &Job::tests, "The edge tests: split = (normal or summed_height or highlight) and view and tex_coord and generation.", [](const auto& key) {
         using Tests = Job::Tests;
-        key.add("normal", &Tests::normal, "Normal Test; off: never asks for a split");
+        key.add("normal", &Tests::normal, "Normal Test; off: never requests a split");
         key.add("normal_threshold", &Tests::normal_threshold, "unit normal component", between(0, 2), "Normal Test: a component of two normals that differs by more splits the edge");
-        key.add("summed_height", &Tests::summed_height, "Summed Height Test; off: never asks for a split");
+        key.add("summed_height", &Tests::summed_height, "Summed Height Test; off: never requests a split");
         key.add("summed_height_threshold", &Tests::summed_height_threshold, "full-scale texels (sum), full scale (area)", between(0, 1e9), "Summed Height Test: an edge splits where S_ij / 2 and (S_i + S_j) / 4 differ by more (sum), or 2 S_ij and S_i + S_j by more than it times the rectangle's area (area)");
         key.add("summed_height_unit", &Tests::summed_height_unit, "What the threshold compares: sums over rectangles, or the second difference of their mean heights (area)");
         key.add("view", &Tests::view, "View Test; off: allows every split");
@@ -418,7 +418,7 @@ std::vector<KeyTable> declare_keys() {
         key.add("cycles_without_progress", &Limits::cycles_without_progress, "cycles", between(1, any_count), "Timed mode: cycles in which units were at work and no triangle was decided or lit; more end the run with exit code 3");
         key.add("triangles", &Limits::triangles, "triangles", between(1, any_count), "Emitted triangles; more end the run with exit code 4");
     });
-    list.table("output", &Job::output, "What a run leaves behind.", [](const auto& key) {
+    list.table("output", &Job::output, "What a run writes.", [](const auto& key) {
         using Output = Job::Output;
         key.add("folder", &Output::folder, KeyKind::folder, "Folder of the run");
         key.add("ply", &Output::ply, "Write the mesh as binary PLY");

@@ -35,7 +35,7 @@ enum class KeyKind {
 struct KeyRange {
     double low = -std::numeric_limits<double>::infinity();
     double high = std::numeric_limits<double>::infinity();
-    bool or_zero = false;  ///< 0 is allowed besides
+    bool or_zero = false;  ///< 0 is also allowed
     bool or_auto = false;  ///< "auto" is allowed instead: the member is `automatic`
 };
 

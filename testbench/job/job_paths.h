@@ -7,7 +7,7 @@
 namespace tessera {
 
 // Paths in a job
-//  * `data:NAME` is NAME inside the data folder, whoever asks. It may not be absolute or contain `..`.
+//  * `data:NAME` is NAME inside the data folder, everywhere. It may not be absolute or contain `..`.
 //  * A relative path of mesh.file or map.file is relative to the job file's folder (Job::folder). Job keeps the text as
 //    given, and resolve_paths() adds the path to open.
 //  * --set comes from a command line: there it is relative to the current directory, and apply_setting rewrites it to be

@@ -8,7 +8,7 @@
 #include "testbench/job/nearest_name.h"
 #include "testbench/job/toml_text.h"
 
-// What values a key may have, and how that is said.
+// Which values a key may have, and how messages describe them.
 
 namespace tessera {
 
@@ -118,7 +118,7 @@ struct Fault {
         return textual ? text(value) : wrong_kind();
     }
 
-    std::string wrong_kind() const { return "is of the wrong type; wanted is " + wanted_text(key); }
+    std::string wrong_kind() const { return "is of the wrong type; expected " + wanted_text(key); }
 };
 
 }  // namespace

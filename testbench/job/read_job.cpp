@@ -27,7 +27,7 @@ struct Fault {
     std::uint32_t line;
     std::uint32_t column;
     std::string text;
-    std::string unknown_name;  // a suggestion is looked for when the fault is printed
+    std::string unknown_name;  // its suggestion is found when the fault is printed
 };
 
 Fault fault_at(const toml::source_region& where, std::string text, std::string unknown_name = {}) {
@@ -121,7 +121,7 @@ std::optional<JobValue> to_value(const toml::node& node, const Key& key) {
 std::string set_from_node(Job& job, const Key& key, const toml::node& node) {
     const std::optional<JobValue> value = to_value(node, key);
     if (!value) {
-        return fmt::format("`{}` is {}; wanted is {}", key.name, found_text(node), wanted_text(key));
+        return fmt::format("`{}` is {}; expected {}", key.name, found_text(node), wanted_text(key));
     }
     std::string fault = complaint(key, *value);
     if (fault.empty()) {
@@ -130,7 +130,7 @@ std::string set_from_node(Job& job, const Key& key, const toml::node& node) {
     return fault;
 }
 
-/// A key as it would be written: quoted if it has to be, so that "mesh.rows" as one key shows.
+/// A key as it would be written: quoted if necessary, so that "mesh.rows" as one key shows.
 std::string written_key(std::string_view key) {
     const bool bare = !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
@@ -249,7 +249,7 @@ void set_from_text(Job& job, const Key& key, std::string_view text) {
         table = toml::parse(fmt::format("value = {}", text));
     } catch (const toml::parse_error&) {
         throw InputError(
-            fmt::format("`{}` cannot be {}; wanted is {}", key.name, printable(text), wanted_text(key)));
+            fmt::format("`{}` cannot be {}; expected {}", key.name, printable(text), wanted_text(key)));
     }
     const toml::node* value = table.get("value");
     if (table.size() != 1 || value == nullptr) {
@@ -275,7 +275,7 @@ void set_key(Job& job, std::string_view name, std::string_view value) {
     if (is_bare_word(*key, value)) {
         set_value(job, *key, std::string(value));
     } else if (value.empty()) {
-        throw InputError(fmt::format("`{}` has no value; wanted is {}", name, wanted_text(*key)));
+        throw InputError(fmt::format("`{}` has no value; expected {}", name, wanted_text(*key)));
     } else {
         set_from_text(job, *key, value);
     }
@@ -306,7 +306,7 @@ void apply_setting(Job& job, std::string_view setting) {
     const std::size_t equals = setting.find('=');
     try {
         if (equals == std::string_view::npos) {
-            throw InputError("wanted is table.key=value, for example mesh.columns=3");
+            throw InputError("expected table.key=value, for example mesh.columns=3");
         }
         Job changed = job;
         set_key(changed, trimmed(setting.substr(0, equals)), trimmed(setting.substr(equals + 1)));

@@ -2,8 +2,8 @@
 #include <cstdint>  // toml++ needs it included before
 
 // toml++ takes long to compile: include this in as few files as can be, and toml++ by no other way. Header-only, so
-// that sanitizers see into it, and so that two faults of release 3.3 can be mended here. Its assertions fail on some
-// faulty files, which the parser then refuses by itself ("[.]"), and with NDEBUG clang would take them for facts. Its
+// that sanitizers see into it, and so that two faults of release 3.3 can be worked around here. Its assertions fail on
+// some faulty files that the parser then refuses itself ("[.]"); with NDEBUG clang would assume that they hold. Its
 // test for whitespace beyond ASCII runs into __builtin_unreachable for most European letters.
 #undef NDEBUG
 #define TOML_ASSERT(expr) static_assert(true)
@@ -35,8 +35,8 @@ constexpr std::size_t largest_toml_file = std::size_t{1} << 20;  ///< bytes
 /// InputError if it cannot be read or is no regular file.
 std::string read_toml_text(const std::filesystem::path& path, std::string_view kind);
 
-/// Throws InputError, "NAME:LINE:COLUMN: ...", for what is not TOML, and for what is too large or would take toml++
-/// down: refuse_deep_keys. `kind` as in "a job file".
+/// Throws InputError, "NAME:LINE:COLUMN: ...", for what is not TOML, is too large or would crash toml++
+/// (refuse_deep_keys). `kind` as in "a job file".
 toml::table parse_toml(std::string_view text, const std::string& name, std::string_view kind);
 
 /// toml++ builds one nested table per dot of a key, without limit, and frees them recursively: a line of 500,000 dots
@@ -44,7 +44,7 @@ toml::table parse_toml(std::string_view text, const std::string& name, std::stri
 /// have a key of more than 64 dots.
 void refuse_deep_keys(std::string_view text, const std::string& name);
 
-/// What is there instead of what was wanted: "\"three\", a string".
+/// The value found, for messages: "\"three\", a string".
 std::string found_text(const toml::node& node);
 
 /// Of an integer or a floating-point number.

@@ -14,8 +14,8 @@ std::string toml_string(std::string_view text);
 
 std::string toml_value(const JobValue& value);
 
-/// For messages: control characters and bytes that are no UTF-8 escaped, so that no file can steer the
-/// terminal they are shown on.
+/// For messages: control characters and bytes that are not UTF-8 are escaped, so that no file can control
+/// the terminal.
 std::string fit_to_print(std::string_view text);
 
 /// The same, cut after about 60 bytes.

@@ -88,7 +88,7 @@ void check_fingerprint(const std::string& table, const std::string& fingerprint,
         fingerprint.size() == 16 && fingerprint.find_first_not_of("0123456789abcdef") == std::string::npos;
     faults.unless(
         fingerprint.empty() || is_one,
-        "`{}.fingerprint` = {}: wanted are 16 hexadecimal digits (0-9, a-f), as a run writes them into "
+        "`{}.fingerprint` = {}: expected 16 hexadecimal digits (0-9, a-f), as a run writes them into "
         "its job.toml, or \"\"",
         table, printable(toml_string(fingerprint)));
     faults.unless(

@@ -3,7 +3,7 @@
 
 namespace tessera {
 
-/// Checks every key's range and what holds between keys. Throws one InputError with a line per fault: the
+/// Checks every key's range and the constraints between keys. Throws one InputError with a line per fault: the
 /// keys, their values, the limit and what to do.
 void validate(const Job& job);
 

@@ -114,7 +114,7 @@ class PlyFile {
     Number take_finite(const char* what, std::size_t vertex) {
         const Number number = take<Number>();
         if (!std::isfinite(number) || std::abs(static_cast<double>(number)) > largest_number)
-            refuse(fmt::format("vertex {}: its {} is no finite number of reasonable size", vertex, what));
+            refuse(fmt::format("vertex {}: its {} is not a finite number of reasonable size", vertex, what));
         return number;
     }
 

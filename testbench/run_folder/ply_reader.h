@@ -6,12 +6,12 @@
 namespace tessera {
 
 /// Reads a mesh.ply that tessera wrote (ply_writer.h): binary little-endian, exactly those properties in exactly that
-/// order; comments may differ. No other program's PLY is meant to be read.
+/// order; comments may differ. It is not a general PLY reader.
 ///
-/// Every other byte is one InputError with the file, what is wrong and what to do: a header that says something else,
-/// a size that is not the header's (so memory is only taken for what is there), a face that is no triangle or names a
-/// vertex that is not there, a number that is not finite or beyond 1e40, bits that no test has. Memory: 52
-/// bytes a vertex, 20 a triangle.
+/// Anything else is an InputError with the file, what is wrong and what to do: another header; a size that does not
+/// match the header (so memory is allocated only for what is there); a face that is not a triangle or names a missing
+/// vertex; a number that is not finite or beyond 1e40; bits that no test has. Memory: 52 bytes a vertex, 20 a
+/// triangle.
 RecordedMesh read_ply(const std::filesystem::path& path);
 
 }  // namespace tessera

@@ -67,7 +67,7 @@ RecordedMesh read_mesh(const fs::path& folder, const Job& job) {
     if (!is_there(mesh_file))
         throw InputError(fmt::format(
             "{}: the run left no mesh: {}", mesh_file.string(),
-            job.output.ply ? "it got stuck (exit code 3), was interrupted, or the file was taken away; run a "
+            job.output.ply ? "it deadlocked (exit code 3), was interrupted, or the file was removed; run a "
                              "job that ends, without output.ply=false"
                            : "its job.toml has output.ply = false; run it again with --set output.ply=true"));
     return read_ply(mesh_file);

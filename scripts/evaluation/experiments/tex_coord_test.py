@@ -27,9 +27,10 @@ def measure(study):
                          run.figures["pass_or_tessellate.stopped_by_tex_coord"],
                          run.figures["pass_or_tessellate.stopped_by_generation"]])
             if threshold == SHOWN or name == "head":
-                options = {"caption": LICENCE, "zoom": (0.45, 0.4, 4)} if name == "head" else {"zoom": (0.5, 0.6, 3)}
-                section.pictures.append(Picture(run.render("wireframe", **options),
-                                                f"{name.capitalize()}, Tex Coord Test {state}: {run.triangles:,} triangles"))
+                zoom, source = ((0.45, 0.4, 4), f". {LICENCE}") if name == "head" else ((0.5, 0.6, 3), "")
+                section.pictures.append(Picture(
+                    run.render("wireframe", zoom=zoom),
+                    f"{name.capitalize()}, Tex Coord Test {state}: {run.triangles:,} triangles{source}"))
     of_noise = [saving for (name, _), saving in savings.items() if name == "noise"]
     section.claims.append(Claim(
         "On noisy maps such as hair the Tex Coord Test alone can halve the number of triangles.", "section 2.5",

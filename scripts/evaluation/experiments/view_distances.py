@@ -39,13 +39,14 @@ def measure(study):
                      run.error["interpolated.reference_to_mesh_max_texels"]])
         density_rows.append([distance, *(density_in(run.mesh, region(boxes)) for boxes in REGIONS.values())])
         section.pictures += [
-            Picture(run.render("shaded", f"seen_{distance}", whole_viewport=True, caption=LICENCE),
-                    f"From {distance} times the distance, as the camera sees it: {run.triangles:,} triangles"),
+            Picture(run.render("shaded", f"seen_{distance}", whole_viewport=True),
+                    f"From {distance} times the distance, as the camera sees it: {run.triangles:,} triangles. {LICENCE}"),
             Picture(run.render("wireframe", f"close_{distance}", eye=list(EYE), target=list(TARGET),
-                               zoom=(0.42, 0.54, 2.0), caption=LICENCE),
-                    f"The same mesh close up: eyes, nose and mouth of what was tessellated for {distance} times the distance")]
-    section.pictures.append(Picture(runs[0].render("generation", caption=LICENCE),
-                                    "From the first distance, colour by generation: how often an edge was split"))
+                               zoom=(0.42, 0.54, 2.0)),
+                    "The same mesh close up: eyes, nose and mouth of what was tessellated for "
+                    f"{distance} times the distance. {LICENCE}")]
+    section.pictures.append(Picture(runs[0].render("generation"),
+                                    f"From the first distance, colour by generation: how often an edge was split. {LICENCE}"))
     densities = [dict(zip(REGIONS, row[1:])) for row in density_rows]
     features = ("eyes", "nose", "mouth")
     section.claims = [

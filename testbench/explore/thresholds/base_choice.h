@@ -10,9 +10,9 @@ namespace tessera {
 /// A base mesh the tuner may choose: the job's own, a plane of other columns and rows, or a lattice.
 ///
 /// A lattice is a plane's base mesh whose inner grid lines lie at texel centres a power of two apart, so that midpoints
-/// lie at texel centres too, down to the spacing of one texel. The hardware reads the texel that holds t: a vertex at a
-/// texel's border takes its height from up to half a texel away, one at its centre from where it is. The lines next to
-/// the border are half a spacing to a whole one away from it. It is written as OBJ.
+/// lie at texel centres too, down to the spacing of one texel. The hardware reads the texel that contains t: a vertex
+/// at a texel's border takes its height from up to half a texel away, one at a texel's centre from its own place. The
+/// outermost inner lines are half a spacing to a whole one away from the border. Written as OBJ.
 struct BaseChoice {
     enum class Kind { job, plane, lattice } kind = Kind::job;
     std::int64_t columns = 0, rows = 0;  ///< quads

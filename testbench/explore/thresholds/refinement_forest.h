@@ -12,31 +12,31 @@
 
 namespace tessera {
 
-/// What one set of thresholds makes of the base mesh.
+/// The mesh that one set of thresholds gives.
 struct Outcome {
     std::uint64_t triangles = 0;
-    bool complete = true;         ///< false: given up beyond the limit; the rest then tells nothing
+    bool complete = true;         ///< false: stopped at the limit; the rest is then meaningless
     double rms = 0;               ///< of TexelError, weighted; model units
     double max = 0;               ///< model units
     std::uint8_t generation = 0;  ///< the highest of a vertex; counted where it is measured
 };
 
-/// All triangles the datapath makes of a job, whatever the thresholds: each is made once, when first met, and each edge
-/// keeps what its tests compare (the largest difference of normals, the difference of sums, pixels), not what they
-/// decided. New thresholds so cost three compares an edge, about a thirtieth of the datapath's work. The mesh is the
-/// datapath's, bit for bit (tested).
+/// All triangles that the datapath makes of a job at any thresholds. Each is made once, when first reached, and each
+/// edge keeps what its tests compare (the largest difference of normals, the difference of sums, pixels), not their
+/// decisions. New thresholds then cost three comparisons per edge, about a thirtieth of the datapath's work. The mesh
+/// equals the datapath's, bit for bit (tested).
 ///
-/// About 200 bytes a triangle and 200 an edge ever met. Registers other than the tests' thresholds, and the
-/// triangulation, are the setup's and must not change.
+/// Memory: about 200 bytes per triangle and 200 per edge reached. Registers other than the tests' thresholds and the
+/// triangulation come from the setup and must not change.
 class RefinementForest {
   public:
     /// `setup` must outlive it. `errors`: what measures a triangle; may be null for a forest that only counts.
     RefinementForest(const MachineSetup& setup, const TexelError* errors);
 
-    /// Gives up beyond `limit` triangles.
+    /// Counts the triangles; stops at `limit`.
     Outcome count(const datapath::TestParameters& tests, datapath::Triangulation triangulation,
                   std::uint64_t limit);
-    /// And measures them.
+    /// Counts and measures them.
     Outcome measure(const datapath::TestParameters& tests, datapath::Triangulation triangulation,
                     std::uint64_t limit);
 

@@ -12,11 +12,11 @@
 
 namespace tessera {
 
-/// The error of one emitted triangle by itself, so that it can be kept when thresholds change: at every texel's
-/// centre that the triangle covers in texture space, the distance between the triangle and the displaced surface
-/// at the same texture coordinate. On a height field that is the vertical error of measure/height_field.h, but for
-/// a centre on an edge, which here belongs to one of the two triangles. Elsewhere it bounds the distance from that
-/// point of the surface to the mesh from above.
+/// The error of one emitted triangle, independent of all others, so that it stays valid when thresholds change: at
+/// every texel centre that the triangle covers in texture space, the distance between the triangle and the displaced
+/// surface at the same texture coordinate. On a height field this is the vertical error of
+/// surface_error/height_field.h, except that a centre on an edge belongs to one of the two triangles here. Elsewhere it
+/// is an upper bound on the distance from that point of the surface to the mesh.
 class TexelError {
   public:
     struct Sum {

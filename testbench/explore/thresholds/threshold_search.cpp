@@ -414,7 +414,7 @@ void ThresholdSearch::polish(Candidate from) {
     step_done();
 }
 
-/// Each threshold to the middle of those that give the same mesh.
+/// Moves each threshold to the middle of those that give the same mesh.
 void ThresholdSearch::settle() {
     Candidate& best = *found_.best;
     for (int Place::*axis : axes(best.shape)) {

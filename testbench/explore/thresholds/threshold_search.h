@@ -13,12 +13,12 @@
 
 namespace tessera {
 
-/// What thresholds are looked for. One of the two is wanted.
+/// The goal of a search: `triangles` or `error` is set.
 struct TuneGoal {
-    std::uint64_t triangles = 0;  ///< at most so many, with the least error; 0: as few as the error allows
+    std::uint64_t triangles = 0;  ///< at most this many, with the least error; 0: as few as the error allows
     double error = 0;             ///< model units, at most; with the fewest triangles
     bool largest = false;         ///< the error is the largest one, not the root mean square
-    std::uint64_t most_triangles = 0;  ///< of a mesh that is looked at at all
+    std::uint64_t most_triangles = 0;  ///< larger meshes are not searched
 
     double error_of(const Outcome& outcome) const { return largest ? outcome.max : outcome.rms; }
     std::uint64_t limit() const { return triangles > 0 ? triangles : most_triangles; }
@@ -27,20 +27,20 @@ struct TuneGoal {
     }
 };
 
-/// What may change. The rest stays as the job has it.
+/// What the search may change. The rest stays as in the job.
 struct TuneSpace {
     bool normal = true, summed_height = true, view = false;  ///< thresholds
     bool summed_height_unit = true, triangulation = true, generation_limit = true;
 };
 
-/// Thresholds and what they give.
+/// Thresholds and the mesh they give.
 struct TunedPoint {
     Job::Tests tests;
     Triangulation triangulation = Triangulation::shorter;
     Outcome outcome;
 };
 
-/// Whether a serves the goal better than b.
+/// Whether a meets the goal better than b.
 bool better(const TunedPoint& a, const TunedPoint& b, const TuneGoal& goal);
 
 /// Looks for the best thresholds on one base mesh.
@@ -86,9 +86,9 @@ class ThresholdSearch {
 
     struct Found {
         std::optional<Candidate> best;       ///< nothing: no thresholds meet the goal
-        std::vector<Candidate> tried;        ///< what met the goal, in the order of trying
+        std::vector<Candidate> tried;        ///< those that met the goal, in the order tried
         std::uint64_t evaluations = 0;       ///< meshes counted or measured
-        std::optional<Outcome> least_error;  ///< of a bound on the error: the least that was seen
+        std::optional<Outcome> least_error;  ///< with a bound on the error: the least that was seen
     };
 
     /// All must outlive it. `on_progress` is called after every shape, with an estimate of the work done, 0..1.

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t most_refined = 3;
 
-/// One base mesh made ready: all evaluations of it share the setup and the forest.
+/// One base mesh, prepared: all its evaluations share the setup and the forest.
 struct Ground {
     Job job;
     MachineSetup setup;
@@ -36,12 +36,11 @@ struct Ground {
           forest(setup, &errors) {}
 };
 
-/// What exploring one base mesh left.
+/// The result of exploring one base mesh.
 struct Explored {
     ThresholdSearch::Found found;
     std::size_t base_triangles = 0;
-    Outcome
-        finest;  // all thresholds searched at 0; of a budget, incomplete if there are more triangles than that
+    Outcome finest;  // all thresholds searched at 0; incomplete if it has more triangles than the budget
     bool too_large = false;  // the base mesh alone
 };
 
@@ -77,9 +76,8 @@ class SharedProgress {
                         "take a coarser one (mesh.columns, mesh.rows, or --grid auto)",
                         request.goal.triangles, least));
     throw InputError(
-        fmt::format("--triangles {}: with the tests as the job has them the mesh has {} triangles whatever "
-                    "the thresholds "
-                    "searched: search more of them (--tests), or change the others under [tests]",
+        fmt::format("--triangles {}: with the job's other tests the mesh has {} triangles at any of the "
+                    "thresholds searched: search more of them (--tests), or change the others under [tests]",
                     request.goal.triangles, most));
 }
 
@@ -91,7 +89,7 @@ void refuse_beyond_finest(const TuneRequest& request, const std::vector<Explored
         most = std::max(most, e.finest.triangles);
     }
     throw InputError(fmt::format(
-        "--triangles {}: with every threshold at 0 there are {}, and no more can be had: the Tex Coord Test "
+        "--triangles {}: with every threshold at 0 there are {}, the most possible: the Tex Coord Test "
         "(the map's resolution), tests.generation_limit = {} or a test that is not searched stops every "
         "edge; "
         "ask for at most {}",

@@ -20,7 +20,7 @@ struct TuneRequest {
     unsigned threads = 1;
 };
 
-/// A row of the table of what was tried.
+/// A row of the table of everything tried.
 struct TriedPoint {
     std::size_t base = 0;  ///< of TuneRequest::bases
     TunedPoint point;
@@ -29,13 +29,13 @@ struct TriedPoint {
 struct TuneResult {
     std::size_t base = 0;
     TunedPoint point;
-    Job job;               ///< thresholds and base mesh set; of a lattice, mesh.file is empty
-    std::string base_obj;  ///< of a lattice
+    Job job;               ///< thresholds and base mesh set; for a lattice, mesh.file is empty
+    std::string base_obj;  ///< for a lattice
     std::vector<TriedPoint> tried;
     std::uint64_t evaluations = 0;  ///< meshes counted or measured
 };
 
-/// The job with this base mesh. Of a lattice, mesh.file is empty: the caller names it.
+/// The job with this base mesh. For a lattice, mesh.file is empty: the caller names it.
 Job job_with_base(const Job& job, const BaseChoice& base);
 
 /// Its base mesh, exactly as the job will read it.
@@ -43,8 +43,8 @@ BaseMesh base_mesh_of(const Job& job, const BaseChoice& base, const HeightMap& m
 
 /// Finds the best thresholds over all base meshes: explore() on each, refine() on the best three. The result does not
 /// depend on the number of threads. on_progress(what, 0..1) is called from one thread at a time. Throws InputError if
-/// the goal cannot be met, saying what can be had, and what make_setup() throws.
-TuneResult tune(const TuneRequest& request, const HeightMap& map,
+/// the goal cannot be met, naming the nearest that can, and what make_setup() throws.
+TuneResult tune(const TuneRequest& request, const HeightMap& map, 
                 const std::function<void(const std::string&, double)>& on_progress);
 
 }  // namespace tessera

@@ -11,7 +11,7 @@ namespace tessera {
 
 namespace {
 
-/// A budget used to less than that deserves a word.
+/// A remark is made if less of the budget is used.
 constexpr double well_used = 0.97;
 
 std::string goal_text(const TuneRequest& request, const ErrorUnit& unit) {
@@ -39,7 +39,7 @@ std::string rest_text(const TuneRequest& request, const TunedFigures& figures) {
     if (request.goal.triangles == 0 || used >= well_used)
         return {};
     return fmt::format(
-        "{:.1f} % of the budget are used: with these tests more triangles gave no less error, "
+        "{:.1f} % of the budget is used: with these tests more triangles gave no less error, "
         "or the next step of a threshold gives too many",
         100 * used);
 }

@@ -6,20 +6,20 @@
 
 namespace tessera {
 
-// What `tessera tune` says and leaves. No seconds: the same tuning gives the same bytes.
+// The output of `tessera tune`. No times: the same tuning gives the same bytes.
 
 /// For the terminal.
 std::string tune_text(const TuneRequest& request, const TuneResult& result, const TunedFigures& figures,
                       const ErrorUnit& unit);
 
-/// The head of the tuned job file, as TOML comments.
+/// The header of the tuned job file, as TOML comments.
 std::string tune_comment(const TuneRequest& request, const TuneResult& result, const TunedFigures& figures,
                          const ErrorUnit& unit);
 
 std::string tune_json(const TuneRequest& request, const TuneResult& result, const TunedFigures& figures,
                       const ErrorUnit& unit);
 
-/// Everything tried that met the goal: a row each, the error at texels as the search sees it, in `unit`.
+/// Everything tried that met the goal, a row each; the error at texels as the search measures it, in `unit`.
 std::string tried_csv(const TuneRequest& request, const TuneResult& result, const ErrorUnit& unit);
 
 }  // namespace tessera

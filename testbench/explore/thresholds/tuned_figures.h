@@ -10,17 +10,17 @@
 
 namespace tessera {
 
-/// What a mesh comes to, measured as `tessera compare` measures it: bit for bit its figures.
+/// A mesh's figures, bit for bit those of `tessera compare`.
 struct TunedFigures {
     std::uint64_t triangles = 0;
     double rms = 0,
-           max = 0;  ///< of height fields the vertical error, else from the reference to the mesh; in `unit`
+           max = 0;  ///< on a height field the vertical error, else from the reference to the mesh; in `unit`
     double rms_model = 0, max_model = 0;  ///< the same in model units
     std::string what;                     ///< "vertical error", "distance from the surface to the mesh"
     std::string unit;                     ///< "map unit" or "model unit"
 };
 
-/// What one unit of errors is in model units: one of the map's source on a height field (1 where it has no
+/// The unit of reported errors, in model units: that of the map's source on a height field (1 where it has no
 /// displacement), else 1.
 struct ErrorUnit {
     double model_units = 1;
@@ -32,7 +32,7 @@ ErrorUnit error_unit(const Job& job, const BaseMesh& base, const HeightMap& map)
 /// The mesh as a run's mesh.ply would hold it.
 RecordedMesh recorded_mesh(const EmittedMesh& mesh, const MachineSetup& setup);
 
-/// `mesh` sorted as a run sorts it. Throws what measuring throws.
+/// `mesh` must be sorted as a run sorts it. Throws what measuring throws.
 TunedFigures measure_tuned(const Job& job, const BaseMesh& base, const HeightMap& map,
                            const MachineSetup& setup, const EmittedMesh& mesh);
 

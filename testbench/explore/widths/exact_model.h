@@ -12,9 +12,9 @@
 namespace tessera {
 
 /// The golden model on a job's own mesh, map and thresholds, none of them rounded to a format: what the
-/// machine would do with words of any length. In double precision; the map's heights in steps of 2^-32 of
+/// machine would do with words of unlimited length. In double precision; the map's heights in steps of 2^-32 of
 /// their range (2^-27 for a map of 4096 x 4096), texture coordinates in steps of 2^-30 texels. Map and mesh
-/// are in the machine's world units; model_scale leads back. The matrix has the machine's 24 fraction bits,
+/// are in the machine's world units; model_scale converts back. The matrix has the machine's 24 fraction bits,
 /// which no format changes.
 class ExactModel {
   public:

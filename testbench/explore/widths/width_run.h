@@ -16,7 +16,7 @@ enum class Decided { normal, summed_height, view, tex_coord, generation, highlig
 inline constexpr std::array<const char*, static_cast<std::size_t>(Decided::count)> decided_names = {
     "NT", "SHT", "VT", "TCT", "GT", "HT", "split"};
 
-/// What one set of formats makes of a job.
+/// The results of a job with one set of formats.
 struct WidthRun {
     // As `tessera run` has them in statistics.json and conformance.json.
     std::uint64_t triangles = 0;
@@ -27,13 +27,13 @@ struct WidthRun {
     EndToEndResult end_to_end;
     datapath::Saturations saturations;
 
-    /// Against the exact model, which is led along the machine's own splits: each vertex beside the one that exact
-    /// arithmetic would have inserted, each edge decided from those. Edges on which a decision differs.
+    /// Compared with the exact model, which follows the machine's splits: every vertex has its exact counterpart, and
+    /// every edge is decided again from those. Edges on which a decision differs.
     std::array<std::uint64_t, static_cast<std::size_t>(Decided::count)> flips{};
-    std::uint64_t quadrilaterals = 0;  ///< left by two split edges
-    std::uint64_t diagonal_flips = 0;  ///< of them cut along the other diagonal than the exact vertices'
+    std::uint64_t quadrilaterals = 0;  ///< remaining where two edges were split
+    std::uint64_t diagonal_flips = 0;  ///< of these: cut along the other diagonal than with exact vertices
     TexelBorderCount texel_borders;
-    /// P' of every base vertex and every inserted one from the exact one, as a distance; model units.
+    /// Distance of P' from its exact counterpart, over base and inserted vertices; model units.
     std::uint64_t positions = 0;
     double position_max = 0;
     double position_rms = 0;

@@ -14,7 +14,7 @@ namespace tessera {
 
 namespace {
 
-/// What a knee may cost more than the widest width, where no limit is given.
+/// Default limits for the knee, relative to the widest width.
 constexpr double flips_above_widest = 0.5;  // percent of the edges
 constexpr double error_above_widest = 1.25;
 

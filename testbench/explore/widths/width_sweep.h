@@ -14,7 +14,7 @@
 
 namespace tessera {
 
-/// One quantity and the widths, in bits, that are tried of it, widest first.
+/// A quantity and the widths to try, in bits, widest first.
 struct SweptQuantity {
     const Quantity* quantity = nullptr;
     std::vector<std::int64_t> widths;
@@ -24,27 +24,27 @@ struct WidthRequest {
     Job job;
     std::vector<SweptQuantity> swept;
     unsigned threads = 1;
-    /// What a knee may cost; where not given, what the widest width costs and a little more.
+    /// Limits for the knee; by default a little above what the widest width costs.
     std::optional<double>
         most_flips;  ///< percent of the edges whose split decision differs from exact arithmetic's
     std::optional<double> most_error;  ///< RMS of positions, model units
 };
 
-/// One width of one quantity, everything else as the job has it.
+/// One width of one quantity, everything else as in the job.
 struct WidthRow {
     std::int64_t bits = 0, fraction = 0;
     bool of_the_job = false;  ///< the job's own width
-    std::string refused;      ///< not empty: why there is no such design; the rest means nothing
+    std::string refused;      ///< not empty: why there is no such design; the rest is then meaningless
     WidthRun run;
     std::vector<SaturationFigure> saturations;
     std::uint64_t saturated = 0;  ///< all of them together
 
-    // Storage, whether or not this quantity bears on it.
+    // Storage, whether or not it depends on this quantity.
     std::uint64_t base_vertex_bits = 0, queue_entry_bits = 0;
     std::uint64_t displacement_map_bytes = 0, normal_map_bytes = 0, summed_height_table_bytes = 0;
 };
 
-/// The narrowest width from which on every wider one that was tried keeps to both limits and to the invariants.
+/// The narrowest width that, with every wider one tried, stays within both limits and violates no invariant.
 struct WidthKnee {
     double most_flips = 0, most_error = 0;
     bool flips_given = false, error_given = false;
@@ -61,12 +61,11 @@ struct WidthSweep {
     std::uint64_t exact_triangles =
         0;  ///< of the exact model's own mesh; 0: more than four times limits.triangles
     std::vector<WidthTable> tables;
-    std::string
-        texel_borders;  ///< a warning, see texel_borders.h, of the first design that was made; empty: none
+    std::string texel_borders;  ///< the warning of texel_borders.h for the first valid design; empty: none
 };
 
 /// The result does not depend on the number of threads. on_progress(what, 0..1) is called from one thread at
-/// a time. Throws what make_setup() throws of the job itself; widths that it refuses are rows.
+/// a time. Throws what make_setup() throws for the job itself; widths it refuses become rows.
 WidthSweep sweep_widths(const WidthRequest& request, const BaseMesh& mesh, const HeightMap& map,
                         const std::function<void(const std::string&, double)>& on_progress);
 

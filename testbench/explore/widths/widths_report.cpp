@@ -21,7 +21,7 @@ std::uint64_t open_places(const InvariantResult& invariants) {
     return invariants.cracks + invariants.t_vertices;
 }
 
-/// What of the storage the quantity's width bears on.
+/// The storage that depends on the quantity's width.
 std::string storage_text(const Quantity& quantity, const WidthRow& row) {
     const std::string_view name = quantity.name;
     if (name == "displacement")
@@ -57,9 +57,8 @@ std::string limit_text(bool given, const std::string& limit, const char* relativ
 std::string knee_text(const WidthTable& table) {
     const WidthKnee& knee = table.knee;
     const std::string limits = fmt::format(
-        "at most {} of the edges split or left whole otherwise than by exact arithmetic, an RMS position "
-        "error "
-        "of at most {}, and no invariant violated",
+        "at most {} of the edges with another split decision than exact arithmetic, an RMS position error of "
+        "at most {}, and no invariant violated",
         limit_text(knee.flips_given, fmt::format("{:.3f} %", knee.most_flips), "0.5 above the widest's"),
         limit_text(knee.error_given, fmt::format("{:.3e} model units", knee.most_error),
                    "1.25 times the widest's"));
@@ -143,12 +142,11 @@ Json row_json(const WidthRow& row) {
 
 std::string widths_text(const WidthRequest& request, const WidthSweep& sweep) {
     std::string text = fmt::format(
-        "tessera widths: one quantity at a time, all others as the job has them (*: the job's own width)\n"
+        "tessera widths: one quantity at a time, all others as in the job (*: the job's own width)\n"
         "  triangles        of the machine; golden: of the golden model from the same rounded inputs; exact "
         "arithmetic: {}\n"
-        "  flipped, %       edges split or left whole otherwise than by exact arithmetic; NT SHT VT TCT: "
-        "tests that "
-        "say otherwise{}\n"
+        "  flipped, %       edges with another split decision than exact arithmetic; NT SHT VT TCT: edges on "
+        "which that test differs{}\n"
         "  error            of displaced positions against exact arithmetic, in model units; in LSB of the "
         "position\n"
         "  local            edges with a decision that differs from the golden model's from the same rounded "

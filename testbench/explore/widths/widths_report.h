@@ -5,12 +5,12 @@
 
 namespace tessera {
 
-// What `tessera widths` says and leaves. No seconds: the same sweep gives the same bytes.
+// The output of `tessera widths`. No times: the same sweep gives the same bytes.
 
-/// A table for each quantity, and below it the knee.
+/// A table for each quantity, with its knee below.
 std::string widths_text(const WidthRequest& request, const WidthSweep& sweep);
 
-/// One row for each width, units in the heading; of one that was refused only the reason.
+/// One row per width, units in the heading; a refused width has only the reason.
 std::string widths_csv(const WidthSweep& sweep);
 
 std::string widths_json(const WidthRequest& request, const WidthSweep& sweep);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "testbench/common/error.h"
 #include "testbench/common/random.h"
@@ -34,17 +33,6 @@ HeightMap map_of(std::int64_t width, std::int64_t height, Value&& value) {
     return map;
 }
 
-double squared_distance(const Stroke& stroke, double x, double y) {
-    const double dx = stroke.x1 - stroke.x0;
-    const double dy = stroke.y1 - stroke.y0;
-    const double length = dx * dx + dy * dy;
-    const double along = (x - stroke.x0) * dx + (y - stroke.y0) * dy;
-    const double t = length > 0 ? std::clamp(along / length, 0.0, 1.0) : 0.0;
-    const double ex = x - (stroke.x0 + t * dx);
-    const double ey = y - (stroke.y0 + t * dy);
-    return ex * ex + ey * ey;
-}
-
 // Flat on top, a smooth step down to 0 at outer_radius. Must stay below 1, half the gap between two letters.
 double stroke_profile(double distance) {
     constexpr double inner_radius = 0.35;
@@ -68,41 +56,28 @@ HeightMap half_donut_map(std::int64_t width, std::int64_t height) {
 
 HeightMap text_map(std::int64_t width, std::int64_t height, std::string_view text) {
     check_sides(width, height);
-    std::vector<std::vector<Stroke>> letters;
-    bool blank = true;
-    for (const char character : text) {
-        letters.push_back(stroke_glyph(character));
-        blank = blank && letters.back().empty();
-    }
-    if (blank) {
+    const StrokeText letters(text);
+    if (letters.blank()) {
         throw InputError(
             "map.text: the text is empty, so the map would be flat. Give it at least one letter.");
     }
-    // A gap's width around the text, so that a stroke's edge ends inside the map.
-    constexpr int margin = glyph_advance - glyph_width;
-    const double text_width = static_cast<double>(letters.size()) * glyph_advance - margin;
-    const double units_per_texel = std::max((text_width + 2 * margin) / static_cast<double>(width),
-                                            (glyph_height + 2.0 * margin) / static_cast<double>(height));
-    if (units_per_texel * 7 > glyph_height) {
+    // As much around the text as between two letters, so that a stroke's edge ends inside the map.
+    constexpr int margin = StrokeText::glyph_advance - StrokeText::glyph_width;
+    constexpr int letter_height = StrokeText::glyph_height;
+    const double units_per_texel = std::max((letters.width() + 2 * margin) / static_cast<double>(width),
+                                            (letter_height + 2.0 * margin) / static_cast<double>(height));
+    if (units_per_texel * 7 > letter_height) {
         throw InputError(fmt::format(
             "map.text: the letters of \"{}\" would be {:.1f} texels high on a map of {} x {}; they need "
             "7. Shorten the text or enlarge the map.",
-            printable_ascii(text), glyph_height / units_per_texel, width, height));
+            printable_ascii(text), letter_height / units_per_texel, width, height));
     }
     return map_of(width, height, [&](int column, int row) {
         const double x =
-            (column + 0.5 - 0.5 * static_cast<double>(width)) * units_per_texel + 0.5 * text_width;
+            (column + 0.5 - 0.5 * static_cast<double>(width)) * units_per_texel + 0.5 * letters.width();
         const double y =
-            (row + 0.5 - 0.5 * static_cast<double>(height)) * units_per_texel + 0.5 * glyph_height;
-        const double cell = std::floor((x + 0.5 * margin) / glyph_advance);
-        if (cell < 0 || cell >= static_cast<double>(letters.size())) {
-            return 0.0;
-        }
-        double nearest = 1;
-        for (const Stroke& stroke : letters[static_cast<std::size_t>(cell)]) {
-            nearest = std::min(nearest, squared_distance(stroke, x - cell * glyph_advance, y));
-        }
-        return stroke_profile(std::sqrt(nearest));
+            (row + 0.5 - 0.5 * static_cast<double>(height)) * units_per_texel + 0.5 * letter_height;
+        return stroke_profile(std::sqrt(letters.squared_distance(x, y)));
     });
 }
 

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 
 #include "testbench/common/error.h"
@@ -11,12 +14,12 @@ namespace tessera {
 namespace {
 
 // Polylines as points "xy", separated by blanks; "/" lifts the pen.
-struct Glyph {
+struct Drawing {
     char character;
     std::string_view path;
 };
 
-constexpr Glyph glyphs[] = {
+constexpr Drawing drawings[] = {
     {'A', "00 04 26 44 40 / 02 42"},
     {'B', "00 06 36 45 44 33 03 / 33 42 41 30 00"},
     {'C', "45 36 16 05 01 10 30 41"},
@@ -71,57 +74,82 @@ char upper_case(char c) {
     return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
 }
 
-std::vector<Stroke> strokes_of(std::string_view path) {
-    std::vector<Stroke> strokes;
-    bool pen_down = false;
-    int x = 0;
-    int y = 0;
-    for (std::size_t i = 0; i < path.size();) {
-        if (path[i] == ' ') {
-            ++i;
-        } else if (path[i] == '/') {
-            pen_down = false;
-            ++i;
-        } else {
-            const int next_x = path[i] - '0';
-            const int next_y = path[i + 1] - '0';
-            if (pen_down) {
-                strokes.push_back({x, y, next_x, next_y});
-            }
-            x = next_x;
-            y = next_y;
-            pen_down = true;
-            i += 2;
-        }
-    }
-    return strokes;
-}
+constexpr int gap = StrokeText::glyph_advance - StrokeText::glyph_width;  // between two letters
 
 }  // namespace
 
 std::string_view stroke_font_characters() {
     static const std::string characters = [] {
         std::string all;
-        for (const Glyph& glyph : glyphs) {
-            all += glyph.character;
-        }
+        for (const Drawing& drawing : drawings)
+            all += drawing.character;
         return all;
     }();
     return characters;
 }
 
-std::vector<Stroke> stroke_glyph(char character) {
-    const char wanted = upper_case(character);
-    for (const Glyph& glyph : glyphs) {
-        if (glyph.character == wanted) {
-            return strokes_of(glyph.path);
-        }
+StrokeText::StrokeText(std::string_view text) {
+    for (const char character : text)
+        glyphs_.push_back(glyph_of(character));
+}
+
+bool StrokeText::blank() const {
+    return std::all_of(glyphs_.begin(), glyphs_.end(), [](const Glyph& glyph) { return glyph.empty(); });
+}
+
+double StrokeText::width() const {
+    return glyphs_.empty() ? 0 : static_cast<double>(glyphs_.size()) * glyph_advance - gap;
+}
+
+double StrokeText::squared_distance(double x, double y) const {
+    double nearest = std::numeric_limits<double>::infinity();
+    const double cell = std::floor((x + 0.5 * gap) / glyph_advance);
+    if (cell < 0 || cell >= static_cast<double>(glyphs_.size()))
+        return nearest;
+    const double from_left = x - cell * glyph_advance;
+    for (const Stroke& stroke : glyphs_[static_cast<std::size_t>(cell)]) {
+        const double dx = stroke.x1 - stroke.x0;
+        const double dy = stroke.y1 - stroke.y0;
+        const double length = dx * dx + dy * dy;
+        const double along = (from_left - stroke.x0) * dx + (y - stroke.y0) * dy;
+        const double t = length > 0 ? std::clamp(along / length, 0.0, 1.0) : 0.0;
+        const double ex = from_left - (stroke.x0 + t * dx);
+        const double ey = y - (stroke.y0 + t * dy);
+        nearest = std::min(nearest, ex * ex + ey * ey);
     }
-    throw InputError(
-        fmt::format("map.text: the built-in font has no character \"{}\" (code {}); it has \"{}\", and shows "
-                    "lower-case letters as capitals.",
-                    printable_ascii(std::string_view(&character, 1)), static_cast<unsigned char>(character),
-                    stroke_font_characters()));
+    return nearest;
+}
+
+StrokeText::Glyph StrokeText::glyph_of(char character) {
+    const char wanted = upper_case(character);
+    const auto* const drawing = std::find_if(std::begin(drawings), std::end(drawings),
+                                             [&](const Drawing& each) { return each.character == wanted; });
+    if (drawing == std::end(drawings))
+        throw InputError(fmt::format(
+            "map.text: the built-in font has no character \"{}\" (code {}); it has \"{}\", and shows "
+            "lower-case letters as capitals.",
+            printable_ascii(std::string_view(&character, 1)), static_cast<unsigned char>(character),
+            stroke_font_characters()));
+    Glyph glyph;
+    bool pen_down = false;
+    int x = 0;
+    int y = 0;
+    for (std::size_t i = 0; i < drawing->path.size();) {
+        if (drawing->path[i] == ' ' || drawing->path[i] == '/') {
+            pen_down = pen_down && drawing->path[i] == ' ';
+            ++i;
+            continue;
+        }
+        const int next_x = drawing->path[i] - '0';
+        const int next_y = drawing->path[i + 1] - '0';
+        if (pen_down)
+            glyph.push_back({x, y, next_x, next_y});
+        x = next_x;
+        y = next_y;
+        pen_down = true;
+        i += 2;
+    }
+    return glyph;
 }
 
 }  // namespace tessera

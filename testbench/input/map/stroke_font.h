@@ -4,20 +4,35 @@
 
 namespace tessera {
 
-/// A line from (x0, y0) to (x1, y1) in font units; y grows upwards.
-struct Stroke {
-    int x0, y0, x1, y1;
+/// A line of text in the built-in stroke font. Font units: capitals are 4 wide and 6 high, one every 6; the first one's
+/// lower left corner is (0, 0), y grows upwards. Lower-case letters are shown as capitals.
+class StrokeText {
+  public:
+    static constexpr int glyph_width = 4, glyph_height = 6, glyph_advance = 6;
+
+    /// Throws InputError for a character that is not in stroke_font_characters().
+    explicit StrokeText(std::string_view text);
+
+    /// Whether there is nothing to see: no text, or spaces only.
+    bool blank() const;
+
+    double width() const;
+
+    /// From a point to the nearest stroke of the letter in whose cell it lies; infinite without one.
+    double squared_distance(double x, double y) const;
+
+  private:
+    struct Stroke {
+        int x0, y0, x1, y1;
+    };
+    using Glyph = std::vector<Stroke>;
+
+    static Glyph glyph_of(char character);
+
+    std::vector<Glyph> glyphs_;
 };
 
-/// Capitals are 4 units wide and 6 high, origin at the lower left; a glyph's cell is glyph_advance wide.
-inline constexpr int glyph_width = 4;
-inline constexpr int glyph_height = 6;
-inline constexpr int glyph_advance = 6;
-
-/// What stroke_glyph() knows, besides lower-case letters, which are shown as capitals.
+/// The font's characters, but for lower-case letters.
 std::string_view stroke_font_characters();
-
-/// The character's strokes; none for a space. Throws InputError for a character the font does not have.
-std::vector<Stroke> stroke_glyph(char character);
 
 }  // namespace tessera

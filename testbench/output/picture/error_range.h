@@ -3,8 +3,8 @@
 
 namespace tessera {
 
-/// The least error that so much (0..1) of a mesh's area does not exceed; RenderMesh::triangle_errors must be there. The
-/// largest of them if the mesh has no area; 0 if it is empty.
+/// The least error that this share (0..1) of a mesh's area does not exceed; needs RenderMesh::triangle_errors. The
+/// largest error if the mesh has no area; 0 if it is empty.
 double error_of_most(const RenderMesh& mesh, double share);
 
 double largest_of(const std::vector<float>& errors);

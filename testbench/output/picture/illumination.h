@@ -12,7 +12,7 @@ namespace tessera {
 /// Sub-pixel samples; each sees its own share of the lights, all of them together see all.
 inline constexpr std::size_t samples_per_pixel = 16;
 
-/// What arrives at a point in linear light: a white surface squarely in full light has about 1.
+/// The light at a point, linear: about 1 for a white surface that faces full light.
 struct Light {
     glm::dvec3 diffuse{0};
     double highlight = 0;
@@ -24,15 +24,15 @@ class Illumination {
   public:
     Illumination(const View& view, const Style& style, const RayScene& scene);
 
-    /// What light() uses, kept for its memory: one a thread.
+    /// Reusable memory for light(), one per thread.
     struct Scratch {
         std::vector<Ray> rays;
         std::vector<std::size_t> facing;  // points on the lamp's side
         std::vector<std::uint8_t> traced, occluded;
     };
 
-    /// The light at points that share a sub-pixel position; quick if they are neighbours. Where the first
-    /// `probes` of them all see a direction, or none does, so it is for the others.
+    /// The light at points that share a sub-pixel position; fast if they are neighbours. If all of
+    /// the first `probes` points see a direction, or none does, the others are treated alike.
     void light(std::size_t sample, const std::vector<ShadingPoint>& points, std::size_t probes,
                std::vector<Light>& lights, Scratch& scratch) const;
 

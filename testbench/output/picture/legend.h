@@ -1,5 +1,6 @@
 #pragma once
-#include <cstdint>
+#include <string>
+#include <vector>
 
 #include "testbench/output/picture/image.h"
 #include "testbench/output/picture/render_mesh.h"
@@ -7,17 +8,26 @@
 
 namespace tessera {
 
-/// What the colours of a style mean for this mesh; (x, y) is where its letters begin, on
-/// their base line; numbers reach scale * legend_descent below. Nothing with ColourBy::none. What falls outside the
-/// image is cut off.
-void draw_legend(Image& image, double x, double y, const RenderMesh& mesh, const Style& style,
-                 double scale = 1);
+/// What a picture's colours mean: a title and, below it, a bar of colours with a label each.
+struct Legend {
+    struct Entry {
+        Colour colour;
+        std::string label;
+    };
+    std::string title;
+    std::vector<Entry> entries;  ///< none: the colours mean nothing
+};
 
-/// Its width in pixels.
-double legend_width(const RenderMesh& mesh, const Style& style, double scale = 1);
+/// For this mesh's colours in this style.
+Legend make_legend(const RenderMesh& mesh, const Style& style);
 
-inline constexpr double legend_letter = 10;  ///< height of its letters and boxes at scale 1, pixels
-inline constexpr double legend_descent = 14;
+/// Height in pixels of the legend's strip below surfaces `panel_width` wide, in a picture `width` wide. It grows with
+/// the surface, shrinks until the legend fits in the width, and is at most `most`. 0 without entries.
+int legend_height(const Legend& legend, int panel_width, int width, int most);
+
+/// The strip, in the built-in stroke font: the same bytes whatever fonts are installed. Letters as large as fit.
+Image draw_legend(const Legend& legend, int width, int height, const Colour& background);
+
 inline constexpr Colour legend_ink{84, 86, 90};
 
 }  // namespace tessera

@@ -1,31 +1,30 @@
 #include "testbench/output/picture/picture.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "testbench/output/picture/palette.h"
 
 namespace tessera {
-namespace {
 
-void set(LinearImage& image, int x, int y, const glm::dvec3& light) {
-    float* const pixel = &image.values[image.offset(x, y)];
-    for (int k = 0; k < 3; ++k)
-        pixel[k] = static_cast<float>(light[k]);
-}
-
-}  // namespace
-
-Picture plain_picture(int width, int height, const Colour& colour, bool linear) {
+Picture to_picture(Image image, bool linear) {
     Picture result;
-    result.image = Image(width, height, colour);
+    result.image = std::move(image);
     if (!linear)
         return result;
-    result.linear = {width, height, {}};
-    result.linear.values.resize(result.image.bytes.size());
-    const glm::dvec3 light = to_linear(colour);
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-            set(result.linear, x, y, light);
+    const std::vector<std::uint8_t>& bytes = result.image.bytes;
+    result.linear = {result.image.width, result.image.height, {}};
+    result.linear.values.reserve(bytes.size());
+    Colour last{};
+    glm::dvec3 light = to_linear(last);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const Colour colour{bytes[i], bytes[i + 1], bytes[i + 2]};
+        if (colour != last)
+            light = to_linear(colour);
+        last = colour;
+        for (int k = 0; k < 3; ++k)
+            result.linear.values.push_back(static_cast<float>(light[k]));
+    }
     return result;
 }
 
@@ -43,18 +42,6 @@ void paste(const Picture& from, int left, int top, Picture& to) {
             std::copy_n(&from.linear.values[from.linear.offset(0, y)], row_length,
                         &to.linear.values[to.linear.offset(left, top + y)]);
     }
-}
-
-void take_over_annotations(Picture& picture) {
-    if (picture.linear.values.empty())
-        return;
-    for (int y = 0; y < picture.image.height; ++y)
-        for (int x = 0; x < picture.image.width; ++x) {
-            const float* const pixel = &picture.linear.values[picture.linear.offset(x, y)];
-            const Colour colour = picture.image.at(x, y);
-            if (to_srgb({pixel[0], pixel[1], pixel[2]}) != colour)
-                set(picture.linear, x, y, to_linear(colour));
-        }
 }
 
 }  // namespace tessera

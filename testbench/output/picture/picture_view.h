@@ -23,7 +23,7 @@ inline constexpr PictureView picture_views[] = {
 /// As on the command line, and in the names of files.
 std::string_view name_of(PictureView view);
 
-/// How a view looks, but for sizes and lights; not for the overview, which is two.
+/// How a view looks, except for sizes and lights. The overview is two: shaded and generation.
 Style style_of(PictureView view);
 
 }  // namespace tessera

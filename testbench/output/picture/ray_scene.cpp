@@ -28,7 +28,7 @@ void check(RTCDevice device, std::size_t triangles) {
     const RTCError error = rtcGetDeviceError(device);
     if (error == RTC_ERROR_OUT_OF_MEMORY)
         throw ResourceError(
-            fmt::format("picture: no memory left for the ray hierarchy of {} triangles; set "
+            fmt::format("picture: out of memory for the ray hierarchy of {} triangles; set "
                         "output.picture = false or make fewer",
                         triangles));
     if (error != RTC_ERROR_NONE)

@@ -15,8 +15,8 @@ struct Ray {
     double near = 0;  ///< in lengths of direction
 };
 
-/// The mesh made ready for rays. Several threads may ask at once; an answer depends on the mesh and the batch alone.
-/// Embree's single precision only picks the triangle: where it is hit is the caller's to compute.
+/// The mesh prepared for ray queries. Several threads may query it; a result depends on the mesh and the batch alone.
+/// Embree's single precision only finds the triangle: the caller computes the point.
 class RayScene {
   public:
     static constexpr std::uint32_t nothing = UINT32_MAX;
@@ -25,7 +25,7 @@ class RayScene {
     explicit RayScene(const RenderMesh& mesh);
     ~RayScene();
 
-    /// Per ray the first triangle, or nothing. Quick if neighbours in the batch are neighbours in space.
+    /// Per ray the first triangle, or nothing. Fast if neighbours in the batch are neighbours in space.
     void first_hits(const std::vector<Ray>& rays, std::vector<std::uint32_t>& triangles) const;
 
     /// Per ray 1 if a triangle is in its way, else 0.

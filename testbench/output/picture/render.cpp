@@ -8,7 +8,6 @@
 
 #include "testbench/common/parallel.h"
 #include "testbench/output/picture/illumination.h"
-#include "testbench/output/picture/legend.h"
 #include "testbench/output/picture/palette.h"
 #include "testbench/output/picture/ray_scene.h"
 #include "testbench/output/picture/wireframe.h"
@@ -93,14 +92,8 @@ class Paint {
     }
 
     const glm::dvec3& error_paint(const ShadingPoint& point) const {
-        double error = 0;
-        if (!mesh_.triangle_errors.empty())
-            error = static_cast<double>(mesh_.triangle_errors[point.triangle]);
-        else if (!mesh_.vertex_errors.empty())
-            for (int k = 0; k < 3; ++k)
-                error += point.weights[k] *
-                         static_cast<double>(mesh_.vertex_errors[mesh_.triangles[point.triangle]
-                                                                     .vertices[static_cast<std::size_t>(k)]]);
+        const double error =
+            mesh_.triangle_errors.empty() ? 0 : static_cast<double>(mesh_.triangle_errors[point.triangle]);
         const double fraction = style_.errors.largest > 0 ? error / style_.errors.largest : 0;
         return errors_[static_cast<std::size_t>(
             std::lround(std::clamp(fraction, 0.0, 1.0) * (error_steps - 1)))];
@@ -121,7 +114,7 @@ class Renderer {
         : mesh_(mesh), view_(view), scene_(mesh), illumination_(view, styles.front(), scene_) {
         for (const Style& style : styles) {
             paints_.emplace_back(style, mesh);
-            pictures_.push_back(plain_picture(view.width, view.height, style.background, linear));
+            pictures_.push_back(to_picture(Image(view.width, view.height, style.background), linear));
             if (style.wireframe)
                 line_width_ = style.line_width;
         }
@@ -156,7 +149,7 @@ class Renderer {
     }
 
   private:
-    /// What a tile in work needs, kept for its memory: one a thread.
+    /// Reusable memory for a tile, one per thread.
     struct Tile {
         std::vector<Ray> rays;
         std::vector<glm::dvec2> at;
@@ -165,7 +158,7 @@ class Renderer {
         std::vector<Light> lights;
         std::vector<glm::dvec3> sums;  // linear light, one plane per style
         Illumination::Scratch scratch;
-        /// Lines of triangles met, each in the place its number gives it: neighbours meet the same ones.
+        /// A cache of triangles' lines, by number modulo its size: neighbouring pixels hit the same triangles.
         struct Lines {
             std::uint32_t triangle = RayScene::nothing;
             Wireframe lines;
@@ -173,7 +166,7 @@ class Renderer {
         std::array<Lines, 256> lines;
     };
 
-    /// False if the mesh is not to be seen in it.
+    /// False if no part of the mesh is visible in it.
     bool render_tile(Tile& tile, int left, int top, int right, int bottom) {
         const std::size_t pixels = static_cast<std::size_t>((right - left) * (bottom - top));
         tile.sums.assign(pixels * paints_.size(), glm::dvec3(0));
@@ -200,7 +193,7 @@ class Renderer {
             values[k] = static_cast<float>(light[k]);
     }
 
-    /// Adds one sample of every pixel in the tile to the sums; false if none met the mesh.
+    /// Adds one sample of every pixel in the tile to the sums; false if none hit the mesh.
     bool add_sample(Tile& tile, std::size_t sample, int left, int top, int right, int bottom) const {
         auto& [rays, at, hits, points, lights, sums, scratch, lines_met] = tile;
         const glm::dvec2 offset = sample_position(sample);
@@ -241,7 +234,7 @@ class Renderer {
         return !points.empty();
     }
 
-    /// How many points tell for all which directions they see: the first quarter, a pixel of each square of
+    /// How many points decide for all which directions are visible: the first quarter, a pixel of each square of
     /// 2 x 2, where the mesh covers the tile and is nearly flat in it.
     static std::size_t probes(const std::vector<ShadingPoint>& points, std::size_t rays) {
         if (points.size() < rays)
@@ -312,7 +305,7 @@ class Renderer {
     std::vector<Picture> pictures_;
     double line_width_ = 0;  // all wireframes'; 0: there are none
     double start_ =
-        0;  // of the rays, along the view direction: single precision sees nothing from too far away
+        0;  // of the rays, along the view direction: single precision fails for an eye too far away
     double clearance_ =
         0;  // of the rays to the lights above the surface, against single precision's rounding
 };
@@ -323,13 +316,7 @@ std::vector<Picture> render_pictures(const RenderMesh& mesh, const View& view,
                                      const std::vector<Style>& styles, bool linear) {
     if (styles.empty())
         return {};
-    std::vector<Picture> pictures = Renderer(mesh, view, styles, linear).run();
-    for (std::size_t s = 0; s < styles.size(); ++s)
-        if (styles[s].legend) {
-            draw_legend(pictures[s].image, 16, view.height - 16 - legend_descent, mesh, styles[s]);
-            take_over_annotations(pictures[s]);
-        }
-    return pictures;
+    return Renderer(mesh, view, styles, linear).run();
 }
 
 std::vector<Image> render_styles(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles) {

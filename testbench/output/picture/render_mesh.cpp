@@ -11,7 +11,7 @@
 namespace tessera {
 namespace {
 
-/// Finds a vertex among those met before.
+/// Finds a vertex among earlier ones.
 class VertexIndex {
   public:
     explicit VertexIndex(RenderMesh& mesh) : mesh_(mesh) {}
@@ -33,7 +33,7 @@ class VertexIndex {
     DistinctTable table_;
 };
 
-/// Takes triangles with corners of their own. Whoever gives the same numbers in the same order gets the same mesh.
+/// Takes triangles with corners of their own. The same numbers in the same order give the same mesh.
 class MeshMaker {
   public:
     struct Corner {

@@ -24,14 +24,12 @@ struct RenderMesh {
     std::vector<glm::vec3> positions;  ///< P'
     std::vector<glm::vec3> normals;    ///< N', about unit length; zero where the hardware had none
     std::vector<Triangle> triangles;
-    /// Distance to a reference, model units: per vertex, interpolated, or per triangle, which goes first;
-    /// empty: unknown.
-    std::vector<float> vertex_errors, triangle_errors;
-    std::uint64_t base_triangles = 0;  ///< how many these descend from, for the caption; 0: unknown
+    std::vector<float> triangle_errors;  ///< distance of each to a reference, model units; empty: unknown
+    std::uint64_t base_triangles = 0;    ///< how many these descend from, for the legend; 0: unknown
 };
 
-/// What a run emitted. Culled triangles are left out, as they are of mesh.ply: the picture of a run and one made of its
-/// folder are the same. Vertices are shared where position and normal agree, in the order of their first use.
+/// What a run emitted, without culled triangles, as in mesh.ply: the picture of a run and one rendered from its folder
+/// are the same. Vertices are shared where position and normal agree, in the order of their first use.
 RenderMesh make_render_mesh(const EmittedMesh& mesh, const MachineSetup& setup);
 
 /// The same from a run's mesh.ply: equal in every number if the emitted mesh had the file's order

@@ -11,14 +11,13 @@ enum class ColourBy { none, generation, deciding_test, stopped_by, error };
 struct ErrorScale {
     double largest = 0;  ///< the darkest colour; errors beyond look alike. 0: all errors are 0
     double beyond = 0;   ///< the largest error there is, if that is larger: the legend says so
-    double texel = 0;    ///< one texel of the map on the surface, for the legend's second row; 0: unknown
+    double texel = 0;    ///< one texel of the map on the surface, for the legend; 0: unknown
 };
 
 /// How a picture looks. Lights are in the viewer's frame: x right, y up, z towards the viewer.
 struct Style {
     ColourBy colour_by = ColourBy::none;
     bool wireframe = false;
-    bool legend = false;      ///< in the lower left corner; nothing with ColourBy::none
     double line_width = 1.1;  ///< pixels
     Colour surface{222, 214, 202};
     Colour background{250, 250, 248};

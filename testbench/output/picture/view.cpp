@@ -26,7 +26,7 @@ View enlarged(const View& view, const Rectangle& part, int width, int height) {
     return result;
 }
 
-/// The part of the view's image where the mesh is; all of it if there is nothing, or something too near to tell.
+/// The part of the view's image where the mesh is; all of it if there is none, or if part of it is too near to project.
 Rectangle occupied(const View& view, const RenderMesh& mesh) {
     const glm::dvec2 size(view.width, view.height);
     const Rectangle all{glm::dvec2(0), size};

@@ -33,7 +33,7 @@ View resized(const View& view, int width, int height);
 double proportions(const View& view, const RenderMesh& mesh);
 
 /// The same eye and perspective, enlarged to the part of `view` where the mesh is, with a margin (a fraction of the
-/// image's sides). What `view` leaves out stays out, but for margin and what the image's proportions add.
+/// image's sides). What `view` leaves out stays out, except for the margin and what the image's proportions add.
 View framed(const View& view, const RenderMesh& mesh, int width, int height, double margin = 0.04);
 
 /// A close-up: the image point (across * width, down * height) comes to the middle, and everything gets `factor` times

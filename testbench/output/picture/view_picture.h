@@ -9,16 +9,15 @@
 
 namespace tessera {
 
-/// One picture of each view, without company (any view but the overview): the surface, and below it, if there is
-/// something to say, a strip with what the colours mean and the caption. Their letters grow with the picture's width
-/// and shrink until they fit. `camera` is a run's own (make_view). Views that leave the surface the same room are
-/// rendered together, for little more than the price of one; a picture is the same alone and in company.
+/// One picture per view: the surface (the overview: twice, side by side) and below it what the colours mean. `camera`
+/// is the run's (make_view). Surfaces of the same size are rendered together, for little more than the price of one;
+/// a picture does not depend on the other views.
 ///
 /// Throws ResourceError when memory runs out.
 std::vector<Picture> render_views(const RenderMesh& mesh, const View& camera,
                                   const std::vector<PictureView>& views, const PictureOptions& options);
 
-/// The height of a picture that leaves it open.
+/// The height of a picture whose options leave it open.
 int picture_height(const RenderMesh& mesh, const View& camera, PictureView view,
                    const PictureOptions& options);
 

@@ -7,7 +7,7 @@ namespace tessera {
 /// A triangle's edges in an image: how much of a line covers a pixel.
 class Wireframe {
   public:
-    /// Corners as View::project() gives them; they may lie behind the eye. Lines have `width` pixels whatever their
+    /// Corners as View::project() gives them; they may lie behind the eye. Lines are `width` pixels wide at any
     /// distance, half of it on either side of the edge; an edge fades where its triangle is less than some 4 widths
     /// high above it: a dense mesh gets a tone, not a black area or a pattern of its own.
     Wireframe() = default;

@@ -96,7 +96,7 @@ std::string end_to_end_text(const EndToEndResult& result) {
 
 std::string setup_text(const SetupResult& result) {
     std::string text = fmt::format(
-        "Set-up: {}. What the host set against what the golden model derives from the job by itself; each "
+        "Set-up: {}. What the host set against what the golden model derives from the job itself; each "
         "value within\nthe bound of its format's rounding.\n\n  {:<22}{:>12}{:>10}{:>10}  {}\n",
         verdict(result.passed()), "set by the host", "compared", "wrong", "of bound", "");
     for (const SetupResult::Part& part : result.parts)
@@ -123,8 +123,7 @@ std::string invariants_text(const InvariantResult& result) {
 
 std::string work_text(const WorkResult& result) {
     std::string text = fmt::format(
-        "Work conservation: {}. Each triangle came where it was to come, once and every bit as it left; what "
-        "goes "
+        "Work conservation: {}. Each triangle arrived where expected, once and unaltered; what goes "
         "into\none unit came out of another.\n\n  triangles decided {}, equations {}, violations {}\n",
         verdict(result.passed()), result.triangles, result.equations, result.violations);
     if (!result.passed())

@@ -12,7 +12,7 @@
 
 namespace tessera {
 
-/// What was checked of a run and how it came out; a part that the job switched off is absent.
+/// The results of a run's checks; a check that the job switched off is absent.
 struct Checks {
     std::optional<SetupResult> setup;
     std::optional<ConformanceResult> conformance;
@@ -21,7 +21,7 @@ struct Checks {
     std::optional<WorkResult> work;
     std::optional<ReadResult> reads;
     double allowed_flips = 0.5;        ///< percent of edges
-    std::vector<std::string> remarks;  ///< what was mended or is odd in mesh and map; one sentence each
+    std::vector<std::string> remarks;  ///< repairs and oddities of mesh and map; one sentence each
     std::string texel_borders;         ///< a warning, see texel_borders.h; empty: none
 
     bool passed() const {
@@ -31,10 +31,10 @@ struct Checks {
     }
 };
 
-/// The conformance report of a run, to be read.
+/// conformance.txt.
 std::string conformance_text(const Checks& checks);
 
-/// The same for programs.
+/// conformance.json.
 std::string conformance_json(const Checks& checks);
 
 }  // namespace tessera

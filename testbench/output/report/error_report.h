@@ -10,11 +10,11 @@ namespace tessera {
 
 /// Figures of a mesh's error in groups: what was measured and how densely ("measurement"), the headline
 /// ("interpolated") and the other reading of the map ("nearest_texel"), height fields' error at the map's grid points
-/// ("vertical"), and where the maxima are ("worst_..."). statistics_json() makes a file of them; what is infinite, for
-/// want of a mesh, is null there.
+/// ("vertical"), and where the maxima are ("worst_..."). statistics_json() makes a file of them; infinite values (no
+/// mesh) are null there.
 std::vector<Figure> error_figures(const RecordedMesh& mesh, const MeshError& error);
 
-/// The same as a table to be read, headline first, and what it does not say of itself: `job`, for its remarks.
+/// The same as a table for people, headline first. `job` is for remarks.
 std::string error_text(const Job& job, const RecordedMesh& mesh, const MeshError& error);
 
 }  // namespace tessera

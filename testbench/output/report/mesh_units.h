@@ -17,11 +17,11 @@ struct MeshUnits {
     double scale = 1;
     glm::dvec3 centre{0};
 
-    /// In model units. Exact but for the one rounding of adding the centre: the scale is a power of two.
+    /// In model units. Exact except for the one rounding of adding the centre: the scale is a power of two.
     glm::dvec3 position(const datapath::Position& p) const {
         return glm::dvec3(p.x, p.y, p.z) * (std::ldexp(1.0, -formats.position.fraction) / scale) + centre;
     }
-    /// As the machine has it: of unit length but for rounding, or zero.
+    /// As the machine has it: of unit length up to rounding, or zero.
     glm::vec3 normal(const datapath::Direction& n) const {
         return glm::vec3(glm::dvec3(n.x, n.y, n.z) * std::ldexp(1.0, -formats.normal.fraction));
     }

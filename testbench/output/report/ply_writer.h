@@ -20,8 +20,8 @@ namespace tessera {
 ///             int base             its base triangle
 ///
 /// Positions and texture coordinates are doubles: the machine's 32 bits do not fit a float, and a float's rounding
-/// would part the two sides of a texture seam in a run that takes this mesh as its base. The header's comments say
-/// all this too. Order: the mesh's (call EmittedMesh::sort() before); vertices by first use, shared as in
+/// would separate the two sides of a texture seam in a run that takes this mesh as its base. The header's comments
+/// repeat all this. Order: the mesh's (call EmittedMesh::sort() before); vertices by first use, shared as in
 /// indexed_mesh.h. The same mesh gives the same bytes on every compiler and machine. Errors: as in
 /// atomic_file.h.
 void write_ply(const std::filesystem::path& path, const EmittedMesh& mesh, const MeshUnits& units);

@@ -74,7 +74,7 @@ Collector format_figures(const MachineSetup& setup) {
 Collector stream_figures(const MachineSetup& setup) {
     const int tag = tag_bits(setup.design);
     Collector c("streams");
-    c.add("tag", tag, "bit", "names a triangle between Get Triangle and Pass or Tessellate");
+    c.add("tag", tag, "bit", "identifies a triangle between Get Triangle and Pass or Tessellate");
     StreamItems::for_each([&](auto type) {
         using Item = typename decltype(type)::Item;
         std::string name = DescriptionOf<Item>::Type::name;
@@ -130,7 +130,7 @@ Collector host_figures(const MachineSetup& setup, std::uint64_t finished, std::u
     return c;
 }
 
-/// What the machine does over and over, beside what the mesh needs of it.
+/// Repeated work of the machine, beside what the mesh needs.
 Collector useful_work_figures(const Pipeline& p, std::uint64_t base_triangles, const MeshCounts& mesh) {
     const std::uint64_t made = p.transform.positions(), normals = p.transform.normals(),
                         tested = p.edges_tested();
@@ -222,8 +222,7 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
 
     Collector decide("pass_or_tessellate");
     decide.add("passes", counts.passes, "triangle", "triangles that went through the tests");
-    decide.add("normal_passes", counts.normal_passes, "triangle",
-               "went round once more for normals on the screen");
+    decide.add("normal_passes", counts.normal_passes, "triangle", "went round once more for screen normals");
     decide.add("split_by_normal", counts.split_by_normal, "edge",
                "split by the Normal Test, while the Summed Height Test was false");
     decide.add("split_by_summed_height", counts.split_by_summed_height, "edge",
@@ -260,12 +259,13 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
 
     Collector queue("triangle_queue");
     queue.add("taken", p.triangle_queue.taken(), "triangle", "triangles put in");
-    queue.add("high_water_mark", p.triangle_queue.high_water_mark(), "triangle", "most that ever waited");
+    queue.add("high_water_mark", p.triangle_queue.high_water_mark(), "triangle",
+              "most triangles waiting at a time");
     queue.add(
         "high_water_bytes",
         (p.triangle_queue.high_water_mark() * datapath::stream_widths(setup.registers.formats).triangle + 7) /
             8,
-        "byte", "memory that takes");
+        "byte", "memory that this takes");
     take(std::move(queue));
 
     Collector lighting("lighting");

@@ -9,7 +9,7 @@
 
 namespace tessera {
 
-/// One figure of a run, as an architect reads it.
+/// One figure of a run.
 struct Figure {
     std::string group;  ///< the unit, memory or stream it belongs to
     std::string name;
@@ -19,7 +19,7 @@ struct Figure {
 };
 
 /// The figures of a run, in the order of the pipeline. No wall-clock time: two runs give the same bytes.
-/// mesh: of the simulation's.
+/// mesh: counts of the simulation's mesh.
 std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulation& simulation,
                                        const MeshCounts& mesh);
 

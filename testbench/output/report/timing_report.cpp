@@ -22,7 +22,7 @@ bool is_memory(const Unit& unit) {
     return dynamic_cast<const MemoryServer*>(&unit) != nullptr;
 }
 
-/// The largest share of a state that names somebody: who blocks, is waited for or lacks.
+/// The largest share of a state with a cause: the unit that blocks, is awaited or is missing.
 const Activity::Share* largest_share(const Unit& unit, State state) {
     const Activity::Share* largest = nullptr;
     for (const Activity::Share& share : unit.activity().shares()) {
@@ -103,7 +103,7 @@ Bottleneck find_bottleneck(const Pipeline& pipeline, std::uint64_t cycles) {
 
 namespace {
 
-/// Who was held up longest by `by`, and for how many cycles.
+/// The unit held up longest by `by`, and for how many cycles.
 std::pair<const Unit*, std::uint64_t> longest_wait(const Pipeline& pipeline, const Unit* by) {
     std::pair<const Unit*, std::uint64_t> longest{nullptr, 0};
     for (const Unit* unit : pipeline.units()) {
@@ -141,7 +141,7 @@ double mean_stay(const Unit& unit) {
     return ratio(unit.activity().item_cycles(), unit.activity().items_out());
 }
 
-/// The pipeline stage in which an item stays longest: not one that waits for others by its nature.
+/// The pipeline stage in which an item stays longest, except those whose purpose is to wait for others.
 const Unit& longest_stay(const Pipeline& pipeline) {
     const Unit* longest = &pipeline.transform;
     for (const Unit* unit : pipeline.units()) {

@@ -14,12 +14,12 @@ double utilisation(const Unit& unit, std::uint64_t cycles);
 /// "summed_height_table" of "tessera.summed_height_table": a unit's name within the machine.
 std::string unit_name(const sc_core::sc_object& unit);
 
-/// Does no work of its own, but passes items on: the Triangle Queue, Collect Tests.
+/// Does no work of its own and only passes items on: the Triangle Queue, Collect Tests.
 bool is_queue_or_wire(const Unit& unit);
 
 /// Units whose utilisation lies within a per cent of the highest among them.
 struct Limit {
-    std::vector<const Unit*> units;  ///< in the order of the pipeline; empty: nobody did anything
+    std::vector<const Unit*> units;  ///< in the order of the pipeline; empty: no unit did anything
     double utilisation = 0;          ///< the highest
 
     /// "a, b and c".
@@ -30,12 +30,12 @@ struct Limit {
 struct Bottleneck {
     Limit first;
     Limit next;  ///< of the units that are not in `first`
-    /// `first` is what the run's length follows from. If not, latency is: too little was under way to keep
-    /// any unit busy.
+    /// `first` determines the run's length. If false, latency does: too few items were in flight to keep any
+    /// unit busy.
     bool binding = false;
 
-    /// How many times faster the run could be at most: without `first`, or, if latency binds, with no wait at all. The
-    /// next limit's work remains to be done. 0: there is none.
+    /// Upper bound on the speed-up: without `first` or, if latency binds, without any waiting; the work of the next
+    /// limit remains. 0: no bound.
     double bound() const;
 };
 

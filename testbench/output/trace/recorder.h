@@ -16,15 +16,14 @@
 
 namespace tessera {
 
-/// Shows a pipeline in timed mode to the writers of waveforms and of the timeline, each optional.
+/// Records a pipeline in timed mode with the writers of waveforms and of the timeline, each optional.
 ///
-/// Waveforms: the signals of the chosen units (Unit::trace_signals), at the end of each cycle in which they were called; and the
-/// cycle (tessera.clock.cycle) and the passes under way. Timeline: a track per unit with its states, by whom it is
-/// blocked, for whom it waits or who it lacks, and the item it has begun on last; the Triangle Queue's level. A flow
+/// Waveforms: the signals of the chosen units (Unit::trace_signals), at the end of each cycle in which they were
+/// called; and the cycle (tessera.clock.cycle) and the passes under way. Timeline: a track per unit with its states, by
+/// whom it is blocked, what it waits for or lacks, and the item it last began on; the Triangle Queue's level. A flow
 /// leads from unit to unit, in the order of time, through the intervals in which each began on a triangle: from Get
-/// Triangle to Tessellation, to Lighting, or if it is culled to Pass or Tessellate.
-/// Cost: none before and after the window, when the clock and the units are not observed. What is simulated does not
-/// depend on it.
+/// Triangle to Tessellation, to Lighting, or if it is culled to Pass or Tessellate. Cost: none before and after the
+/// window, when the clock and the units are not observed. What is simulated does not depend on it.
 class Recorder : public CycleObserver {
   public:
     /// Before the simulation begins. vcd, timeline: may be null; their windows are this one. units: those whose signals
@@ -43,7 +42,7 @@ class Recorder : public CycleObserver {
         Signals signals;
     };
     using FlowStep = TimelineWriter::FlowStep;
-    /// Hands a unit's stretches on, up to the one that reaches the window's end.
+    /// Passes a unit's stretches on, up to the one that reaches the window's end.
     struct Track : ActivityObserver {
         Track(Unit& its_unit, TimelineWriter& its_timeline, TimelineWriter::Track its_number,
               std::uint64_t last_cycle)

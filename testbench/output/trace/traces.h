@@ -16,13 +16,13 @@ namespace tessera {
 /// none. Throws InputError on a word that no name contains.
 std::vector<const Unit*> units_to_trace(const std::string& words, const Pipeline& pipeline);
 
-/// What a job asks for of trace.vcd and timeline.json, written into the run's folder while the simulation runs, under
-/// their names only when complete (AtomicFile, AtomicSet). Without finish() nothing is left.
+/// The traces a job requests, trace.vcd and timeline.json, written into the run's folder while the simulation runs;
+/// they get their names only when complete (AtomicFile, AtomicSet). Without finish() nothing remains.
 class Traces {
   public:
     static bool wanted(const Job& job) { return job.output.vcd || job.output.timeline; }
 
-    /// Before the simulation runs. The folder is there.
+    /// Before the simulation runs. The folder must exist.
     Traces(const Job& job, const std::filesystem::path& folder, Simulation& simulation,
            const std::vector<const Unit*>& units);
     ~Traces();
@@ -30,7 +30,7 @@ class Traces {
     /// Throws what went wrong in writing, as AtomicFile does; the simulation was stopped by it.
     void check() const;
 
-    /// When the simulation has ended, in whatever way. Throws like check().
+    /// After the simulation has ended, however it did. Throws like check().
     void finish();
 
     /// Value changes written, not counting those the file begins with.

@@ -144,7 +144,7 @@ void VcdWriter::end_cycle(std::uint64_t cycle) {
         }
         changed_count_ = pulses_ = pulses;
         after_changes(cycle);
-        // From here on nothing is looked at: every signal gets into changed_ once and stays.
+        // From here on changes are ignored: every signal gets into changed_ once and stays.
         past_window_ = all_written_ && cycle >= window_.last;
     }
     next_cycle_ = cycle + 1;

@@ -57,7 +57,7 @@ TEST_CASE("progress in a log: a line every ten seconds, none for less") {
     progress.show("running", 0);
     log.at(9.999);
     progress.show("running", 0.4);
-    progress.say_if_due();
+    progress.report_if_due();
     CHECK(log.text().empty());
     log.at(10);
     progress.show("running", 0.456);
@@ -65,18 +65,18 @@ TEST_CASE("progress in a log: a line every ten seconds, none for less") {
     CHECK(log.text() == first);
     log.at(19.9);
     progress.show("running", 0.6);
-    progress.say_if_due();
+    progress.report_if_due();
     CHECK(log.text() == first);
     // With nobody calling show(), and late: a line for 47 s, none for 20, 30 and 40.
     log.at(47.5);
-    progress.say_if_due();
+    progress.report_if_due();
     const std::string second = first + "tessera: after 47 s at 60 %, frame_3: running\n";
     CHECK(log.text() == second);
     log.at(49);
     progress.show("checking", 0.9);
     CHECK(log.text() == second);
     log.at(50);
-    progress.say_if_due();
+    progress.report_if_due();
     CHECK(log.text() == second + "tessera: after 50 s at 90 %, frame_3: checking\n");
 }
 
@@ -90,7 +90,7 @@ TEST_CASE("progress in a log: nothing of work that is over, and work that begins
         progress.show("measuring", 0.2);
         progress.clear();
         log.at(45);
-        progress.say_if_due();
+        progress.report_if_due();
         CHECK(log.text().empty());
         progress.show("rendering", 0.3);
         CHECK(log.text().empty());  // 40 s have gone by without a word
@@ -115,7 +115,7 @@ TEST_CASE("progress on a terminal: a bar that is overwritten, ten times a second
     progress.show("running", 0.6);
     CHECK(log.text() == half);
     log.at(20);
-    progress.say_if_due();
+    progress.report_if_due();
     CHECK(log.text() == half);
     progress.show("running", 1);
     const std::string all = half + "\r\x1b[K[" + std::string(30, '=') + "] 100 %  frame_3: running";
@@ -133,7 +133,7 @@ TEST_CASE("progress that cannot be written ends nothing") {
         Progress progress("", {full, terminal, the_time, &now});
         the_time += std::chrono::seconds(25);
         CHECK_NOTHROW(progress.show("running", 0.5));
-        CHECK_NOTHROW(progress.say_if_due());
+        CHECK_NOTHROW(progress.report_if_due());
         CHECK_NOTHROW(progress.clear());
     }
     std::fclose(full);

@@ -201,7 +201,7 @@ TEST_CASE("what may be left to the program reads as auto, and is so by default")
             apply_setting(job, key.name + "=" + value);
             CHECK(same_settings(job, Job{}));
         }
-        CHECK_THAT(set_error_of(key.name + "=automatic"), Contains("wanted is auto or "));
+        CHECK_THAT(set_error_of(key.name + "=automatic"), Contains("expected auto or "));
     }
     CHECK(automatic_keys == std::vector<std::string>{"displacement.scale", "camera.eye", "camera.target",
                                                      "camera.up", "camera.near_plane"});
@@ -331,11 +331,11 @@ TEST_CASE("settings of the command line") {
                Equals("--set mesh.colums=3: unknown key `mesh.colums`; did you mean `mesh.columns`?"));
     CHECK_THAT(set_error_of("mesh.columns=-1"), Contains("out of range; the range is 0 .. 2048 quads"));
     CHECK_THAT(set_error_of("mesh.columns=three"),
-               Contains("`mesh.columns` cannot be three; wanted is an integer"));
+               Contains("`mesh.columns` cannot be three; expected an integer"));
     CHECK_THAT(set_error_of("mesh.columns="), Contains("has no value"));
-    CHECK_THAT(set_error_of("mesh.columns"), Contains("wanted is table.key=value"));
+    CHECK_THAT(set_error_of("mesh.columns"), Contains("expected table.key=value"));
     CHECK_THAT(set_error_of("=3"), Contains("unknown key"));
-    CHECK_THAT(set_error_of(""), Contains("wanted is table.key=value"));
+    CHECK_THAT(set_error_of(""), Contains("expected table.key=value"));
     CHECK_THAT(set_error_of("mesh=3"), Contains("`mesh` is a group of keys"));
     CHECK_THAT(set_error_of("camera={eye=[1,2,3]}"), Contains("`camera` is a group of keys") &&
                                                          Contains("as in --set camera.eye=") &&

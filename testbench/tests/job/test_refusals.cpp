@@ -145,7 +145,7 @@ TEST_CASE("mistyped names are reported with place and suggestion") {
         {"xyzzyplugh = 2\n", {"unknown key `xyzzyplugh`; `tessera keys` lists"}},
         {"[[mesh]]\nrows = 2\n", {"`mesh` is an array of 1"}},
         {"mesh = 3\n", {"`mesh` is 3, an integer", "write [mesh]"}},
-        {"[mesh.rows]\nx = 2\n", {"`mesh.rows` is a table; wanted is an integer"}},
+        {"[mesh.rows]\nx = 2\n", {"`mesh.rows` is a table; expected an integer"}},
         {"[mesh.more]\nx = 2\n", {"unknown table `mesh.more`"}},
         {"mesh.camera = {eye = [1, 2, 3]}\n",
          {"unknown table `mesh.camera`; did you mean the group `camera`?", "write [camera]", "eye, target, "}},
@@ -165,7 +165,7 @@ TEST_CASE("values are reported with place, value and what is wanted") {
                  "job.toml:2:1: `mesh.columns` = 99999 is out of range; the range is 0 .. 2048 quads");
     expect_whole(
         "[mesh]\ncolumns = \"three\"\n",
-        "job.toml:2:1: `mesh.columns` is \"three\", a string; wanted is an integer, 0 .. 2048 quads");
+        "job.toml:2:1: `mesh.columns` is \"three\", a string; expected an integer, 0 .. 2048 quads");
     expect_whole(
         "[map]\nsource = \"half-donut\"\n",
         "job.toml:2:1: `map.source` = \"half-donut\" is not a choice; the choices are half_donut, text, "

@@ -9,16 +9,14 @@
 #include <vector>
 
 #include "testbench/common/parallel.h"
-#include "testbench/output/picture/draw_text.h"
 #include "testbench/output/picture/image.h"
 #include "testbench/output/picture/key_light.h"
-#include "testbench/output/picture/legend.h"
-#include "testbench/output/picture/overview.h"
 #include "testbench/output/picture/palette.h"
 #include "testbench/output/picture/png_writer.h"
 #include "testbench/output/picture/render.h"
 #include "testbench/output/picture/render_mesh.h"
 #include "testbench/output/picture/view.h"
+#include "testbench/output/picture/view_picture.h"
 #include "testbench/output/picture/wireframe.h"
 #include "testbench/tests/output/picture/render_scenes.h"
 
@@ -172,8 +170,13 @@ TEST_CASE("Two renderings are identical") {
     const RenderMesh mesh = make_sphere({0, 0, 0}, 48);
     PictureOptions options;
     options.width = 320;
-    const Image first = render_overview(mesh, look_down(3, 256, 192, 200), options).image;
-    const Image second = render_overview(mesh, look_down(3, 256, 192, 200), options).image;
+    const auto overview = [&] {
+        return render_views(mesh, look_down(3, 256, 192, 200), {PictureView::overview}, options)
+            .front()
+            .image;
+    };
+    const Image first = overview();
+    const Image second = overview();
     CHECK(first.width == 320);
     CHECK(first.bytes == second.bytes);
     CHECK(encode_png(first) == encode_png(second));
@@ -198,7 +201,7 @@ TEST_CASE("Nothing to see gives the background") {
     near.near_plane = 6;
     CHECK(is_background(render(make_sphere({0, 0, 0}, 24), near, Style{})));
     CHECK(render_styles(RenderMesh{}, view, {}).empty());
-    CHECK(render_overview(RenderMesh{}, view).image.width == 1600);
+    CHECK(render_views(RenderMesh{}, view, {PictureView::overview}, {}).front().image.width == 1600);
 }
 
 TEST_CASE("Collapsed triangles and missing normals do no harm") {
@@ -231,30 +234,12 @@ TEST_CASE("Colour tells generation and deciding test") {
 TEST_CASE("A PNG file decodes to the same pixels") {
     Style style;
     style.colour_by = ColourBy::generation;
-    style.legend = true;
     const Image image = render(make_sphere({0, 0, 0}, 24), look_down(4, 131, 77, 60), style);
     png_image header;
     const std::vector<std::uint8_t> bytes = decode(encode_png(image), header);
     CHECK(header.width == 131);
     CHECK(header.height == 77);
     CHECK(bytes == image.bytes);
-}
-
-TEST_CASE("Legend and text stay inside the image") {
-    Image image(40, 20, Style{}.background);
-    draw_text(image, -10, 5, 30, "AB\n\x80?", legend_ink);
-    Style style;
-    CHECK(legend_width(make_square(), style) == 0);
-    for (const ColourBy colours :
-         {ColourBy::generation, ColourBy::deciding_test, ColourBy::stopped_by, ColourBy::error}) {
-        style.colour_by = colours;
-        style.errors = {0.1, 0.3, 0.01};
-        draw_legend(image, 30, 19, make_square(), style);
-        draw_legend(image, -30, 50, make_square(), style, 3);
-        CHECK(legend_width(make_square(), style, 2) == Approx(2 * legend_width(make_square(), style)));
-    }
-    CHECK_FALSE(is_background(image));
-    CHECK(text_width(6, "AB") == Approx(10));
 }
 
 TEST_CASE("The run's camera sees what the hardware's Transform projects") {

@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "testbench/output/picture/exr_writer.h"
-#include "testbench/output/picture/overview.h"
 #include "testbench/output/picture/palette.h"
 #include "testbench/output/picture/view_picture.h"
 #include "testbench/tests/output/picture/render_scenes.h"
@@ -60,7 +59,6 @@ Picture sample_picture() {
     PictureOptions options;
     options.width = 300;
     options.linear = true;
-    options.caption = "a sphere";
     return render_views(make_sphere({0, 0, 0}, 48), look_down(3, 256, 192, 200), {PictureView::generation},
                         options)
         .front();
@@ -132,9 +130,10 @@ TEST_CASE("render: an overview in linear light is the same overview") {
     options.width = 320;
     const RenderMesh mesh = make_sphere({0, 0, 0}, 24);
     const View view = look_down(3, 256, 192, 200);
-    const Picture plain = render_overview(mesh, view, options);
+    const auto overview = [&] { return render_views(mesh, view, {PictureView::overview}, options).front(); };
+    const Picture plain = overview();
     options.linear = true;
-    const Picture both = render_overview(mesh, view, options);
+    const Picture both = overview();
     CHECK(plain.linear.values.empty());
     CHECK(plain.image.bytes == both.image.bytes);
     CHECK(largest_difference(both.linear, both.image) == 0);

@@ -4,10 +4,8 @@
 #include <set>
 #include <string>
 
-#include "testbench/output/picture/colour_bar.h"
 #include "testbench/output/picture/error_range.h"
 #include "testbench/output/picture/legend.h"
-#include "testbench/output/picture/overview.h"
 #include "testbench/output/picture/palette.h"
 #include "testbench/output/picture/picture_view.h"
 #include "testbench/output/picture/render.h"
@@ -17,9 +15,6 @@
 using namespace tessera;
 
 namespace {
-
-constexpr PictureView single_views[] = {PictureView::shaded, PictureView::wireframe, PictureView::generation,
-                                        PictureView::test,   PictureView::stopped,   PictureView::error};
 
 /// The camera's own picture, pixel by pixel: no framing, and as many pixels as the camera has.
 PictureOptions as_seen(const View& camera) {
@@ -240,7 +235,7 @@ TEST_CASE("render: errors of triangles and of vertices get the ramp's colours") 
     options.errors = {0.5, 0, 0.1};
     std::array<Colour, 3> paints{error_colour(0), error_colour(0.5), error_colour(1)};
     options.height = 0;
-    SECTION("per triangle, flat") {
+    SECTION("known") {
         mesh.triangle_errors = {0, 0, 0.25f, 0.25f, 0.5f, 7};
         const Image image = one_view(mesh, view, PictureView::error, options).image;
         for (int quad = 0; quad < 3; ++quad)
@@ -248,16 +243,6 @@ TEST_CASE("render: errors of triangles and of vertices get the ramp's colours") 
                 CHECK(nearest_hue(image.at(80 + 80 * quad + x, 60), paints) ==
                       static_cast<std::size_t>(quad));
         CHECK(has_colour(image, error_colour(1), 120));
-    }
-    SECTION("per vertex, interpolated") {
-        for (const glm::vec3& position : mesh.positions)
-            mesh.vertex_errors.push_back((position.x + 3) / 12);  // 0 on the left, 0.5 on the right
-        const Image image = one_view(mesh, view, PictureView::error, options).image;
-        CHECK(nearest_hue(image.at(84, 60), paints) == 0);
-        CHECK(nearest_hue(image.at(200, 60), paints) == 1);
-        CHECK(nearest_hue(image.at(316, 60), paints) == 2);
-        for (int x = 90; x < 300; x += 10)  // darker all the way
-            CHECK(brightness(image, x, 60) >= brightness(image, x + 10, 60));
     }
     SECTION("unknown: as no error") {
         CHECK(nearest_hue(one_view(mesh, view, PictureView::error, options).image.at(200, 60), paints) == 0);
@@ -278,18 +263,42 @@ TEST_CASE("render: the error ramp falls in lightness all the way") {
     CHECK(error_colour(2) == error_colour(1));
 }
 
-TEST_CASE("render: a colour bar has two to five round steps") {
-    for (const double largest : {1e-9, 0.0087, 0.01, 0.2, 0.99, 1.0, 1.01, 3.0, 123456.0}) {
-        const double step = round_step(largest);
-        CAPTURE(largest, step);
-        CHECK(largest / step >= 1.999);
-        CHECK(largest / step <= 5.001);
-        const double mantissa = step / std::pow(10.0, std::floor(std::log10(step * 1.000001)));
-        CHECK((mantissa == Approx(1) || mantissa == Approx(2) || mantissa == Approx(5)));
-    }
-    CHECK(round_step(0) == 0);
-    CHECK(round_step(-1) == 0);
-    CHECK(round_step(std::nan("")) == 0);
+TEST_CASE("render: a legend names what its colours stand for") {
+    RenderMesh mesh = make_row(5);
+    mesh.base_triangles = 4;
+    const auto legend_of = [&](PictureView view, const ErrorScale& errors = {}) {
+        Style style = style_of(view);
+        style.errors = errors;
+        const Legend legend = make_legend(mesh, style);
+        std::vector<std::string> labels;
+        for (const Legend::Entry& entry : legend.entries)
+            labels.push_back(entry.label);
+        return std::pair(legend.title, labels);
+    };
+    using Words = std::vector<std::string>;
+    CHECK(legend_of(PictureView::generation) ==
+          std::pair<std::string, Words>("10 triangles from 4, by generation", {"0", "1"}));
+    mesh.base_triangles = 0;
+    mesh.triangles[0].generation = 12;
+    CHECK(legend_of(PictureView::generation).first == "10 triangles, by generation");
+    CHECK(legend_of(PictureView::generation).second.back() == "12");
+    mesh.triangles[0].generation = 40;  // its colour is that of 12
+    CHECK(legend_of(PictureView::generation).second.size() == 13);
+    CHECK(legend_of(PictureView::generation).second.back() == "12+");
+
+    CHECK(legend_of(PictureView::test).second == Words{"normal", "summed height", "both", "none: base"});
+    mesh.triangles[0].deciding_test = DecidingTest::highlight;
+    CHECK(legend_of(PictureView::test).second ==
+          Words{"normal", "summed height", "both", "highlight", "none: base"});
+    CHECK(legend_of(PictureView::stopped).second ==
+          Words{"no test", "view", "tex coord", "generation", "several"});
+
+    const auto [title, labels] = legend_of(PictureView::error, {0.08, 0.3, 0.016});
+    CHECK(title == "error, model units, largest 0.3 (one texel: 0.016)");
+    CHECK(labels == Words{"0", "0.01", "0.02", "0.03", "0.04", "0.05", "0.06", "0.07", "0.08"});
+    CHECK(legend_of(PictureView::error, {0.08, 0.08, 0}).first == "error, model units");
+    for (const PictureView none : {PictureView::shaded, PictureView::wireframe})
+        CHECK(legend_of(none).second.empty());
 }
 
 TEST_CASE("render: the error of most of a mesh ignores a small part") {
@@ -332,10 +341,9 @@ TEST_CASE("render: a view is the same alone and in company") {
     PictureOptions options;
     options.width = 200;
     options.height = 130;
-    options.caption = "five quads";
     options.errors = {0.5, 0.7, 0.1};
     options.linear = true;
-    const std::vector<PictureView> all(std::begin(single_views), std::end(single_views));
+    const std::vector<PictureView> all(std::begin(picture_views), std::end(picture_views));
     const std::vector<Picture> together = render_views(mesh, view, all, options);
     REQUIRE(together.size() == all.size());
     std::set<std::vector<std::uint8_t>> different;
@@ -352,30 +360,74 @@ TEST_CASE("render: a view is the same alone and in company") {
     CHECK(different.size() == all.size());
 }
 
-TEST_CASE("render: caption and legend stand below the surface") {
+TEST_CASE("render: the legend is a strip below the surface, and fits") {
+    RenderMesh mesh = stopped_row();
+    mesh.triangles[0].deciding_test = DecidingTest::highlight;
+    mesh.triangles[0].generation = 40;
+    const View view = look_down(8, 400, 112, 256);
+    PictureOptions options;
+    options.errors = {1e-7, 123456, 1.5e-8};  // long labels
+    for (const int width : {100, 400, 1000})
+        for (const PictureView each : picture_views) {
+            CAPTURE(width, name_of(each));
+            options.width = width;
+            options.height = 0;
+            const Image image = one_view(mesh, view, each, options).image;
+            CHECK(image.height == picture_height(mesh, view, each, options));
+            const bool plain = each == PictureView::shaded || each == PictureView::wireframe;
+            const int panel_width = each == PictureView::overview ? width / 2 : width;
+            Style style = style_of(each == PictureView::overview ? PictureView::generation : each);
+            style.errors = options.errors;
+            const int strip = legend_height(make_legend(mesh, style), panel_width, width, 1000);
+            CHECK((strip == 0) == plain);
+            if (plain)
+                continue;
+            const int top = image.height - strip;
+            for (int y = top; y < image.height; ++y) {  // nothing is cut off
+                CHECK(image.at(0, y) == style.background);
+                CHECK(image.at(width - 1, y) == style.background);
+            }
+            for (int x = 0; x < width; ++x) {
+                CHECK(image.at(x, top) == style.background);
+                CHECK(image.at(x, image.height - 1) == style.background);
+            }
+            if (width == 1000)
+                CHECK(has_colour(image, legend_ink, top));
+            options.height = 300;
+            CHECK(one_view(mesh, view, each, options).image.height == 300);
+        }
+}
+
+TEST_CASE("render: the overview shows the shaded surface and its triangles by generation") {
     const RenderMesh mesh = stopped_row();
     const View view = look_down(8, 400, 112, 256);
     PictureOptions options;
     options.width = 400;
-    const Image bare = one_view(mesh, view, PictureView::shaded, options).image;
-    options.caption = "A caption of some length, to be read";
-    const Image captioned = one_view(mesh, view, PictureView::shaded, options).image;
-    REQUIRE(captioned.height > bare.height + 8);
-    CHECK(std::equal(bare.bytes.begin(), bare.bytes.end(), captioned.bytes.begin()));
-    CHECK(has_colour(captioned, legend_ink, bare.height));
-    for (int y = bare.height; y < captioned.height; ++y) {  // nothing is cut off
-        CHECK(captioned.at(0, y) == Style{}.background);
-        CHECK(captioned.at(399, y) == Style{}.background);
-    }
-    options.height = 300;
-    CHECK(one_view(mesh, view, PictureView::stopped, options).image.height == 300);
+    const Image both = one_view(mesh, view, PictureView::overview, options).image;
+    options.width = 200;
     options.height = 0;
-    CHECK(one_view(mesh, view, PictureView::error, options).image.height ==
-          picture_height(mesh, view, PictureView::error, options));
-    CHECK(render_overview(mesh, view, options).image.height == overview_height(mesh, view, options));
+    const int strip = legend_height(make_legend(mesh, style_of(PictureView::generation)), 200, 400, 1000);
+    options.height = both.height - strip;
+    const Image shaded = one_view(mesh, view, PictureView::shaded, options).image;
+    const auto panel = [&](int left) {
+        Image image(200, both.height - strip, {});
+        for (int y = 0; y < image.height; ++y)
+            for (int x = 0; x < 200; ++x)
+                image.set(x, y, both.at(left + x, y));
+        return image;
+    };
+    CHECK(panel(0).bytes == shaded.bytes);
+    const Image triangles = panel(200);
+    CHECK(has_colour(triangles, Style{}.background, 0));
+    CHECK(triangles.bytes != shaded.bytes);
+    std::set<std::size_t> seen;
+    const std::array<Colour, 3> paints{generation_colour(0), generation_colour(1), Style{}.surface};
+    for (int x = 30; x < 170; x += 3)
+        seen.insert(nearest_hue(triangles.at(x, triangles.height / 2 + 3), paints));
+    CHECK(seen.count(0) == 1);
 }
 
-TEST_CASE("render: small and odd sizes, long captions and empty meshes do no harm") {
+TEST_CASE("render: small and odd sizes and empty meshes do no harm") {
     const View view = look_down(8, 320, 200, 200);
     for (const int width : {1, 2, 17, least_picture_side})
         for (const int height : {1, 2, 17, least_picture_side}) {
@@ -383,13 +435,11 @@ TEST_CASE("render: small and odd sizes, long captions and empty meshes do no har
             PictureOptions options;
             options.width = width;
             options.height = height;
-            options.caption = std::string(200, 'W');
             options.errors = {1, 2, 3};
-            for (const PictureView each : single_views) {
+            for (const PictureView each : picture_views) {
                 const Image image = one_view(stopped_row(), view, each, options).image;
                 CHECK(image.width == width);
-                CHECK(image.height >= height);
-                CHECK(image.height <= height + 1);  // a surface has one row at least
+                CHECK(image.height == height);
             }
         }
     PictureOptions options;
