@@ -52,7 +52,7 @@ double squared_distance(const Stroke& stroke, double x, double y) {
     return ex * ex + ey * ey;
 }
 
-// Flat on top, a smooth step down to 0 at outer_radius. Must stay below 1, half the gap between two letters.
+// Flat on top, with a smooth step to 0 at outer_radius, which must be below 1, half the gap between two letters.
 double stroke_profile(double distance) {
     constexpr double inner_radius = 0.35;
     constexpr double outer_radius = 0.85;
@@ -85,7 +85,7 @@ HeightMap text_map(std::int64_t width, std::int64_t height, std::string_view tex
         throw InputError(
             "map.text: the text is empty, so the map would be flat. Give it at least one letter.");
     }
-    // A gap's width around the text, so that a stroke's edge ends inside the map.
+    // A margin of one gap around the text keeps the strokes' edges inside the map.
     constexpr int margin = glyph_advance - glyph_width;
     const double text_width = static_cast<double>(letters.size()) * glyph_advance - margin;
     const double units_per_texel = std::max((text_width + 2 * margin) / static_cast<double>(width),

@@ -10,7 +10,7 @@
 
 namespace tessera {
 
-/// The bits of x, with -0 taken as +0: two values are alike when their bits are.
+/// The bits of x, with -0 mapped to +0: equal values have equal bits.
 inline std::uint64_t alike_bits(double x) {
     const double positive_zero = x + 0.0;
     std::uint64_t bits;
