@@ -12,7 +12,7 @@
 
 namespace tessera {
 
-/// The machine reduced to what the invariants look at: cuts by edge alone, and displaces by a function of t.
+/// The machine reduced to the needs of the invariants: splits edges one by one, and displaces by a function of t.
 struct MeshMaker {
     std::function<bool(const datapath::Vertex&, const datapath::Vertex&)> split;
     std::function<std::int32_t(const datapath::TexCoord&)> height;
@@ -81,7 +81,7 @@ inline datapath::Registers registers_for(std::uint32_t width, std::uint32_t heig
     return registers;
 }
 
-/// A grid of quads, cut from its (0,0) to its (1,1) corner. vertex(i, j) for i = 0..columns, j = 0..rows.
+/// A grid of quads, split from the (0,0) to the (1,1) corner. vertex(i, j) for i = 0..columns, j = 0..rows.
 template <class MakeVertex>
 std::vector<datapath::Triangle> make_grid(int columns, int rows, MakeVertex&& vertex) {
     std::vector<datapath::Triangle> result;
