@@ -27,7 +27,7 @@ std::int64_t first_texel(double centre, std::int64_t length, std::int64_t size, 
                                       : address(first, size, mode);
 }
 
-// Checked before the table is built from them.
+// The arguments are checked here, before the summed-area table is built from them.
 std::vector<std::uint32_t> checked(int width, int height, const std::vector<double>& codes) {
     if (width < 1 || height < 1 ||
         codes.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
@@ -74,7 +74,7 @@ glm::dvec2 Map::slope(std::size_t texel) const {
     const auto code_at = [&](std::int64_t column, std::int64_t row) {
         return static_cast<double>(codes_[static_cast<std::size_t>(row * width_ + column)]);
     };
-    // The two neighbours of `at` along an axis and how many texels apart they are.
+    // The two neighbours of `at` along an axis, and their distance in texels.
     const auto neighbours = [](std::int64_t at, std::int64_t size, AddressMode mode) {
         const std::int64_t low = address(at - 1, size, mode), high = address(at + 1, size, mode);
         const std::int64_t distance = mode == AddressMode::repeat ? 2 : std::max<std::int64_t>(high - low, 1);

@@ -11,7 +11,7 @@ namespace tessera::golden {
 /// How one axis is read outside the map: `clamp` holds the border texel, `repeat` is periodic.
 enum class AddressMode { clamp, repeat };
 
-/// A displacement map with what belongs to it: summed-area table and normal map (ALGORITHM.md section 2).
+/// A displacement map with its summed-area table and normal map (ALGORITHM.md section 2).
 /// Row 0 is v = 0, the bottom. Texture coordinates are in texels: texel x covers [x, x + 1).
 class Map {
   public:
@@ -26,34 +26,34 @@ class Map {
     AddressMode address_v() const { return address_v_; }
 
     double code(std::size_t texel) const { return codes_[texel]; }
-    /// N_d: flat until derive_normals() or set_normals().
+    /// N_d; flat, (0, 0, 1), until derive_normals() or set_normals() is called.
     glm::dvec3 normal(std::size_t texel) const;
-    /// dh/du and dh/dv, h the displacement in world units (derive_normals()). Central differences; a clamped border has
-    /// only one neighbour and divides by 1, an axis of one texel has slope 0.
+    /// dh/du and dh/dv by central differences; h is the displacement in world units (see derive_normals()). A clamped
+    /// border has only one neighbour and divides by 1. An axis of one texel has slope 0.
     glm::dvec2 slope(std::size_t texel) const;
 
-    /// Nearest texel of t: its integer part, addressed. On the last border (u = width) that is the last texel
-    /// (clamp) or the first (repeat).
+    /// Index of the texel that contains t. On the last border (u = width) this is the last texel (clamp) or the first
+    /// (repeat).
     std::size_t texel(const glm::dvec2& t) const;
 
-    /// From now on the normal map N_d is that of finite differences of the displacement in world units,
-    ///     N_d = normalise(-dh/du, -dh/dv, 1),     h = scale_per_code * code,
-    /// `texel_size` the world size of a texel per axis. To be called again when the scale changes. Nothing is stored: a
-    /// normal is calculated when it is asked for.
+    /// Derives the normal map from the displacement by finite differences:
+    ///     N_d = normalise(-dh/du, -dh/dv, 1),     h = scale_per_code * code in world units.
+    /// `texel_size`: the world size of a texel per axis. Call it again when the scale changes. Normals are not stored;
+    /// normal() calculates each on demand.
     void derive_normals(double scale_per_code, const glm::dvec2& texel_size);
-    /// A normal map from elsewhere, e.g. the hardware's, dequantised.
+    /// Uses the given normal map, e.g. the hardware's, dequantised.
     void set_normals(std::vector<glm::dvec3> normals);
 
-    /// Size in texels, width and height, of the three rectangles of the Summed Height Test on an edge (4.2):
+    /// Width and height in texels of the Summed Height Test's three rectangles on an edge (4.2):
     ///     n_w = min(width,  max(1, int(|du| / 2)))     n_h = min(height, max(1, int(|dv| / 4)))
     Rectangle rectangle_size(const glm::dvec2& t_i, const glm::dvec2& t_j) const;
-    /// That rectangle about t: first column int(u) - (n_w >> 1), first row int(v) - (n_h >> 1). Never cut:
-    /// shifted inside (clamp) or read periodically (repeat).
+    /// The rectangle of this size about t: first column int(u) - (n_w >> 1), first row int(v) - (n_h >> 1). It is never
+    /// clipped, but shifted inside (clamp) or read periodically (repeat).
     Rectangle rectangle_about(const glm::dvec2& t, const Rectangle& size) const;
 
     /// S(r) by four reads of the table.
     std::uint64_t sum(const Rectangle& r) const { return sums_.sum(r); }
-    /// S(r) texel by texel, read periodically: what the table is tested against.
+    /// S(r) summed texel by texel, read periodically. The reference for tests of the table.
     std::uint64_t brute_force_sum(const Rectangle& r) const;
 
   private:
@@ -62,7 +62,7 @@ class Map {
     std::vector<std::uint32_t> codes_;
     double scale_per_code_ = 0;
     glm::dvec2 texel_size_{1, 1};
-    std::vector<glm::dvec3> normals_;  // set_normals()'s; else empty
+    std::vector<glm::dvec3> normals_;  // given by set_normals(), else empty
     SummedAreaTable sums_;
 };
 

@@ -12,7 +12,7 @@ double largest_difference(const glm::dvec3& a, const glm::dvec3& b) {
     return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
 }
 
-// From P, N, T, t to P', N' and the screen; returns the length inside bump().
+// Calculates P', N' and the screen position from P, N, T, t. Returns the length of the sum inside bump().
 double displace_and_transform(Vertex& v, const Map& map, const Parameters& parameters) {
     const std::size_t texel = map.texel(v.texture);
     v.displaced_position = v.position + (parameters.scale * map.code(texel) + parameters.bias) * v.normal;
@@ -27,7 +27,7 @@ double displace_and_transform(Vertex& v, const Map& map, const Parameters& param
     return bumped.length;
 }
 
-// Section 4.3 with its near-plane rule, both folded into one number to compare.
+// Section 4.3. The near-plane rule is expressed by an infinite length.
 double view_length(const Vertex& i, const Vertex& j) {
     if (i.in_front && j.in_front) {
         return std::abs(i.screen.x - j.screen.x) + std::abs(i.screen.y - j.screen.y);
@@ -68,7 +68,7 @@ Insertion insert_vertex(const Vertex& i, const Vertex& j, const Map& map, const 
     v.position = (i.position + j.position) / 2.0;
     v.normal = normal.direction;
     v.tangent = tangent.direction;
-    // One triangle has one handedness; the minimum only keeps a mixed edge commutative.
+    // Usually both ends have the same handedness. On a mixed edge the minimum keeps the result commutative.
     v.handedness = std::min(i.handedness, j.handedness);
     v.texture = (i.texture + j.texture) / 2.0;
     if (parameters.texture_step > 0) {
@@ -98,7 +98,7 @@ EdgeEvaluation evaluate_edge(const Vertex& i, const Vertex& j, const Map& map, c
     e.rectangle_width = size.width;
     e.rectangle_height = size.height;
     e.summed_height = static_cast<double>(std::abs(2 * sum_about(m) - (sum_about(i) + sum_about(j))));
-    // Section 4.2 multiplied by four: exact, as everything on its left side is.
+    // Section 4.2 multiplied by four, so that the left side of the comparison is exact.
     e.summed_height_limit = parameters.summed_height_threshold *
                             (parameters.area ? static_cast<double>(size.width * size.height) : 4.0);
     e.summed_height_test = enabled.summed_height && e.summed_height > e.summed_height_limit;
@@ -106,7 +106,7 @@ EdgeEvaluation evaluate_edge(const Vertex& i, const Vertex& j, const Map& map, c
     e.view_length = view_length(i, j);
     e.view_test = !enabled.view || e.view_length > parameters.view_threshold;
 
-    // Texel coordinates before addressing, so that both copies of a periodic seam see the same.
+    // Texel indices before addressing, so that both copies of a periodic seam get the same result.
     const glm::dvec2 texel = glm::floor(m.texture);
     const bool resolution_reached = texel == glm::floor(i.texture) || texel == glm::floor(j.texture);
     e.tex_coord_test = !enabled.tex_coord || !resolution_reached;

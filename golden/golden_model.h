@@ -8,19 +8,19 @@
 
 #include "golden/golden_map.h"
 
-/// ALGORITHM.md, sections 1 to 5, in double precision: what the hardware is measured against. Written from that page
-/// alone; it shares no line with the hardware model. Sections named below are its.
+/// ALGORITHM.md, sections 1 to 5, in double precision: the reference for the hardware. Written from that page alone; it
+/// shares no code with the hardware model. Section numbers below refer to that page.
 namespace tessera::golden {
 
-/// Section 5: which diagonal cuts the quadrilateral that is left when two edges split.
+/// Section 5: the diagonal of the quadrilateral that remains when two edges split.
 enum class Diagonal { shorter, first, second };
 
-/// By how much of the first diagonal's length the second must be shorter to be chosen: so that diagonals of
-/// equal length are told apart by their place, never by rounding.
+/// The second diagonal is chosen only if it is shorter by more than this fraction of the first. Of two diagonals of
+/// equal length the first is therefore chosen, whatever the rounding.
 inline constexpr double diagonal_margin = 1.0 / 64;
 
-/// What the mesh's author and the view supply. A test that is not enabled counts as false (normal, summed
-/// height, highlight) or as true (view, texture coordinate, generation).
+/// Parameters from the mesh's author and the view. A disabled test counts as false (normal, summed height, highlight)
+/// or as true (view, texture coordinate, generation).
 struct Parameters {
     double scale = 0;  ///< world units per code; displacement = scale * code + bias
     double bias = 0;   ///< world units
@@ -29,10 +29,10 @@ struct Parameters {
     double summed_height_threshold = 0;  ///< sum of codes; with the area option: one code
     bool area = false;                   ///< the area option of section 4.2
     double view_threshold = 0;           ///< pixels
-    int generation_limit = 12;           ///< largest generation that is still inserted
+    int generation_limit = 12;           ///< highest generation of an inserted vertex
 
-    /// Section 4.6, the highlight test: halfway between the directions to the light and to the viewer, both
-    /// infinitely far; the cosine of the highlight's angle about it; the difference of one component of two normals.
+    /// Section 4.6, the highlight test: the half vector between the directions to the light and to the viewer, both
+    /// infinitely far; the cosine of the highlight's angle; the threshold on one component's difference of two normals.
     glm::dvec3 half_vector{0};
     double highlight_cosine = 1;
     double highlight_normal_threshold = 0;
@@ -44,8 +44,8 @@ struct Parameters {
 
     Diagonal diagonal = Diagonal::shorter;
 
-    /// Grid to which an inserted vertex's texture coordinate is rounded down, in texels; 0: none. Nothing else is
-    /// rounded: what lies on a texel's border reads one texel or the other, and a difference of any size decides which.
+    /// Inserted texture coordinates are rounded down to multiples of this, in texels; 0: not rounded. Nothing else is
+    /// rounded. At a texel's border the least difference in t selects another texel, so t must match the hardware's.
     double texture_step = 0;
 
     /// World to screen: with p = (P', 1) and w = dot(row_w, p), screen = (dot(row_x, p), dot(row_y, p)) / w
@@ -55,7 +55,7 @@ struct Parameters {
     double near_plane = 0;
 };
 
-/// Section 1. The host gives the first five; the rest follows from displacement and transform.
+/// Section 1. The first five members are given by the host, the others calculated.
 struct Vertex {
     glm::dvec3 position{0};  ///< P, world, on the base surface
     glm::dvec3 normal{0};    ///< N, unit
@@ -71,7 +71,7 @@ struct Vertex {
     int generation = 0;  ///< 0: base vertex
 };
 
-/// A vector made unit, and the length it had before: the smaller, the more an input's error weighs.
+/// A unit vector and its length before normalisation. The error of the direction is the input's error over that length.
 /// **D** a zero vector stays zero.
 struct Normalised {
     glm::dvec3 direction{0};
@@ -83,10 +83,10 @@ Normalised normalise(const glm::dvec3& v);
 Normalised bump(const glm::dvec3& normal, const glm::dvec3& tangent, double handedness,
                 const glm::dvec3& map_normal);
 
-/// A base vertex after Displace and Transform: P', N', screen position; generation 0.
+/// Completes a base vertex with P', N' and screen position; generation 0.
 Vertex complete_base_vertex(const Vertex& base, const Map& map, const Parameters& parameters);
 
-/// Section 3: the vertex inserted on the edge (i,j), the same bits for (j,i).
+/// Section 3: the vertex inserted on the edge (i,j), bit-identical for (j,i).
 struct Insertion {
     Vertex vertex;
     double mean_normal_length = 0;   ///< |(N_i + N_j) / 2|
@@ -95,7 +95,7 @@ struct Insertion {
 };
 Insertion insert_vertex(const Vertex& i, const Vertex& j, const Map& map, const Parameters& parameters);
 
-/// Section 4: what the tests saw on an edge and what they said (`enabled` applied).
+/// Section 4: the values compared by the tests of an edge, and the results (`enabled` applied).
 struct EdgeEvaluation {
     Insertion inserted;
 
@@ -103,9 +103,9 @@ struct EdgeEvaluation {
     std::int64_t rectangle_width = 1, rectangle_height = 1;  ///< texels, all three rectangles
     double summed_height = 0;                                ///< |2 S(r_ij) - S(r_i) - S(r_j)|, exact
     double summed_height_limit = 0;  ///< SHT = summed_height > it: 4 * threshold, or threshold * area
-    double view_length = 0;  ///< VT = it > view_threshold; Manhattan, pixels; an end not in front: +infinity,
-                             ///< both: -infinity
-    /// Of N' and the half vector: the larger of the two ends', and the midpoint's. HT = one of them >
+    double view_length = 0;  ///< VT = it > view_threshold; Manhattan, pixels; +infinity if one end is not in
+                             ///< front, -infinity if both are not
+    /// Cosine between N' and the half vector: the greater of the two ends, and the midpoint's. HT = one of them >
     /// highlight_cosine and normal_difference > highlight_normal_threshold.
     double end_cosine = 0, midpoint_cosine = 0;
 
@@ -118,7 +118,7 @@ EdgeEvaluation evaluate_edge(const Vertex& i, const Vertex& j, const Map& map, c
 /// Section 5: 1 to 4 children as indices: 0 1 2 the triangle's vertices, 3 4 5 the midpoints of edges 0-1,
 /// 1-2, 2-0.
 ///
-/// Winding is kept, and an old vertex keeps its place in the children whose corner it is:
+/// Winding is kept, and an old vertex keeps its position in the children that share it:
 ///     none     (0 1 2)
 ///     one      edge 0-1: (0 3 2) (3 1 2)     edge 1-2: (0 1 4) (0 4 2)     edge 2-0: (0 1 5) (5 1 2)
 ///     two      the corner cut off, one of (0 3 5) (3 1 4) (5 4 2), then the quadrilateral q0 q1 q2 q3:
@@ -142,14 +142,14 @@ struct Triangle {
 
 struct Tessellation {
     std::uint64_t triangles_emitted = 0;
-    std::uint64_t edges_evaluated = 0;  ///< three per triangle, emitted or cut
+    std::uint64_t edges_evaluated = 0;  ///< three per triangle, emitted or split
     int largest_generation = 0;
-    bool bound_hit = false;  ///< stopped early: the complete mesh has more than the bound's triangles
+    bool bound_hit = false;  ///< stopped early: the complete mesh has more triangles than the bound
 };
 
-/// Sections 4 and 5 end to end: base triangles (their first five members per vertex) to finished ones, depth
-/// first in the children's order. Without the generation test this need not end: triangles emitted and
-/// waiting together, of which each leaves at least one in the mesh, are held to `bound`.
+/// Sections 4 and 5: tessellates base triangles (the first five members of each vertex are read), depth first in the
+/// children's order. Without the generation test the recursion may not end, so it stops when the triangles emitted and
+/// waiting exceed `bound`; each waiting triangle yields at least one of the mesh.
 Tessellation tessellate(const std::vector<std::array<Vertex, 3>>& base, const Map& map,
                         const Parameters& parameters, std::uint64_t bound,
                         const std::function<void(const Triangle&)>& emit);

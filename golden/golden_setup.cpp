@@ -30,7 +30,7 @@ View make_view(const Camera& camera, const Placement& placement) {
     view.up = glm::cross(view.backward, view.right);
     view.rounding = 0x1p-49 / glm::length(sideways);
 
-    // A point at depth w that is y above the view axis is seen y / (w tan(half the field of view)) half heights above
+    // A point at depth w and height y above the view axis appears y / (w tan(half the field of view)) half heights over
     // the viewport's centre. Pixels are square.
     const glm::dvec3 forward = -view.backward;
     const glm::dvec2 centre = camera.viewport / 2.0;
@@ -51,7 +51,7 @@ Parameters make_parameters(const Scene& scene) {
     result.area = scene.area;
     result.view_threshold = scene.view_threshold;
     result.generation_limit = scene.generation_limit;
-    // Light straight from behind: halfway is nowhere, and nothing is in the highlight.
+    // Light opposite to the viewer: there is no half vector, and no normal lies in the highlight.
     const glm::dvec3 halfway = unit(scene.light) + view.backward;
     result.half_vector = glm::length(halfway) > 1e-9 ? unit(halfway) : glm::dvec3(0);
     result.highlight_cosine = std::cos(scene.highlight_angle * degree);

@@ -4,12 +4,11 @@
 #include "golden/golden_map.h"
 #include "golden/golden_model.h"
 
-/// From a job, in the model's own units, to what the golden model runs on (ALGORITHM.md section 6), in double
-/// precision. Written from that page, so that it shares no line with the host.
+/// Derives the golden model's inputs from a job in model units (ALGORITHM.md section 6), in double precision. Written
+/// from that page; it shares no code with the host.
 namespace tessera::golden {
 
-/// From the model to the world: world = scale * (model - centre). The host chooses it so that the world fits the
-/// formats; everything else follows from it.
+/// Model to world: world = scale * (model - centre). The host chooses it so that the world fits the formats.
 struct Placement {
     glm::dvec3 centre{0};
     double scale = 1;
@@ -18,28 +17,28 @@ struct Placement {
 
 struct Camera {
     glm::dvec3 eye{0, 0, 1}, target{0};  ///< model units
-    glm::dvec3 up{0, 1, 0};              ///< of any length, not along eye - target
+    glm::dvec3 up{0, 1, 0};              ///< any length, not parallel to eye - target
     double field_of_view = 90;           ///< vertical, degrees
     double near_plane = 0;               ///< model units
     glm::dvec2 viewport{1, 1};           ///< width and height in pixels
 };
 
-/// The camera's axes and its transform, as Parameters has it. Pixel (0, 0) is the viewport's lower left
-/// corner, y runs up.
+/// The camera's axes, and its transform in the form of Parameters. Pixel (0, 0) is the viewport's lower left corner, y
+/// upwards.
 struct View {
     glm::dvec3 right{1, 0, 0}, up{0, 1, 0}, backward{0, 0, 1};  ///< unit, world; backward: towards the viewer
     glm::dvec3 eye{0};                                          ///< world
     glm::dvec4 row_x{0}, row_y{0}, row_w{0};
     double near_plane = 0;  ///< world units
     double rounding =
-        0;  ///< bound on the axes' components' error by double precision: 2^-49 / sin(up, backward)
+        0;  ///< bound on the double-precision error of the axes' components: 2^-49 / sin(up, backward)
 };
 View make_view(const Camera& camera, const Placement& placement);
 
-/// v / |v|, |v| as small or large as a double can be; zero stays zero.
+/// v / |v|, without overflow or underflow; zero stays zero.
 glm::dvec3 unit(const glm::dvec3& v);
 
-/// All that the golden model needs to know besides mesh and map.
+/// All inputs of the golden model except mesh and map.
 struct Scene {
     Camera camera;
     Placement placement;
@@ -57,22 +56,22 @@ struct Scene {
     Parameters::Enabled enabled;
     Diagonal diagonal = Diagonal::shorter;
 
-    glm::dvec3 light{0, 0, 1};  ///< direction towards it, world, of any length
+    glm::dvec3 light{0, 0, 1};  ///< direction towards the light, world, any length
 };
 Parameters make_parameters(const Scene& scene);
 
-/// The direction towards the light along the view's right, up and backward axes, unit length.
+/// Unit direction towards the light; components along the view's right, up and backward axes.
 glm::dvec3 light_as_seen(const Scene& scene);
 
-/// The code that a map value stands for, before it is rounded: 0 at `low`, highest_code at `high`, held between them.
+/// A map value's code before rounding: 0 at `low`, highest_code at `high`, clamped to that range.
 double code_of(double value, double low, double high, double highest_code);
 
-/// A base vertex, of which `uv` = 1 spans the map once, in world units and texels. A clamped axis holds the
-/// coordinate on the map.
+/// A base vertex in world units and texels. `uv` spans the map once from 0 to 1; on a clamped axis it is clamped to the
+/// map.
 Vertex place_vertex(const Vertex& in_model_units, const glm::dvec2& uv, const Placement& placement,
                     const Map& map);
 
-/// A base vertex's texture coordinate on a grid: the nearest step, a tie to the even one.
+/// A base vertex's texture coordinate rounded to the nearest multiple of `step`, ties to even.
 glm::dvec2 on_grid(const glm::dvec2& t, double step);
 
 }  // namespace tessera::golden

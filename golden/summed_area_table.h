@@ -5,7 +5,7 @@
 
 namespace tessera::golden {
 
-/// Whole texels [x, x + width) x [y, y + height); y grows upwards, with v.
+/// Texels [x, x + width) x [y, y + height); y upwards, as v.
 struct Rectangle {
     std::int64_t x = 0, y = 0, width = 1, height = 1;
 };
@@ -16,7 +16,7 @@ struct Rectangle {
 ///     S(r)       = SAT(tr) - SAT(tl) - SAT(br) + SAT(bl)                      (paper, equation 2)
 ///     periodic:    SAT(x + W, y) = SAT(x, y) + SAT(W, y), likewise in y
 ///
-/// Exact: unsigned 64 bit arithmetic wraps, so differences are right wherever S(r) itself fits.
+/// Exact: unsigned 64 bit arithmetic wraps, so a difference is right whenever S(r) itself fits.
 class SummedAreaTable {
   public:
     SummedAreaTable(int width, int height, const std::vector<std::uint32_t>& codes)
@@ -30,7 +30,7 @@ class SummedAreaTable {
         }
     }
 
-    /// S(r); r may lie anywhere and be of any size, the map being read periodically in both directions.
+    /// S(r) for any position and size of r; the map is read periodically in both directions.
     std::uint64_t sum(const Rectangle& r) const {
         const std::int64_t right = r.x + r.width, top = r.y + r.height;
         return prefix(right, top) - prefix(r.x, top) - prefix(right, r.y) + prefix(r.x, r.y);

@@ -13,7 +13,7 @@
 
 namespace tessera::datapath {
 
-/// visit(name of a function or group, struct of its intermediates), for all of them, in the order of README.md.
+/// Calls visit(name of a function or group, struct of its intermediates) for each, in the order of README.md.
 template <class Visit>
 constexpr void visit_intermediates(const Formats& f, Visit&& visit) {
     visit("midpoint", MidpointWidths{f});

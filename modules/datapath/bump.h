@@ -6,20 +6,20 @@
 
 namespace tessera::datapath {
 
-/// Fraction bits kept beyond the normal's between the three products' sum and normalising.
+/// Guard bits: the sum of the three products has this many fraction bits more than a normal when it is normalised.
 inline constexpr int bump_guard_bits = 2;
 
-/// Bits by which that sum is shifted right. Formats with fewer fraction bits keep all.
+/// Right shift of that sum, in bits; 0 if the normal has fewer fraction bits than the guard.
 constexpr int bump_shift(const Formats& f) {
     return f.normal.fraction > bump_guard_bits ? f.normal.fraction - bump_guard_bits : 0;
 }
 
-/// Handedness of a vertex inserted on (i, j): that of both, else -1. Commutative.
+/// Handedness of a vertex inserted on (i, j): that of the ends if they agree, else -1. Commutative.
 constexpr std::int8_t inserted_handedness(std::int8_t handedness_i, std::int8_t handedness_j) {
     return handedness_i < handedness_j ? handedness_i : handedness_j;
 }
 
-/// Of unit vectors, as the host and normalise() make them: no component beyond 1.0.
+/// Operands are unit vectors from the host or normalise(): no component exceeds 1.0 in magnitude.
 struct BumpWidths : Intermediates {
     using Intermediates::Intermediates;
     int one = f.normal.fraction;  // 1.0 is 2^one
@@ -32,8 +32,8 @@ struct BumpWidths : Intermediates {
 };
 static_assert(fits_every_format<BumpWidths>());
 
-/// N' = bump(N, N_d): the base surface's normal perturbed by the displacement map's normal, which is given in the
-/// tangent frame (T, B, N), B = handedness * (N x T)  (golden/ALGORITHM.md 3; the paper's existing bump unit).
+/// N' = bump(N, N_d): the base surface's normal perturbed by the normal map's N_d, given in the tangent frame
+/// (T, B, N), B = handedness * (N x T)  (golden/ALGORITHM.md 3; the paper's existing bump unit).
 /// Rounding: B to nearest in the normal's format; the sum of the three products to nearest with two more fraction
 /// bits; then normalise.
 constexpr Direction bump(const Direction& n, const Direction& t, int handedness, const Direction& map_normal,

@@ -16,7 +16,7 @@ struct CullWidths : Intermediates {
 static_assert(fits_every_format<CullWidths>());
 
 /// Back-face culling of a finished triangle: true if its screen-space area is not positive (y upwards,
-/// counter-clockwise is front). A triangle with a vertex on or behind the near plane is kept: it is the clipper's.
+/// counter-clockwise is front). A triangle with a vertex on or behind the near plane is kept for the clipper.
 constexpr bool faces_away(const ScreenPosition& a, const ScreenPosition& b, const ScreenPosition& c) {
     if (!(a.in_front && b.in_front && c.in_front))
         return false;

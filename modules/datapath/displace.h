@@ -21,8 +21,8 @@ struct DisplaceWidths : Intermediates {
 static_assert(fits_every_format<DisplaceWidths>());
 
 /// P' = P + (S * d + bias) * N (paper equation 1 with the scale of 5.1), d = code / 2^bits.
-/// Rounding: S * d to nearest in the position's format, the product with N to nearest; so within
-/// 1/2 * (|N| + 1) LSB of the exact value. Saturates, counted.
+/// Rounding: S * d to nearest in the position's format, the product with N to nearest. Error at most
+/// 1/2 * (|N| + 1) LSB. Saturates, counted.
 constexpr Position displace(const Position& p, const Direction& n, std::uint32_t code,
                             const DisplacementParameters& parameters, const Formats& formats,
                             Saturations& saturations) {

@@ -11,7 +11,7 @@
 
 namespace tessera::datapath {
 
-/// The Summed Height Test's threshold: at most 2^50, with `area` 2^18.
+/// Bits of the Summed Height Test's threshold: at most 2^50, with `area` 2^18.
 inline constexpr int summed_height_threshold_bits = 51;
 
 struct EdgeTestWidths : Intermediates {
@@ -36,7 +36,7 @@ constexpr std::uint64_t absolute_difference(std::int64_t a, std::int64_t b) {
     return static_cast<std::uint64_t>(a > b ? a - b : b - a);
 }
 
-/// The largest of the six differences of N'_ij from N'_i and N'_j, by component.
+/// The largest of the six component differences of N'_ij from N'_i and N'_j.
 constexpr std::uint64_t largest_difference(const Direction& i, const Direction& j, const Direction& ij) {
     const std::uint64_t x = std::max(absolute_difference(ij.x, i.x), absolute_difference(ij.x, j.x));
     const std::uint64_t y = std::max(absolute_difference(ij.y, i.y), absolute_difference(ij.y, j.y));
@@ -44,7 +44,7 @@ constexpr std::uint64_t largest_difference(const Direction& i, const Direction& 
     return std::max({x, y, z});
 }
 
-/// Some component of N'_ij differs from that of N'_i or N'_j by more than the threshold (normal's format).
+/// Whether any component of N'_ij differs from N'_i's or N'_j's by more than the threshold (normal's format).
 constexpr bool normals_differ(const Direction& i, const Direction& j, const Direction& ij,
                               std::uint64_t threshold) {
     return absolute_difference(ij.x, i.x) > threshold || absolute_difference(ij.y, i.y) > threshold ||
@@ -68,30 +68,30 @@ constexpr bool in_highlight(const Direction& n, const TestParameters& parameters
 }
 
 /// HT (paper 5.1, golden/ALGORITHM.md 4.6): one of the edge's three displaced normals lies in the highlight, and they
-/// differ by more than a finer threshold. NT's six differences serve both; six more compares, three dot products.
-/// N' of a vertex being the same from every edge that has it, so is its place in or out of the highlight.
+/// differ by more than a threshold finer than NT's. Uses NT's six differences; adds six compares, three dot products.
+/// All edges of a vertex agree on whether its N' lies in the highlight.
 constexpr bool highlight_test(const Direction& i, const Direction& j, const Direction& ij,
                               const TestParameters& parameters) {
     return normals_differ(i, j, ij, parameters.highlight_normal_threshold) &&
            (in_highlight(i, parameters) || in_highlight(j, parameters) || in_highlight(ij, parameters));
 }
 
-/// What SHT compares: | 2 S_ij - (S_i + S_j) |.
+/// SHT's left operand: | 2 S_ij - (S_i + S_j) |.
 constexpr std::uint64_t summed_height_difference(std::uint64_t sum_i, std::uint64_t sum_j,
                                                  std::uint64_t sum_ij) {
     const auto ends = static_cast<std::int64_t>(sum_i + sum_j);
     return absolute_difference(static_cast<std::int64_t>(2 * sum_ij), ends);
 }
 
-/// What SHT compares it with. With `area` the threshold is a height: times width * height.
+/// SHT's right operand: the threshold; with `area` the threshold is a height and is multiplied by width * height.
 constexpr std::uint64_t summed_height_limit(const RectangleSize& size, const TestParameters& parameters) {
     return parameters.summed_height_unit == SummedHeightUnit::sum
                ? parameters.summed_height_threshold
                : parameters.summed_height_threshold * size.width * size.height;
 }
 
-/// SHT (paper 2.3) on the three sums: | S_ij / 2 - (S_i + S_j) / 4 | > threshold, both sides times 4, so that the
-/// divisions cost no rounding: they are wires.
+/// SHT (paper 2.3): | S_ij / 2 - (S_i + S_j) / 4 | > threshold. Both sides are multiplied by 4, which is only wiring
+/// and avoids the rounding of the divisions.
 constexpr bool summed_height_test(std::uint64_t sum_i, std::uint64_t sum_j, std::uint64_t sum_ij,
                                   const RectangleSize& size, const TestParameters& parameters) {
     return summed_height_difference(sum_i, sum_j, sum_ij) > summed_height_limit(size, parameters);
@@ -103,14 +103,14 @@ constexpr std::uint64_t screen_length(const ScreenPosition& i, const ScreenPosit
 }
 
 /// VT (paper 2.4): Manhattan length in pixels. A vertex on or behind the near plane has no screen position: an edge
-/// with one such end counts as long, with two as invisible (golden/ALGORITHM.md 4.3).
+/// with one such end counts as long, with two such ends as invisible (golden/ALGORITHM.md 4.3).
 constexpr bool view_test(const ScreenPosition& i, const ScreenPosition& j, const TestParameters& parameters) {
     if (i.in_front && j.in_front)
         return screen_length(i, j) > parameters.view_threshold;
     return i.in_front || j.in_front;
 }
 
-/// TCT (paper 2.5): false if t_ij lies in the same texel as t_i or as t_j: the map's resolution is reached.
+/// TCT (paper 2.5): false if t_ij lies in the same texel as t_i or t_j, so that the map's resolution is reached.
 constexpr bool tex_coord_test(const TexCoord& i, const TexCoord& j, const TexCoord& ij,
                               const Formats& formats) {
     const std::uint32_t u = integer_part(ij.u, formats);
@@ -120,21 +120,21 @@ constexpr bool tex_coord_test(const TexCoord& i, const TexCoord& j, const TexCoo
     return !(same_as_i || same_as_j);
 }
 
-/// Generation of a vertex inserted on (i, j): one more than the older of the two, at most 255 (which only a run with
-/// GT switched off can reach).
+/// Generation of a vertex inserted on (i, j): the greater of the ends' plus one, at most 255 (reached only with GT
+/// switched off).
 constexpr std::uint8_t inserted_generation(std::uint8_t generation_i, std::uint8_t generation_j) {
     const std::uint8_t oldest = generation_i > generation_j ? generation_i : generation_j;
     return oldest == 255 ? oldest : static_cast<std::uint8_t>(oldest + 1);
 }
 
-/// GT (golden/ALGORITHM.md 4.5): the inserted vertex would not exceed the generation limit. Ends the recursion, and
-/// depends on the edge alone.
+/// GT (golden/ALGORITHM.md 4.5): the inserted vertex does not exceed the generation limit. Depends on the edge alone;
+/// terminates the recursion.
 constexpr bool generation_test(std::uint8_t generation_i, std::uint8_t generation_j,
                                const TestParameters& parameters) {
     return inserted_generation(generation_i, generation_j) <= parameters.generation_limit;
 }
 
-/// split(i, j) = (NT or SHT or HT) and VT and TCT and GT (paper 2.6, plus HT and GT), on TestBits.
+/// split(i, j) = (NT or SHT or HT) and VT and TCT and GT (paper 2.6, plus HT and GT). `tests`: TestBits.
 constexpr bool split_decision(std::uint8_t tests) {
     return (tests & requesting_tests) != 0 && (tests & gating_tests) == gating_tests;
 }

@@ -10,24 +10,23 @@ namespace tessera::datapath {
 
 /// One field of an item: a wire or a bundle of wires.
 struct Field {
-    const char* name;       ///< of the value, as in "displaced"
-    const char* component;  ///< "x" of a vector; else ""
-    int index;              ///< of three alike: 0 to 2; else -1
+    const char* name;       ///< of the value, such as "displaced"
+    const char* component;  ///< of a vector, such as "x"; else ""
+    int index;              ///< 0 to 2 of three equal fields; else -1
     int bits;               ///< in the job's formats
-    int most_bits;          ///< in the widest formats: what a waveform declares
+    int most_bits;          ///< in the widest formats, as a waveform declares it
     bool is_signed;
     const char* meaning;
 };
 
-/// Describes an item to a codec: each of its fields once, the lowest bit first. The codec's
+/// Describes an item to a codec: each of its fields once, the lowest bit first. For each field it calls the codec's
 ///
 ///     std::int64_t field(const Field&, std::int64_t value)
 ///
-/// returns the value that the item goes on with: the same, or what it has read. Of a constant item the result is
-/// dropped. So one list of an item's fields serves to pack and to unpack it, to add up its width, and to show it in a
-/// waveform.
+/// and stores the returned value in the item, unless the item is constant. A writer returns the same value, a reader
+/// the value it has read. One list of an item's fields thus serves packing, unpacking, widths and waveforms.
 ///
-/// `annotation` names what no hardware has: it has no width. For it the codec has
+/// `annotation` describes a value of the model that the hardware does not have; its width is 0. It calls the codec's
 ///
 ///     std::uint32_t annotation(const char* name, std::uint32_t value)
 template <class Codec>
@@ -36,7 +35,7 @@ class Fields {
     constexpr Fields(Codec& codec, const Formats& formats, int tag_bits = 32)
         : codec_(codec), formats_(formats), tag_bits_(tag_bits) {}
 
-    /// The fields that follow are those of vertex, or edge, `index`; -1: of the item itself.
+    /// The fields that follow belong to vertex or edge `index`; -1: to the item itself.
     constexpr void of(int index) { index_ = index; }
 
     template <class P>
@@ -73,7 +72,7 @@ class Fields {
     constexpr void flag(const char* name, B& value, const char* meaning) {
         pass(named(name, "", 1, 1, false, meaning), value);
     }
-    /// HT: only where it is built.
+    /// HT: only in a design with a Highlight Test.
     template <class B>
     constexpr void highlight(const char* name, B& value, const char* meaning) {
         if (formats_.highlight_tag)
@@ -88,7 +87,7 @@ class Fields {
         if constexpr (!std::is_const_v<H>)
             value = bit == 0 ? std::int8_t{1} : std::int8_t{-1};
     }
-    /// NT and SHT; where a Highlight Test is built, HT as the bit above.
+    /// NT and SHT; in a design with a Highlight Test also HT, as the bit above.
     template <class N>
     constexpr void requesting(const char* name, N& tests, const char* meaning) {
         constexpr std::uint8_t two = normal_bit | summed_height_bit;
@@ -106,7 +105,7 @@ class Fields {
         if constexpr (!std::is_const_v<N>)
             tests = static_cast<N>(read << 2);
     }
-    /// All of them; HT only where it is built.
+    /// All tests; HT only in a design with a Highlight Test.
     template <class N>
     constexpr void tests(const char* name, N& tests, const char* meaning) {
         pass(named(name, "", formats_.highlight_tag ? 6 : 5, 6, false, meaning), tests);
@@ -139,7 +138,7 @@ class Fields {
         if constexpr (!std::is_const_v<N>)
             value = static_cast<N>(read);
     }
-    /// A bit that is not among VT, TCT, GT goes beyond the field, so that a writer tells.
+    /// Any bit other than VT, TCT, GT is placed beyond the field, so that a writer reports it.
     static constexpr std::int64_t spread(std::uint8_t tests) {
         return (tests & gating_tests) >> 2 | ((tests & ~gating_tests) != 0 ? 8 : 0);
     }
@@ -150,7 +149,7 @@ class Fields {
     int index_ = -1;
 };
 
-/// All a vertex carries, as in the Triangle Queue.
+/// All fields of a vertex, as in the Triangle Queue.
 template <class Codec, class AnyVertex>
 constexpr void describe_vertex(Fields<Codec>& fields, AnyVertex& vertex) {
     fields.position("p", vertex.position, "P");

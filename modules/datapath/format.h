@@ -3,10 +3,10 @@
 
 namespace tessera::datapath {
 
-/// A fixed-point format: `bits` wide, the lowest `fraction` of them behind the binary point.
+/// A fixed-point format: `bits` in all, the lowest `fraction` of them behind the binary point.
 ///
-/// Values travel in wider machine integers; `lowest` and `highest` are what the wires can hold. Widths are
-/// run-time configuration: how many bits a quantity needs is an architect's first question.
+/// The model holds values in wider integers; `lowest` and `highest` are the limits of the wires. Widths are run-time
+/// configuration, so that they can be explored.
 struct Format {
     int bits = 0;
     int fraction = 0;
@@ -24,22 +24,22 @@ struct Format {
 /// The formats of one design.
 struct Formats {
     Format position = Format::make_signed(32, 16);  ///< P, P', scale, bias
-    /// w, the distance from the eye: as wide as a position, its point placed by the host so that the farthest vertex
-    /// fits.
+    /// w, the distance from the eye: as wide as a position. The host places its binary point so that the farthest
+    /// vertex fits.
     Format view_distance = Format::make_signed(32, 16);
     Format normal = Format::make_signed(16, 14);  ///< N, T, N', N's, normal map
-    /// t in texels. Holds 0 up to and including 2^integer: the last border of a map of 4096 texels is
-    /// u = 4096.0, so the wires are one bit wider than integer + fraction.
+    /// t in texels, 0 to 2^integer inclusive: the last border of a map of 4096 texels is u = 4096.0, so the wires are
+    /// one bit wider than integer + fraction.
     Format texture = Format::make_unsigned(12 + 12 + 1, 12);
     Format displacement = Format::make_unsigned(16, 16);  ///< d, a fraction of full scale
     Format summed_height = Format::make_unsigned(32, 0);  ///< SAT entry, modulo 2^bits, in displacement codes
     Format screen = Format::make_signed(24, 8);           ///< P's in pixels
     int generation_bits = 4;
-    bool highlight_tag = false;  ///< with a Highlight Test: the queue entry's split_by has a bit for it
+    bool highlight_tag = false;  ///< with a Highlight Test: split_by in a queue entry has a bit for it
 };
 
-/// Bits that a job may give each quantity: what the functions here are asserted to hold, and the ranges of the job's
-/// keys. A fraction has fewer bits than its format, a normal's at least 2 fewer.
+/// Ranges of the widths that a job may set. The functions of this folder are asserted to work within them. A fraction
+/// has fewer bits than its format, a normal's at least 2 fewer.
 struct FormatLimits {
     struct Range {
         int least, most;
@@ -51,20 +51,20 @@ struct FormatLimits {
     static constexpr Range summed_height_bits{8, 48};
     static constexpr Range screen_bits{8, 31}, screen_fraction{0, 30};
     static constexpr Range generation_bits{1, 4};
-    /// By how much coarser w is than the position: 31 bring 2^37 LSB of it, the farthest eye, into 8 bits.
+    /// Fraction bits that w has less than the position. 31 fit the farthest eye, 2^37 LSB of the position, into 8 bits.
     static constexpr Range view_distance_shift{0, 31};
 };
 
-/// How often a result did not fit its format and was set to the nearest value that does, per quantity.
+/// Number of saturated results per quantity.
 struct Saturations {
     std::uint64_t displaced_position = 0;
     std::uint64_t normal = 0;
     std::uint64_t screen_position = 0;
     std::uint64_t view_distance = 0;  ///< w
     std::uint64_t screen_normal = 0;
-    std::uint64_t degenerate_normal = 0;  ///< a zero vector was to be normalised: it stays zero
-    std::uint64_t generation = 0;         ///< only with the Generation Test off: the limit fits the field
-    std::uint64_t intensity = 0;          ///< a vertex that faces the light fully: 256 of 256
+    std::uint64_t degenerate_normal = 0;  ///< normalisations of a zero vector, which stays zero
+    std::uint64_t generation = 0;  ///< only with the Generation Test off, since the limit fits the field
+    std::uint64_t intensity = 0;   ///< vertices that face the light fully: 256 of 256
 
     constexpr Saturations& operator+=(const Saturations& other) {
         displaced_position += other.displaced_position;
@@ -83,7 +83,7 @@ struct Saturations {
     }
 };
 
-/// Sets a value that does not fit the format to the nearest one that does, and counts it.
+/// Clamps a value to the format's range; counts it if it did not fit.
 constexpr std::int64_t saturate(std::int64_t value, const Format& format, std::uint64_t& count) {
     if (value < format.lowest) {
         ++count;
@@ -96,7 +96,7 @@ constexpr std::int64_t saturate(std::int64_t value, const Format& format, std::u
     return value;
 }
 
-/// Arithmetic shift right, rounded to nearest, a tie upwards. shift >= 0; |value| + half must fit 64 bits.
+/// Arithmetic shift right, rounded to nearest, ties upwards. shift >= 0; |value| + half must fit 64 bits.
 constexpr std::int64_t round_shift(std::int64_t value, int shift) {
     return shift == 0 ? value : (value + (std::int64_t{1} << (shift - 1))) >> shift;
 }

@@ -3,16 +3,15 @@
 
 namespace tessera::datapath {
 
-/// An intermediate value of a function: how many bits it needs, a sign included, and how many the model's integer has
-/// for it (64: std::int64_t if it may be negative, else std::uint64_t).
+/// An intermediate value of a function: the bits it needs, including a sign, and the bits of the model's integer (64:
+/// std::int64_t if it may be negative, else std::uint64_t).
 struct Width {
     const char* name = "";
     int bits = 0;
     int most = 64;
 };
 
-/// Base of the structs that stand beside functions and give their intermediates' widths for the formats f. all() lists
-/// them.
+/// Base of the structs that give the widths of a function's intermediates for the formats f. all() lists them.
 struct Intermediates {
     Formats f;
     constexpr explicit Intermediates(const Formats& formats) : f(formats) {}
@@ -22,12 +21,12 @@ constexpr int wider(int a, int b) {
     return a > b ? a : b;
 }
 
-/// Bits of a value from -2^exponent to 2^exponent, both included.
+/// Bits of a value from -2^exponent to 2^exponent inclusive.
 constexpr int signed_bits(int exponent) {
     return exponent + 2;
 }
 
-/// The first intermediate that the model's integer cannot hold; null: it holds all.
+/// The first intermediate that does not fit the model's integer; null if all fit.
 template <class Widths>
 constexpr const char* first_too_wide(const Widths& widths) {
     for (const Width& width : widths.all()) {
@@ -37,9 +36,9 @@ constexpr const char* first_too_wide(const Widths& widths) {
     return nullptr;
 }
 
-/// Whether the model's integers hold every intermediate in all formats within FormatLimits. Asked of the greatest
-/// widths with the fewest and the most fraction bits: an intermediate grows with its operands' bits, and fraction bits
-/// are what shifts take away or leave.
+/// Whether the model's integers hold every intermediate in all formats within FormatLimits. It suffices to check the
+/// greatest widths with the fewest and the most fraction bits: intermediates grow with their operands' widths, and
+/// shifts depend on the fraction bits.
 template <class Widths>
 constexpr bool fits_every_format() {
     using Limits = FormatLimits;

@@ -20,8 +20,8 @@ struct LightWidths : Intermediates {
 };
 static_assert(fits_every_format<LightWidths>());
 
-/// Diffuse per-vertex lighting in screen space: ambient + (256 - ambient) * max(0, N's . L), 0..255, truncated; 256,
-/// full light, saturates, counted.
+/// Diffuse per-vertex lighting in screen space: ambient + (256 - ambient) * max(0, N's . L), 0..255, truncated. Full
+/// light, 256, saturates, counted.
 /// The pipeline's existing unit, reduced to one directional light.
 constexpr std::uint8_t light(const Direction& screen_normal, const LightParameters& parameters,
                              const Formats& formats, Saturations& saturations) {

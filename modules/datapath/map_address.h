@@ -11,8 +11,8 @@ constexpr std::uint32_t integer_part(std::uint32_t coordinate, const Formats& fo
     return coordinate >> formats.texture.fraction;
 }
 
-/// A texel index brought into the map: clamp reads the border texel beyond the border, repeat reads periodically.
-/// A vertex exactly on the last border (u = width) so reads the last texel or the first (golden/ALGORITHM.md 2).
+/// Applies the address mode to a texel index. Beyond the border clamp reads the border texel, repeat periodically.
+/// A vertex on the last border (u = width) thus reads the last texel or the first (golden/ALGORITHM.md 2).
 constexpr std::uint32_t texel_index(std::uint32_t index, std::uint32_t size, AddressMode mode) {
     if (index < size)
         return index;

@@ -5,12 +5,12 @@
 
 namespace tessera::datapath {
 
-/// Bytes of an entry of so many bits.
+/// Bytes of an entry of `bits` bits.
 constexpr std::uint32_t entry_bytes(int bits) {
     return static_cast<std::uint32_t>((bits + 7) / 8);
 }
 
-/// A normal map's entry: three signed components of `bits` bits side by side, x lowest. bits <= 21.
+/// A normal map's entry: three signed components of `bits` bits each, packed, x lowest. bits <= 21.
 constexpr std::uint64_t pack_normal(const Direction& n, int bits) {
     const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
     return (static_cast<std::uint64_t>(n.x) & mask) | (static_cast<std::uint64_t>(n.y) & mask) << bits |

@@ -16,8 +16,8 @@ struct MidpointWidths : Intermediates {
 };
 static_assert(fits_every_format<MidpointWidths>());
 
-/// Add, shift by 1 (paper 3): arithmetic shift right, so rounded towards minus infinity, error -1/2..0 LSB.
-/// Commutative; lies between its operands, so it cannot overflow their format.
+/// Add, arithmetic shift right by 1 (paper 3): rounded towards minus infinity, error -1/2..0 LSB.
+/// Commutative. The result lies between the operands, so it cannot overflow their format.
 constexpr std::int32_t midpoint(std::int32_t a, std::int32_t b) {
     return static_cast<std::int32_t>((std::int64_t{a} + std::int64_t{b}) >> 1);
 }

@@ -38,7 +38,7 @@ constexpr std::array<std::uint32_t, 256> make_reciprocal_root_seeds() {
 }
 inline constexpr auto reciprocal_root_seeds = make_reciprocal_root_seeds();
 
-/// Of one Newton step; the same in all formats.
+/// Widths in one Newton step; the same in all formats.
 struct ReciprocalRootWidths : Intermediates {
     using Intermediates::Intermediates;
     Width mantissa{"m", 32};
@@ -63,7 +63,7 @@ constexpr std::uint64_t reciprocal_root(std::uint32_t m) {
     return y;
 }
 
-/// Components that normalise() holds.
+/// Widest component that normalise() accepts.
 inline constexpr int largest_component_bits = 31;
 
 struct NormaliseWidths : Intermediates {
@@ -77,9 +77,9 @@ struct NormaliseWidths : Intermediates {
 };
 static_assert(fits_every_format<NormaliseWidths>());
 
-/// A vector with components of up to 31 bits and any scale, brought to unit length in the normal's format.
-/// Rounded to nearest; error per component at most 1/2 + 2^(fraction - 28) LSB. A zero vector stays zero
-/// and is counted: its direction is unknown to both sides of the edge alike.
+/// Normalises a vector with components of up to 31 bits, of any scale, to unit length in the normal's format.
+/// Rounded to nearest; error per component at most 1/2 + 2^(fraction - 28) LSB. A zero vector stays zero, on both sides
+/// of an edge alike, and is counted.
 constexpr Direction normalise(std::int64_t x, std::int64_t y, std::int64_t z, const Formats& formats,
                               Saturations& saturations) {
     const std::uint64_t square = static_cast<std::uint64_t>(x * x) + static_cast<std::uint64_t>(y * y) +

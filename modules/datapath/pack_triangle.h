@@ -8,10 +8,10 @@
 
 namespace tessera::datapath {
 
-/// A Triangle Queue entry as bits, for its way to off-chip memory and back.
+/// A Triangle Queue entry, packed for off-chip memory.
 ///
-/// Layout: describe_triangle()'s fields, the lowest bit first, little endian, without gaps. Signed fields are two's
-/// complement. Every width is its format's; together they are stream_widths().triangle. The last byte's unused bits are
+/// Layout: the fields of describe_triangle(), the lowest bit first, little endian, without gaps, each as wide as its
+/// format, in all stream_widths().triangle bits. Signed fields are two's complement. Unused bits of the last byte are
 /// zero.
 
 /// Bytes of an entry in off-chip memory.
@@ -19,7 +19,7 @@ constexpr std::size_t packed_triangle_bytes(const Formats& formats) {
     return (std::size_t{stream_widths(formats).triangle} + 7) / 8;
 }
 
-/// Triangle::base follows the entry in bytes of its own. It is the model's tag, no hardware has it: not traffic.
+/// Triangle::base follows the entry in bytes of its own. It is a tag of the model only and not counted as traffic.
 constexpr std::size_t packed_triangle_tag_bytes = 4;
 
 constexpr void store_word(std::uint32_t word, unsigned char* bytes) {
@@ -33,8 +33,8 @@ constexpr std::uint32_t load_word(const unsigned char* bytes) {
     return word;
 }
 
-/// Appends fields to an entry in whole words; the last one may reach up to 4 bytes beyond the entry, into the tag.
-/// Of a value that does not fit its field the lowest bits are kept, and `fits` tells. A codec of fields.h.
+/// Appends fields to an entry in whole words; the last word may reach up to 4 bytes beyond the entry, into the tag.
+/// A value that does not fit its field is truncated to its lowest bits, and `fits` is then false. A codec of fields.h.
 class FieldWriter {
   public:
     constexpr explicit FieldWriter(unsigned char* bytes) : next_(bytes) {}
@@ -65,10 +65,10 @@ class FieldWriter {
     unsigned char* next_;
     std::uint64_t waiting_ = 0;  // the `count_` bits not yet stored, fewer than 32 between fields
     int count_ = 0;
-    std::uint64_t beyond_ = 0;  // not zero: a value did not fit
+    std::uint64_t beyond_ = 0;  // not zero if a value did not fit
 };
 
-/// Takes the fields from an entry, in whole words as they were written. A codec of fields.h.
+/// Reads the fields of an entry, in whole words as FieldWriter writes them. A codec of fields.h.
 class FieldReader {
   public:
     constexpr explicit FieldReader(const unsigned char* bytes) : next_(bytes) {}
@@ -96,12 +96,12 @@ class FieldReader {
     }
 
     const unsigned char* next_;
-    std::uint64_t waiting_ = 0;  // the `count_` bits loaded and not yet taken
+    std::uint64_t waiting_ = 0;  // the `count_` bits loaded and not yet used
     int count_ = 0;
 };
 
-/// Writes packed_triangle_bytes() and after them packed_triangle_tag_bytes. False: a value does not fit its field
-/// and its highest bits are lost (a generation may, with the Generation Test switched off); the others are whole.
+/// Writes packed_triangle_bytes() and then packed_triangle_tag_bytes. Returns false if a value does not fit its field
+/// and loses its highest bits (possible for a generation with the Generation Test off); the others are correct.
 [[nodiscard]] constexpr bool pack_triangle(const Triangle& triangle, const Formats& formats,
                                            unsigned char* bytes) {
     FieldWriter writer(bytes);

@@ -8,7 +8,7 @@ namespace tessera::datapath {
 
 enum class AddressMode : std::uint8_t { clamp, repeat };
 
-/// Where a table lies in memory: rows of `columns` entries, bottom row first, packed, little endian.
+/// Layout of a table in memory: rows of `columns` entries, bottom row first, packed, little endian.
 struct TableLayout {
     std::uint64_t base = 0;  ///< byte address of entry (0, 0)
     std::uint32_t columns = 0;
@@ -31,9 +31,9 @@ struct MapGeometry {
 
 enum class SummedHeightUnit : std::uint8_t { sum, area };
 
-/// The thresholds and switches of the edge tests. They belong to the mesh's author (paper 2.2 to 2.4).
+/// The thresholds and switches of the edge tests, set by the mesh's author (paper 2.2 to 2.4).
 struct TestParameters {
-    bool normal_test = true;  ///< a test switched off: NT, SHT, HT count as false; VT, TCT, GT as true
+    bool normal_test = true;  ///< if switched off, NT, SHT, HT count as false; VT, TCT, GT as true
     bool summed_height_test = true;
     bool view_test = true;
     bool tex_coord_test = true;
@@ -45,11 +45,11 @@ struct TestParameters {
     std::uint32_t view_threshold = 0;  ///< screen's format
     std::uint32_t generation_limit = 12;
 
-    bool highlight_test = false;  ///< HT: three more dot products and their compares, where it is built
-    /// H, halfway between the directions to the light and to the viewer, both infinitely far: unit length, world
-    /// space, normal's format. Zero: nothing lies in the highlight.
+    bool highlight_test = false;  ///< HT: three more dot products and their compares, in designs that have it
+    /// H, the half vector between the directions to the light and to the viewer, both infinitely far: unit length,
+    /// world space, normal's format. Zero: no normal lies in the highlight.
     std::array<std::int32_t, 3> half_vector{};
-    std::int64_t highlight_cosine = 0;  ///< N'.H of the highlight's border, twice the normal's fraction
+    std::int64_t highlight_cosine = 0;  ///< N'.H at the highlight's border, twice the normal's fraction bits
     std::uint32_t highlight_normal_threshold = 0;  ///< normal's format
 };
 
@@ -61,14 +61,14 @@ struct DisplacementParameters {
 
 /// World to screen, viewport included:
 ///     screen_x = 2^exponent * (row_x . P') / (row_w . P'), in pixels; screen_y likewise; w = row_w . P'.
-/// Entries 0 to 2 have `matrix_fraction` fraction bits and lie in -1..1; entry 3 has those of the position besides.
+/// Entries 0 to 2 have `matrix_fraction` fraction bits and lie in -1..1; entry 3 has the position's in addition.
 struct TransformParameters {
     static constexpr int matrix_fraction = 24;
     std::array<std::int64_t, 4> row_x{};
     std::array<std::int64_t, 4> row_y{};
     std::array<std::int64_t, 4> row_w{};
     int exponent = 0;
-    std::int64_t near_plane = 0;  ///< w in the format of the products: position + matrix fraction bits
+    std::int64_t near_plane = 0;  ///< w in the products' format: position + matrix fraction bits
     std::array<std::array<std::int32_t, 3>, 3> normal_rows{};  ///< world to view rotation, normal's format
 };
 
@@ -80,7 +80,7 @@ struct LightParameters {
     std::int32_t ambient = 51;
 };
 
-/// Everything the host sets before a run: the machine's registers.
+/// The machine's registers, written by the host before a run.
 struct Registers {
     Formats formats;
     MapGeometry map;

@@ -16,7 +16,7 @@ constexpr std::array<std::uint32_t, 128> make_reciprocal_seeds() {
 }
 inline constexpr auto reciprocal_seeds = make_reciprocal_seeds();
 
-/// Of one Newton step; the same in all formats.
+/// Widths in one Newton step; the same in all formats.
 struct ReciprocalWidths : Intermediates {
     using Intermediates::Intermediates;
     Width mantissa{"m", 32};
@@ -41,7 +41,7 @@ constexpr std::uint64_t reciprocal(std::uint32_t m) {
     return r;
 }
 
-/// Number of leading zeros of a value that is not 0.
+/// Number of leading zeros; value > 0.
 constexpr int leading_zeros(std::uint64_t value) {
     return __builtin_clzll(value);
 }

@@ -7,13 +7,13 @@
 
 namespace tessera::datapath {
 
-/// Width and height, in whole texels, that the three rectangles of one edge share.
+/// Width and height, in whole texels, of each of an edge's three rectangles.
 struct RectangleSize {
     std::uint32_t width = 1;
     std::uint32_t height = 1;
 };
 
-/// t reaches from 0 to 2^integer texels, so |du| does too, and a rectangle is at most half of that wide.
+/// t ranges from 0 to 2^integer texels, and so does |du|; a rectangle is at most half as wide.
 struct RectangleWidths : Intermediates {
     using Intermediates::Intermediates;
     int integer = f.texture.bits - 1 - f.texture.fraction;
@@ -27,8 +27,8 @@ struct RectangleWidths : Intermediates {
 };
 static_assert(fits_every_format<RectangleWidths>());
 
-/// |du| / 2 wide and |dv| / 4 high, whole texels, at least 1 and at most the map (golden/ALGORITHM.md 4.2).
-/// Commutative: absolute differences.
+/// Width |du| / 2 and height |dv| / 4, rounded down to whole texels, at least 1 and at most the map's
+/// (golden/ALGORITHM.md 4.2). Commutative, since it uses absolute differences.
 constexpr RectangleSize rectangle_size(const TexCoord& a, const TexCoord& b, const MapGeometry& map,
                                        const Formats& formats) {
     const auto side = [](std::uint32_t difference, int shift, std::uint32_t size) {
@@ -41,8 +41,8 @@ constexpr RectangleSize rectangle_size(const TexCoord& a, const TexCoord& b, con
             side(dv, formats.texture.fraction + 2, map.height)};
 }
 
-/// First texel of a rectangle of `extent` texels centred on `centre`, brought inside the map: shifted, never cut
-/// (clamp), or reduced by whole periods (repeat; first + extent may then reach past the map by less than a period).
+/// First texel of a rectangle of `extent` texels about `centre`. Clamp shifts it inside the map without clipping;
+/// repeat reduces it by whole periods (first + extent may then exceed the map by less than a period).
 constexpr std::uint32_t rectangle_first(std::uint32_t centre, std::uint32_t extent, std::uint32_t size,
                                         AddressMode mode) {
     const std::int64_t first = std::int64_t{centre} - (extent >> 1);
@@ -71,11 +71,11 @@ constexpr Rectangle centred_rectangle(const TexCoord& t, const RectangleSize& si
     return r;
 }
 
-/// Entries that a rectangle's sum takes at most: repeated across both borders.
+/// Largest number of entries of a rectangle's sum: a rectangle that wraps on both axes.
 constexpr unsigned most_rectangle_entries = 9;
 
-/// S(r) = SAT(tr) - SAT(tl) - SAT(br) + SAT(bl) modulo 2^bits (paper equation 2): calls entry(address, subtracted) with
-/// the byte address of each table entry, in the order in which they are read.
+/// Table entries of S(r) = SAT(tr) - SAT(tl) - SAT(br) + SAT(bl) modulo 2^bits (paper equation 2): calls
+/// entry(address, subtracted) with the byte address of each entry, in the order of the reads.
 ///
 /// The table has (width + 1) x (height + 1) entries; entry (x, y) is the sum of texels [0, x) x [0, y) modulo
 /// 2^bits, so row 0 and column 0 are zero. Subtraction wraps correctly as long as S(r) itself fits.

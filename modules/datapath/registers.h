@@ -8,8 +8,8 @@
 namespace tessera::datapath {
 
 enum class RegisterKind : std::uint8_t {
-    choice,           ///< a switch, or one of a few: all of them share one word
-    unsigned_number,  ///< a word of its own, two if it is longer than 32 bits
+    choice,           ///< a switch or selection; all choices share one word
+    unsigned_number,  ///< a word of its own, two if wider than 32 bits
     signed_number,    ///< likewise, two's complement
 };
 
@@ -20,8 +20,8 @@ struct Register {
     const char* meaning;
 };
 
-/// The table of registers: visit(Register, std::array of its values) for each, several alike as one. Formats and the
-/// size of a table's entries are the machine's build; a table's columns and rows follow from the map's size.
+/// The table of registers: calls visit(Register, std::array of its values) for each, once for a group of similar ones.
+/// Formats and the size of table entries are fixed in a design; a table's columns and rows follow from the map's size.
 template <class Visit>
 constexpr void visit_registers(const Registers& r, Visit&& visit) {
     const Formats& f = r.formats;
@@ -63,7 +63,7 @@ constexpr void visit_registers(const Registers& r, Visit&& visit) {
           "sum: four times the threshold, in codes; area: in codes", r.tests.summed_height_threshold);
     field("tests.view_threshold", number, f.screen.bits + 1, "screen's format", r.tests.view_threshold);
     field("tests.generation_limit", number, f.generation_bits, "generations", r.tests.generation_limit);
-    if (f.highlight_tag) {  // of a design with a Highlight Test
+    if (f.highlight_tag) {  // a design with a Highlight Test
         field("tests.highlight_test", choice, 1, "on", r.tests.highlight_test);
         direction("tests.half_vector", "H, normal's format", r.tests.half_vector);
         field("tests.highlight_cosine", with_sign, signed_bits(2 * f.normal.fraction),
@@ -92,7 +92,7 @@ constexpr void visit_registers(const Registers& r, Visit&& visit) {
     field("light.ambient", number, 9, "of 256", r.light.ambient);
 }
 
-/// Whether a register's bits hold the value.
+/// Whether the value fits the register.
 constexpr bool holds(const Register& field, std::int64_t value) {
     const int magnitude_bits = field.kind == RegisterKind::signed_number ? field.bits - 1 : field.bits;
     if (magnitude_bits >= 63)

@@ -7,16 +7,15 @@
 
 namespace tessera::datapath {
 
-/// The generation of an inserted vertex as its field holds it: saturates, counted. With the Generation Test on, what it
-/// lets through fits the field.
+/// The generation of an inserted vertex, saturated to its field, counted. With the Generation Test on it always fits.
 constexpr std::uint8_t kept_generation(std::uint8_t generation, const Formats& formats,
                                        Saturations& saturations) {
     return static_cast<std::uint8_t>(
         saturate(generation, Format::make_unsigned(formats.generation_bits, 0), saturations.generation));
 }
 
-/// The children of a pass whose edges are decided, complete with all that is known of their vertices.
-/// Calls child(triangle) for each; returns how many.
+/// Calls child(triangle) for each child of a pass whose edges are decided, with all known values of its vertices.
+/// Returns the number of children.
 template <class Child>
 int tessellate(const TrianglePass& pass, Triangulation choice, const Formats& formats,
                Saturations& saturations, Child&& child) {

@@ -10,15 +10,15 @@
 
 namespace tessera::datapath {
 
-/// By how much row_w . (P', 1) is shifted right to w's format.
+/// Right shift, in bits, of row_w . (P', 1) to w's format.
 constexpr int view_distance_down(const Formats& f) {
     return TransformParameters::matrix_fraction + f.position.fraction - f.view_distance.fraction;
 }
 
-/// Bits of a matrix entry from -1.0 to 1.0, and of a row's fourth, at most 2^61.
+/// Bits of a matrix entry (-1.0 to 1.0), and of a row's fourth entry (at most 2^61).
 inline constexpr int matrix_entry_bits = signed_bits(TransformParameters::matrix_fraction);
 inline constexpr int matrix_offset_bits = signed_bits(61);
-/// Bits of a numerator that the division keeps.
+/// Upper bits of a numerator that the division uses.
 inline constexpr int numerator_bits = 30;
 
 struct TransformWidths : Intermediates {
@@ -48,7 +48,7 @@ constexpr std::int64_t transform_row(const std::array<std::int64_t, 4>& row, con
     return row[0] * p.x + row[1] * p.y + row[2] * p.z + row[3];
 }
 
-/// 2^exponent * numerator / denominator in the screen's format, denominator given as mantissa and shift:
+/// 2^exponent * numerator / denominator in the screen's format. The denominator is given by its inverse and scale:
 /// denominator ~ mantissa * 2^scale, inverse = 2^63 / mantissa.
 constexpr std::int32_t perspective_divide(std::int64_t numerator, std::uint64_t inverse, int scale,
                                           int exponent, const Format& screen, std::uint64_t& saturated) {
@@ -67,7 +67,7 @@ constexpr std::int32_t perspective_divide(std::int64_t numerator, std::uint64_t 
     return static_cast<std::int32_t>(saturate(round_shift(quotient, down), screen, saturated));
 }
 
-/// World to screen of a displaced position (the pipeline's existing Transform unit).
+/// Transforms a displaced position from world to screen (the pipeline's existing Transform unit).
 /// The products are exact; the division is a reciprocal (relative error 2^-30.9) and a multiplication by the
 /// numerator's upper 30 bits, rounded to nearest; error at most 1/2 LSB + |result| * 2^-28. w is rounded to nearest in
 /// the view distance's format, which has no more fraction bits than the position's. x, y and w saturate, counted. On or
@@ -92,7 +92,7 @@ constexpr ScreenPosition transform(const Position& p, const TransformParameters&
     return result;
 }
 
-/// World to screen of a normal: a rotation, rounded to nearest.
+/// Rotates a normal from world to view space, rounded to nearest.
 constexpr Direction transform_normal(const Direction& n, const TransformParameters& parameters,
                                      const Formats& formats, Saturations& saturations) {
     const auto row = [&](const std::array<std::int32_t, 3>& r) {

@@ -8,7 +8,7 @@
 
 namespace tessera::datapath {
 
-/// What the branch Calculate New P, Displace Vertex, Transform finds for the midpoint of one edge.
+/// Results of Calculate New P, Displace Vertex and Transform for the midpoint of one edge.
 struct NewVertex {
     Position position;      ///< P_ij                             (Calculate New P)
     Direction mean_normal;  ///< (N_i + N_j) / 2, not yet unit    (Calculate New P)
@@ -17,7 +17,7 @@ struct NewVertex {
     ScreenPosition screen;  ///< P's_ij                           (Transform)
 };
 
-/// What Tessellation Tests finds for one edge.
+/// Results of Tessellation Tests for one edge.
 struct EdgeTests {
     TexCoord texture;            ///< t_ij    (Calculate New U)
     Direction normal;            ///< N_ij    (Normal Test)
@@ -26,8 +26,8 @@ struct EdgeTests {
     std::uint8_t tests = 0;      ///< TestBits
 };
 
-/// One pass of one triangle through the machine, as Pass or Tessellate joins it from the triangle and its parts. Edge k runs
-/// from vertex k to vertex (k + 1) mod 3.
+/// One pass of one triangle through the machine, joined by Pass or Tessellate from the triangle and its parts. Edge k
+/// runs from vertex k to vertex (k + 1) mod 3.
 struct TrianglePass {
     Triangle triangle;
     std::uint8_t new_vertices = 0;  ///< bit k: vertex k has no P', P's, N' yet (a base triangle's first pass)
@@ -43,7 +43,7 @@ struct TrianglePass {
     }
 };
 
-/// The complete vertex inserted on edge k: both branches' findings in one. N's is calculated on its next pass.
+/// The vertex inserted on edge k, from the results of both branches. N's is calculated on its next pass.
 constexpr Vertex inserted_vertex(const TrianglePass& pass, int k) {
     const Vertex& i = pass.edge_begin(k);
     const Vertex& j = pass.edge_end(k);

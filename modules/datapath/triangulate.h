@@ -15,10 +15,10 @@ struct ChildIndices {
     int count = 0;
 };
 
-/// The second diagonal must be shorter than the first by more than 2^-6 of it. Many diagonals are equally long in exact
-/// arithmetic (a square's, wherever the map is level), and rounding, which moves each of a length's six coordinates by
-/// up to (generation + 1) / 2 LSB of the position and the height times 3/4 LSB of the normal, must not choose between
-/// them. In the default job that is less than 2^-6 of a texel's side even at full height on a curved surface.
+/// The second diagonal must be shorter than the first by more than 2^-6 of the first. Many pairs are equally long in
+/// exact arithmetic (a square's where the map is level), and rounding must not decide between them: it moves each of a
+/// length's six coordinates by up to (generation + 1) / 2 LSB of the position plus the height times 3/4 LSB of the
+/// normal. In the default job that is below 2^-6 of a texel's side even at full height on a curved surface.
 inline constexpr int diagonal_margin_shift = 6;
 
 struct DiagonalWidths : Intermediates {
@@ -35,16 +35,16 @@ constexpr std::uint64_t manhattan_length(const Position& a, const Position& b) {
     return absolute_difference(a.x, b.x) + absolute_difference(a.y, b.y) + absolute_difference(a.z, b.z);
 }
 
-/// The quadrilateral left by two split edges, in the triangle's order: of the walk v0, m01, v1, m12, v2, m20 what is
-/// left without the cut-off corner, which lies opposite the whole edge.
+/// The quadrilateral that remains when two edges split, in the triangle's order: the boundary v0, m01, v1, m12, v2, m20
+/// without the unsplit edge's midpoint and the corner opposite that edge.
 constexpr std::array<std::uint8_t, 4> remaining_quadrilateral(int whole_edge) {
     constexpr std::array<std::array<std::uint8_t, 4>, 3> by_whole_edge = {
         {{0, 1, 4, 5}, {3, 1, 2, 5}, {0, 3, 4, 2}}};
     return by_whole_edge[static_cast<std::size_t>(whole_edge)];
 }
 
-/// The triangulations of the paper's figure 6. Bit k of `split` says that edge k is split. With two split edges,
-/// `second_diagonal` chooses the quadrilateral's diagonal from its second vertex. Winding order is kept.
+/// The triangulations of the paper's figure 6. Bit k of `split` is set if edge k is split. With two split edges,
+/// `second_diagonal` selects the quadrilateral's diagonal from its second vertex. Winding order is kept.
 constexpr ChildIndices triangulate(unsigned split, bool second_diagonal) {
     switch (split) {
         case 0:
@@ -77,9 +77,8 @@ constexpr ChildIndices triangulate(unsigned split, bool second_diagonal) {
     return result;
 }
 
-/// With `shorter`, the second if it is shorter by more than the margin, by Manhattan length of displaced positions,
-/// else the first: a subtraction and a compare, which round nothing. corner(k) gives the displaced position of index k
-/// as above.
+/// With `shorter`, selects the second diagonal if its Manhattan length between displaced positions is shorter by more
+/// than the margin. A subtraction and a compare, both exact. corner(k): the displaced position of index k as above.
 template <class DisplacedPosition>
 constexpr bool choose_second_diagonal(unsigned split, Triangulation choice, DisplacedPosition&& corner) {
     if (choice != Triangulation::shorter)

@@ -12,7 +12,7 @@ struct Position {
     }
 };
 
-/// A normal or tangent, in the normal's format. Unit length but for rounding, or the mean of two such.
+/// A normal or tangent, in the normal's format: of unit length within rounding, or the mean of two unit vectors.
 struct Direction {
     std::int32_t x = 0, y = 0, z = 0;
     friend constexpr bool operator==(const Direction& a, const Direction& b) {
@@ -28,8 +28,8 @@ struct TexCoord {
     }
 };
 
-/// P's: pixels in the screen's format, and the distance w from the eye along the view direction in the
-/// view distance's format (what a w-buffer needs). A vertex on or behind the near plane has no screen position.
+/// P's: pixels in the screen's format, and the distance w from the eye along the view direction in the view distance's
+/// format, for a w-buffer. A vertex on or behind the near plane has no screen position.
 struct ScreenPosition {
     std::int32_t x = 0, y = 0, w = 0;
     bool in_front = false;
@@ -54,7 +54,7 @@ struct Vertex {
     Direction screen_normal;           ///< N's
 };
 
-/// The tests of one edge, as bits. Also used as a set of tests ("which tests split it").
+/// The tests of one edge, as bits; also a set of tests (split_by, stopped_by).
 enum TestBits : std::uint8_t {
     normal_bit = 1,
     summed_height_bit = 2,
@@ -64,18 +64,18 @@ enum TestBits : std::uint8_t {
     highlight_bit = 32,
 };
 
-/// The tests that request a split; the others gate it.
+/// The requesting tests; the others are gating tests.
 constexpr std::uint8_t requesting_tests = normal_bit | summed_height_bit | highlight_bit;
 constexpr std::uint8_t gating_tests = view_bit | tex_coord_bit | generation_bit;
 
-/// A triangle as it waits in the Triangle Queue. Edge k runs from vertex k to vertex (k + 1) mod 3.
+/// A triangle in the Triangle Queue. Edge k runs from vertex k to vertex (k + 1) mod 3.
 struct Triangle {
     std::array<Vertex, 3> vertices;
-    std::uint32_t base = 0;     ///< index of the base triangle it descends from: a tag, not decided upon
+    std::uint32_t base = 0;     ///< index of the base triangle it descends from: a tag without effect
     std::uint8_t split_by = 0;  ///< NT, SHT and HT bits of the parent's split edges; 0: a base triangle
-    /// VT, TCT, GT bits: tests that kept an edge whole which NT, SHT or HT would split.
+    /// VT, TCT, GT bits: the tests that prevented a split requested by NT, SHT or HT.
     std::uint8_t stopped_by = 0;
-    bool finished = false;  ///< no edge splits; goes round once more for its normals in screen space
+    bool finished = false;  ///< no edge splits; one more pass calculates its normals in screen space
 };
 
 }  // namespace tessera::datapath

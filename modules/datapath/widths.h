@@ -5,14 +5,13 @@
 
 namespace tessera::datapath {
 
-/// Wires per item of each stream, in bits: what a design's buses and buffers cost.
+/// Bits per item of each stream, the cost of a design's buses and buffers.
 struct Widths {
     std::uint32_t base_vertex = 0;  ///< host to Get Triangle: P, N, T, handedness, t
-    std::uint32_t vertex = 0;       ///< in the Triangle Queue: all a vertex carries
+    std::uint32_t vertex = 0;       ///< in the Triangle Queue: all fields of a vertex
     std::uint32_t triangle = 0;     ///< Triangle Queue entry: three vertices, split_by, stopped_by, finished
-    std::uint32_t emitted_vertex = 0;  ///< to Lighting: P's, N's, t
-    std::uint32_t finished_vertex =
-        0;  ///< a vertex of the tessellated mesh, had the host to send it: P', N', t
+    std::uint32_t emitted_vertex = 0;   ///< to Lighting: P's, N's, t
+    std::uint32_t finished_vertex = 0;  ///< a vertex of the tessellated mesh, if the host sent it: P', N', t
 };
 
 constexpr Widths stream_widths(const Formats& f) {

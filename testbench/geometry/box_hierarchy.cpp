@@ -55,7 +55,7 @@ struct Asker {
     double point_rounding;
     double radius;
 
-    /// The last factor makes up for the rounding inside Embree's own box distances.
+    /// The last factor covers the rounding of Embree's own box distances.
     float embree_radius() const { return rounded_up((radius + point_rounding) * (1 + 0x1p-18)); }
 };
 
@@ -85,7 +85,7 @@ BoxHierarchy::BoxHierarchy(std::size_t count, const BoxOf& box) : handles_(std::
     handles_->scene.reset(rtcNewScene(handles_->device.get()));
     RTCGeometry geometry = rtcNewGeometry(handles_->device.get(), RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(count));
-    BoxOf copy = box;  // needed until the hierarchy is built, no longer
+    BoxOf copy = box;  // needed until the hierarchy is built
     rtcSetGeometryUserData(geometry, &copy);
     rtcSetGeometryBoundsFunction(geometry, &bounds, nullptr);
     rtcCommitGeometry(geometry);

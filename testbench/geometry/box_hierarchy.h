@@ -7,10 +7,10 @@
 
 namespace tessera {
 
-/// Boxes sorted for the question which of them lie near a point. Embree's single precision only leaves boxes out: they
-/// are rounded outwards and radii upwards, so none that lies within the radius is ever missed; distances are the
-/// asker's own, in double precision. Built on one thread; several may ask at once. Coordinates are best near
-/// 1 and near 0: far from 0 more boxes than necessary come.
+/// Finds the boxes near a point. Embree's single precision only excludes boxes: boxes are rounded outwards and radii
+/// upwards, so that no box within the radius is missed; the caller calculates distances in double precision. Built on
+/// one thread; queries are thread-safe. Coordinates should be about 1 in size and centred on 0: far from 0 more boxes
+/// than necessary are visited.
 class BoxHierarchy {
   public:
     struct Box {
@@ -32,12 +32,12 @@ class BoxHierarchy {
         }
     };
 
-    /// Empty boxes are allowed, no boxes too. Throws ResourceError when memory runs out.
+    /// Boxes may be empty, and `count` may be 0. Throws ResourceError when memory runs out.
     BoxHierarchy(std::size_t count, const std::function<Box(std::size_t)>& box);
     ~BoxHierarchy();
 
-    /// Calls visit(index) for every box that lies within `radius` of p, and for some that do not, in no useful order;
-    /// visit returns the radius from then on: the old one or a smaller one.
+    /// Calls visit(index) for every box within `radius` of p, and for some farther away, in unspecified order. visit
+    /// returns the radius for the rest of the search: the same or a smaller one.
     template <class Visit>
     void visit_near(const glm::dvec3& p, double radius, Visit&& visit) const {
         query(

@@ -7,17 +7,17 @@
 namespace tessera {
 namespace {
 
-// A box about a triangle across the axes has some ten times its area, about a long thin one far more.
+// The box of a triangle at an angle to the axes has about ten times its area, that of a long thin one far more.
 constexpr double least_thin = 16, most_thin = 4096;
 constexpr unsigned most_halvings = 5;
 
-// Heights over the longest edge, in lengths of it: below thin_height barycentric coordinates are not good enough, below
-// least_height the plane is not known and a triangle is its edges.
+// Heights over the longest edge, relative to its length. Below thin_height barycentric coordinates are too inaccurate;
+// below least_height the plane is undefined and a triangle is treated as its edges.
 constexpr double thin_height = 1e-3, least_height = 1e-8;
 
 using Corners = std::array<glm::dvec3, 3>;
 
-/// Boxes in all: where there are many triangles, memory is dearer than time.
+/// Limit on the number of boxes: with many triangles memory matters more than time.
 std::size_t most_parts(std::size_t triangles) {
     constexpr std::size_t many = 1'000'000;
     return triangles < many ? 8 * triangles : 2 * triangles;
@@ -30,7 +30,7 @@ BoxHierarchy::Box box_about(const Corners& triangle) {
     return box;
 }
 
-/// At its longest edge.
+/// Halves a triangle at its longest edge.
 std::array<Corners, 2> halves(const Corners& triangle) {
     const auto& [a, b, c] = triangle;
     const auto squared = [](const glm::dvec3& edge) { return glm::dot(edge, edge); };
@@ -44,8 +44,8 @@ std::array<Corners, 2> halves(const Corners& triangle) {
     return bc >= ca ? halve(b, c, a) : halve(c, a, b);
 }
 
-/// Calls at(path) for the parts of a triangle, halved as long as a part's box has more than `thin` times its area. A
-/// path is a 1 and then, from the first halving, a bit for each: the second half or not.
+/// Calls at(path) for the parts of a triangle, halved until each part's box has at most `thin` times its area. A path
+/// is a 1 followed by one bit per halving, the first halving first: 1 for the second half.
 template <class At>
 void for_each_part(const Corners& triangle, double thin, unsigned path, const At& at) {
     const BoxHierarchy::Box box = box_about(triangle);
@@ -82,8 +82,8 @@ glm::dvec3 closest_point_of_edge(const glm::dvec3& a, const glm::dvec3& b, const
     return squared > 0 ? a + std::clamp(glm::dot(ab, p - a) / squared, 0.0, 1.0) * ab : a;
 }
 
-/// By axes along ab, the longest edge, and across it: barycentric coordinates lose all their digits where ab and ac are
-/// nearly parallel.
+/// Uses axes along and across the longest edge, ab: barycentric coordinates lose all accuracy if ab and ac are nearly
+/// parallel.
 glm::dvec3 closest_point_of_thin(const Corners& triangle, const glm::dvec3& p) {
     const auto& [a, b, c] = triangle;
     const glm::dvec3 ab = b - a, ac = c - a, ap = p - a;
@@ -108,8 +108,7 @@ glm::dvec3 closest_point_of_thin(const Corners& triangle, const glm::dvec3& p) {
 
 }  // namespace
 
-// Ericson, Real-Time Collision Detection, 5.1.5: by the Voronoi region of corner, edge or face that p lies
-// in.
+// Ericson, Real-Time Collision Detection, 5.1.5: finds the Voronoi region (corner, edge or face) that contains p.
 glm::dvec3 closest_point(const std::array<glm::dvec3, 3>& triangle, const glm::dvec3& p) {
     const auto& [a, b, c] = triangle;
     const glm::dvec3 ab = b - a, ac = c - a, ap = p - a;
@@ -152,7 +151,7 @@ std::vector<NearestTriangle::Part> NearestTriangle::cut(const TriangleSoup& soup
     double thin = least_thin;
     std::size_t count = 0;
     for (;; thin *= 2) {
-        if (thin > most_thin)  // most triangles have no area, and halving them brings nothing
+        if (thin > most_thin)  // most triangles have no area, and halving them does not help
             thin = std::numeric_limits<double>::infinity();
         count = 0;
         for (const auto& t : soup)
@@ -188,8 +187,8 @@ NearestTriangle::Found NearestTriangle::nearest(const glm::dvec3& p, Guess& gues
             return std::min(radius, within);
         });
     };
-    // As near as the last point was, or a little farther: most likely that is enough, and much less than to the
-    // triangle that was nearest to that point.
+    // Search near the last point's distance first: usually sufficient, and much less than the distance to the triangle
+    // nearest to that point.
     const double near = 4 * guess.distance;
     const bool far = !(near < radius);
     if (!far)

@@ -12,7 +12,7 @@ namespace tessera {
 namespace {
 
 constexpr std::size_t chunk_points = 256;
-constexpr std::uint64_t usual_looks = 32;  // at a point in no more than a few boxes
+constexpr std::uint64_t usual_looks = 32;  // for a point in a few boxes
 constexpr std::size_t pilot_points = 256;
 
 /// Every vertex once, in the order of its first use, then every centroid.
@@ -44,10 +44,10 @@ class Points {
     const glm::dvec3& vertex(std::size_t number) const { return position(vertices_[number]); }
 
     const TriangleSoup& soup_;
-    std::vector<std::uint32_t> vertices_;  // each by a corner that it is
+    std::vector<std::uint32_t> vertices_;  // each by one of its corners
 };
 
-/// Which of `all` points is measured as number k of `chosen`.
+/// Index among `all` points of the k-th of the `chosen` points.
 std::size_t choice(std::size_t k, std::size_t chosen, std::size_t all) {
     if (chosen == all)
         return k;
@@ -56,7 +56,7 @@ std::size_t choice(std::size_t k, std::size_t chosen, std::size_t all) {
                     static_cast<std::size_t>(place / static_cast<double>(chosen) * static_cast<double>(all)));
 }
 
-/// All points, or a power of two.
+/// Number of points to measure: all, or a power of two.
 std::size_t affordable(const Points& points, const NearestTriangle& nearest, std::uint64_t most) {
     const std::size_t pilots = std::min(pilot_points, points.size());
     std::uint64_t boxes = 0;
@@ -73,8 +73,8 @@ std::size_t affordable(const Points& points, const NearestTriangle& nearest, std
 
 }  // namespace
 
-// Were a part q of the points farther away, the n that were measured would all have missed it with a probability of at
-// most (1 - q)^n: of n equal parts, each holding q_i, it is the product of 1 - q_i, largest where all q_i are q.
+// If a fraction q of the points were farther away, all n measured points would have missed it with a probability of at
+// most (1 - q)^n: with fractions q_i of n equal parts it is the product of 1 - q_i, largest if all q_i equal q.
 double SurfaceDistance::unseen(double confidence) const {
     if (measured >= points)
         return 0;

@@ -9,7 +9,7 @@
 
 namespace tessera {
 
-/// What is kept of a finished triangle, in the hardware's formats.
+/// A finished triangle, in the hardware's formats.
 struct EmittedTriangle {
     struct Corner {
         datapath::Position position;           ///< P
@@ -25,9 +25,9 @@ struct EmittedTriangle {
     };
     std::array<Corner, 3> corners;
     std::uint32_t base = 0;
-    std::uint8_t split_by = 0;    ///< NT, SHT, HT bits of the split that made it; 0: a base triangle
+    std::uint8_t split_by = 0;    ///< NT, SHT, HT bits of the parent's split; 0: a base triangle
     std::uint8_t stopped_by = 0;  ///< VT, TCT, GT bits
-    bool culled = false;          ///< faces away and did not go to Lighting
+    bool culled = false;          ///< faces away and was not sent to Lighting
 
     static EmittedTriangle from(const datapath::Triangle& triangle, bool culled) {
         EmittedTriangle result;
@@ -47,19 +47,19 @@ struct EmittedTriangle {
     }
 };
 
-/// Every finished triangle of a run, culled ones too.
+/// All finished triangles of a run, including culled ones.
 struct EmittedMesh {
     std::vector<EmittedTriangle> triangles;
 
-    /// A triangle was split while the Highlight Test was true: only then do files speak of it.
+    /// Whether a triangle was split with the Highlight Test true; otherwise files do not mention the test.
     bool has_highlight_splits() const {
         return std::any_of(triangles.begin(), triangles.end(), [](const EmittedTriangle& triangle) {
             return (triangle.split_by & datapath::highlight_bit) != 0;
         });
     }
 
-    /// An order that does not depend on when a triangle was finished: by base triangle, then texture coordinates, then
-    /// displaced positions. Two runs that emit the same set of triangles so leave identical files.
+    /// Sorts by base triangle, then texture coordinates, then displaced positions, so that runs that emit the same
+    /// triangles in any order write identical files.
     void sort() {
         const auto key = [](const EmittedTriangle& t) {
             const auto& c = t.corners;

@@ -9,10 +9,10 @@
 
 namespace tessera {
 
-/// The host CPU (paper figure 7): fills the three tables through the memories' debug transport before time starts,
-/// then sends the base triangles, one after another, to Get Triangle.
-/// Held back by Get Triangle while the Triangle Queue is at its watermark. In timed mode it offers the next triangle in
-/// the cycle in which the last was taken: the bus is not what is looked at.
+/// The host CPU (paper figure 7): fills the three tables through the memories' debug transport before simulation
+/// starts, then sends the base triangles, one after another, to Get Triangle.
+/// Get Triangle blocks it while the Triangle Queue is at its watermark. In timed mode it offers the next triangle in
+/// the cycle in which the last was accepted: the host's bus is not modelled.
 class Host : public sc_core::sc_module, public CycleProcess {
   public:
     StreamOutput<datapath::Triangle> to_get_triangle{"to_get_triangle"};
@@ -23,7 +23,7 @@ class Host : public sc_core::sc_module, public CycleProcess {
     /// `setup` must outlive the host.
     Host(const sc_core::sc_module_name& name, const MachineSetup& setup, CycleScheduler& clock);
 
-    /// Sends the base triangles once more when the simulation goes on: another frame of the same job.
+    /// Sends the base triangles again when the simulation continues: another frame of the same job.
     void send_again();
 
     bool idle() const { return sent_ == setup_.base_triangles.size() && to_get_triangle.free(); }

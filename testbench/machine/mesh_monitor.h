@@ -9,7 +9,7 @@
 
 namespace tessera {
 
-/// Listens to Pass or Tessellate and keeps every finished triangle. At `limit` of them it stops the simulation.
+/// Records every finished triangle of Pass or Tessellate. Stops the simulation at `limit` triangles.
 class MeshMonitor : public sc_core::sc_object, public tlm::tlm_analysis_if<datapath::Triangle> {
   public:
     MeshMonitor(const char* name, bool back_face_culling, std::uint64_t limit)
@@ -29,7 +29,7 @@ class MeshMonitor : public sc_core::sc_object, public tlm::tlm_analysis_if<datap
             triangle, back_face_culling_ && datapath::faces_away(v[0].screen, v[1].screen, v[2].screen)));
     }
 
-    /// Called now and then with the number of triangles so far.
+    /// `progress` is called occasionally with the number of triangles so far.
     void on_progress(std::function<void(std::size_t)> progress) { progress_ = std::move(progress); }
 
     bool limit_reached() const { return limit_reached_; }

@@ -9,11 +9,11 @@
 
 namespace tessera {
 
-/// Where the machine ends (paper figure 7): takes every lit triangle and counts it. Never holds back.
+/// The machine's sink (paper figure 7): accepts and counts every lit triangle. Never blocks.
 class Rasteriser : public sc_core::sc_module, public CycleProcess {
   public:
     StreamInput<LitTriangle> from_lighting{"from_lighting"};
-    /// Every triangle taken: for the work check.
+    /// Every accepted triangle, for the transport check.
     tlm::tlm_analysis_port<LitTriangle> taken{"taken"};
 
     Rasteriser(const sc_core::sc_module_name& name, CycleScheduler& clock, const StallParameters& stalls)

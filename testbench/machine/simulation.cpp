@@ -33,7 +33,7 @@ void start() {
     try {
         sc_core::sc_start();
     } catch (const sc_core::sc_report& report) {
-        // The kernel makes a report of its own of what a process throws.
+        // The kernel converts exceptions of a process to its own report.
         if (report.get_msg() == std::string_view(std::bad_alloc().what()))
             throw std::bad_alloc();
         throw;

@@ -8,20 +8,20 @@
 
 namespace tessera {
 
-/// The machine with all that surrounds it: host, rasteriser, mesh monitor. One per process (SystemC elaborates once).
+/// The machine with host, rasteriser and mesh monitor. One per process (SystemC elaborates once).
 struct Simulation {
-    /// `setup` must outlive the simulation. triangle_limit: see MeshMonitor. cycles_without_progress: timed mode, how
-    /// long no triangle may be decided; 0: for ever.
+    /// `setup` must outlive the simulation. triangle_limit: see MeshMonitor. cycles_without_progress: in timed mode,
+    /// the limit on cycles without a decided triangle; 0: none.
     /// units: see Pipeline; null: the machine's own.
     Simulation(const MachineSetup& setup, std::uint64_t triangle_limit,
                std::uint64_t cycles_without_progress = 0, UnitFactory* units = nullptr);
 
-    /// Runs until nothing is left to do. Empty: everything drained. Else a deadlock or livelock: what
-    /// happened, and what each unit holds and waits for, one line each. Throws ResourceError when the mesh
-    /// reaches the triangle limit, or the Triangle Queue its capacity where that is an error.
+    /// Runs until no work is left. Returns an empty string if all units drained, else a description of the deadlock or
+    /// livelock with one line per unit: its contents and what it waits for. Throws ResourceError if the mesh reaches
+    /// the triangle limit, or the Triangle Queue its capacity where that is an error.
     std::string run();
 
-    /// Timed mode: cycles from the first to the end of the last in which anything happened.
+    /// Timed mode: cycles from the first to the end of the last with any activity.
     std::uint64_t cycles() const { return cycles_; }
 
     const MachineSetup& setup;

@@ -13,7 +13,8 @@ constexpr std::size_t triangles_between_progress = 256;
 
 using BaseTriangles = std::vector<std::array<golden::Vertex, 3>>;
 
-/// `allowed` of the largest generation. Half of the progress is golden's run, which is taken to have as many triangles.
+/// `allowed` is called with the largest generation. Golden's run counts as half of the progress and is assumed to have
+/// as many triangles as the hardware's.
 template <typename AllowedAt>
 EndToEndResult compare(const MachineSetup& setup, const BaseTriangles& base, const golden::Map& map,
                        golden::Parameters parameters, const EmittedMesh& hardware, AllowedAt allowed,
@@ -69,7 +70,7 @@ EndToEndResult compare(const MachineSetup& setup, const BaseTriangles& base, con
                                         d.max * model,
                                         d.rms * model};
     };
-    // One after the other, each on both cores: of two Embree devices at a time, releasing one may abort without memory.
+    // One after the other: with two Embree devices at once, releasing one may abort when memory runs out.
     tell(0.5);
     result.hardware_to_golden = measure(hardware_soup, golden_soup);
     tell(0.75);
@@ -78,7 +79,7 @@ EndToEndResult compare(const MachineSetup& setup, const BaseTriangles& base, con
     return result;
 }
 
-/// Of two unit normals of one base triangle, the largest |n - m|.
+/// The largest |n - m| of two unit normals n, m of one base triangle.
 double largest_turn(const BaseTriangles& base) {
     double turn = 0;
     for (const auto& t : base)
@@ -87,7 +88,7 @@ double largest_turn(const BaseTriangles& base) {
     return turn;
 }
 
-/// All normals of each base triangle are the same unit vector of an axis: nothing rounds them, or their means.
+/// Whether all normals of each base triangle are one unit vector along an axis, so that they and their means are exact.
 bool normals_are_exact(const BaseTriangles& base) {
     return largest_turn(base) == 0 && std::all_of(base.begin(), base.end(), [](const auto& t) {
                const glm::dvec3 n = glm::abs(t[0].normal);

@@ -11,30 +11,29 @@
 
 namespace tessera {
 
-/// The hardware's mesh against the golden model's own, run end to end.
+/// Comparison of the hardware's mesh with the golden model's own, run end to end.
 ///
-/// A decision that flips near its threshold leads to another local mesh of the same surface: counts and
-/// distances tell how much that amounts to.
+/// A decision that flips near its threshold changes the triangulation locally, of the same surface. Triangle counts and
+/// distances measure the effect.
 struct EndToEndResult {
-    /// From points on one surface (every vertex, every triangle's centroid) to the nearest point of the
-    /// other.
+    /// Distances from points on one surface (every vertex, every triangle's centroid) to the other.
     struct Distance {
         std::uint64_t points = 0;
-        /// Of the points; fewer than all where that would take too long (surface_distance.h).
+        /// Points measured; fewer than all if that would take too long (surface_distance.h).
         std::uint64_t measured = 0;
-        /// With the confidence below, at most this part of the points is farther away than the maximum.
+        /// With the confidence below, at most this fraction of the points is farther away than the maximum.
         double unseen = 0;
-        double farther = 0;  ///< percent of those measured, farther away than Allowed::rounding
+        double farther = 0;  ///< percent of the measured points farther away than Allowed::rounding
         double max_world = 0, rms_world = 0;                ///< the machine's world units
         double max_position_lsb = 0, rms_position_lsb = 0;  ///< LSB of the position's format
         double max_model = 0, rms_model = 0;                ///< the model's units
     };
-    /// What the result is judged by: rounding moves a point of the surface a little, and a part of the surface may be
-    /// triangulated otherwise, since decisions flip near their thresholds. Model units.
+    /// The allowed differences: rounding moves points of the surface, and parts of the surface may be triangulated
+    /// differently, since decisions flip near their thresholds. Model units.
     struct Allowed {
-        double triangles = 100;      ///< percent: more or fewer
-        double rounding = INFINITY;  ///< the farthest that rounding moves a vertex
-        double displacement = 0;     ///< between two displacements of one point of the base surface
+        double triangles = 100;      ///< percent more or fewer
+        double rounding = INFINITY;  ///< largest movement of a vertex by rounding
+        double displacement = 0;     ///< largest distance of two displacements of one base surface point
     };
 
     static constexpr double confidence = 0.999;
@@ -43,49 +42,48 @@ struct EndToEndResult {
     std::uint64_t golden_triangles = 0;
     std::uint64_t golden_edges = 0;  ///< evaluated
     int golden_largest_generation = 0;
-    std::uint64_t bound = 0;  ///< triangles at which golden's run gives up: 4 * hardware's + 1000
-    bool bound_hit = false;   ///< it did: golden's mesh is incomplete, no distances
+    std::uint64_t bound = 0;  ///< triangles at which golden's run stops: 4 * hardware's + 1000
+    bool bound_hit = false;   ///< golden's run stopped: its mesh is incomplete, no distances
 
     Distance hardware_to_golden;
     Distance golden_to_hardware;
     Allowed allowed;
 
-    /// Golden's triangles beyond the hardware's, in percent of these.
+    /// Excess of golden's triangles over the hardware's, in percent of the hardware's.
     double more_triangles() const;
     double rms_model() const { return std::max(hardware_to_golden.rms_model, golden_to_hardware.rms_model); }
     double max_model() const { return std::max(hardware_to_golden.max_model, golden_to_hardware.max_model); }
     double farther() const { return std::max(hardware_to_golden.farther, golden_to_hardware.farther); }
-    /// Percent of the points. An edge decided otherwise adds a triangle on each of its sides, two of N. It
-    /// moves its own vertex and the centroids of at most four triangles a side: 9 of the 1.5 N points.
+    /// Percent of the points. An edge with the opposite decision adds one triangle per side, two of N in all. It
+    /// affects its own vertex and the centroids of at most four triangles per side: 9 of the 1.5 N points.
     double allowed_farther() const { return 3 * allowed.triangles; }
-    /// The points within `rounding` and those farther away, which are within `displacement`.
+    /// From the points within `rounding` and the points farther away, which are within `displacement`.
     double allowed_rms_model() const {
         return allowed.rounding + std::sqrt(farther() / 100) * allowed.displacement;
     }
     bool passed() const;
 };
 
-/// Golden from the job itself (GoldenJob), judged. Camera, heights, normal map and thresholds are golden's
-/// own, positions and normals are not rounded. Map values (to codes) and texture coordinates are, as in the
-/// hardware (the base's to nearest, midpoints down): reading a texel is discontinuous, so that without it an
-/// LSB would decide on a whole texel.
-/// `progress`: told the part done, 0..1, now and then; null: nobody.
-/// `base_triangles`: which of the mesh's triangles the machine was given (SetupResult).
-/// `allowed_triangles`: in percent; infinite where the machine's values saturated, which golden's do not.
-/// Where both cut the same triangles, a point of one surface lies within r of the other; the rest is at most
-/// a share f of the points (allowed_farther), and lies within h. So
+/// Runs golden from the job itself (GoldenJob) and judges the result. Camera, heights, normal map and thresholds are
+/// golden's own; positions and normals are not rounded. Map values (to codes) and texture coordinates are rounded as in
+/// the hardware (the base's to nearest, midpoints down): reading a texel is discontinuous, so that otherwise one LSB of
+/// t could select another texel.
+/// `progress`: called with the fraction done, 0..1; may be null.
+/// `base_triangles`: indices of the mesh's triangles that the machine received (SetupResult).
+/// `allowed_triangles`: in percent; infinite if values of the machine saturated, since golden's do not.
+/// Where both split the same triangles, a point of one surface lies within r of the other. The other points are at most
+/// a fraction f of all (allowed_farther) and lie within h. Hence
 ///     points farther than r <= f      RMS <= r + sqrt(points farther than r) h
-/// r: per axis (G / 2 + 2) LSB of the position after G generations and, by the normal, 2 (G + 1) LSB of it
-/// times the largest displacement; nothing by the normals of a plane across an axis, which are exact. h: over
-/// one point of the base surface, |a n - b m| <= |a - b| + |b| |n - m| for displacements a, b along normals
-/// n, m of one base triangle.
+/// r: per axis, after G generations, (G / 2 + 2) LSB of the position plus 2 (G + 1) LSB of the normal times the largest
+/// displacement; the second term is 0 for a plane perpendicular to an axis, whose normals are exact. h: at a point of a
+/// base triangle, |a n - b m| <= |a - b| + |b| |n - m| for displacements a, b along normals n, m of the triangle.
 EndToEndResult compare_end_to_end(const MachineSetup& setup, const GoldenJob& golden,
                                   const std::vector<std::uint32_t>& base_triangles,
                                   const EmittedMesh& hardware, double allowed_triangles,
                                   const std::function<void(double)>& progress = nullptr);
 
-/// Golden from the machine's own registers, tables and base triangles, dequantised. Not judged. Both are
-/// deterministic, on both cores, and take about 300 bytes per triangle of both meshes together.
+/// Runs golden from the machine's own registers, tables and base triangles, dequantised. Not judged. Both functions are
+/// deterministic, multi-threaded, and take about 300 bytes per triangle of both meshes together.
 EndToEndResult compare_end_to_end(const MachineSetup& setup, const GoldenInputs& inputs,
                                   const EmittedMesh& hardware);
 

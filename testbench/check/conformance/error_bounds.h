@@ -9,20 +9,19 @@
 
 namespace tessera {
 
-/// How far the hardware may lie from the golden model, both starting from the same (dequantised) operands.
-/// Derived from the formats and from the rounding that each operation under modules/datapath states, never
-/// from what was seen.
+/// Bounds on the hardware's error against the golden model, both starting from the same (dequantised) operands. Derived
+/// from the formats and the documented rounding of each operation in modules/datapath, not from observation.
 ///
-/// In golden's units: world, texels, pixels, components of unit vectors. One LSB of a format is written u
-/// below. A dvec3 bounds the absolute error per component. |.| is taken per component unless it is a length.
-/// First order in the errors only where a vector is normalised; what lies beyond is bounded there too.
+/// In golden's units: world, texels, pixels, components of unit vectors. u below is one LSB of a format. A dvec3 bounds
+/// the absolute error per component. |.| is taken per component unless it is a length. Only normalisation is
+/// linearised; the remainder is bounded there too.
 ///
-/// Rounding to nearest is monotone: where golden's value v is known and what the hardware rounds is off by at
-/// most e, the result lies in round(v - e) .. round(v + e), which is often one value. The final error is
+/// Rounding to nearest is monotone: if golden's value is v and the hardware's value before rounding differs from it by
+/// at most e, the result lies in round(v - e) .. round(v + e), which is often one value. The final error is
 /// bounded by the farther end, at most e + u/2 and often much less.
 class ErrorBounds {
   public:
-    /// Where hardware minus golden must lie.
+    /// The allowed range of hardware minus golden.
     struct Interval {
         double low = 0, high = 0;
         static Interval within(double bound) { return {-bound, bound}; }
@@ -40,18 +39,18 @@ class ErrorBounds {
     Interval direction_midpoint() const { return {-normal_lsb_ / 2, 0}; }
     Interval texture_midpoint() const { return {-texture_lsb_ / 2, 0}; }
 
-    /// N_ij, T_ij: the mean is rounded down, by u/2 where the sum is odd, then normalised. `mean`,
-    /// `direction`, `length`: golden's mean, its direction and its length.
+    /// N_ij, T_ij: the mean is rounded down, by u/2 if the sum is odd, then normalised. `mean`, `direction`,
+    /// `length`: golden's mean, its direction and its length.
     glm::dvec3 inserted_direction(const glm::dvec3& mean, const glm::dvec3& direction, double length) const {
         return normalised(direction, length, left_by_rounding_down(mean, normal_lsb_));
     }
 
-    /// N' = bump(N, T, N_d); `n_error`, `t_error` bound the errors of N and T (zero for a base vertex's).
-    /// `bumped`, `length`: golden's result and the length it had before normalising.
+    /// N' = bump(N, T, N_d); `n_error`, `t_error` bound the errors of N and T (zero for a base vertex).
+    /// `bumped`, `length`: golden's result and its length before normalisation.
     glm::dvec3 displaced_normal(const glm::dvec3& n, const glm::dvec3& n_error, const glm::dvec3& t,
                                 const glm::dvec3& t_error, const glm::dvec3& map_normal,
                                 const glm::dvec3& bumped, double length) const {
-        // B = N x T, rounded: with N + e, T + f what is rounded is off by N x f + e x T + e x f.
+        // B = N x T, rounded: with N + e, T + f the error before rounding is N x f + e x T + e x f.
         const glm::dvec3 b_error =
             after_rounding(glm::cross(n, t),
                            cross_bound(glm::abs(n), t_error) + cross_bound(n_error, glm::abs(t)) +
@@ -60,16 +59,15 @@ class ErrorBounds {
         // The sum is linear in T, B and N; N_d is the same on both sides.
         const glm::dvec3 sum_error = std::abs(map_normal.x) * t_error + std::abs(map_normal.y) * b_error +
                                      std::abs(map_normal.z) * n_error;
-        // No error so far and the sum is zero: zero on both sides.
+        // A zero sum without error is zero on both sides.
         if (length == 0 && sum_error == glm::dvec3(0))
             return glm::dvec3(0);
         // bump.h: the sum is rounded with two more fraction bits, u/8.
         return normalised(bumped, length, sum_error + normal_lsb_ / 8);
     }
 
-    /// P' = P + h N, h = S d + bias; `p`, `height`: golden's P and h. displace.h: P was rounded down (not for
-    /// a base vertex: then there is nothing to round), h to nearest, the product to nearest. Before that last
-    /// rounding:
+    /// P' = P + h N, h = S d + bias; `p`, `height`: golden's P and h. displace.h: P was rounded down (a base
+    /// vertex's is exact), h to nearest, the product to nearest. The error before the last rounding:
     ///     P + a + (h + b)(N + f) - (P + h N) = a + h f + b (N + f).
     glm::dvec3 displaced_position(const glm::dvec3& p, double height, const glm::dvec3& n,
                                   const glm::dvec3& n_error, const glm::dvec3& displaced) const {
@@ -84,15 +82,15 @@ class ErrorBounds {
     struct Screen {
         double x = 0, y = 0, w = 0;
         double near_plane =
-            0;  ///< of w as compared with the near plane: not yet rounded to the position's format
+            0;  ///< error of w in the near plane's compare, before rounding to the position's format
     };
 
-    /// Transform of P', which is off by up to `p_error`. `w`, `pixels`: golden's.
-    ///     W = row_w . P' is exact but for P': off by dW = sum |row_w| p_error; w is W rounded to nearest.
-    ///     x = X / W: (X + dX) / (W + dW) - x = (dX - x dW) / (W + dW), without neglect, so before the
-    ///     division's own error at most sum |row_x - x row_w| p_error / W_min, W_min the least W of a vertex
-    ///     in front. transform.h: the division adds |x| 2^-28, then x is rounded to nearest.
-    /// x and y mean something only where golden is in front.
+    /// Transform of P' with error up to `p_error`. `w`, `pixels`: golden's.
+    ///     W = row_w . P' is exact except for P': its error is dW = sum |row_w| p_error; w is W rounded to nearest.
+    ///     x = X / W: (X + dX) / (W + dW) - x = (dX - x dW) / (W + dW) exactly, so before the division's own
+    ///     error at most sum |row_x - x row_w| p_error / W_min, W_min the least W of a vertex in front.
+    ///     transform.h: the division adds |x| 2^-28, then x is rounded to nearest.
+    /// x and y are valid only if golden's vertex is in front.
     Screen screen(const golden::Parameters& parameters, const glm::dvec3& p, const glm::dvec3& p_error,
                   double w, const glm::dvec2& pixels) const {
         const auto sum = [](const glm::dvec4& row, const glm::dvec3& v) {
@@ -119,7 +117,7 @@ class ErrorBounds {
         return result;
     }
 
-    /// N' . H, H the same on both sides; `n_error` bounds the errors of N'. edge_tests.h rounds nothing:
+    /// N' . H, H the same on both sides; `n_error` bounds the errors of N'. edge_tests.h is exact:
     ///     (N' + e) . H - N' . H = e . H, at most sum |e_c| |H_c|.
     double cosine(const glm::dvec3& n, const glm::dvec3& n_error, const glm::dvec3& half_vector) const {
         const glm::dvec3 h = glm::abs(half_vector);
@@ -127,8 +125,7 @@ class ErrorBounds {
     }
 
   private:
-    /// Golden's own: relative error of a few double operations, against the sum of their terms' absolute
-    /// values.
+    /// Golden's own error over a few double operations, relative to the sum of the terms' absolute values.
     static constexpr double double_rounding = 0x1p-50;
 
     static double after_rounding(double value, double error, double lsb) {
@@ -139,22 +136,22 @@ class ErrorBounds {
         return {after_rounding(value.x, error.x, lsb), after_rounding(value.y, error.y, lsb),
                 after_rounding(value.z, error.z, lsb)};
     }
-    /// Of a mean of two integers: 0 or u/2.
+    /// Rounding error of a mean of two integers: 0 or u/2.
     static glm::dvec3 left_by_rounding_down(const glm::dvec3& mean, double lsb) {
         const glm::dvec3 v = mean / lsb;
         return (v - glm::floor(v)) * lsb;
     }
-    /// |a x b| where a and b may have any sign.
+    /// |a x b| for components of any sign.
     static glm::dvec3 cross_bound(const glm::dvec3& a, const glm::dvec3& b) {
         return {a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x};
     }
 
     /// normalise(m + e) - n, n = m / |m|, |e| <= `error` per component, rho = |e| / |m| as lengths.
     ///     First order: (e - n (n . e)) / |m|, so sum_k |delta_ck - n_c n_k| error_k / |m|.
-    ///     Beyond: at most 0.6 rho^2 / (1 - rho) (0.577, found by sampling rho in 0..1 and every angle).
-    ///     Without expansion: the turn is at most asin(rho), a chord of at most sqrt(2) rho; from rho = 1 on
-    ///     any unit vector, or zero, may come out: 1 + |n_c|. Nothing can come of a zero vector but zero.
-    /// normalise.h: the reciprocal root is off by 2^-28 of itself, then the component is rounded to nearest.
+    ///     Remainder: at most 0.6 rho^2 / (1 - rho) (0.577, found by sampling rho in 0..1 and every angle).
+    ///     Without expansion: the angle is at most asin(rho), a chord of at most sqrt(2) rho; for rho >= 1 the
+    ///     result may be any unit vector or zero: 1 + |n_c|. A zero vector gives zero.
+    /// normalise.h: the reciprocal root has a relative error of 2^-28, then the component is rounded to nearest.
     glm::dvec3 normalised(const glm::dvec3& n, double length, const glm::dvec3& error) const {
         const glm::dvec3 size = glm::abs(n);
         const double error_length = glm::length(error);

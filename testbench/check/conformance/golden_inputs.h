@@ -11,7 +11,7 @@
 
 namespace tessera {
 
-/// From the hardware's integers to the golden model's doubles. Exact: every format fits a double.
+/// Converts the hardware's integers to the golden model's doubles. Exact: every format fits a double.
 class Dequantise {
   public:
     explicit Dequantise(const datapath::Formats& formats)
@@ -29,8 +29,8 @@ class Dequantise {
     }
     glm::dvec2 texture(const datapath::TexCoord& t) const { return glm::dvec2(t.u, t.v) * texture_lsb_; }
 
-    /// Everything but N's, which the golden model does not have. P', N' and P's mean something only where the
-    /// hardware has calculated them.
+    /// All fields except N's, which the golden model lacks. P', N' and P's are valid only if the hardware has
+    /// calculated them.
     golden::Vertex vertex(const datapath::Vertex& v) const {
         golden::Vertex g;
         g.position = position(v.position);
@@ -51,13 +51,12 @@ class Dequantise {
     double position_lsb_, normal_lsb_, texture_lsb_, screen_lsb_, view_distance_lsb_;
 };
 
-/// The registers as the golden model's parameters. Exact but for the transform's fourth column and the near
-/// plane, 64 bit integers that a double rounds at the 53rd bit.
+/// The registers as the golden model's parameters. Exact except for the transform's fourth column and the near plane,
+/// 64 bit integers that a double rounds to 53 bits.
 golden::Parameters golden_parameters(const datapath::Registers& registers);
 
-/// What golden works on for the scoreboard: map and registers as the hardware holds them, dequantised, so
-/// that the two can differ in arithmetic only. Sound, as each entry is judged against golden's own
-/// (setup_check.h). Memory: 36 bytes per texel.
+/// The scoreboard's inputs to golden: the hardware's map and registers, dequantised, so that both sides can differ in
+/// arithmetic only. setup_check.h compares each entry with golden's own. Memory: 36 bytes per texel.
 struct GoldenInputs {
     golden::Map map;
     golden::Parameters parameters;

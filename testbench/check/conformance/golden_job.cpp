@@ -25,7 +25,7 @@ std::array<double, 2> span_of(const Job& job, const HeightMap& map) {
     return {*low, *high};
 }
 
-/// The displacement in model units that a map value means.
+/// The displacement of a map value, in model units.
 double displacement_of(double value, const Job& job, const HeightMap& map) {
     const auto [low, high] = span_of(job, map);
     const double part = high > low ? (value - low) / (high - low) : 0;

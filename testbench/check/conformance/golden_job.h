@@ -10,12 +10,12 @@
 
 namespace tessera {
 
-/// A job, its mesh and its map as the golden model is told of them: field by field, nothing of the host's but where it
-/// puts the model in the world (ModelScale), which is its own to choose. What the host made of the same job is judged
-/// against this (setup_check.h), and golden's own run starts here (end_to_end.h).
+/// The golden model's inputs, derived from a job, its mesh and its map independently of the host. Only the placement of
+/// the model in the world (ModelScale) is the host's, which is free to choose it. setup_check.h compares the host's
+/// set-up of the same job with this, and golden's own run starts here (end_to_end.h).
 ///
-/// The map's codes are golden's own, of the width that the job asks for: what that width costs is for
-/// `tessera widths` to say. Memory: 12 bytes per texel.
+/// The map's codes are golden's own, of the job's width; `tessera widths` measures the effect of that width. Memory: 12
+/// bytes per texel.
 class GoldenJob {
   public:
     /// `job` must be resolved (resolve_job.h), `mesh` and `height_map` must outlive this.
@@ -28,10 +28,10 @@ class GoldenJob {
     const golden::Parameters& parameters() const { return parameters_; }
     const golden::Map& map() const { return map_; }
 
-    /// A vertex of the base mesh, placed: the first five members.
+    /// A vertex of the base mesh in the world: the first five members.
     golden::Vertex vertex(std::uint32_t index) const;
 
-    /// The code of a texel of the map, before it is rounded.
+    /// The code of a texel of the map before rounding.
     double unrounded_code(std::size_t texel) const;
 
   private:

@@ -7,10 +7,10 @@
 
 namespace tessera {
 
-/// One line saying what differs, then every operand needed to work the case through by hand: the ends (or the
-/// base vertex) as the hardware holds them, what both sides made of them, thresholds and formats. `edge`,
-/// `vertex`: which of the pass's, -1: the other, or the pass as a whole. Hardware values are integers;
-/// golden's are in the same LSB, with fractions.
+/// One line with the difference, then every operand needed to recalculate it by hand: the ends (or the base vertex) as
+/// the hardware holds them, both sides' results, thresholds and formats. `edge`, `vertex`: index within the pass, or -1
+/// if the mismatch is not of an edge or not of a vertex. Hardware values are integers; golden's are in the same LSB,
+/// with fractions.
 std::string mismatch_text(const std::string& what, const datapath::Registers& registers,
                           const golden::Parameters& parameters, const datapath::TrianglePass& pass, int edge,
                           int vertex, const golden::EdgeEvaluation* evaluation,

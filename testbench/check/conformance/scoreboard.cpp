@@ -138,7 +138,7 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
         compare(inserted_texture, t.v, m.texture.y, bounds_.texture_midpoint(), formats.texture, per_texture_,
                 'v', context);
     };
-    // Calculated twice, once in each branch.
+    // Both branches calculate it.
     texture(made.texture);
     texture(tested.texture);
 
@@ -161,7 +161,7 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
                                      made.screen, m, displaced_bound, context);
 
     const auto says = [&](datapath::TestBits bit) { return (tested.tests & bit) != 0; };
-    // All six differences move by no more than N'_ij's components do, and this double subtraction's rounding.
+    // Each of the six differences has N'_ij's error, plus the rounding of the subtraction in double precision.
     const double leeway = std::max({bumped_bound.x, bumped_bound.y, bumped_bound.z}) + 0x1p-50;
     const bool near_threshold =
         inputs_.parameters.enabled.normal &&
@@ -180,8 +180,7 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
     decide(generation_decision, says(datapath::generation_bit), golden.generation_test, false, context);
 
     const bool split = (pass.split >> k & 1) != 0;
-    // Where NT or HT flipped, the decision that follows from the hardware's own; it need not differ from
-    // golden's.
+    // If NT or HT flipped, the decision that follows from the hardware's result; it may equal golden's.
     const bool asked = golden.normal_test != normal_flipped || golden.summed_height_test ||
                        golden.highlight_test != highlight_flipped;
     const bool follows = asked && golden.view_test && golden.tex_coord_test && golden.generation_test;
@@ -195,7 +194,7 @@ bool Scoreboard::compare_highlight(bool hardware, const golden::EdgeEvaluation& 
     const golden::Parameters& parameters = inputs_.parameters;
     const double leeway =
         bounds_.cosine(golden.inserted.vertex.displaced_normal, normal_bound, parameters.half_vector);
-    // What either half of the test may be found to be: in the highlight at least and at most, likewise different.
+    // The least and the greatest result that error bounds allow for each half of the test: in the highlight, different.
     const auto in_highlight = [&](double midpoint_cosine) {
         return std::max(golden.end_cosine, midpoint_cosine) > parameters.highlight_cosine;
     };
@@ -225,8 +224,7 @@ void Scoreboard::compare_diagonal(const datapath::TrianglePass& pass,
     }
     const golden::Subdivision golden = golden::subdivide(split, corners, inputs_.parameters.diagonal);
 
-    // Both list the cut-off corner first, then the quadrilateral's halves, each triangle from any of its
-    // corners.
+    // Both list the cut-off corner first, then the quadrilateral's halves; a triangle may start at any corner.
     const auto same_triangle = [](const std::array<std::uint8_t, 3>& a, const std::array<int, 3>& b) {
         for (std::size_t turn = 0; turn < 3; ++turn)
             if (a[0] == b[turn] && a[1] == b[(turn + 1) % 3] && a[2] == b[(turn + 2) % 3])
@@ -252,7 +250,7 @@ bool Scoreboard::compare_displaced(Value position, Value screen, Value w, const 
     compare_position(displaced.y, golden.displaced_position.y, position_bound.y, 'y');
     compare_position(displaced.z, golden.displaced_position.z, position_bound.z, 'z');
 
-    // Where P' does not fit its format the hardware goes on from the nearest that does: so does golden.
+    // If P' does not fit its format the hardware saturates it; so does golden.
     const glm::dvec3 lowest(static_cast<double>(formats.position.lowest) / per_position_);
     const glm::dvec3 highest(static_cast<double>(formats.position.highest) / per_position_);
     golden::Vertex fitting;
@@ -299,7 +297,7 @@ void Scoreboard::compare(Value value, std::int64_t hardware, double golden, cons
     const auto lowest = static_cast<double>(format.lowest), highest = static_cast<double>(format.highest);
     const double fitting = std::clamp(golden * per_unit, lowest, highest);
     const double error = static_cast<double>(hardware) - fitting;
-    // No two values of a format are further apart than its range; keeps bounds finite at the near plane.
+    // No error exceeds the format's range; keeps bounds finite at the near plane.
     const double range = highest - lowest;
     const double low = std::max(bound.low * per_unit, -range);
     const double high = std::min(bound.high * per_unit, range);

@@ -13,23 +13,23 @@
 
 namespace tessera {
 
-/// Watches every decided triangle (PassOrTessellate::decided) and lets the golden model evaluate the same
-/// edges from the same ends, dequantised.
+/// Checks every decided triangle (PassOrTessellate::decided): the golden model evaluates the same edges from the same
+/// ends, dequantised.
 ///
 /// Values: P_ij, (N_i+N_j)/2, t_ij, N_ij, T_ij, N'_ij, P'_ij, P's_ij, w_ij; P', N', P's, w of a base triangle's
-/// vertices. Each must lie within its bound (error_bounds.h) of golden's, which is first set to the nearest value
-/// that the format holds, as the hardware saturates. N's is not compared: the golden model has none.
+/// vertices. Each must lie within its bound (error_bounds.h) of golden's, which is first saturated to the format like
+/// the hardware's. N's is not compared: the golden model has none.
 ///
-/// Tests: SHT, VT, TCT, GT and the diagonal are exact on both sides, no difference allowed. NT may differ where
-/// golden's largest difference lies within the bound of N'_ij of the threshold, in_front where golden's w lies
-/// within its bound of the near plane, the split decision as far as it follows from such an NT or HT.
-/// HT, compared where the design has it, may differ as NT does (with its own threshold), and where golden's N'_ij . H
+/// Tests: SHT, VT, TCT, GT and the diagonal are exact on both sides and must agree. NT may differ if golden's
+/// largest difference lies within N'_ij's bound of the threshold, in_front if golden's w lies within its bound of the
+/// near plane, and the split decision if it follows from such an NT or HT.
+/// HT, compared if the design has it, may differ as NT does (with its own threshold), and if golden's N'_ij . H
 /// lies within its bound of the cosine and neither end is in the highlight; the ends' own products are exact.
 ///
-/// Everything else is a mismatch: counted, the first kept with all operands. The diagonal is the datapath's
-/// (triangulate.h) from the pass's P': Tessellation applies that same function later.
+/// Any other difference is a mismatch: counted, the first kept with all operands. The diagonal is calculated by the
+/// datapath's function (triangulate.h), which Tessellation applies later, from the pass's P'.
 ///
-/// Cost: no allocation per edge; about 0.55 microseconds an edge, golden included.
+/// Cost: no allocation per edge; about 0.55 microseconds per edge, golden included.
 class Scoreboard : public tlm::tlm_analysis_if<datapath::TrianglePass> {
   public:
     /// `inputs` must outlive the scoreboard.
@@ -78,7 +78,7 @@ class Scoreboard : public tlm::tlm_analysis_if<datapath::TrianglePass> {
     };
     using Interval = ErrorBounds::Interval;
 
-    /// What is being compared, for the text of a mismatch.
+    /// The current comparison, for the text of a mismatch.
     struct Context {
         const datapath::TrianglePass* pass = nullptr;
         int edge = -1;    // or
@@ -90,7 +90,7 @@ class Scoreboard : public tlm::tlm_analysis_if<datapath::TrianglePass> {
     void compare_base_vertex(const datapath::TrianglePass& pass, int k, const golden::Vertex& given);
     void compare_edge(const datapath::TrianglePass& pass, int k, const golden::Vertex& i,
                       const golden::Vertex& j);
-    /// HT; true: it flipped as allowed. `difference_leeway`: of golden's normal_difference.
+    /// Returns whether HT flipped as allowed. `difference_leeway`: error bound of golden's normal_difference.
     bool compare_highlight(bool hardware, const golden::EdgeEvaluation& golden,
                            const glm::dvec3& normal_bound, double difference_leeway, const Context& context);
     void compare_diagonal(const datapath::TrianglePass& pass, const std::array<golden::Vertex, 3>& given);
@@ -101,7 +101,7 @@ class Scoreboard : public tlm::tlm_analysis_if<datapath::TrianglePass> {
     void compare_vector(Value value, const datapath::Direction& hardware, const glm::dvec3& golden,
                         const glm::dvec3& bound, const Context& context);
 
-    /// Hardware's integer against golden's value, in golden's units.
+    /// Compares the hardware's integer with golden's value, in golden's units.
     void compare(Value value, std::int64_t hardware, double golden, const Interval& bound,
                  const datapath::Format& format, double per_unit, char component, const Context& context);
     /// Returns whether it flipped as allowed.

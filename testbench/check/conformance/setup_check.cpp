@@ -97,7 +97,7 @@ class RegisterCheck {
         check_summed_height();
     }
 
-    /// As wide as a position, with the most fraction bits, up to the position's, that hold the farthest position's w.
+    /// w is as wide as a position, with the most fraction bits, up to the position's, with which the farthest w fits.
     void check_view_distance() {
         const Format& hardware = formats_.view_distance;
         format("view_distance", hardware, Format::make_signed(formats_.position.bits, hardware.fraction));
@@ -107,7 +107,7 @@ class RegisterCheck {
         const auto fits = [&](int fraction, double margin) {
             return std::ldexp(farthest * margin, fraction) <= number(hardware.highest);
         };
-        // The register's rows are rounded: a distance that just fits may just not.
+        // The rows in the registers are rounded, so a distance at the limit may or may not fit.
         constexpr double about = 1e-5;
         judge_.require(
             hardware.fraction <= formats_.position.fraction && fits(hardware.fraction, 1 - about) &&
@@ -138,7 +138,7 @@ class RegisterCheck {
                        });
     }
 
-    /// In texels: as wide and as high as the widest and the highest of any base triangle's.
+    /// The largest area in texels, over base triangles, of a triangle's widest times its highest rectangle.
     double largest_rectangle() const {
         double largest = 0;
         for (const auto& corners : golden_.mesh().triangles) {
@@ -175,7 +175,7 @@ class RegisterCheck {
             return fmt::format("the displaced mesh reaches {:.6g} world units, a position {:.6g}",
                                (reach + height) * scale, limit);
         });
-        // The largest that leaves half of the range free: S's register holds twice the range of heights at most.
+        // The largest scale that leaves half of the range free: S's register holds at most twice the range of heights.
         const Job::Formats& asked = job_.formats;
         const double quarter =
             std::ldexp(1.0, static_cast<int>(asked.position_bits - asked.position_fraction) - 3);
@@ -241,7 +241,7 @@ class RegisterCheck {
         judge_.judge("tests.view_threshold", tests.view_threshold,
                      golden.view_threshold * lsb_per_unit(formats_.screen), rounded_down);
         flag("tests.generation_limit", tests.generation_limit, golden.generation_limit);
-        // Without the test its registers are not there, and hold 0.
+        // Without the test its registers do not exist and read as 0.
         const double on = number(golden.enabled.highlight);
         direction("tests.half_vector", tests.half_vector, on * golden.half_vector, on * halfway_rounding());
         const double cosine = on * golden.highlight_cosine * normal * normal;
@@ -251,14 +251,14 @@ class RegisterCheck {
                      on * golden.highlight_normal_threshold * normal, rounded_down);
     }
 
-    /// Of the half vector's components: the axes' error weighs the more, the shorter the sum of the two directions.
+    /// Rounding error of the half vector's components: the axes' error over the length of the two directions' sum.
     double halfway_rounding() const {
         const double length = glm::length(golden::unit(golden_.scene().light) + view_.backward);
         return double_rounding / std::max(length, 1e-9);
     }
 
     void check_displacement() {
-        // d = code / 2^bits: S makes up for the highest code's being one short of 1.
+        // d = code / 2^bits: S compensates for the highest code, which is one step short of 1.
         const double position = lsb_per_unit(formats_.position);
         const double full = golden_.parameters().scale * (golden_.scene().highest_code + 1) * position;
         const double bias = golden_.parameters().bias * position;
@@ -355,7 +355,7 @@ class BaseCheck {
   private:
     using Corners = std::array<golden::Vertex, 3>;
 
-    /// Two corners may have come to lie on one point of both formats: they are less than an LSB apart.
+    /// Whether rounding may have merged two corners in both formats: they are less than an LSB apart.
     bool may_collapse(const Corners& corners) const {
         const double position = lsb_per_unit(formats_.position), texture = lsb_per_unit(formats_.texture);
         for (std::size_t k = 0; k < 3; ++k) {
@@ -367,7 +367,7 @@ class BaseCheck {
         return false;
     }
 
-    /// Tried first, where the triangle need not be there.
+    /// Whether base triangle `index` matches; used where the triangle may be absent.
     bool is(std::size_t index, const Corners& corners) const {
         SetupResult trial;
         BaseCheck check(setup_, golden_, trial);

@@ -8,10 +8,10 @@
 #include "modules/datapath/format.h"
 #include "testbench/check/conformance/setup_check.h"
 
-/// For setup_check.cpp and setup_tables.cpp alone.
+/// Internal to setup_check.cpp and setup_tables.cpp.
 namespace tessera::setup_check {
 
-/// Where hardware minus golden must lie, in LSB.
+/// The allowed range of hardware minus golden, in LSB.
 struct Bound {
     double low, high;
     bool low_allowed = true;
@@ -30,7 +30,7 @@ class Judge {
         result.parts.push_back({name, description});
     }
 
-    /// `golden` in LSB; `leeway`: what golden itself may be off by. `name()` is called for the first that is wrong.
+    /// `golden` in LSB; `leeway`: golden's own error bound. `name()` is called for the first wrong value.
     template <typename Name>
     void judge(Name name, double hardware, double golden, const Bound& bound, double leeway = 0) {
         SetupResult::Part& part = result_.parts[part_];
@@ -51,7 +51,7 @@ class Judge {
     void judge(const char* name, double hardware, double golden, const Bound& bound, double leeway = 0) {
         judge([&] { return name; }, hardware, golden, bound, leeway);
     }
-    /// Soundness of something that the host chooses.
+    /// Checks the validity of a value chosen by the host.
     template <typename Text>
     void require(bool sound, Text text) {
         SetupResult::Part& part = result_.parts[part_];
@@ -81,7 +81,7 @@ inline double lsb_per_unit(const datapath::Format& format) {
     return std::ldexp(1.0, format.fraction);
 }
 
-/// Every entry of the three tables.
+/// Checks every entry of the three tables.
 void check_tables(const MachineSetup& setup, const GoldenJob& golden, Host& host, SetupResult& result);
 
 }  // namespace tessera::setup_check

@@ -14,7 +14,7 @@ using datapath::TableLayout;
 
 using Socket = tlm_utils::simple_initiator_socket<Host>;
 
-/// A table as its memory holds it, row by row.
+/// Reads a table from its memory, row by row.
 class TableReader {
   public:
     TableReader(Socket& socket, const TableLayout& layout)
@@ -57,7 +57,7 @@ class TableCheck {
     template <typename Check>
     void each_entry(Judge& judge, Socket& socket, const TableLayout& layout, int columns, int rows,
                     Check check) {
-        // Another layout has been found wrong with the registers.
+        // A wrong layout has already been reported with the registers.
         if (layout.columns != number(columns) || layout.rows != number(rows) || layout.entry_bytes > 8)
             return;
         TableReader table(socket, layout);
@@ -113,8 +113,8 @@ class TableCheck {
                    });
     }
 
-    /// The components of normalise(-a, -b, 1) where a and b are off by up to `error` of themselves. The first
-    /// falls with a and shrinks with |b|; the second likewise; the third shrinks with both.
+    /// Ranges of the components of normalise(-a, -b, 1) for relative errors of a and b up to `error`. The first falls
+    /// with a and shrinks with |b|; the second likewise; the third shrinks with both.
     struct NormalRange {
         NormalRange(const glm::dvec2& slope, double error) {
             const glm::dvec2 least = glm::abs(slope) * (1 - error), most = glm::abs(slope) * (1 + error);

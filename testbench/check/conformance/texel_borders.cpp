@@ -13,13 +13,13 @@ namespace tessera {
 
 namespace {
 
-/// A file's coordinates are decimals. Those of thirds, cut off, lie beside a border in exact arithmetic, too: 10 % of
-/// edges below one made 0.2 % of the decisions differ on a scanned head's cylinder, the 67 % of 256 texels on
-/// 3 quads 15.6 %.
+/// Coordinates in a file are truncated decimals, so that thirds lie off the border in exact arithmetic, too. With 10 %
+/// of the edges one LSB below a border 0.2 % of the decisions differed (the cylinder of a scanned head), with 67 % (256
+/// texels on 3 quads) 15.6 %.
 constexpr double least_share_of_a_file = 0.2;
 
-/// Whether an axis of `quads` has its base vertices on coordinates that the format holds: quads divide
-/// texels * 2^fraction.
+/// Whether the base vertices of an axis of `quads` quads lie on coordinates of the format: texels * 2^fraction is a
+/// multiple of quads.
 bool held(std::int64_t texels, std::int64_t quads, std::int64_t fraction) {
     return (texels << fraction) % quads == 0;
 }
@@ -34,7 +34,7 @@ std::string axis_remedy(const Job& job, const char* map_key, const char* quads_k
     if (held(texels, quads, fraction))
         return {};
     std::string text;
-    // Eight texels a quad: the first three halvings fall on borders, none beside one.
+    // Eight texels per quad: the first three halvings fall on borders exactly.
     const std::int64_t multiple = 8 * quads;
     const std::int64_t largest = highest(map_key) / multiple * multiple;
     if (job.map.source != MapSource::file && largest > 0)
@@ -64,7 +64,7 @@ void TexelBorders::write(const datapath::TrianglePass& pass) {
 
 bool TexelBorderCount::many() const {
     constexpr double least_share = 0.01;
-    // Two coordinates of three vertices, each below a border by chance in one of 2^fraction.
+    // Two coordinates of three vertices, each below a border with a probability of 1 in 2^fraction.
     const double by_chance = 6 * std::ldexp(1.0, -fraction);
     const double share = edges == 0 ? 0 : static_cast<double>(below) / static_cast<double>(edges);
     return share > least_share && share > 2 * by_chance;

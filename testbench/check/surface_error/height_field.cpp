@@ -12,7 +12,7 @@
 namespace tessera {
 namespace {
 
-constexpr std::int64_t most_cells = std::int64_t{1} << 22;  // of a band
+constexpr std::int64_t most_cells = std::int64_t{1} << 22;  // per band
 
 /// A triangle over the grid: texel coordinates and heights of its corners.
 struct Facet {
@@ -30,7 +30,7 @@ struct Band {
     }
 };
 
-/// Calls at(x, y, height) for the grid points of the band under a triangle, its border among them.
+/// Calls at(x, y, height) for the band's grid points under a triangle, including its border.
 template <class At>
 void cover(const Facet& facet, const Band& band, At&& at) {
     for_texel_centres(facet.texel, band.columns, band.rows,
@@ -56,7 +56,7 @@ std::optional<HeightField> find_height_field(const BaseMesh& base, const HeightM
     const auto corner = [&](std::size_t triangle, std::size_t k) -> const BaseVertex& {
         return base.vertices[base.triangles[triangle][k]];
     };
-    // The triangle largest in texture space fixes the plane and the affine function.
+    // The triangle with the largest texture area defines the plane and the affine function.
     std::size_t largest = base.triangles.size();
     double largest_area = 0;
     const auto texels = [&](std::size_t triangle) {
@@ -94,7 +94,7 @@ std::optional<HeightField> find_height_field(const BaseMesh& base, const HeightM
     field.u = along_p.x * dual_p + along_q.x * dual_q;
     field.v = along_p.y * dual_p + along_q.y * dual_q;
 
-    // Heights count along the normals of the vertices, whichever side of the triangle they are on.
+    // Heights are measured along the vertices' normals, on whichever side of the triangle these lie.
     if (glm::dot(field.normal, corner(largest, 0).normal) < 0)
         field.normal = -field.normal;
     glm::dvec3 low(base.vertices.front().position), high(low);
@@ -103,7 +103,7 @@ std::optional<HeightField> find_height_field(const BaseMesh& base, const HeightM
         high = glm::max(high, vertex.position);
     }
     const double size = glm::length(high - low);
-    // What is looked at first is what is said: all positions, then all normals, then all texture coordinates.
+    // The first violation is reported, in this order: all positions, all normals, all texture coordinates.
     const auto holds = [&](const char* else_why, const auto& test) {
         why = else_why;
         for (std::size_t k = 0; k < base.triangles.size(); ++k)
@@ -145,7 +145,7 @@ VerticalError measure_vertical_error(const HeightField& field, const BaseMesh& b
             "the base mesh repeats the map so often that it has more than 2^32 grid points: compare a "
             "run with fewer repetitions");
     const std::int64_t band_rows = std::max<std::int64_t>(1, most_cells / width);
-    constexpr float outside = -2, uncovered = -1;  // else the error
+    constexpr float outside = -2, uncovered = -1;  // other values are errors
     std::vector<float> errors;
     double squares = 0;
     for (std::int64_t first = rows.first; first <= rows.last; first += band_rows) {
@@ -171,7 +171,7 @@ VerticalError measure_vertical_error(const HeightField& field, const BaseMesh& b
                           result.max = off;
                           result.worst_texel = glm::dvec2(x, y) + 0.5;
                           result.worst_triangle = k;
-                          // undoes field.texel() on the plane
+                          // inverse of field.texel() on the plane
                           const glm::dvec2 away = result.worst_texel - field.texel_origin;
                           const glm::dvec3 across = glm::cross(field.u, field.v);
                           const double area = glm::dot(across, across);

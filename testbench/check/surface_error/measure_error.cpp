@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t chunk_tiles = 32, chunk_triangles = 256;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// All positions, base and emitted, in about -1..1.
+/// Maps all positions, base and emitted, to about -1..1.
 LocalFrame frame_about(const BaseMesh& base, const RecordedMesh& mesh) {
     BoxHierarchy::Box box;
     for (const BaseVertex& vertex : base.vertices)
@@ -52,7 +52,7 @@ void check_base_numbers(const BaseMesh& base, const RecordedMesh& mesh) {
                             k, mesh.triangles[k].base, base.triangles.size()));
 }
 
-/// What both ways to read the map share.
+/// Data shared by both sampling methods.
 class Measurement {
   public:
     Measurement(const BaseMesh& base, const HeightMap& map, const DisplacementOf& displacement,
@@ -92,7 +92,7 @@ class Measurement {
         return {frame_.to_model(local), texture, triangle, t.base, t.generation, t.split_by, t.stopped_by};
     }
 
-    /// The largest of squared distances and where it was; the first of equal ones.
+    /// The largest squared distance and its place; the first of equal ones.
     struct Worst {
         double squared = -1;
         glm::dvec3 position{0};
@@ -171,7 +171,7 @@ class Measurement {
         error.vertices.assign(mesh_.positions.size(), 0);
         constexpr std::size_t nobody = SIZE_MAX;
         std::vector<std::size_t> first_user(mesh_.positions.size(),
-                                            nobody);  // which triangle measures a vertex
+                                            nobody);  // the triangle that measures a vertex
         for (std::size_t k = soup_.size(); k-- > 0;)
             for (const std::uint32_t vertex : mesh_.triangles[k].vertices)
                 first_user[vertex] = k;
@@ -198,13 +198,13 @@ class Measurement {
                     std::max(error.triangles[k].max, static_cast<float>(error.vertices[vertex]));
         if (worst.squared >= 0) {
             result.max = std::sqrt(worst.squared) / frame_.scale;
-            // a mesh without area has no more weight in one place than in another: its worst
+            // a mesh without area has no weights: its maximum
             result.rms = areas > 0 ? std::sqrt(squares / areas) / frame_.scale : result.max;
             result.worst = spot(worst.position, worst.texture, worst.triangle);
         }
     }
 
-    /// The vertices it uses first, its centroid and its parts.
+    /// Measures the vertices that triangle k is the first to use, its centroid and its parts.
     void measure_triangle(std::size_t k, ReferenceNearest& nearest,
                           const std::vector<std::size_t>& first_user, MeshPart& part,
                           SurfaceError& error) const {
@@ -219,7 +219,7 @@ class Measurement {
         for (std::size_t c = 0; c < 3; ++c) {
             const std::uint32_t vertex = t.vertices[c];
             const bool earlier = std::find(t.vertices.begin(), t.vertices.begin() + c, vertex) !=
-                                 t.vertices.begin() + c;  // a collapsed triangle has a vertex twice
+                                 t.vertices.begin() + c;  // a degenerate triangle may have a vertex twice
             if (first_user[vertex] == k && !earlier)
                 error.vertices[vertex] =
                     std::sqrt(measure(corners[c], mesh_.textures[vertex])) / frame_.scale;
@@ -234,7 +234,7 @@ class Measurement {
             return squared;
         };
         const std::uint32_t sides = samples_.subdivision(k);
-        if (sides % 3 == 0)  // else it is the centroid of a part
+        if (sides % 3 == 0)  // otherwise it is the centroid of a part
             take(glm::dvec3(1.0 / 3));
         MeshSamples::for_each_part(sides, [&](const glm::dvec3& b) { squares += take(b); });
         const double count = static_cast<double>(sides) * static_cast<double>(sides);
@@ -245,7 +245,7 @@ class Measurement {
         error.triangles[k].rms = static_cast<float>(std::sqrt(squares / count) / frame_.scale);
     }
 
-    /// Tells how far it is: four walks in all. From the first thread only.
+    /// Reports progress over four walks. Has an effect on the first thread only.
     void advance(std::size_t chunk, std::size_t chunks) const {
         if (limits_.progress && std::this_thread::get_id() == thread_)
             limits_.progress((walks_ + static_cast<double>(chunk + 1) / static_cast<double>(chunks)) / 4);
@@ -258,7 +258,7 @@ class Measurement {
     ReferenceLattice lattice_;
     MeshSamples samples_;
     TriangleSoup soup_;
-    std::optional<NearestTriangle> nearest_;  // of a mesh with triangles
+    std::optional<NearestTriangle> nearest_;  // if the mesh has triangles
     std::thread::id thread_ = std::this_thread::get_id();
     int walks_ = 0;  // done
 };

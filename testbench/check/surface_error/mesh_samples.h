@@ -7,16 +7,16 @@
 
 namespace tessera {
 
-/// Into how many parts each triangle of an emitted mesh is cut to be sampled: m * m congruent ones, m the least that
-/// leaves no part's edge longer than a texel along u, along v or in space. Beyond `most` parts all triangles' m are
-/// lowered by one factor, and density() says to what.
+/// Subdivides each triangle of an emitted mesh into m * m congruent parts for sampling; m is the least for which no
+/// part's edge is longer than a texel along u, along v or in space. Beyond `most` parts every m is lowered by the same
+/// factor; density() gives the result.
 class MeshSamples {
   public:
     /// `map`: texels across and up; `texel`: a texel's length, model units.
     MeshSamples(const RecordedMesh& mesh, const glm::dvec2& map, double texel, std::uint64_t most);
 
     std::uint32_t subdivision(std::size_t triangle) const { return subdivisions_[triangle]; }
-    double density() const { return density_; }  ///< parts per texel along an edge, at least
+    double density() const { return density_; }  ///< minimum parts per texel along an edge
 
     /// Calls at(b) with the barycentric coordinates of each part's centroid.
     template <class At>

@@ -6,7 +6,7 @@
 namespace tessera {
 namespace {
 
-/// The longest edge along u or along v in texels, and at least 1.
+/// The longest edge along u or v in texels, at least 1.
 double extent(const DisplacedSurface::Corners& corners) {
     double longest = 1;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -17,7 +17,7 @@ double extent(const DisplacedSurface::Corners& corners) {
 }
 
 std::uint32_t subdivision_for(double samples) {
-    constexpr double most = 16 * 65536 - 1;  // what a tile's column and row can count
+    constexpr double most = 16 * 65536 - 1;  // limit of a tile's column and row
     return static_cast<std::uint32_t>(std::clamp(std::ceil(samples - 1e-9), 1.0, most));
 }
 
@@ -46,7 +46,7 @@ ReferenceLattice::ReferenceLattice(const DisplacedSurface& surface, std::uint64_
             (count(middle) > most_samples ? too_many : fits) = middle;
         }
         factor = fits;
-        // No coarser than a facet a base triangle, whose longest edge is the longest here.
+        // At least one facet per base triangle: no coarser than the longest edge.
         density_ = std::max(samples_per_texel * factor,
                             1.0 / static_cast<double>(*std::max_element(extents.begin(), extents.end())));
     }

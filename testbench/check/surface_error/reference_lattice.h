@@ -8,18 +8,17 @@
 
 namespace tessera {
 
-/// The dense samples of the displaced surface. A base triangle is cut into n * n congruent triangles, "facets", by
-/// points (i, j), i + j <= n, at barycentric coordinates (n - i - j, i, j) / n, displaced one by one; n is the least
-/// that leaves no edge of a facet longer than a quarter of a texel along u or along v, and at least 4: a base surface
-/// with few texels is curved too.
+/// The dense samples of the displaced surface. A base triangle is subdivided into n * n congruent triangles, "facets",
+/// with displaced points (i, j), i + j <= n, at barycentric coordinates (n - i - j, i, j) / n. n is the least for which
+/// no edge of a facet is longer than a quarter of a texel along u or v, and at least 4, since a base surface with few
+/// texels may be curved.
 ///
-/// Beyond `most_samples` the density is lowered, for all base triangles by one factor, and density() says to
-/// what; to one facet a base triangle at the least, however many there are.
-/// Between the samples the reference is flat; bilinear interpolation is not quite: where its slope along an
-/// axis changes at a texel centre, by a height of s a texel, a facet's edge cuts off a corner of at most
-/// s / 16.
+/// Beyond `most_samples` the density is lowered by one factor for all base triangles, but not below one facet each;
+/// density() gives the result.
+/// The reference is flat between samples, bilinear interpolation is not: where its slope along an axis changes by a
+/// height of s per texel at a texel centre, a facet's edge cuts off a corner of at most s / 16.
 ///
-/// Not stored but evaluated in tiles of 16 by 16 cells, each cell two facets.
+/// Not stored, but evaluated in tiles of 16 by 16 cells of two facets each.
 class ReferenceLattice {
   public:
     static constexpr double samples_per_texel = 4;
@@ -27,10 +26,8 @@ class ReferenceLattice {
 
     ReferenceLattice(const DisplacedSurface& surface, std::uint64_t most_samples);
 
-    std::uint64_t samples() const {
-        return samples_;
-    }                                            ///< points, those of shared edges once per base triangle
-    double density() const { return density_; }  ///< samples per texel along an axis, at least
+    std::uint64_t samples() const { return samples_; }  ///< points; on a shared edge once per base triangle
+    double density() const { return density_; }         ///< minimum samples per texel along an axis
 
     struct Tile {
         std::uint32_t triangle;
@@ -39,19 +36,18 @@ class ReferenceLattice {
     const std::vector<Tile>& tiles() const { return tiles_; }
     std::uint32_t subdivision(std::size_t triangle) const { return subdivisions_[triangle]; }
 
-    /// Facets of a cell (a, b) of a tile by the points' numbers; the second one is missing on the triangle's third
-    /// edge.
+    /// Facets of a cell (a, b) of a tile as indices of points; the second is missing on the triangle's third edge.
     struct Cell {
         std::size_t facets = 0;
         std::array<std::array<std::size_t, 3>, 2> corners{};
     };
 
-    /// A tile's displaced points, local; (a, b) counts from the tile's first cell.
+    /// A tile's displaced points, local; (a, b) is relative to the tile's first cell.
     struct Points {
         static constexpr std::size_t side = tile_cells + 1;
         static constexpr std::size_t number(std::size_t a, std::size_t b) { return b * side + a; }
 
-        std::size_t limit = 0;  ///< points with a + b <= limit are there
+        std::size_t limit = 0;  ///< points with a + b <= limit exist
         std::array<glm::dvec3, side * side> point;
 
         bool has(std::size_t a, std::size_t b) const { return a < side && b < side && a + b <= limit; }
@@ -59,7 +55,7 @@ class ReferenceLattice {
     };
     void evaluate(const Tile& tile, Sampling sampling, Points& points) const;
 
-    /// Where in its base triangle a tile's point lies.
+    /// Barycentric coordinates of a tile's point in its base triangle.
     glm::dvec3 barycentric(const Tile& tile, std::size_t a, std::size_t b) const;
 
     const DisplacedSurface& surface() const { return surface_; }

@@ -8,22 +8,22 @@
 
 namespace tessera {
 
-/// Distance from a point to the facets of the reference lattice. Tiles are found by their boxes, evaluated when needed
-/// and a few thousand of them (about 50 MB) kept; the answer depends on the lattice alone. Quick if points come in an
-/// order in which neighbours are neighbours in space.
+/// Distance from a point to the facets of the reference lattice. Tiles are found by their boxes and evaluated on
+/// demand; a few thousand (about 50 MB) are cached. The result depends on the lattice alone. Fast if successive points
+/// are neighbours in space.
 class ReferenceNearest {
   public:
-    /// `boxes`: of the lattice's tiles, in their order. Both must outlive this.
+    /// `boxes`: the boxes of the lattice's tiles, in order. Both must outlive this.
     ReferenceNearest(const ReferenceLattice& lattice, Sampling sampling,
                      const std::vector<BoxHierarchy::Box>& boxes);
 
-    /// Local units.
+    /// In local units.
     double squared_distance(const glm::dvec3& p);
 
   private:
     using Box = BoxHierarchy::Box;
 
-    /// A tile with boxes about its cells, by powers of two: 8 x 8 of 2 cells, 4 x 4 of 4, 2 x 2 of 8.
+    /// A tile with a hierarchy of boxes: 8 x 8 of 2 x 2 cells, 4 x 4 of 4 x 4, 2 x 2 of 8 x 8.
     struct Kept {
         std::size_t tile = SIZE_MAX;
         ReferenceLattice::Points points;

@@ -9,7 +9,7 @@ namespace {
 using Points = ReferenceLattice::Points;
 
 constexpr std::size_t most_candidates = 32;
-constexpr std::size_t smallest_block = 3;  // in smaller ones every sample asks for itself
+constexpr std::size_t smallest_block = 3;  // in smaller blocks every sample is looked up by itself
 
 }  // namespace
 
@@ -87,7 +87,7 @@ void ReferenceToMesh::measure_blocks() {
     for (std::size_t b = 0; b < Points::side; b += block_)
         for (std::size_t a = 0; a < Points::side; a += block_)
             measure_block(a, b, block_);
-    // The next tile is much like this one. Distances do not depend on the blocks.
+    // The next tile is probably similar. Distances do not depend on the blocks.
     if (blocks_cut_ > blocks_whole_ && block_ > smallest_block)
         block_ = (block_ + 1) / 2;
     else if (blocks_cut_ == 0 && block_ < Points::side && ++tiles_ % 16 == 0)
@@ -97,7 +97,7 @@ void ReferenceToMesh::measure_blocks() {
 NearestTriangle::Found ReferenceToMesh::nearest_candidate(const glm::dvec3& p, double from_centre) const {
     NearestTriangle::Found best;
     double beyond =
-        std::numeric_limits<double>::infinity();  // nothing so far from the centre can be the nearest
+        std::numeric_limits<double>::infinity();  // a triangle this far from the centre cannot be the nearest
     for (const Candidate& candidate : candidates_) {
         if (candidate.from_centre > beyond)
             break;

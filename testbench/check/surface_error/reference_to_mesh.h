@@ -6,29 +6,29 @@
 
 namespace tessera {
 
-/// From every sample of a reference lattice to the nearest point of a mesh, a tile at a time. One a thread.
+/// Distance from every sample of a reference lattice to the nearest point of a mesh, tile by tile. One per thread.
 ///
-/// Samples are so dense that asking for each alone would take minutes. Of a block of samples only the centre
-/// asks: if it is d from the mesh and the block's radius is r, no sample's nearest triangle is farther than
-/// d + 2 r from the centre. Those triangles, nearest first, are all its samples look at; a block that has too
-/// many is cut in four.
+/// Samples are so dense that a look-up for each would take minutes. Only the centre of a block of samples is looked up:
+/// if its distance from the mesh is d and the block's radius is r, no sample's nearest triangle is farther than
+/// d + 2 r from the centre. Samples are compared with these triangles only, nearest first. A block with too many is
+/// divided into four.
 class ReferenceToMesh {
   public:
     struct Sample {
         glm::dvec3 position{0};    ///< local
         glm::dvec2 texture{0};     ///< 0..1 spans the map
         double squared = 0;        ///< distance to the mesh, local
-        std::size_t triangle = 0;  ///< nearest, of equally near ones the first
-        double weight = 0;         ///< the base surface's area it stands for in this tile
+        std::size_t triangle = 0;  ///< nearest; the first of equally near ones
+        double weight = 0;         ///< its share of the base surface's area in this tile
     };
 
-    /// Lattice, soup and the search through it must outlive this. With an empty soup, and no search, tiles
-    /// are evaluated, nothing measured.
+    /// Lattice, soup and the search through it must outlive this. With an empty soup and no search, tiles are evaluated
+    /// but nothing is measured.
     ReferenceToMesh(const ReferenceLattice& lattice, Sampling sampling, const TriangleSoup& soup,
                     const NearestTriangle* nearest);
 
-    /// Calls take(sample) for all points of a tile, in a fixed order; those on the border between tiles come in each.
-    /// Gives the box about the tile's points.
+    /// Calls take(sample) for all points of a tile, in a fixed order; points on a border are part of both tiles.
+    /// Returns the box about the tile's points.
     template <class Take>
     BoxHierarchy::Box measure(std::size_t tile, Take&& take) {
         const BoxHierarchy::Box box = start(tile);
@@ -66,7 +66,7 @@ class ReferenceToMesh {
     std::array<std::uint8_t, ReferenceLattice::Points::side * ReferenceLattice::Points::side> facets_{};
     std::array<NearestTriangle::Found, ReferenceLattice::Points::side * ReferenceLattice::Points::side>
         found_;
-    std::size_t block_ = ReferenceLattice::Points::side;  // samples along a block's side to begin with
+    std::size_t block_ = ReferenceLattice::Points::side;  // initial samples along a block's side
     std::size_t blocks_cut_ = 0, blocks_whole_ = 0, tiles_ = 0;
     std::vector<NearestTriangle::Found> within_;
     std::vector<Candidate> candidates_;

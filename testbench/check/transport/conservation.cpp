@@ -22,7 +22,7 @@ std::uint64_t items(const Unit& unit) {
     return unit.activity().items_in();
 }
 
-/// Of the Tessellation Tests units, however many: what `figure` says of each, summed.
+/// Sum of `figure` over all Tessellation Tests units.
 template <class Figure>
 std::uint64_t sum_over_tests(const Pipeline& pipeline, Figure figure) {
     std::uint64_t sum = 0;
@@ -54,7 +54,7 @@ void add_triangles(Equations& list, const Simulation& simulation) {
              counts.finished - counts.culled);
 }
 
-/// Vertices that go to Tessellation Tests: of three units, each takes those that its edge joins.
+/// Vertices sent to Tessellation Tests. With three units, each receives the two ends of its edge.
 std::uint64_t bumps(const Pipeline& p, std::uint64_t vertices) {
     return p.tessellation_tests.size() == 1 ? vertices : 2 * vertices;
 }
@@ -74,7 +74,7 @@ void add_timed(Equations& list, const Simulation& simulation, std::uint64_t vert
     list.add("triangles in triangle_queue = taken by it", items(p.triangle_queue), p.triangle_queue.taken());
     list.add("triangles in lighting = finished - culled", items(p.lighting), counts.finished - counts.culled);
 
-    // along the geometry branch: a base triangle's vertices, all edges, each new vertex' normal
+    // geometry branch: a base triangle's vertices, all edges, each new vertex's normal
     const std::uint64_t parts = p.get_triangle.parts_sent();
     list.add("parts in calculate_new_p = sent by get_triangle", items(p.calculate_new_p), parts);
     list.add("parts in displace_vertex = sent by get_triangle", items(p.displace_vertex), parts);
@@ -84,7 +84,7 @@ void add_timed(Equations& list, const Simulation& simulation, std::uint64_t vert
     list.add("positions and normals of transform = parts", p.transform.positions() + p.transform.normals(),
              parts);
 
-    // along the tests: vertices end in the Normal Test
+    // tests: vertices end in the Normal Test
     const auto tests = [&](auto figure) { return sum_over_tests(p, figure); };
     list.add("parts in calculate_new_u = vertices and edges",
              tests([](const auto& t) { return items(t.calculate_new_u); }), bumps(p, vertices) + edges);

@@ -8,7 +8,7 @@
 
 namespace tessera {
 
-/// Two counts kept in different places that are one number in any run that drained.
+/// Two counters of different units that must be equal after a run that drained.
 struct Conservation {
     std::string name;
     std::uint64_t left = 0;
@@ -17,11 +17,11 @@ struct Conservation {
     bool holds() const { return left == right; }
 };
 
-/// What goes into one unit came out of another: triangles, parts, edges, reads. In functional mode those that are
-/// counted there.
+/// Each unit receives as many triangles, parts, edges and reads as another sends. In functional mode, only the counts
+/// that exist there.
 std::vector<Conservation> conservation(const Simulation& simulation);
 
-/// The work check's result, and these equations'.
+/// The combined result of the transport check and these equations.
 WorkResult work_result(const TransportCheck& check, const Simulation& simulation);
 
 }  // namespace tessera

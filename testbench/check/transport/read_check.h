@@ -11,19 +11,19 @@
 
 namespace tessera {
 
-/// What read checks found.
+/// The read checks' result.
 struct ReadResult {
     std::uint64_t entries = 0;  ///< compared
-    std::uint64_t wrong = 0;    ///< not what the memory holds
+    std::uint64_t wrong = 0;    ///< different from the memory's
     std::string first_wrong;    ///< empty: none
 
     bool passed() const { return wrong == 0; }
 };
 
-/// Stands before a unit's memory port, passes everything on, and compares what each read brought with what the memory
-/// holds at the addresses that were asked for (debug transport). So a flipped bit is found even where it changes no
-/// decision. Denies DMI. Only in runs that ask for it: timed mode takes a sixth longer, functional mode,
-/// whose reads then go by transaction, three times as long.
+/// Inserted at a unit's memory port. Forwards all transactions and compares the data of each read with the memory's
+/// contents at the requested addresses (debug transport). It detects a flipped bit even if no decision changes. Denies
+/// DMI. Optional: timed mode takes a sixth longer, functional mode, whose reads then use transactions, three times as
+/// long.
 class ReadCheck : public sc_core::sc_module {
   public:
     tlm_utils::passthrough_target_socket<ReadCheck, 32, MemoryProtocol> socket{"socket"};
@@ -35,7 +35,7 @@ class ReadCheck : public sc_core::sc_module {
     const ReadResult& result() const { return result_; }
 
   private:
-    /// A request under way, and a copy of it that nobody downstream can touch.
+    /// A pending request and its copy, which no module downstream can modify.
     struct Asked {
         const MemoryRequest* request = nullptr;
         MemoryRequest copy;

@@ -29,7 +29,7 @@ void add_screen(Hash& hash, const datapath::ScreenPosition& screen) {
     hash.add(screen.w, screen.in_front ? 1 : 0);
 }
 
-/// known: P', N', P's count, too. N's is checked when the triangle is finished.
+/// `known`: includes P', N', P's. N's is checked when the triangle is finished.
 void add_vertex(Hash& hash, const datapath::Vertex& v, bool known) {
     hash.add(v.position.x, v.position.y);
     hash.add(v.position.z, v.handedness);
@@ -46,7 +46,7 @@ void add_vertex(Hash& hash, const datapath::Vertex& v, bool known) {
     add_screen(hash, v.screen);
 }
 
-/// As it comes to be decided: `stopped_by` is yet to be found.
+/// Hash of a triangle before its decision, without `stopped_by`.
 std::uint64_t hash_to_decide(const datapath::Triangle& triangle, unsigned unknown_vertices) {
     Hash hash;
     for (unsigned k = 0; k < 3; ++k)

@@ -11,28 +11,28 @@
 
 namespace tessera {
 
-/// What the work check found.
+/// The transport check's result.
 struct WorkResult {
     std::uint64_t triangles = 0;  ///< decided
     std::uint64_t equations = 0;  ///< of conservation.h
     std::uint64_t violations =
-        0;  ///< of these, base triangles whose work does not add up, and single findings
+        0;  ///< failed equations, base triangles whose sums do not cancel, and single findings
     std::string first_violation;  ///< empty: none
 
     bool passed() const { return violations == 0; }
 };
 
-/// Work is neither lost, nor doubled, nor altered on its way: what is to come follows from what was decided before, and
-/// has to come exactly once, every bit as it left.
+/// Checks that no triangle is lost, duplicated or altered between units. The expected triangles follow from earlier
+/// decisions, and each must arrive exactly once with every bit unchanged.
 ///
 ///   decided   a base triangle as the host has it, and each child of a decided triangle
 ///   finished  each triangle that was decided and not split
 ///   lit       each finished triangle that is not culled; its N's are transformed N', its intensities lit N's
 ///
-/// Kept as sums of 64-bit hashes, expected minus come, one for each base triangle and for all that is lit: no table of
-/// triangles. Differences cancel by chance once in 2^64. The scoreboard judges what was decided; this, that it was
-/// decided from what it should have been. Children and light are the datapath's own: unit tests hold these.
-/// Cost: some 70 ns an edge, an eighth of the scoreboard's.
+/// Keeps a sum of 64-bit hashes, expected minus arrived, per base triangle and one for all lit triangles, instead of a
+/// table of triangles. Differences cancel with a probability of 2^-64. The scoreboard checks the decisions; this checks
+/// that their inputs are right. Children and light come from the datapath's functions, which have unit tests.
+/// Cost: about 70 ns per edge, an eighth of the scoreboard's.
 class TransportCheck : public tlm::tlm_analysis_if<datapath::TrianglePass>,
                        public tlm::tlm_analysis_if<datapath::Triangle>,
                        public tlm::tlm_analysis_if<LitTriangle> {
@@ -44,13 +44,13 @@ class TransportCheck : public tlm::tlm_analysis_if<datapath::TrianglePass>,
     void write(const datapath::Triangle& finished) override;
     void write(const LitTriangle& lit) override;
 
-    /// After a run that drained.
+    /// Call after a run that drained.
     WorkResult result() const;
 
   private:
     struct Balance {
         std::uint64_t sum = 0;   // of hashes
-        std::int64_t count = 0;  // expected minus come
+        std::int64_t count = 0;  // expected minus arrived
         void expect(std::uint64_t hash) {
             sum += hash;
             ++count;
@@ -73,7 +73,7 @@ class TransportCheck : public tlm::tlm_analysis_if<datapath::TrianglePass>,
     std::vector<Base> bases_;
     Base foreign_;
     Balance lit_;
-    datapath::Saturations counted_by_the_unit_;  // once more, and not looked at
+    datapath::Saturations counted_by_the_unit_;  // required by the datapath's functions; ignored here
     WorkResult result_;
 };
 

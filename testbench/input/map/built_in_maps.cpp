@@ -33,7 +33,7 @@ HeightMap map_of(std::int64_t width, std::int64_t height, Value&& value) {
     return map;
 }
 
-// Flat on top, a smooth step down to 0 at outer_radius. Must stay below 1, half the gap between two letters.
+// Flat on top, with a smooth step to 0 at outer_radius, which must be below 1, half the gap between two letters.
 double stroke_profile(double distance) {
     constexpr double inner_radius = 0.35;
     constexpr double outer_radius = 0.85;
@@ -61,7 +61,7 @@ HeightMap text_map(std::int64_t width, std::int64_t height, std::string_view tex
         throw InputError(
             "map.text: the text is empty, so the map would be flat. Give it at least one letter.");
     }
-    // As much around the text as between two letters, so that a stroke's edge ends inside the map.
+    // A margin of one gap around the text keeps the strokes' edges inside the map.
     constexpr int margin = StrokeText::glyph_advance - StrokeText::glyph_width;
     constexpr int letter_height = StrokeText::glyph_height;
     const double units_per_texel = std::max((letters.width() + 2 * margin) / static_cast<double>(width),

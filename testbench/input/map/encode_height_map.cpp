@@ -15,7 +15,7 @@ namespace {
 
 constexpr double most = 65535;
 
-/// Rows from the top, as all three formats have them.
+/// Rows from the top, as in all three formats.
 template <typename Sample, typename Convert>
 std::vector<Sample> top_down(int width, const std::vector<double>& heights, Convert convert) {
     std::vector<Sample> samples;
@@ -60,7 +60,7 @@ EncodedMap encode_height_map(int width, int height, const std::vector<double>& h
     if (format == MapFormat::pgm) {
         map.bytes = pgm_file(width, height, samples);
     } else {
-        // libpng's name for 16 bits of grey; they are stored as they are.
+        // libpng's name for 16-bit grey; no conversion takes place.
         const std::vector<std::uint8_t> file =
             encode_png_samples(width, height, PNG_FORMAT_LINEAR_Y, samples.data());
         map.bytes.assign(file.begin(), file.end());

@@ -14,8 +14,8 @@
 namespace tessera {
 namespace {
 
-// Decoded bytes of all channels: every one is decoded, wanted or not. OpenEXR keeps about three copies of a chunk (a
-// block of scan lines, a tile); the largest image, 16 float channels of 4096 x 4096 texels, takes some seconds.
+// Limits on decoded bytes of all channels, since all are decoded. OpenEXR keeps about three copies of a chunk (a block
+// of scan lines or a tile); the largest image, 16 float channels of 4096 x 4096 texels, takes some seconds.
 constexpr std::int64_t largest_chunk = 32 << 20, largest_image = 1 << 30;
 
 struct DecodePipeline : exr_decode_pipeline_t {
@@ -40,7 +40,7 @@ class ExrFile {
         throw InputError(fmt::format("{}: {}", name_, why));
     }
 
-    // Keeps the first message: those that follow say where the library gave up, not why.
+    // Keeps the first message: later ones report where the library stopped, not why.
     static void on_error(exr_const_context_t file, exr_result_t, const char* message) {
         void* kept = nullptr;
         if (exr_get_user_data(file, &kept) == EXR_ERR_SUCCESS && static_cast<std::string*>(kept)->empty())
@@ -159,7 +159,7 @@ std::vector<std::string> check_exr(const std::filesystem::path& path) {
         return problem.find(words) != std::string::npos;
     };
     if (says("recorded at file offset 0.")) {
-        check(EXR_CONTEXT_FLAG_STRICT_HEADER);  // which looks for the chunks
+        check(EXR_CONTEXT_FLAG_STRICT_HEADER);  // also checks the chunks
         return {
             "The EXR file's offset table is incomplete (its writer did not finish); the pixels were all "
             "found."};

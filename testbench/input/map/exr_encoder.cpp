@@ -18,7 +18,7 @@ std::string encode_exr_samples(Imf::Header header, const std::vector<const char*
     Imf::FrameBuffer frame;
     for (std::size_t k = 0; k < channels.size(); ++k) {
         header.channels().insert(channels[k], Imf::Channel(type));
-        // Written from, never to.
+        // OpenEXR only reads through this pointer.
         char* const first = const_cast<char*>(static_cast<const char*>(samples)) + k * sample;
         frame.insert(channels[k], Imf::Slice::Make(type, first, window, pixel, pixel * width));
     }
@@ -28,7 +28,7 @@ std::string encode_exr_samples(Imf::Header header, const std::vector<const char*
         Imf::OutputFile file(stream, header, 0);
         file.setFrameBuffer(frame);
         file.writePixels(window.max.y - window.min.y + 1);
-    }  // which completes the file
+    }  // the destructor completes the file
     return stream.str();
 }
 

@@ -7,8 +7,8 @@
 
 namespace tessera {
 
-/// An image as an OpenEXR file's bytes: scan lines from the top, the header's own attributes, and these channels, whose
-/// samples lie side by side. No time stamp: the same image gives the same bytes.
+/// Encodes an image as an OpenEXR file: scan lines from the top, the header's attributes, and these channels with
+/// interleaved samples. No time stamp: the same image gives the same bytes.
 std::string encode_exr_samples(Imf::Header header, const std::vector<const char*>& channels,
                                Imf::PixelType type, const void* samples);
 

@@ -9,14 +9,13 @@ namespace tessera {
 /// Reads one channel of an OpenEXR file (single part, scan lines or tiles, every compression of OpenEXR 3.1)
 /// through OpenEXR, single-threaded, after check_exr().
 ///
-/// The map is the data window, wherever it lies; the display window is of no interest. Of several levels
-/// (mip or rip map) the finest is read.
+/// The map is the data window; the display window is ignored. Of several levels (mip or rip map) the finest is read.
 /// Channel: the named one, else "Y", else "R", else the only one. It may be half, float or uint and keeps its
-/// values; uint is rounded to float (exact up to 2^24). Range: lowest to highest finite value, see
-/// repair_non_finite.h for the others; equal for a constant map. Subnormal numbers are kept and counted.
+/// values; uint is rounded to float (exact up to 2^24). Range: lowest to highest finite value (repair_non_finite.h),
+/// equal for a constant map. Subnormal numbers are kept and counted.
 ///
-/// Refused: what check_exr() refuses, a subsampled or missing channel, pixels that cannot be decoded, no finite
-/// value. EXR has no checksum: a changed byte in uncompressed pixels goes unnoticed, here as everywhere.
+/// Refused: files that check_exr() refuses, a subsampled or missing channel, pixels that cannot be decoded, a map
+/// without a finite value. EXR has no checksum: a changed byte in uncompressed pixels is not detected.
 HeightMap read_exr(const std::filesystem::path& path, const std::string& channel);
 
 }  // namespace tessera

@@ -5,34 +5,33 @@
 
 namespace tessera {
 
-/// A displacement map as its source holds it, before quantising.
+/// A displacement map before quantisation.
 ///
-/// Texel (x, y) is values[y * width + x]; y = 0 is the BOTTOM row (v = 0): readers turn the image
-/// (golden/ALGORITHM.md section 1: texture origin is bottom left, the host turns the image, the hardware never
-/// does).
+/// Texel (x, y) is values[y * width + x]; y = 0 is the BOTTOM row (v = 0): readers flip the image, since the texture
+/// origin is at the bottom left (golden/ALGORITHM.md section 1).
 struct HeightMap {
     int width = 0;
     int height = 0;
     std::vector<float> values;
 
-    /// The values that the lowest and the highest displacement code stand for. Integer sources (PGM, PNG)
-    /// hold sample / maxval and have range 0..1; floating-point and uint EXR sources hold their own values
-    /// and are quantised over the range of their finite values. A constant map of the latter kind has
-    /// range_low == range_high: whoever divides by the difference must look first.
+    /// The values of the lowest and the highest displacement code. Integer sources (PGM, PNG) hold sample / maxval and
+    /// have range 0..1; floating-point and uint EXR sources hold their own values and are quantised over the range of
+    /// their finite values. A constant map of the latter kind has range_low == range_high: check before dividing by the
+    /// difference.
     double range_low = 0;
     double range_high = 1;
 
-    /// What displacement.scale spans, in the unit of `values`: the whole range of the source, unless map.range says
-    /// otherwise (span_values()).
+    /// The range that displacement.scale spans, in the unit of `values`: the whole range of the source, unless
+    /// map.range is given (span_values()).
     double span_low = 0;
     double span_high = 1;
 
-    /// How many of its source's own units one unit of value is: PGM's maximum value, 255 or 65535 for PNG, 1 for the
-    /// others. An elevation of 1533 m in a PGM of maximum value 2478 is the value 0.6186 here, and 1533 units.
+    /// Units of the source per unit of value: PGM's maximum value, 255 or 65535 for PNG, 1 for others. An elevation of
+    /// 1533 m in a PGM of maximum value 2478 has the value 0.6186, and 1533 source units.
     double source_units = 1;
 
-    /// Repairs made and oddities met while reading, one sentence each without the file's name, for the report
-    /// ("3 NaN texels set to ..."). Empty for a file about which there is nothing to say.
+    /// Repairs and anomalies found while reading, one sentence each without the file's name, for the report ("3 NaN
+    /// texels set to ...").
     std::vector<std::string> repairs;
 
     float& at(int x, int y) {

@@ -6,7 +6,7 @@
 
 namespace tessera {
 
-/// Sets what displacement.scale spans. With any range but full the codes go to the values that occur.
+/// Sets the range that displacement.scale spans. Unless it is `full`, the codes span the values that occur.
 inline void span_values(HeightMap& map, const MapRange& range) {
     if (range.kind == MapRange::Kind::full)
         return;
@@ -19,14 +19,13 @@ inline void span_values(HeightMap& map, const MapRange& range) {
     }
 }
 
-/// The displacement along the normal that a map value stands for, in model units: bias + scale * value.
+/// The displacement of a map value along the normal, in model units: bias + scale * value.
 struct MapDisplacement {
     double scale = 1, bias = 0;
 
     double of(double value) const { return bias + scale * value; }
 
-    /// displacement.bias at span_low, and displacement.scale more at span_high. If the two are one value, the
-    /// map is flat.
+    /// displacement.bias at span_low, bias + displacement.scale at span_high. If the two are equal, the map is flat.
     static MapDisplacement from(const Job::Displacement& job, const HeightMap& map) {
         const double span = map.span_high - map.span_low;
         const double scale = span > 0 ? job.scale / span : 0;

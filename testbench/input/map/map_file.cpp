@@ -30,7 +30,7 @@ std::uint64_t map_file_size(const std::filesystem::path& path) {
     if (status.type() == std::filesystem::file_type::not_found) {
         throw InputError(fmt::format("{}: there is no such map file. Check map.file.", path.string()));
     }
-    // A pipe or device would be waited for, or read, without end.
+    // Reading a pipe or device may block or never end.
     if (error || status.type() != std::filesystem::file_type::regular) {
         throw InputError(
             fmt::format("{}: the map is not a regular file. Name an EXR, PNG or PGM file.", path.string()));

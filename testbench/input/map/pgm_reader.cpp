@@ -55,8 +55,8 @@ struct PgmFile {
         return value;
     }
 
-    // They begin after one white-space character, after a comment's line end (as libnetpbm has it), or after CRLF if,
-    // by the file's size, the LF is no sample.
+    // Samples begin after one white-space character, after a comment's line end (as in libnetpbm), or after CRLF if the
+    // file's size shows that the LF is not a sample.
     void skip_to_samples(std::ptrdiff_t size) {
         if (next != end && *next == '#')
             skip_comment();

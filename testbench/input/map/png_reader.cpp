@@ -17,7 +17,7 @@
 namespace tessera {
 namespace {
 
-// What libpng says: it reports errors and warnings through these functions, and expects the first not to return.
+// libpng reports errors and warnings through these functions. The first must not return.
 struct Messages {
     std::string error;
     std::vector<std::string> warnings;
@@ -46,12 +46,12 @@ struct Decoder {
     png_infop info;
 };
 
-// False: libpng jumped out with an error. Nothing in here has a destructor to jump over.
+// Returns false if libpng left by longjmp after an error. No object here may have a destructor.
 bool decode(png_structp png, png_infop info, std::FILE* file) {
     if (setjmp(png_jmpbuf(png)) != 0)
         return false;
     png_init_io(png, file);
-    // Of the ancillary chunks only tRNS is looked at: a damaged colour profile, or comment, is no reason to refuse.
+    // Of the ancillary chunks only tRNS is used, so a file with a damaged colour profile or comment is accepted.
     png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_WARN_DISCARD);
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
     png_read_png(png, info, PNG_TRANSFORM_EXPAND, nullptr);
@@ -94,7 +94,7 @@ void convert(const Decoder& decoder, HeightMap& map) {
 HeightMap read_png(const std::filesystem::path& path) {
     const std::string name = path.string();
     const std::uint64_t size = map_file_size(path);
-    // Before libpng, whose own message on sides names no numbers: signature, IHDR's length and name, width, height.
+    // Checked before libpng, whose message lacks the sizes: signature, IHDR's length and name, width, height.
     const std::string start = map_file_start(path, 24);
     if (start.size() == 24) {
         const auto* const bytes = reinterpret_cast<png_const_bytep>(start.data());

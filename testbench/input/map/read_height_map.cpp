@@ -92,7 +92,7 @@ HeightMap read_format(Format format, const std::filesystem::path& path, const st
 }  // namespace
 
 HeightMap read_height_map(const std::filesystem::path& path, const std::string& channel) {
-    map_file_size(path);  // refuses what is no regular file before it is opened
+    map_file_size(path);  // refuses anything but a regular file before opening it
     const Format format = format_of_content(path, map_file_start(path, 64));
     if (format != Format::exr && !channel.empty()) {
         refuse(path,

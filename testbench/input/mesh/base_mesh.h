@@ -8,11 +8,11 @@
 
 namespace tessera {
 
-/// One vertex of the base mesh as the host holds it, in model units.
+/// One vertex of the base mesh in model units.
 struct BaseVertex {
     glm::dvec3 position{0};
     glm::dvec3 normal{0};   ///< unit length
-    glm::dvec3 tangent{0};  ///< unit length, dp/du made orthogonal to the normal
+    glm::dvec3 tangent{0};  ///< unit length, dp/du orthogonalised against the normal
     double handedness = 1;  ///< +1 or -1: bitangent = handedness * cross(normal, tangent)
     glm::dvec2 texture{0};  ///< u, v as in the file: 0..1 spans the map once; v = 0 is the bottom row
 };
@@ -28,13 +28,13 @@ struct BaseMesh {
         double smallest_u = 1, largest_u = 1, smallest_v = 1, largest_v = 1;
     } texture_scale;
 
-    std::optional<glm::dvec3> up;  ///< of the model, of any length, if the source knows it
+    std::optional<glm::dvec3> up;  ///< the model's up, any length, if the source defines it
 
     std::size_t dropped_degenerate =
-        0;  ///< triangles of zero area or that name one vertex twice, dropped at loading
-    std::size_t dropped_duplicate = 0;  ///< triangles on three positions an earlier triangle lies on, dropped
+        0;  ///< triangles of zero area or with the same vertex twice, dropped at loading
+    std::size_t dropped_duplicate = 0;  ///< triangles at the three positions of an earlier triangle, dropped
     std::vector<std::string>
-        repairs;  ///< one sentence each, for the report: what was mended, or found and left
+        repairs;  ///< one sentence each, for the report: repairs, and anomalies left unchanged
 };
 
 }  // namespace tessera

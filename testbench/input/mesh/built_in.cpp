@@ -55,7 +55,7 @@ void add_rows(BaseMesh& mesh, std::int64_t columns, std::int64_t first_row, std:
     }
 }
 
-/// Two triangles a quad, for `rows` rows of quads on the first vertices of the mesh.
+/// Two triangles per quad, for `rows` rows of quads on the first vertices of the mesh.
 void add_quads(BaseMesh& mesh, std::int64_t columns, std::int64_t rows) {
     const auto line = static_cast<std::uint32_t>(columns + 1);
     for (std::uint32_t j = 0; j < static_cast<std::uint32_t>(rows); ++j) {
@@ -67,8 +67,8 @@ void add_quads(BaseMesh& mesh, std::int64_t columns, std::int64_t rows) {
     }
 }
 
-/// The horizontal direction at column i. The seam's second copy is computed from the first one's number, so
-/// both have the same bits.
+/// The horizontal direction at column i. The seam's second copy uses the first one's index, so that both are
+/// bit-identical.
 glm::dvec2 around(std::int64_t i, std::int64_t columns) {
     const double angle = 2 * pi * static_cast<double>(i % columns) / static_cast<double>(columns);
     return {-std::sin(angle), std::cos(angle)};
@@ -90,7 +90,7 @@ BaseMesh make_plane(std::int64_t columns, std::int64_t rows, double width, doubl
     add_rows(mesh, columns, 0, rows, [&](std::int64_t i, std::int64_t j) {
         BaseVertex vertex;
         vertex.texture = {part(i, columns), part(j, rows)};
-        // from whole numbers, so that the plane is symmetric to the last bit
+        // from integers, so that the plane is symmetric to the last bit
         vertex.position = {width * part(2 * i - columns, 2 * columns), depth * part(2 * j - rows, 2 * rows),
                            0};
         vertex.normal = {0, 0, 1};

@@ -5,12 +5,12 @@
 
 namespace tessera {
 
-// The built-in base meshes, complete (normals, tangent frames, texture scale). Each quad of the grid is cut
+// The built-in base meshes, complete (normals, tangent frames, texture scale). Each quad of the grid is split
 // from its (0,0) to its (1,1) corner, as in the paper's planes. Sizes in model units.
 //
-// The copies of a texture seam (u = 0 and u = 1) have the same position, normal and tangent frame, bit for
-// bit. Errors: InputError for columns, rows or a size out of range, naming the job file's key; ResourceError
-// for more triangles than largest_base_triangles.
+// The copies of a texture seam (u = 0 and u = 1) have bit-identical position, normal and tangent frame. Errors:
+// InputError for columns, rows or a size out of range, with the job file's key; ResourceError for more triangles than
+// largest_base_triangles.
 
 /// Flat, z = 0, normal +z, centred on the origin; u along +x over `width`, v along +y over `depth`.
 /// 2 * columns * rows triangles. columns, rows: 1..4096.
@@ -21,8 +21,8 @@ BaseMesh make_plane(std::int64_t columns, std::int64_t rows, double width, doubl
 BaseMesh make_cylinder(std::int64_t columns, std::int64_t rows, double radius, double height);
 
 /// Centred on the origin, axis z, normals outward; u as on the cylinder, v from the south pole to the north
-/// by latitude. A pole has one vertex per triangle, u in that triangle's middle. 2 * columns * (rows - 1)
-/// triangles. columns: 3..4096, rows: 2..4096. A repair tells that the directions of dp/du cancel at both
+/// by latitude. A pole has one vertex per triangle, with u at that triangle's middle. 2 * columns * (rows - 1)
+/// triangles. columns: 3..4096, rows: 2..4096. A repair reports that the directions of dp/du cancel at both
 /// poles.
 BaseMesh make_sphere(std::int64_t columns, std::int64_t rows, double radius);
 

@@ -12,8 +12,8 @@ namespace tessera {
 
 namespace {
 
-/// 0 in a job: the paper's plane of 18 triangles; round surfaces of 32 quads a side, a power of two so that the format
-/// holds their texture coordinates on any map; patches of 32 triangles, which make its teapot.
+/// Defaults for 0 in a job: the paper's plane of 18 triangles; round surfaces of 32 quads per side, a power of two so
+/// that their texture coordinates are exact on any map; patches of 32 triangles, as in the paper's teapot.
 std::int64_t quads(std::int64_t wanted, MeshSource source) {
     if (wanted != 0)
         return wanted;

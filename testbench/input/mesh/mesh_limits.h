@@ -4,8 +4,7 @@
 
 namespace tessera {
 
-// What a base mesh may be. Beyond the first five, ResourceError; beyond grid, size and coordinate,
-// InputError.
+// Limits of a base mesh. Beyond the first five: ResourceError; beyond grid, size and coordinate: InputError.
 
 constexpr std::size_t largest_base_triangles = 4'000'000;
 constexpr std::size_t largest_face_corners = 65'536;  ///< corners of one polygon in a file
@@ -14,15 +13,15 @@ constexpr std::size_t largest_obj_records =
 constexpr std::size_t largest_mesh_file = std::size_t{1} << 30;  ///< bytes
 /// Point-in-triangle tests for all polygons of a file that are not convex: a few seconds.
 constexpr std::uint64_t largest_cutting_work = 1'000'000'000;
-/// Steps of the search for T-junctions, which is given up beyond, not the mesh: a few seconds.
+/// Steps of the search for T-junctions, a few seconds. Beyond, the search stops and the mesh is still accepted.
 constexpr std::uint64_t largest_search = 50'000'000;
 
 constexpr std::int64_t largest_grid = 4096;                   ///< columns or rows of a built-in mesh
 constexpr double smallest_size = 1e-30, largest_size = 1e30;  ///< width, depth, radius, height: model units
-constexpr double largest_coordinate = 3.4028234663852886e38;  ///< of a file: what single precision holds
+constexpr double largest_coordinate = 3.4028234663852886e38;  ///< in a file: the limit of single precision
 
-/// A triangle this flat has no area: height over longest edge, about. Doubles keep 16 digits, so a flatter
-/// one has its direction from rounding.
+/// A triangle this flat (approximately height over longest edge) counts as one without area. Doubles have 16 digits, so
+/// rounding would determine the direction of a flatter one.
 constexpr double flattest_triangle = 1e-12;
 
 }  // namespace tessera

@@ -18,7 +18,7 @@
 namespace tessera {
 namespace {
 
-/// Whether a decimal number that a double cannot hold is too small for it, rather than too large.
+/// Whether a decimal number outside a double's range is too small rather than too large.
 bool underflows(std::string_view digits) {
     std::int64_t exponent = 0;
     const std::size_t e = digits.find_first_of("eE");
@@ -82,7 +82,7 @@ std::string_view foreign_mesh_kind(std::string_view content) {
     if (content.substr(first, 6) == "solid " && content.find("facet") != std::string_view::npos) {
         return "an STL file";
     }
-    // Binary STL: 80 bytes of any text, the number of triangles, 50 bytes for each.
+    // Binary STL: 80 arbitrary bytes, the number of triangles, 50 bytes for each.
     constexpr std::size_t header = 84, triangle = 50;
     if (content.size() >= header) {
         std::uint64_t triangles = 0;

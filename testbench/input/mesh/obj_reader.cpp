@@ -23,7 +23,7 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// How often something happened, and in which line first.
+/// Number of occurrences, and the line of the first.
 struct Tally {
     std::size_t count = 0, first_line = 0;
     void add(std::size_t line, std::size_t times = 1) {
@@ -137,10 +137,10 @@ class Assembler {
                "{} face(s) are not plane, the first in line {}: cut into triangles, with an edge across.");
     }
 
-    /// Numbers of the triangles on the same three positions as an earlier one.
+    /// Drops and counts triangles at the same three positions as an earlier one.
     void drop_duplicates() {
         Tally same, turned;
-        // by the winding: rotated so that the lowest position leads
+        // same winding: rotated so that the lowest position comes first
         drop_repeated(
             [this](Triangle const& t) {
                 std::array<std::uint64_t, 3> key{position_of(t[0]), position_of(t[1]), position_of(t[2])};
@@ -297,7 +297,7 @@ class Assembler {
     ObjText text_;
     std::string const& name_;
     std::vector<std::uint32_t> same_position_;  // per `v` line: the first with that position
-    std::vector<Triangle> triangles_;           // of corners
+    std::vector<Triangle> triangles_;           // indices of corners
     std::vector<std::size_t> lines_;            // per triangle
     BaseMesh mesh_;
 };

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view blanks = " \t";
 
-/// Takes the first word off `text`; empty if there is none.
+/// Removes the first word of `text` and returns it; empty if there is none.
 std::string_view next_word(std::string_view& text) {
     const std::size_t start = std::min(text.find_first_not_of(blanks), text.size());
     const std::size_t end = std::min(text.find_first_of(blanks, start), text.size());
@@ -26,7 +26,7 @@ std::string_view next_word(std::string_view& text) {
     return word;
 }
 
-/// Statements of an OBJ file without polygons in them.
+/// Statements of an OBJ file that are irrelevant to polygons.
 bool is_skipped(std::string_view keyword) {
     constexpr std::array<std::string_view, 21> skipped{
         "g",        "o",        "s",   "mg",         "usemtl",    "mtllib", "usemap",
@@ -58,7 +58,7 @@ class Reader {
   private:
     struct List {
         std::string_view keyword;
-        int fewest, most;       ///< numbers of a statement
+        int fewest, most;       ///< limits on the numbers in a statement
         std::size_t count = 0;  ///< statements so far
     };
 
@@ -95,7 +95,7 @@ class Reader {
         }
     }
 
-    /// A line, and those that follow it for a `\` at the end, without comments.
+    /// Reads a line with its continuation lines (after a `\` at the end), without comments.
     void next_statement() {
         statement_.clear();
         line_ = next_line_;
@@ -131,7 +131,7 @@ class Reader {
         }
     }
 
-    /// The first three numbers of a statement, all of them checked.
+    /// The first three numbers of a statement; all are checked.
     glm::dvec3 numbers(List& list, std::string_view rest) const {
         glm::dvec3 first(0);
         int count = 0;
@@ -176,7 +176,7 @@ class Reader {
         out_.faces.push_back(face);
     }
 
-    /// Nothing where it is none. Larger indices pass, as vertices may follow later.
+    /// Nothing if the word is not a corner. Indices beyond the current vertices are accepted, as these may follow.
     std::optional<ObjText::Corner> corner(std::string_view word) const {
         std::array<std::uint32_t, 3> indices{ObjText::none, ObjText::none, ObjText::none};
         for (std::size_t k = 0; k < lists_.size(); ++k) {
@@ -187,7 +187,7 @@ class Reader {
             if (error == std::errc() && stop == word.data() + end && index != 0 && index >= -have &&
                 index <= static_cast<std::int64_t>(largest_obj_records)) {
                 indices[k] = static_cast<std::uint32_t>(index > 0 ? index - 1 : have + index);
-            } else if (k != 1 || end > 0 || word.size() < 2) {  // only the second of three may be left out
+            } else if (k != 1 || end > 0 || word.size() < 2) {  // only the second of three may be omitted
                 return std::nullopt;
             }
             if (end == word.size()) {
@@ -224,7 +224,7 @@ class Reader {
     std::string_view text_;
     const std::string& name_;
     std::size_t at_ = 0, line_ = 1, next_line_ = 1;
-    std::string statement_;  // all its lines in one
+    std::string statement_;  // all its lines joined
     std::array<List, 3> lists_{{{"v", 3, 7}, {"vt", 1, 3}, {"vn", 3, 3}}};
     std::size_t triangles_ = 0;
     std::size_t unknown_ = 0, unknown_line_ = 0;

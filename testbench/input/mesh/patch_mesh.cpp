@@ -18,8 +18,8 @@ namespace {
 using Curve = std::array<glm::dvec3, 4>;
 
 constexpr double same_normal = 1e-6;  // per component
-constexpr int most_normals = 64;      // told apart at one position
-constexpr double vanishing = 1e-9;    // of a derivative, against the patch's size
+constexpr int most_normals = 64;      // distinct ones at one position
+constexpr double vanishing = 1e-9;    // limit of a derivative relative to the patch's size
 
 /// The parameter step / steps.
 struct Place {
@@ -27,8 +27,8 @@ struct Place {
     double value() const { return static_cast<double>(step) / static_cast<double>(steps); }
 };
 
-/// Between a and b. Exactly a or b at the ends and where both are the same, and the same bits from either end, so that
-/// a border is the same seen from both its patches.
+/// Interpolates between a and b. Exactly a or b at the ends and if both are equal, and bit-identical in either
+/// direction, so that both patches of a border get the same points.
 glm::dvec3 between(glm::dvec3 const& a, glm::dvec3 const& b, Place const& place) {
     if (place.step == 0 || a == b) {
         return a;
@@ -41,8 +41,8 @@ glm::dvec3 between(glm::dvec3 const& a, glm::dvec3 const& b, Place const& place)
     return (a + b) / 2.0 + from_middle * (b - a);
 }
 
-/// De Casteljau's last step but one: the curve's point lies between the two, and its derivative is three times their
-/// difference.
+/// The two points of De Casteljau's next-to-last step: the curve's point lies between them, and its derivative is three
+/// times their difference.
 std::array<glm::dvec3, 2> last_two(Curve curve, Place const& place) {
     for (std::size_t left = 3; left > 1; --left) {
         for (std::size_t i = 0; i < left; ++i) {
@@ -91,8 +91,8 @@ class Patch {
     }
 
   private:
-    /// At a collapsed border, where dP/du is zero, it is to first order the mixed derivative times the distance from
-    /// the border. Zero where that does not help.
+    /// At a collapsed border dP/du is zero; to first order it is the mixed derivative times the distance from the
+    /// border. Zero if that gives no normal.
     glm::dvec3 normal(glm::dvec3 du, glm::dvec3 dv, glm::dvec3 const& mixed, Place const& u,
                       Place const& v) const {
         const auto into = [](Place const& place) {
@@ -143,7 +143,7 @@ std::vector<BaseVertex> all_vertices(BezierPatches const& patches, std::int64_t 
     return vertices;
 }
 
-/// Gives vertices of one position whose normals differ by rounding only the normal of the first of them.
+/// Vertices at one position whose normals differ by rounding only get the normal of the first.
 void share_normals(std::vector<BaseVertex>& vertices) {
     std::vector<PositionKey> keys;
     keys.reserve(vertices.size());
@@ -151,7 +151,7 @@ void share_normals(std::vector<BaseVertex>& vertices) {
         keys.push_back(position_key(vertex.position));
     }
     const std::vector<std::uint32_t> first = first_equal(keys);
-    // The normals met at a position so far, as a list through their vertices.
+    // The distinct normals at a position so far, as a list linked through their vertices.
     std::vector<std::uint32_t> next(vertices.size(), UINT32_MAX);
     for (std::uint32_t i = 0; i < vertices.size(); ++i) {
         std::uint32_t k = first[i];

@@ -56,7 +56,7 @@ class Reader {
         throw InputError(fmt::format("{}:{}: {}", name_, line_, what));
     }
 
-    /// The next line that is not empty, into words_. False at the end of the file.
+    /// Splits the next line that is not empty into words_. False at the end of the file.
     bool next_line() {
         while (!rest_.empty()) {
             const std::size_t end = rest_.find('\n');
@@ -70,7 +70,7 @@ class Reader {
         return false;
     }
 
-    /// The next line's numbers, into numbers_. `what` they are, for messages.
+    /// Reads the next line's numbers into numbers_. `what`: their meaning, for messages.
     void read_numbers(std::size_t wanted, std::string const& what) {
         if (!next_line()) {
             fail(fmt::format("the file ends before {}: it is cut off, or its count is wrong", what));
@@ -124,7 +124,7 @@ class Reader {
         return *number;
     }
 
-    /// Points come after what names them.
+    /// Indices are checked at the end, since points follow the patches.
     void check_indices() {
         for (std::size_t k = 0; k < result_.patches.size(); ++k) {
             for (const std::uint32_t i : result_.patches[k]) {

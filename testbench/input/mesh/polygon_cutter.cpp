@@ -12,14 +12,14 @@ namespace {
 
 constexpr std::size_t most_checked_for_crossing = 256;
 constexpr std::size_t most_fanned = 8;
-constexpr double nonplanar_part = 0.05;  // quads of a curved surface are bent by less as a rule
-constexpr double on_line = 1e-14;        // of the polygon's squared size
+constexpr double nonplanar_part = 0.05;  // quads of a curved surface usually bend less
+constexpr double on_line = 1e-14;        // relative to the polygon's squared size
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) {
     return a.x * b.y - a.y * b.x;
 }
 
-/// +1 where the outline turns left at b, -1 right, 0 straight on, back, or nowhere.
+/// +1 if the outline turns left at b, -1 if right, 0 if it is straight, reverses, or a point repeats.
 int turn(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
     const glm::dvec2 ab = b - a, bc = c - b;
     const double twice_area = cross(ab, bc);
@@ -32,7 +32,7 @@ bool in_or_on(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b, con
            cross(a - c, p - c) >= -on_line;
 }
 
-/// Left turns only, and once around: a pentagram turns left only, but twice around.
+/// Whether the outline has left turns only and winds once: a pentagram has left turns only, but winds twice.
 bool strictly_convex(const std::vector<glm::dvec2>& points) {
     const std::size_t n = points.size();
     int reversals = 0;
@@ -52,7 +52,7 @@ bool strictly_convex(const std::vector<glm::dvec2>& points) {
     return reversals <= 2;
 }
 
-/// Twice the vector area (Newell): its direction is the mean normal by the winding.
+/// Twice the vector area (Newell); its direction is the mean normal given by the winding.
 glm::dvec3 vector_area(const std::vector<glm::dvec3>& points) {
     glm::dvec3 sum(0);
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -67,8 +67,8 @@ void fan(const std::vector<std::uint32_t>& corners, PolygonCut& result) {
     }
 }
 
-/// Cuts off every second corner, round by round, until few enough are left for a fan. A fan of thousands would be
-/// slivers that all lie in one another's boxes: what searches the mesh by boxes would take quadratic time.
+/// Cuts off every second corner, round by round, until few enough remain for a fan. A fan of thousands of triangles has
+/// slivers with overlapping bounding boxes, and box searches would take quadratic time.
 void cut_convex(std::vector<std::uint32_t> corners, PolygonCut& result) {
     while (corners.size() > most_fanned) {
         std::vector<std::uint32_t> left;
@@ -98,7 +98,7 @@ bool outline_crosses_itself(const std::vector<glm::dvec2>& points) {
     return false;
 }
 
-/// Takes the ears off `outline` until three corners are left, or no ear is. False where the work ran out.
+/// Clips ears of `outline` until three corners or no ears remain. False if the work limit is reached.
 bool clip_ears(const std::vector<glm::dvec2>& points, std::vector<std::uint32_t> outline, PolygonCut& result,
                std::uint64_t& work_left) {
     // Only a corner that does not turn left can lie in an ear.
@@ -117,7 +117,7 @@ bool clip_ears(const std::vector<glm::dvec2>& points, std::vector<std::uint32_t>
     std::uint64_t work = 0;
     const auto is_ear = [&](const std::array<std::uint32_t, 3>& t) {
         const glm::dvec2 &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
-        // in_or_on() lets any point pass for a triangle far smaller than the polygon.
+        // in_or_on() accepts any point if the triangle is far smaller than the polygon.
         const double left = std::min({a.x, b.x, c.x}), right = std::max({a.x, b.x, c.x});
         return !blocks[t[1]] && std::none_of(outline.begin(), outline.end(), [&](std::uint32_t i) {
             const glm::dvec2& p = points[i];
@@ -142,7 +142,7 @@ bool clip_ears(const std::vector<glm::dvec2>& points, std::vector<std::uint32_t>
         classify((at + outline.size() - 1) % outline.size());
         classify(at % outline.size());
         tried = 0;
-        at = (at + 1) % outline.size();  // not the next: ears cut side by side make slivers
+        at = (at + 1) % outline.size();  // skip one corner: adjacent ears make slivers
     }
     work_left -= std::min(work, work_left);
     std::rotate(outline.begin(), outline.begin() + static_cast<std::ptrdiff_t>(at), outline.end());
@@ -175,7 +175,7 @@ std::optional<PolygonCut> cut_polygon(const std::vector<glm::dvec3>& corners, st
         centre += local[i] / static_cast<double>(n);
     }
     const glm::dvec3 area = vector_area(local);
-    if (!(safe_length(area) > flattest_triangle)) {  // a bow tie whose halves cancel, or all on one line
+    if (!(safe_length(area) > flattest_triangle)) {  // a bow tie whose halves cancel, or collinear points
         fan(outline, result);
         for (const auto& t : result.triangles) {
             result.crosses_itself |=

@@ -17,7 +17,7 @@
 namespace tessera {
 namespace {
 
-/// For each vertex the first that is alike in all that the next run sees of it.
+/// For each vertex the first with equal values in all fields that the next run uses.
 std::vector<std::uint32_t> alike_vertices(const RecordedMesh& mesh) {
     std::vector<std::array<std::uint64_t, 8>> keys;
     keys.reserve(mesh.positions.size());
@@ -29,7 +29,7 @@ std::vector<std::uint32_t> alike_vertices(const RecordedMesh& mesh) {
     return first_equal(keys);
 }
 
-/// Triangles between the vertices they need, in the order of first use.
+/// Copies the triangles and the vertices they use, in the order of first use.
 void take_triangles(const RecordedMesh& recorded, BaseMesh& mesh) {
     constexpr std::uint32_t none = UINT32_MAX;
     const std::vector<std::uint32_t> alike = alike_vertices(recorded);
@@ -85,7 +85,7 @@ void require_size(const BaseMesh& mesh, const std::string& name) {
                                      smallest_size));
 }
 
-/// Built-in meshes and patches stand on z, whatever the run's camera; of a file, or a run before, its camera tells.
+/// Built-in meshes and patches have up = z, whatever the run's camera; for files and runs, the camera's up is used.
 glm::dvec3 up_of(const Job& job) {
     if (job.mesh.source != MeshSource::file && job.mesh.source != MeshSource::run)
         return {0, 0, 1};

@@ -5,22 +5,21 @@
 
 namespace tessera {
 
-/// The mesh that an earlier run emitted, as a base mesh for another map (paper figure 11c): positions P',
+/// The mesh emitted by an earlier run, as a base mesh for another map (paper figure 11c): positions P',
 /// normals N' and texture coordinates t as in its mesh.ply, in model units; tangent frames as for any mesh
-/// (tangent_frames.h). t spans the map of the next run by 0..1, whatever the sizes of the two maps.
+/// (tangent_frames.h). t from 0 to 1 spans the next run's map, whatever the sizes of the two maps.
 ///
-/// - Vertices alike in P', N' and t are one, so the surface is as closed as it was: two triangles that met at an edge
-///   decide alike there again. Vertices of one P' but two normals (a crease, or a seam of the texture along which the
-///   map's slope is not continuous) come apart under another map, and surface_flaws() says how many there are.
-/// - A triangle that names one vertex twice then is dropped and counted. One without area, but of three
-///   vertices, stays: a neighbour may have an edge that is its other two together, and dropping it would
-///   leave a T-vertex there.
-/// - A normal that the hardware had not (zero) is the smooth one of smooth_normals.h, counted in a repair.
-/// - The model's up is the run's camera.up where that run's mesh was a file or a run, else z.
-/// - Triangles that the run culled are not in its mesh: the holes are a repair.
+/// - Vertices of equal P', N' and t are merged, so that the surface stays closed: two triangles at a shared edge make
+///   the same decision there. Vertices of equal P' but different normals (a crease, or a texture seam along which the
+///   map's slope is not continuous) separate under another map; surface_flaws() reports their number.
+/// - A triangle that then has one vertex twice is dropped and counted. A triangle without area but with three distinct
+///   vertices is kept: its long edge may be a neighbour's edge, and dropping it would leave a T-vertex there.
+/// - A zero normal (unknown to the hardware) is replaced by that of smooth_normals.h and counted in a repair.
+/// - The model's up is the run's camera.up if that run's mesh came from a file or a run, else z.
+/// - Triangles that the run culled are not in its mesh; a repair reports the holes.
 ///
-/// Errors: InputError as in read_run.h, for a mesh without a triangle left, and for one smaller than smallest_size;
-/// ResourceError beyond largest_base_triangles. Memory: about 400 bytes a vertex while reading.
+/// Errors: InputError as in read_run.h, if no triangle remains, and for a mesh smaller than smallest_size;
+/// ResourceError beyond largest_base_triangles. Memory: about 400 bytes per vertex while reading.
 BaseMesh read_run_mesh(const std::filesystem::path& folder);
 
 }  // namespace tessera

@@ -8,7 +8,7 @@
 namespace tessera {
 
 void complete_smooth_normals(BaseMesh& mesh) {
-    constexpr double cancelled = 1e-9;  // of the angles summed: below it, rounding
+    constexpr double cancelled = 1e-9;  // relative to the sum of angles; below it, rounding
     std::vector<PositionKey> keys;
     keys.reserve(mesh.vertices.size());
     for (BaseVertex const& vertex : mesh.vertices) {

@@ -10,14 +10,14 @@
 namespace tessera {
 namespace {
 
-constexpr double on_edge = 1e-6;  // of the edge's length: files commonly hold six decimals
+constexpr double on_edge = 1e-6;  // relative to the edge's length: files often have six decimals
 
 struct BorderPoint {
     glm::dvec3 position;
     std::uint32_t index;
 };
 
-/// Points in a k-d tree, asked which lie on a segment.
+/// Finds points on a segment with a k-d tree.
 class PointsOnSegments {
   public:
     explicit PointsOnSegments(std::vector<BorderPoint> points) : points_(std::move(points)) {
@@ -62,7 +62,7 @@ class PointsOnSegments {
         return t > on_edge && t < 1 - on_edge && safe_length(offset - direction * t) <= on_edge;
     }
 
-    /// The part of the segment from parameter t0 to t1 may pass through this cell.
+    /// Searches a cell that the segment crosses between parameters t0 and t1.
     bool any(Segment const& segment, std::size_t low, std::size_t high, int axis, double t0, double t1) {
         if (low >= high || t0 > t1) {
             return false;

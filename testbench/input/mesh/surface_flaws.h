@@ -8,15 +8,14 @@
 
 namespace tessera {
 
-/// What is odd about the mesh as a surface and is left as it is; one sentence each, with counts. Each of
-/// these lets the displaced surface open or overlap, whatever the tessellator does:
+/// Anomalies of the surface that are reported but not repaired; one sentence each, with counts. Each lets the displaced
+/// surface open or overlap, whatever the tessellator does:
 /// - an edge of more than two triangles; neighbours of opposite winding
-/// - T-junctions: a vertex of the border on the inside of another border edge (within 1e-6 of its length);
-/// the
-///   search is given up beyond `most_steps`, and says so
+/// - T-junctions: a border vertex in the interior of another border edge (within 1e-6 of its length); the search
+///   stops after `most_steps`, and reports that
 /// - several normals at one position: a hard edge
 /// - normals that point against the triangle's winding
-/// Vertices are the same here when their positions are. Needs positions and unit normals.
+/// Vertices are identified by their positions. Needs positions and unit normals.
 std::vector<std::string> surface_flaws(BaseMesh const& mesh, std::uint64_t most_steps = largest_search);
 
 }  // namespace tessera

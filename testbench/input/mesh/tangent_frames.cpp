@@ -8,7 +8,7 @@
 namespace tessera {
 namespace {
 
-/// Below this part of what was summed, a direction is what rounding left of a cancellation.
+/// A sum below this fraction of its terms is the rounding error of a cancellation.
 constexpr double cancelled = 1e-6;
 
 struct FrameSum {
@@ -27,7 +27,7 @@ std::vector<std::uint32_t> frame_groups(BaseMesh const& mesh) {
     return first_equal(keys);
 }
 
-/// A unit vector at right angles to n: of the axis n is least along.
+/// A unit vector perpendicular to n, from the axis least aligned with n.
 glm::dvec3 perpendicular(glm::dvec3 const& n) {
     int axis = 0;
     for (int k = 1; k < 3; ++k) {
@@ -75,7 +75,7 @@ void complete_tangent_frames(BaseMesh& mesh) {
     std::size_t without = 0, cancelling = 0, mixed = 0;
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
         BaseVertex& vertex = mesh.vertices[i];
-        if (group[i] != i) {  // the group's first vertex comes first, so it has its frame by now
+        if (group[i] != i) {  // the group's first vertex precedes and already has its frame
             vertex.tangent = mesh.vertices[group[i]].tangent;
             vertex.handedness = mesh.vertices[group[i]].handedness;
             continue;

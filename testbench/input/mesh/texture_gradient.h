@@ -8,21 +8,21 @@
 
 namespace tessera {
 
-/// How the position moves with the texture coordinate inside one triangle.
+/// Derivatives of the position by the texture coordinate inside one triangle.
 struct TextureGradient {
-    glm::dvec3 dp_du, dp_dv;  ///< model units for one unit of u, of v
-    bool mirrored;            ///< texture coordinates run clockwise where the triangle runs counter-clockwise
+    glm::dvec3 dp_du, dp_dv;  ///< model units per unit of u, of v
+    bool mirrored;            ///< winding is opposite in texture space
     double area;              ///< of the triangle, square model units
 };
 
-/// Nothing where the triangle has no area in texture space (or so little that a gradient is not finite).
+/// Nothing if the triangle has no area in texture space (or so little that a gradient is not finite).
 inline std::optional<TextureGradient> texture_gradient(BaseMesh const& mesh,
                                                        std::array<std::uint32_t, 3> const& triangle) {
     BaseVertex const& a = mesh.vertices[triangle[0]];
     BaseVertex const& b = mesh.vertices[triangle[1]];
     BaseVertex const& c = mesh.vertices[triangle[2]];
     const glm::dvec2 ab = b.texture - a.texture, ac = c.texture - a.texture;
-    // as a triangle in space, so that "no area" means the same in both
+    // same criterion of "no area" as for a triangle in space
     const glm::dvec3 facing =
         triangle_normal(glm::dvec3(a.texture, 0), glm::dvec3(b.texture, 0), glm::dvec3(c.texture, 0));
     if (facing.z == 0) {

@@ -7,7 +7,7 @@
 
 namespace tessera {
 
-/// |a|, without overflow or underflow on the way.
+/// |a|, without intermediate overflow or underflow.
 inline double safe_length(glm::dvec3 const& a) {
     return std::hypot(a.x, a.y, a.z);
 }
@@ -22,7 +22,7 @@ inline glm::dvec3 unit_or_zero(glm::dvec3 const& a) {
     return scaled / std::sqrt(glm::dot(scaled, scaled));
 }
 
-/// Unit normal of the triangle a, b, c by its winding; zero where it has no area (flattest_triangle).
+/// Unit normal of the triangle a, b, c by its winding; zero if it has no area (flattest_triangle).
 inline glm::dvec3 triangle_normal(glm::dvec3 const& a, glm::dvec3 const& b, glm::dvec3 const& c) {
     const glm::dvec3 ab = b - a, ac = c - a, bc = c - b;
     double largest = 0;

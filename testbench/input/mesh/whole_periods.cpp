@@ -62,7 +62,7 @@ struct Extent {
     }
 };
 
-/// What takes the lowest coordinate into 0..1 on the axes that repeat.
+/// The shift that brings the lowest coordinate into 0..1 on repeated axes.
 glm::dvec2 shift_of(const Extent& extent, const glm::bvec2& repeats) {
     return {repeats.x ? -std::floor(extent.low.x) : 0.0, repeats.y ? -std::floor(extent.low.y) : 0.0};
 }
@@ -81,7 +81,7 @@ BaseMesh bring_down_texture(BaseMesh mesh, const glm::bvec2& repeats, const glm:
         return (!repeats.x || high.x <= most.x) && (!repeats.y || high.y <= most.y);
     };
 
-    // Triangles of charts that do not fit, while the coordinates are still the file's.
+    // Triangles of charts that do not fit, before coordinates are changed.
     std::map<std::pair<std::uint32_t, std::array<double, 2>>, std::uint32_t> moved;
     const std::size_t whole = mesh.vertices.size();
     for (auto& triangle : mesh.triangles) {
@@ -104,7 +104,7 @@ BaseMesh bring_down_texture(BaseMesh mesh, const glm::bvec2& repeats, const glm:
     }
     for (std::uint32_t v = 0; v < whole; ++v) {
         Extent extent = extents[charts.of(v)];
-        if (!fits(extent)) {  // no triangle has this vertex any more
+        if (!fits(extent)) {  // no triangle uses this vertex any more
             extent = {};
             extent.add(mesh.vertices[v].texture);
         }

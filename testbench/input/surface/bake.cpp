@@ -47,7 +47,7 @@ void lay_floor(const QuadricSurface& surface, BakedMap& map) {
     }
 }
 
-/// The middle of the part-th of `parts` pieces from low to high; the same bits from either end.
+/// The centre of piece `part` of `parts` equal pieces from low to high; bit-identical from either end.
 double centre_of(int part, int parts, double low, double high) {
     return (low * (2 * parts - 2 * part - 1) + high * (2 * part + 1)) / (2 * parts);
 }
@@ -72,7 +72,7 @@ BakedMap bake_patch(const NurbsPatch& patch, int width, int height) {
     return map;
 }
 
-/// Which texels a mesh covers, and with which displacement.
+/// Finds the texels that a mesh covers, and their displacement.
 class MeshSampler {
   public:
     MeshSampler(const QuadricSurface& surface, const BaseMesh& mesh, const Job::Map& map, int width,
@@ -104,7 +104,7 @@ class MeshSampler {
                 "map, or "
                 "a mesh with texture coordinates");
         baked_.uncovered = owner_.size() - covered.size();
-        // Texels without surface have their height before their neighbours take it.
+        // Texels without surface get their height before it spreads to their neighbours.
         std::vector<double> all = std::move(baked_.values);
         baked_.values.clear();
         for (const std::uint32_t k : covered)
@@ -137,7 +137,7 @@ class MeshSampler {
         for_texel_centres(
             corners.texel, columns, rows, [&](std::int64_t x, std::int64_t y, const glm::dvec3& b) {
                 const std::size_t texel = texel_index(x, y);
-                // A centre on an edge lies in both its triangles, which agree about it.
+                // A centre on an edge lies in both its triangles, which agree on the value.
                 const bool inside = std::min({b.x, b.y, b.z}) > 1e-6;
                 if (owner_[texel] != nobody) {
                     overlaps_[texel] = overlaps_[texel] || (inside && inside_[texel]);
@@ -158,7 +158,7 @@ class MeshSampler {
             });
     }
 
-    /// Ring by ring, from all covered texels at once.
+    /// Spreads values ring by ring, from all covered texels at once.
     void spread(std::vector<std::uint32_t> reached) {
         for (std::size_t next = 0; next < reached.size(); ++next) {
             const std::int64_t at = reached[next], x = at % baked_.width, y = at / baked_.width;
@@ -182,9 +182,9 @@ class MeshSampler {
 
     const QuadricSurface& surface_;
     DisplacementOf addressing_;
-    HeightMap size_;  // no more of a map is needed here
+    HeightMap size_;  // only the size is used
     BakedMap baked_;
-    std::vector<std::uint32_t> owner_;  // the triangle whose surface a texel has
+    std::vector<std::uint32_t> owner_;  // the triangle that gave a texel its value
     std::vector<bool> inside_, overlaps_;
 };
 

@@ -50,7 +50,7 @@ double DisplacedSurface::value(const glm::dvec2& texel, Sampling sampling) const
                     static_cast<int>(addressed(y, map_.height, displacement_.address_v))));
     };
     if (sampling == Sampling::nearest_texel) {
-        // On a texel's edge rounding must not decide which side: the hardware's coordinates are exact there.
+        // On a texel's edge rounding must not select the side: the hardware's coordinates are exact there.
         const auto index = [](double t) {
             const double nearest = std::nearbyint(t);
             return static_cast<std::int64_t>(std::abs(t - nearest) < 1e-8 ? nearest : std::floor(t));

@@ -10,21 +10,19 @@
 
 namespace tessera {
 
-/// How the map is read between its samples.
+/// How the map is sampled between texel centres.
 ///
-/// `interpolated`: bilinear between texel centres. The headline. A map is samples of a surface, and this is
-/// the simplest surface through them that is continuous: a mesh of enough triangles can come as near to it as
-/// it likes, so an error against it measures the tessellation. It includes what the hardware's own reading
-/// costs: up to half a texel sideways.
+/// `interpolated`: bilinear between texel centres. The main figure. It is the simplest continuous surface through
+/// the map's samples, and a mesh of enough triangles approximates it to any accuracy, so an error against it
+/// measures the tessellation. It includes the effect of the hardware's sampling: up to half a texel sideways.
 ///
-/// `nearest_texel`: as the hardware reads it, the texel that holds t (golden/ALGORITHM.md 2: the last border
-/// reads the last texel, or the first where the map repeats). That surface is a staircase with a step at
-/// every texel's edge: no mesh without cracks follows it, and an error against it does not fall below half of
-/// the map's steps. Reported beside the headline because it tells the two causes apart: small against this
-/// and large against the other is addressing.
+/// `nearest_texel`: like the hardware, the texel that contains t (golden/ALGORITHM.md 2: the last border reads the
+/// last texel, or the first if the map repeats). That surface has a step at every texel's edge. No mesh without
+/// cracks follows it, and an error against it stays above half of the map's steps. Reported in addition to separate
+/// the two causes: an error that is small against this and large against the other is due to addressing.
 enum class Sampling : std::uint8_t { interpolated, nearest_texel };
 
-/// What turns map values into displacement, and how the map goes on beyond its borders.
+/// Conversion of map values to displacement, and the map's address modes.
 struct DisplacementOf {
     double scale = 1, bias = 0;  // of MapDisplacement
     Addressing address_u = Addressing::clamp, address_v = Addressing::clamp;
@@ -36,8 +34,8 @@ struct DisplacementOf {
     double of(double value) const { return bias + scale * value; }
 };
 
-/// Space as it is measured in: the models near 0 and of a size near 1, whatever theirs. The scale is a power of two and
-/// so costs no precision.
+/// Local coordinates for measurement: the model is centred near 0 and has a size near 1. The scale is a power of two,
+/// so no precision is lost.
 struct LocalFrame {
     glm::dvec3 centre{0};
     double scale = 1;  ///< local = (model - centre) * scale
@@ -46,14 +44,14 @@ struct LocalFrame {
     glm::dvec3 to_model(const glm::dvec3& local) const { return local / scale + centre; }
 };
 
-/// The surface the hardware approximates (golden/ALGORITHM.md 1), in double precision and from the map's own values,
-/// not their codes: what rounding to the hardware's formats costs is part of the error. At barycentric coordinates b of
-/// a base triangle
+/// The surface that the hardware approximates (golden/ALGORITHM.md 1), in double precision and from the map's own
+/// values, not their codes, so that rounding to the hardware's formats is part of the error. At barycentric coordinates
+/// b of a base triangle
 ///
 ///     p' = sum b P + (bias + scale * value(t)) * normalise(sum b N)        t = sum b t_k
 ///
-/// Texture coordinates outside the map on an axis that clamps are first set to its border at the vertices, as the host
-/// does. Mesh and map must outlive this. Positions are local (LocalFrame).
+/// Vertices' texture coordinates outside the map on a clamped axis are first set to its border, as the host does. Mesh
+/// and map must outlive this. Positions are local (LocalFrame).
 class DisplacedSurface {
   public:
     DisplacedSurface(const BaseMesh& mesh, const HeightMap& map, const DisplacementOf& displacement,
@@ -73,7 +71,7 @@ class DisplacedSurface {
     static glm::dvec2 texel(const Corners& corners, const glm::dvec3& b) {
         return b.x * corners.texel[0] + b.y * corners.texel[1] + b.z * corners.texel[2];
     }
-    /// 0..1 spans the map.
+    /// The texture coordinate; 0..1 spans the map.
     glm::dvec2 texture(const glm::dvec2& texel) const { return texel / glm::dvec2(map_.width, map_.height); }
 
     /// The map's value at t in texels.
@@ -86,14 +84,14 @@ class DisplacedSurface {
     LocalFrame frame_;
 };
 
-/// The texel an index outside the map stands for.
+/// Applies the address mode to a texel index.
 std::int64_t addressed(std::int64_t index, std::int64_t size, Addressing mode);
 
-/// A base vertex's texture coordinate in texels, set to the border where it lies outside an axis that clamps.
+/// A base vertex's texture coordinate in texels, set to the border if it lies outside a clamped axis.
 glm::dvec2 texel_of(const BaseVertex& vertex, const HeightMap& map, const DisplacementOf& displacement);
 
-/// A texel's mean model-space length: |dp/du| / width and |dp/dv| / height, area-weighted means over the base surface
-/// (BaseMesh::texture_scale), and the mean of the two. The unit that errors "in texels" are given in.
+/// A texel's mean length in model units, the unit of errors "in texels": the mean of |dp/du| / width and |dp/dv| /
+/// height, each an area-weighted mean over the base surface (BaseMesh::texture_scale).
 double texel_length(const BaseMesh& mesh, const HeightMap& map);
 
 }  // namespace tessera

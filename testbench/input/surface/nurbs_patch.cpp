@@ -6,7 +6,7 @@ namespace tessera {
 
 BasisFunctions basis_functions(const std::vector<double>& knots, std::size_t degree, double t) {
     const std::size_t count = knots.size() - degree - 1;
-    // The last interval that begins at t or below and is not empty.
+    // The last non-empty interval that begins at t or below.
     const auto begin = knots.begin() + static_cast<std::ptrdiff_t>(degree);
     const auto end = knots.begin() + static_cast<std::ptrdiff_t>(count);
     auto above = std::upper_bound(begin, end, t);

@@ -8,9 +8,9 @@ namespace tessera {
 ///
 ///     height(u, v) = sum w_ij h_ij N_i(u) N_j(v) / sum w_ij N_i(u) N_j(v)
 ///
-/// over knots_u[degree_u] <= u <= knots_u[columns], and v likewise. knots_u has columns + degree_u + 1 entries, not
-/// decreasing. Column i of row j is heights[j * columns + i], model units; row 0 is at the lowest v. Weights are above
-/// 0. A Bezier patch has knots 0 ... 0 1 ... 1.
+/// over knots_u[degree_u] <= u <= knots_u[columns], and v likewise. knots_u has columns + degree_u + 1 non-decreasing
+/// entries. Column i of row j is heights[j * columns + i], model units; row 0 is at the lowest v. Weights are positive.
+/// A Bezier patch has knots 0 ... 0 1 ... 1.
 struct NurbsPatch {
     std::size_t degree_u = 1, degree_v = 1;
     std::size_t columns = 0, rows = 0;
@@ -18,23 +18,22 @@ struct NurbsPatch {
     std::vector<double> heights, weights;
 };
 
-/// The basis functions that are not zero at one parameter: values[k] is N_(first + k).
+/// The basis functions that are non-zero at a parameter: values[k] is N_(first + k).
 struct BasisFunctions {
     std::size_t first = 0;
     std::vector<double> values;
 };
 
-/// By the recursion of Cox and de Boor, only sums and products of numbers >= 0: accurate to rounding. `t` within the
-/// range knots[degree] .. knots[knots.size() - degree - 1]; its upper end belongs to the last interval that
-/// is not empty.
+/// Uses the recursion of Cox and de Boor, with sums and products of numbers >= 0 only, so accurate to rounding. `t` is
+/// in knots[degree] .. knots[knots.size() - degree - 1]; the upper end belongs to the last non-empty interval.
 BasisFunctions basis_functions(const std::vector<double>& knots, std::size_t degree, double t);
 
 double height_of(const NurbsPatch& patch, const BasisFunctions& u, const BasisFunctions& v);
 
-/// At the parameters u, v in 0..1, which stand for the whole of the patch's own ranges.
+/// Height at u, v in 0..1, which span the patch's parameter ranges.
 double height_of(const NurbsPatch& patch, double u, double v);
 
-/// The knots' parameter for `part` in 0..1 of their range.
+/// The parameter at fraction `part`, 0..1, of the knots' range.
 double parameter_at(const std::vector<double>& knots, std::size_t degree, double part);
 
 /// Knots 0 ... 0 1 ... 1.

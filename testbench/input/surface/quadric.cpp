@@ -50,8 +50,8 @@ std::optional<double> intersect(const Quadric& quadric, const glm::dvec3& origin
             return std::nullopt;
         discriminant = 0;
     }
-    // The sum of two numbers of one sign: nothing cancels. Its two quotients are the roots; where the line meets the
-    // quadric only once, a is 0 and the first of them infinite.
+    // A sum of two numbers of equal sign, without cancellation. The roots are two quotients with it; if the line meets
+    // the quadric only once, a is 0 and the first root infinite.
     const double sum = -(b + std::copysign(std::sqrt(discriminant), b));
     std::array<double, 2> roots{sum / a, c / sum};
     if (sum == 0)

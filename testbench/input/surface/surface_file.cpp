@@ -17,7 +17,7 @@ constexpr Range coefficient{-1e12, 1e12};
 constexpr Range weight{1e-9, 1e9};
 constexpr Range knot{-1e9, 1e9};
 constexpr std::int64_t largest_degree = 32;
-constexpr double least_span = 1e-9;  // between knots that are not the same, against their whole range
+constexpr double least_span = 1e-9;  // between distinct knots, relative to their whole range
 
 glm::dvec3 vector(const std::vector<double>& numbers) {
     return {numbers[0], numbers[1], numbers[2]};
@@ -109,7 +109,7 @@ void check_knots(TomlFields& fields, const char* key, const std::vector<double>&
                                     "same, or more different",
                                     key, toml_number(knots[k - 1]), toml_number(knots[k]), least_span));
         alike = span == 0 ? alike + 1 : 1;
-        // At an end the patch stops, and may; in between degree + 1 knots would tear it.
+        // At an end degree + 1 equal knots are allowed; in between they would make the patch discontinuous.
         const bool end = knots[k] <= knots[degree] || knots[k] >= knots[count];
         const std::size_t most = end ? degree + 1 : degree;
         if (alike > most)

@@ -12,11 +12,11 @@
 
 namespace tessera {
 
-/// A quadric as a surface file has it.
+/// A quadric of a surface file.
 struct QuadricSurface {
     Quadric quadric;
     std::optional<Root> root;     ///< absent: highest over the plane, nearest over a base mesh
-    std::optional<double> floor;  ///< what a texel gets where the surface is lower or absent, model units
+    std::optional<double> floor;  ///< height of texels where the surface is lower or absent, model units
     std::string where;            ///< "FILE:LINE" of its table, for messages
 };
 
@@ -28,7 +28,7 @@ struct Surface {
     glm::dvec2 low{-1}, high{1};
 };
 
-/// Reads a surface file, TOML: one of these tables, and [domain] where wanted. Unknown keys are errors.
+/// Reads a surface file, TOML: one of these tables, and optionally [domain]. Unknown keys are errors.
 /// Lengths in model units, -1e6 .. 1e6.
 ///
 ///     [domain]                  the default plane of a job
@@ -42,9 +42,9 @@ struct Surface {
 ///     axis         "x", "y" or "z", the default: of all but sphere, ellipsoid and general
 ///     sheets       1 or 2: of a hyperboloid
 ///     coefficients general only: of x^2, y^2, z^2, xy, xz, yz, x, y, z and 1; each -1e12 .. 1e12
-///     root         "highest", "lowest" or "nearest": the intersection that counts where there are two
-///     floor        where the surface is absent or lower; default: nothing is raised, and where it is absent the map
-///                  has the lowest height it has elsewhere
+///     root         "highest", "lowest" or "nearest": the intersection to use if there are two
+///     floor        height where the surface is absent or lower; default: no texel is raised, and where the surface is
+///                  absent the map has its lowest height elsewhere
 ///
 ///     [nurbs]                   any degree from 1 to 32
 ///     degree_u, degree_v
@@ -54,10 +54,10 @@ struct Surface {
 ///
 ///     [bezier]                  heights and weights; the degrees are their number less 1
 ///
-/// Errors: InputError, "FILE:LINE:COLUMN: ...", with what is there, what is wanted and the limit.
+/// Errors: InputError, "FILE:LINE:COLUMN: ...", with the value found, the value expected and the limit.
 Surface read_surface(const std::filesystem::path& path);
 
-/// The same for text at hand; `name` stands for the file in messages.
+/// The same from memory; messages show `name` as the file.
 Surface parse_surface(std::string_view text, const std::string& name);
 
 }  // namespace tessera

@@ -16,21 +16,21 @@ struct GridRange {
     std::int64_t first, last;
 };
 
-/// Texels with their centres, at .5, within [low, high].
+/// Texels whose centres, at .5, lie within [low, high].
 inline GridRange grid_lines(double low, double high) {
     const auto line = [](double at) { return static_cast<std::int64_t>(std::clamp(at, -1e15, 1e15)); };
     return {line(std::ceil(low - 0.5 - 1e-9)), line(std::floor(high - 0.5 + 1e-9))};
 }
 
-/// The texels that a triangle's bounding box has; both ranges of nothing where one is.
+/// The texels in a triangle's bounding box; if one range is empty, both are.
 inline std::array<GridRange, 2> grid_box(const std::array<glm::dvec2, 3>& t) {
     return {grid_lines(std::min({t[0].x, t[1].x, t[2].x}), std::max({t[0].x, t[1].x, t[2].x})),
             grid_lines(std::min({t[0].y, t[1].y, t[2].y}), std::max({t[0].y, t[1].y, t[2].y}))};
 }
 
 /// Calls at(x, y, b) for the texels of columns and rows whose centre lies in the triangle `t`, its border
-/// included; t in texels, b the centre's barycentric coordinates. Row by row upwards. A triangle without area
-/// has none.
+/// included; t in texels, b the centre's barycentric coordinates. Row by row upwards. No texels for a triangle
+/// without area.
 template <class At>
 void for_texel_centres(const std::array<glm::dvec2, 3>& t, const GridRange& columns, const GridRange& rows,
                        At&& at) {
@@ -45,7 +45,7 @@ void for_texel_centres(const std::array<glm::dvec2, 3>& t, const GridRange& colu
     const double area = cross(ab, ac);
     if (std::abs(area) < 1e-15)
         return;
-    // A point on an edge must be inside of one of its two triangles whatever rounding does.
+    // A point on an edge must be inside one of its two triangles despite rounding.
     constexpr double inside = -1e-9;
     for (std::int64_t y = first_row; y <= last_row; ++y) {
         for (std::int64_t x = first; x <= last; ++x) {

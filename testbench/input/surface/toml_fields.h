@@ -7,11 +7,11 @@
 
 namespace tessera {
 
-/// One table of a surface file. Every key is asked for by what it must be; finish() then knows the ones
-/// nobody asked for. All errors are InputErrors with file, line and column.
+/// One table of a surface file. Each key is read with its expected type; finish() then refuses keys that were not read.
+/// All errors are InputErrors with file, line and column.
 class TomlFields {
   public:
-    /// `name` of the table, empty for the file's top level, and `file` for messages. The table must outlive this.
+    /// `name`: the table's, empty for the file's top level; `file`: for messages. The table must outlive this.
     TomlFields(const toml::table& table, std::string name, std::string file);
 
     bool has(const char* key);
@@ -26,7 +26,7 @@ class TomlFields {
     /// `count` 0: any number from 1.
     std::vector<double> numbers(const char* key, std::size_t count, const Range& range);
 
-    /// A table of numbers, row by row; all rows are as long as the first.
+    /// A table of numbers, row by row; all rows have equal length.
     struct Rows {
         std::size_t columns = 0, rows = 0;
         std::vector<double> values;
@@ -37,10 +37,10 @@ class TomlFields {
     std::string where() const;
 
     [[noreturn]] void fail(const char* key, const std::string& what) const;
-    /// At one element of an array.
+    /// Reports an error at one element of an array.
     [[noreturn]] void fail(const char* key, std::size_t element, const std::string& what) const;
 
-    /// Refuses keys that were not asked for.
+    /// Refuses keys that were not read.
     void finish() const;
 
   private:

@@ -5,8 +5,8 @@
 
 namespace tessera::fuzz {
 
-/// Numbers from a fuzzer's bytes, in order; zero bytes after their end. The same bytes give the same numbers
-/// everywhere.
+/// Numbers from a fuzzer's bytes, in order; zero bytes follow their end. The same bytes give the same numbers on every
+/// platform.
 class ByteSource {
   public:
     explicit ByteSource(std::string_view bytes) : bytes_(bytes) {}
@@ -24,8 +24,8 @@ class ByteSource {
 
     bool flag() { return (byte() & 1) != 0; }
 
-    /// low..high, out of as many bytes as that takes. The first byte also chooses the limits themselves, one time in
-    /// sixteen each: that is where faults are.
+    /// A number in low..high, from as many bytes as needed. The first byte also selects each limit with a probability
+    /// of 1/16, since faults are likely there.
     std::int64_t integer(std::int64_t low, std::int64_t high) {
         const std::uint64_t span = static_cast<std::uint64_t>(high) - static_cast<std::uint64_t>(low);
         if (span < 16)

@@ -25,7 +25,7 @@ bool holds_vector(const Format& format, const Vector& v) {
     return holds(format, v.x) && holds(format, v.y) && holds(format, v.z);
 }
 
-/// Every field of a vertex fits the wires it travels on.
+/// Every field of a vertex fits its format.
 void promise_fits(const Vertex& v, const Registers& registers) {
     const Formats& formats = registers.formats;
     promise(holds_vector(formats.position, v.position) && holds_vector(formats.position, v.displaced),
@@ -44,7 +44,7 @@ void promise_fits(const Vertex& v, const Registers& registers) {
 void promise_midpoint(std::int64_t a, std::int64_t b, std::int64_t ab, std::int64_t ba) {
     promise(ab == ba, "a midpoint depends on its operands' order");
     promise(std::min(a, b) <= ab && ab <= std::max(a, b), "a midpoint does not lie between its operands");
-    const std::int64_t off = a + b - 2 * ab;  // a half LSB each
+    const std::int64_t off = a + b - 2 * ab;  // in half LSB
     promise(off == 0 || off == 1, "a midpoint is not rounded towards minus infinity");
 }
 
@@ -71,7 +71,7 @@ void check_normalise(std::int64_t x, std::int64_t y, std::int64_t z, const Forma
         promise(unit == Direction{}, "a zero vector does not stay zero");
         return;
     }
-    constexpr double rounding = 1e-9;  // of the doubles here
+    constexpr double rounding = 1e-9;  // of this check's doubles
     const double length =
         std::sqrt(static_cast<double>(x * x) + static_cast<double>(y * y) + static_cast<double>(z * z));
     const double bound = 0.5 + std::ldexp(1.0, formats.normal.fraction - 28) + rounding;
@@ -89,7 +89,7 @@ std::int64_t doubled_area(const TexCoord& a, const TexCoord& b, const TexCoord& 
     return difference(b.u, a.u) * difference(c.v, a.v) - difference(b.v, a.v) * difference(c.u, a.u);
 }
 
-/// All patterns of split edges: the children cover what the outline with its midpoints encloses, wound as it is.
+/// For all patterns of split edges, the children cover the triangle's outline with its midpoints, with its winding.
 void check_triangulate(const Triangle& triangle) {
     const auto& v = triangle.vertices;
     const std::array<TexCoord, 6> points{v[0].texture,
@@ -138,7 +138,7 @@ class Checker {
                 check_edge(case_.corners[i], case_.corners[j]);
         for (const Triangle& triangle : case_.base) {
             check_triangulate(triangle);
-            // The table's width is chosen for these, and need not hold the sums of others.
+            // The table's width is chosen for these rectangles; the sums of others may not fit.
             for (std::size_t k = 0; k < 3; ++k)
                 check_sums(triangle.vertices[k].texture, triangle.vertices[(k + 1) % 3].texture);
         }
@@ -148,7 +148,7 @@ class Checker {
   private:
     const Formats& formats() const { return case_.registers.formats; }
 
-    /// An edge is decided, and its vertex made, the same from either side.
+    /// Decision and inserted vertex of an edge are the same from both ends.
     void check_edge(const Vertex& i, const Vertex& j) {
         promise_fits(i, case_.registers);
         check_midpoints(i, j);
@@ -164,7 +164,7 @@ class Checker {
                 "an inserted vertex depends on the side its edge is seen from");
     }
 
-    /// The Summed Height Table's answer is the sum of the map's texels; a constant map never splits.
+    /// The Summed Height Table gives the sum of the map's texels; a constant map never splits.
     void check_sums(const TexCoord& i, const TexCoord& j) {
         const MapGeometry& map = case_.registers.map;
         const RectangleSize size = rectangle_size(i, j, map, formats());
@@ -188,8 +188,8 @@ class Checker {
         promise(!constant || !machine_.summed_height(i, j), "a constant map passes the Summed Height Test");
     }
 
-    /// The patch, tessellated to its end, is as closed as it was: what its edges leave over are the base's
-    /// borders, each split as the edge alone decides.
+    /// The completely tessellated patch is as closed as the base: its unpaired edges are the base's borders, each split
+    /// as decided by the edge alone.
     void check_recursion() {
         EdgeAccount account;
         std::vector<Waiting> work;
@@ -201,7 +201,7 @@ class Checker {
                 take_away_chain(triangle.vertices[static_cast<std::size_t>(k)],
                                 triangle.vertices[static_cast<std::size_t>(k + 1) % 3], 0, account);
         }
-        // A child has a younger vertex in place of an older one, so its three generations together are more.
+        // A child replaces a vertex by one of a greater generation, so the sum of its three generations is greater.
         const int deepest = 3 * static_cast<int>(case_.registers.tests.generation_limit);
         while (!work.empty()) {
             const Waiting waiting = work.back();
@@ -223,7 +223,7 @@ class Checker {
         promise(account.balanced(), "the tessellated patch has a crack");
     }
 
-    /// A base edge as its own decisions split it.
+    /// Removes a base edge from the account, split by its own decisions.
     void take_away_chain(const Vertex& from, const Vertex& to, unsigned depth, EdgeAccount& account) {
         promise(depth <= case_.registers.tests.generation_limit,
                 "the generation limit does not bound an edge");
@@ -239,7 +239,7 @@ class Checker {
         take_away_chain(middle, to, depth + 1, account);
     }
 
-    /// To off-chip memory and back.
+    /// Packs a triangle for off-chip memory and unpacks it.
     void check_packing(const Triangle& triangle) {
         std::vector<unsigned char> bytes(packed_triangle_bytes(formats()) + packed_triangle_tag_bytes);
         promise(pack_triangle(triangle, formats(), bytes.data()), "a triangle does not fit its queue entry");

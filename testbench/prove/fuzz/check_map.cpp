@@ -10,7 +10,7 @@ namespace tessera::fuzz {
 
 namespace {
 
-/// What height_map.h promises of every map that was read.
+/// Checks the guarantees of height_map.h.
 void promise_complete(const HeightMap& map) {
     promise(
         map.width >= 1 && map.width <= largest_map_side && map.height >= 1 && map.height <= largest_map_side,

@@ -12,7 +12,7 @@ namespace tessera::fuzz {
 
 namespace {
 
-constexpr double rounding = 1e-14;  // of a unit vector's length, and of the cosine of a right angle
+constexpr double rounding = 1e-14;  // error of a unit vector's length and of the cosine of a right angle
 
 void promise_vertex(const BaseVertex& v) {
     for (int k = 0; k < 3; ++k)

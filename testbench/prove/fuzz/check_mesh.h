@@ -3,7 +3,7 @@
 
 namespace tessera::fuzz {
 
-/// What base_mesh.h promises of every mesh, whatever it was read from.
+/// Checks the guarantees of base_mesh.h for a mesh of any source.
 void promise_complete(const BaseMesh& mesh);
 
 }  // namespace tessera::fuzz

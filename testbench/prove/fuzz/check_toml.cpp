@@ -12,7 +12,7 @@ namespace tessera::fuzz {
 
 namespace {
 
-/// The first line, as --set has it.
+/// Checks the first line as an argument of --set.
 void check_setting(std::string_view setting) {
     Job job;
     try {
@@ -30,7 +30,7 @@ void check_toml(std::string_view bytes) {
     const std::string name = "fuzzed.toml";
     try {
         const Job job = parse_job(bytes, name);
-        // Each key alone is in its range by now.
+        // At this point each key is in its own range.
         for (const KeyTable& table : job_tables())
             for (const Key& key : table.keys)
                 promise(complaint(key, key.get(job)).empty(), key.name + " is out of its range");

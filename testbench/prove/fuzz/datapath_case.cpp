@@ -14,11 +14,11 @@ namespace {
 
 using namespace datapath;
 
-constexpr std::uint32_t largest_side = 24;    // texels: the tables are built anew for every case
-constexpr std::int64_t most_generations = 4;  // triangles multiply by up to four with each
+constexpr std::uint32_t largest_side = 24;    // texels: the tables are rebuilt for every case
+constexpr std::int64_t most_generations = 4;  // each may multiply the triangles by four
 constexpr std::int64_t most_squares = 2;      // of the patch, along each axis
 
-/// What a job's key may be; looked up once.
+/// The range of a job's key; looked up once.
 struct FormatRange {
     explicit FormatRange(const char* name) {
         const Key* const key = find_key(std::string("formats.") + name);
@@ -29,7 +29,7 @@ struct FormatRange {
     std::int64_t low, high;
 };
 
-/// A job's formats that validate, any of them.
+/// Arbitrary valid formats of a job.
 Job::Formats any_formats(ByteSource& source) {
     static const FormatRange position_bits("position_bits"), position_fraction("position_fraction"),
         normal_bits("normal_bits"), normal_fraction("normal_fraction"), texture_integer("texture_integer"),
@@ -55,7 +55,7 @@ Job::Formats any_formats(ByteSource& source) {
     return formats;
 }
 
-/// That the job takes them, the camera's picture made small enough for the narrowest screen.
+/// Checks that a job with these formats is valid; the viewport is small enough for the narrowest screen format.
 void promise_legal(const Job::Formats& formats, std::int64_t generation_limit) {
     Job job;
     job.formats = formats;
@@ -65,7 +65,7 @@ void promise_legal(const Job::Formats& formats, std::int64_t generation_limit) {
     validate(job);
 }
 
-/// As the host makes them of a job's.
+/// The machine's formats, as the host derives them from the job's.
 Formats make_formats(const Job::Formats& job, int view_distance_shift) {
     const auto bits = [](std::int64_t value) { return static_cast<int>(value); };
     Formats formats;
@@ -82,7 +82,7 @@ Formats make_formats(const Job::Formats& job, int view_distance_shift) {
     return formats;
 }
 
-/// A direction of unit length, as far as the format has one.
+/// A direction of unit length within the format's rounding.
 Direction any_unit(ByteSource& source, const Formats& formats) {
     constexpr std::int64_t most = 127;
     Saturations unused;
@@ -178,7 +178,7 @@ std::vector<std::uint32_t> any_codes(ByteSource& source, const Registers& regist
 Vertex any_corner(ByteSource& source, const Registers& registers) {
     const Formats& formats = registers.formats;
     const auto position = [&] { return source.integer32(formats.position.lowest, formats.position.highest); };
-    // On a repeated axis the host takes what the format holds: periods beyond the first, too.
+    // On a repeated axis the host accepts all coordinates that fit the format, beyond the first period, too.
     const auto coordinate = [&](std::uint32_t size, AddressMode mode) {
         const std::int64_t border = std::int64_t{1} << (formats.texture.bits - 1);
         return source.natural(
@@ -194,7 +194,7 @@ Vertex any_corner(ByteSource& source, const Registers& registers) {
     return vertex;
 }
 
-/// A grid of squares, each cut along either diagonal.
+/// A grid of squares, each split along either diagonal.
 void add_patch(ByteSource& source, DatapathCase& made) {
     const std::uint32_t columns = source.natural(1, most_squares), rows = source.natural(1, most_squares);
     for (std::uint32_t k = 0; k < (columns + 1) * (rows + 1); ++k)
@@ -219,7 +219,7 @@ void add_patch(ByteSource& source, DatapathCase& made) {
     }
 }
 
-/// The host refuses a Summed Height Table too narrow for the mesh's largest rectangle, or takes a wider one.
+/// Widens the Summed Height Table to the mesh's largest rectangle, since the host refuses a narrower one.
 void widen_summed_height(Registers& registers, const std::vector<Triangle>& base) {
     std::uint64_t largest = 0;
     for (const Triangle& triangle : base) {

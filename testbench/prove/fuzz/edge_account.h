@@ -8,22 +8,21 @@
 
 namespace tessera::fuzz {
 
-/// The directed edges of triangles, those that run in opposite directions between the same two vertices taken against
-/// each other. Vertices are the same if all the machine knows of them is, bit for bit; so what is left of a
-/// mesh are its borders and, where two sides of an edge were split differently or to different places, its
-/// cracks.
+/// Counts the directed edges of triangles; edges of opposite direction between the same two vertices cancel. Vertices
+/// are the same if all their fields are bit-identical. The remaining edges of a mesh are its borders and its cracks,
+/// where two sides of an edge were split differently or at different positions.
 class EdgeAccount {
   public:
     void add(const datapath::Triangle& triangle);
     void add(const datapath::Vertex& from, const datapath::Vertex& to);
 
-    /// The same with the direction turned: takes one away.
+    /// Adds the reversed edge, which cancels this one.
     void remove(const datapath::Vertex& from, const datapath::Vertex& to) { add(to, from); }
 
-    /// Whether every edge is taken up by another.
+    /// Whether all edges cancel.
     bool balanced() const;
 
-    /// How many different vertices there were.
+    /// Number of distinct vertices.
     std::size_t vertices() const { return numbers_.size(); }
 
   private:

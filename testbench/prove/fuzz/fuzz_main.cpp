@@ -1,4 +1,4 @@
-// libFuzzer's entry: one program per target, TESSERA_FUZZ_CHECK naming its check.
+// libFuzzer's entry: one program per target; TESSERA_FUZZ_CHECK names its check.
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -7,7 +7,7 @@
 
 #include "testbench/prove/fuzz/fuzz_target.h"
 
-// libFuzzer asks for this name.
+// The name is required by libFuzzer.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {  // NOLINT
     try {
         tessera::fuzz::TESSERA_FUZZ_CHECK({reinterpret_cast<const char*>(data), size});

@@ -1,4 +1,4 @@
-// The seeds of corpus/ that are not written by hand: `tessera_fuzz_seeds FOLDER` writes them into FOLDER/TARGET/seed_*.
+// Makes the generated seeds of corpus/: `tessera_fuzz_seeds FOLDER` writes FOLDER/TARGET/seed_*.
 #include <array>
 #include <cstdint>
 #include <cstdio>
@@ -26,7 +26,7 @@ void write(const fs::path& path, const std::string& bytes) {
 }
 
 template <class Number>
-void append(std::string& bytes, Number number) {  // little endian, as this machine is
+void append(std::string& bytes, Number number) {  // little endian, as on this platform
     char raw[sizeof number];
     std::memcpy(raw, &number, sizeof number);
     bytes.append(raw, sizeof number);
@@ -61,7 +61,7 @@ void make_ply(const fs::path& folder) {
     write(folder / "seed_square.ply", ply);
 }
 
-/// Every key, table by table, without the comments.
+/// One file per table with all its keys, without comments.
 void make_toml(const fs::path& folder) {
     const std::string dump = tessera::dump_job(tessera::Job{});
     std::string table, name = "top";

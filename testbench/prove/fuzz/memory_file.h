@@ -4,8 +4,8 @@
 
 namespace tessera::fuzz {
 
-/// A regular file in memory for readers that take a path, its content replaced as often as one likes: no disk, and no
-/// name that two processes could share. Linux only.
+/// A regular file in memory with replaceable content, for readers that take a path. Uses neither the disk nor a name
+/// that two processes could share. Linux only.
 class MemoryFile {
   public:
     MemoryFile();
@@ -21,7 +21,7 @@ class MemoryFile {
     std::filesystem::path path_;
 };
 
-/// This process's own, holding these bytes until it is asked for again.
+/// The path of this process's file, which holds these bytes until the next call.
 const std::filesystem::path& file_of(std::string_view bytes);
 
 }  // namespace tessera::fuzz

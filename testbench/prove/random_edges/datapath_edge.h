@@ -17,7 +17,7 @@
 #include "modules/datapath/triangle_pass.h"
 #include "testbench/prove/random_edges/edge_machine.h"
 
-/// The whole recursion on the datapath alone.
+/// The recursion with the datapath's functions only.
 namespace tessera::testing {
 
 using tessera::Machine;
@@ -40,7 +40,7 @@ class WorkList {
     std::uint64_t finished = 0;
     int largest_generation = 0;
 
-    /// Handles one triangle; result(triangle) sees it if no edge splits.
+    /// Processes one triangle; calls result(triangle) if no edge splits.
     template <class Result>
     void step(Result&& result) {
         const datapath::TrianglePass pass = machine_.evaluate(waiting.front());
@@ -58,7 +58,7 @@ class WorkList {
                    });
     }
 
-    /// Until nothing waits or `bound` triangles are finished.
+    /// Runs until no triangle waits or `bound` triangles are finished.
     template <class Result>
     void run(std::uint64_t bound, Result&& result) {
         while (!waiting.empty() && finished < bound)

@@ -7,7 +7,7 @@
 
 namespace tessera::testing {
 
-/// A unit vector that points up, of three draws.
+/// A unit vector that points up, from three random numbers.
 inline datapath::Direction random_normal(Random& random, const datapath::Formats& formats) {
     datapath::Saturations unused;
     const datapath::Direction any{random.integer32(-999, 999), random.integer32(-999, 999),
@@ -15,7 +15,7 @@ inline datapath::Direction random_normal(Random& random, const datapath::Formats
     return normalise(any, formats, unused);
 }
 
-/// The three tables of a map of the registers' size: heights and normals at random, texel after texel.
+/// The three tables of a map of the registers' size, with random heights and normals.
 inline Tables random_tables(Random& random, datapath::Registers& registers) {
     std::vector<std::uint32_t> codes;
     std::vector<datapath::Direction> normals;

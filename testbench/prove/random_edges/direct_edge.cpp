@@ -19,7 +19,7 @@ std::int64_t divide_down(std::int64_t value, std::int64_t by) {
     return value % by < 0 ? quotient - 1 : quotient;
 }
 
-/// value / 2^places to nearest, a tie upwards.
+/// value / 2^places rounded to nearest, ties upwards.
 std::int64_t nearest(std::int64_t value, int places) {
     const std::int64_t unit = std::int64_t{1} << places;
     std::int64_t rest = value % unit, quotient = value / unit;
@@ -42,7 +42,7 @@ std::uint64_t magnitude(std::int64_t value) {
     return static_cast<std::uint64_t>(value < 0 ? -value : value);
 }
 
-/// Beyond a datasheet's bound: what doubles themselves may be off.
+/// Error of the doubles here, added to a documented bound.
 constexpr double slack = 1e-6;
 
 }  // namespace
@@ -80,7 +80,7 @@ DirectEdge::Texel DirectEdge::texel(const datapath::TexCoord& t) const {
     return {t.u / unit, t.v / unit};
 }
 
-/// A tenth of an LSB of a component in a format of 18 bits is a million times what a double leaves.
+/// A tenth of an LSB in a format of 18 bits is a million times a double's rounding error.
 bool DirectEdge::is_unit(const std::array<std::int64_t, 3>& vector, const Direction& unit) const {
     const Format& format = registers_.formats.normal;
     const double x = static_cast<double>(vector[0]), y = static_cast<double>(vector[1]),

@@ -8,7 +8,7 @@
 
 namespace tessera {
 
-/// The map as it is, with sums of heights that never wrap: a table over two periods each way, 64 bits an entry.
+/// The map, with sums of heights that do not wrap: a table over two periods on each axis, 64 bits per entry.
 class DirectMap {
   public:
     DirectMap(const datapath::MapGeometry& geometry, std::vector<std::uint32_t> codes,
@@ -18,11 +18,11 @@ class DirectMap {
     const datapath::Direction& normal(std::uint32_t x, std::uint32_t y) const {
         return normals_[index(x, y)];
     }
-    /// Of the codes in columns x .. x + width, rows y .. y + height; x, y inside the map, no larger than it.
+    /// Sum of the codes in columns x .. x + width, rows y .. y + height; x, y inside the map, the size no larger.
     std::uint64_t sum(std::uint32_t x, std::uint32_t y, std::uint32_t width, std::uint32_t height) const;
 
   private:
-    /// Outside, the border's texel, or the one whole periods away.
+    /// Index of a texel; outside the map the border's texel, or the texel whole periods away.
     std::size_t index(std::uint32_t x, std::uint32_t y) const;
 
     datapath::MapGeometry geometry_;
@@ -31,25 +31,25 @@ class DirectMap {
     std::vector<std::uint64_t> sums_;
 };
 
-/// What the tests of an edge compare with their thresholds.
+/// The values that an edge's tests compare with their thresholds.
 struct EdgeMeasures {
     std::uint64_t normal = 0;          ///< largest of the six differences
     std::uint64_t summed_height = 0;   ///< | 2 S_ij - S_i - S_j |
     std::uint64_t rectangle_area = 1;  ///< texels of each of the three rectangles
     std::uint64_t length = 0;          ///< Manhattan, on screen
-    std::int64_t cosine = 0;           ///< largest N'.H of the three
+    std::int64_t cosine = 0;           ///< largest N'.H of the three normals
 };
 
-/// The arithmetic's definitions again, by other means: divisions that round down instead of shifts, sums of
-/// texels, exact square roots and quotients in doubles where the datapath has tables and Newton's steps.
-/// Shares no function with it.
+/// A second implementation of the arithmetic's definitions, which shares no function with the datapath: divisions that
+/// round down instead of shifts, sums of texels, and square roots and quotients in double precision instead of tables
+/// and Newton steps.
 class DirectEdge {
   public:
     DirectEdge(const datapath::Registers& registers, const DirectMap& map)
         : registers_(registers), map_(map) {}
 
-    /// Whether the vertex inserted on (i, j) is what the definitions say, each component exactly, those that
-    /// are divided or brought to unit length within the datasheets' bounds. Null, or what is not.
+    /// Compares the vertex inserted on (i, j) with the definitions: quotients and unit vectors within the documented
+    /// bounds, all other components exactly. Null, or the name of a wrong value.
     const char* fault_of_vertex(const datapath::Vertex& i, const datapath::Vertex& j,
                                 const datapath::Vertex& inserted) const;
 

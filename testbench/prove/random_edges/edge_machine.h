@@ -15,10 +15,10 @@
 #include "modules/datapath/transform.h"
 #include "modules/datapath/triangle_pass.h"
 
-/// The machine's work on vertices and edges, put together from the datapath alone: no units, no kernel.
+/// The machine's processing of vertices and edges, composed of the datapath's functions, without units or SystemC.
 namespace tessera {
 
-/// The three tables as the memories hold them, one element per entry.
+/// The contents of the three tables, one element per entry.
 struct Tables {
     std::vector<std::uint32_t> codes;
     std::vector<std::uint64_t> normals;
@@ -29,8 +29,7 @@ struct Tables {
     }
 };
 
-/// Sets the tables' layouts for registers.map and fills the Summed Height Table, each entry modulo the
-/// format.
+/// Sets the tables' layouts for registers.map and fills the Summed Height Table, each entry modulo its format.
 inline Tables make_tables(datapath::Registers& registers, const std::vector<std::uint32_t>& codes,
                           const std::vector<datapath::Direction>& normals) {
     const std::uint32_t width = registers.map.width, height = registers.map.height;
@@ -94,7 +93,7 @@ class Machine {
                         registers.displacement, registers.formats, saturations);
     }
 
-    /// What a base vertex gets on its first pass.
+    /// Calculates a base vertex's values of its first pass.
     void complete(datapath::Vertex& vertex) {
         vertex.displaced = displaced(vertex.position, vertex.normal, vertex.texture);
         vertex.displaced_normal = bumped(vertex.normal, vertex.tangent, vertex.handedness, vertex.texture);
@@ -108,7 +107,7 @@ class Machine {
         decide(pass, k);
     }
 
-    /// Of it, what an inserted vertex would be.
+    /// Calculates only the vertex to be inserted on edge k.
     void insert_vertex(datapath::TrianglePass& pass, int k) {
         const datapath::Vertex& i = pass.edge_begin(k);
         const datapath::Vertex& j = pass.edge_end(k);
@@ -130,7 +129,7 @@ class Machine {
                    edge.texture);
     }
 
-    /// And the tests of an edge whose vertex is known.
+    /// Evaluates the tests of edge k, whose vertex is known.
     void decide(datapath::TrianglePass& pass, int k) const {
         const datapath::Vertex& i = pass.edge_begin(k);
         const datapath::Vertex& j = pass.edge_end(k);

@@ -136,7 +136,7 @@ void Trial::try_edge(Machine& machine, const DirectEdge& direct, const Vertex& i
         try_moved(machine, one, inserted_);
 }
 
-/// The same edge whole periods further, from its other end: the other copy of a closed surface's seam.
+/// The same edge shifted by whole periods, from its other end: the other copy of a closed surface's seam.
 void Trial::try_moved(Machine& machine, const TrianglePass& here, const Vertex& inserted) {
     const datapath::MapGeometry& map = machine.registers.map;
     const datapath::Formats& formats = machine.registers.formats;
@@ -184,7 +184,7 @@ void Trial::try_machine(RandomMachine& made, std::uint64_t edges) {
     for (std::uint64_t k = 0; k < edges; ++k) {
         const Vertex j = make_random_vertex(random_, machine, &i);
         try_edge(machine, direct, i, j);
-        // Walk on, so that inserted vertices become ends too.
+        // Continue with inserted vertices as ends.
         third_ = i;
         i = random_.coin() ? inserted_ : j;
         if (i.generation > 14)

@@ -11,14 +11,14 @@
 #include "testbench/common/grouped_digits.h"
 #include "testbench/prove/random_edges/edge_trial.h"
 
-// Random edges through the datapath, from either side, against the definitions: modules/datapath/CRACK_FREEDOM.md. Exit
-// codes as tessera's: 0 all alike, 1 some not, 2 usage.
+// Runs random edges through the datapath from both ends and against the definitions: modules/datapath/CRACK_FREEDOM.md.
+// Exit codes as tessera's: 0 all equal, 1 differences, 2 usage.
 
 namespace {
 
 using namespace tessera;
 
-/// A test that always says the same has not been tried. Few edges may miss one by chance.
+/// From this number of edges on, each test must be both true and false often enough. With fewer, chance may decide.
 constexpr std::uint64_t fewest_to_judge = 100'000;
 constexpr double least_share = 0.01;
 

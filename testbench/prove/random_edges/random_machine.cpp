@@ -75,7 +75,7 @@ datapath::TestParameters any_tests(Random& random, const Formats& formats) {
 datapath::TransformParameters any_transform(Random& random, const Formats& formats) {
     datapath::TransformParameters transform;
     constexpr std::int64_t one = std::int64_t{1} << datapath::TransformParameters::matrix_fraction;
-    // As far as the mesh is large: the products' scale.
+    // The extent of the mesh, which gives the products' scale.
     const std::int64_t reach = one << std::min(formats.position.bits - 1, 31);
     const auto row = [&](std::int64_t offset) {
         return std::array<std::int64_t, 4>{random.integer(-one, one), random.integer(-one, one),
@@ -104,7 +104,7 @@ RandomMachine make_random_machine(Random& random, FormatWidths widths) {
     registers.map.address_u = mode();
     registers.map.address_v = mode();
     const std::size_t texels = std::size_t{registers.map.width} * registers.map.height;
-    // The narrowest table that holds a rectangle as large as the map, or a wider one.
+    // The narrowest table that fits the sum of the whole map, or a wider one.
     int bits = 8;
     while (static_cast<std::uint64_t>(formats.displacement.highest) * texels >> bits != 0)
         ++bits;
@@ -128,7 +128,7 @@ datapath::Vertex make_random_vertex(Random& random, Machine& machine, const data
     const datapath::MapGeometry& map = machine.registers.map;
     const Formats& formats = machine.registers.formats;
     const int fraction = formats.texture.fraction;
-    const std::uint32_t most = 1U << (formats.texture.bits - 1 - fraction);  // texels that the format holds
+    const std::uint32_t most = 1U << (formats.texture.bits - 1 - fraction);  // largest texel of the format
     const auto coordinate = [&](std::uint32_t size, datapath::AddressMode mode, std::uint32_t other) {
         const std::uint32_t periods =
             mode == datapath::AddressMode::repeat ? std::max(1U, std::min(3U, most / size)) : 1U;
@@ -158,7 +158,7 @@ datapath::Vertex make_random_vertex(Random& random, Machine& machine, const data
     v.position.x = position(other.x);
     v.position.y = position(other.y);
     v.position.z = position(other.z);
-    // One in 32 is the other end's turned round: the mean has no direction, or only rounding's.
+    // Sometimes the opposite of the other end's: the mean is zero, or rounding error only.
     const bool against = near != nullptr && random.chance(3);
     v.normal =
         against ? Direction{-near->normal.x, -near->normal.y, -near->normal.z} : any_unit(random, formats);

@@ -1,5 +1,5 @@
-// Catch2's runner inside sc_main, for tests that elaborate SystemC modules. One elaboration per process: run one case
-// at a time, as ctest does.
+// Catch2's runner inside sc_main, for tests that elaborate SystemC modules. A process can elaborate once only: run each
+// case in its own process, as ctest does.
 #define CATCH_CONFIG_RUNNER
 #include <catch2/catch.hpp>
 #include <cstdlib>

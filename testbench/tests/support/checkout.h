@@ -7,9 +7,9 @@
 
 namespace tessera {
 
-/// A checkout to run commands in: the project's own scripts, everything else by link, the program of this build where
-/// scripts/run puts it. cmake and ctest do nothing there, so that nothing is built and no test runs tests; nor does
-/// gtkwave, which would wait for its user.
+/// A checkout to run commands in: copies of the project's scripts, links to everything else, and this build's program
+/// in the place where scripts/run builds it. cmake, ctest and gtkwave are stubs: nothing is built, no test runs tests,
+/// and no window waits for a user.
 class Checkout {
   public:
     Checkout() {
@@ -23,7 +23,7 @@ class Checkout {
             if (name.rfind("build", 0) != 0 && name != ".git" && name != "scripts" && name != "runs")
                 std::filesystem::create_symlink(entry.path(), root() / name);
         }
-        // Copied: a linked script would find its way back to the original.
+        // Copied, since a linked script would resolve the path of the original.
         std::filesystem::copy(source_folder() / "scripts", root() / "scripts",
                               std::filesystem::copy_options::recursive);
         for (const char* const preset : {"release", "debug", "asan"}) {

@@ -73,7 +73,7 @@ struct MeshMaker {
     }
 };
 
-/// A grid of quads, cut from its (0,0) to its (1,1) corner. vertex(i, j) for i = 0..columns, j = 0..rows.
+/// A grid of quads, split from the (0,0) to the (1,1) corner. vertex(i, j) for i = 0..columns, j = 0..rows.
 template <class MakeVertex>
 std::vector<datapath::Triangle> make_grid(int columns, int rows, MakeVertex&& vertex) {
     std::vector<datapath::Triangle> result;

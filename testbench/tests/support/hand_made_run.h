@@ -7,15 +7,15 @@
 
 namespace tessera::testing {
 
-/// A machine that has decided passes made by hand, so that each of its counts is another number. Functional
+/// A machine that has decided hand-made passes, chosen so that each counter has a different value. Functional
 /// mode, no base triangles; culling and the Highlight Test are on.
 ///
 ///   passes 11, of three edges: 33 tested; by edges split 1 x 1, 2 x 2, 4 x 3: 17 split
 ///   split by: normal alone 3 * 3 + 1, summed height alone 2 * 2, both 1, highlight alone 2; in the highlight 3
-///   stopped by: view 3, tex coord 3 + 2, generation 1 + 1; edges that nobody wanted to split are not stopped
+///   stopped by: view 3, tex coord 3 + 2, generation 1 + 1; edges without a requested split are not stopped
 ///   one test alone: view 3, tex coord 4, generation 1; several 1
-///   finished: 4 passes without a split, 5 that went round for normals: 9, of which 2 are culled
-///   vertices made 33, thrown away 33 - 17; normals 3 * 5; children 2 + 2 * 3 + 4 * 4 = 24, all waiting
+///   finished: 4 passes without a split, 5 second passes for normals: 9, of which 2 are culled
+///   vertices calculated 33, discarded 33 - 17; normals 3 * 5; children 2 + 2 * 3 + 4 * 4 = 24, all waiting
 class HandMadeRun {
   public:
     MachineSetup setup = make();
@@ -51,7 +51,7 @@ class HandMadeRun {
         setup.base_triangles.clear();
         return setup;
     }
-    /// A triangle of which all is known but, if it is to fetch them, its normals in screen space.
+    /// A triangle with all values known, its normals in screen space only if `with_normals`.
     static TakenTriangle known_triangle(bool with_normals) {
         TakenTriangle taken;
         for (datapath::Vertex& vertex : taken.triangle.vertices) {

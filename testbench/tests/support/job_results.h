@@ -6,15 +6,15 @@
 
 namespace tessera {
 
-/// What a job of testbench/examples/jobs comes to, in either mode; half_donut is the default job. A change of the datapath, the
-/// host, a default or the timing shows here. Whoever changes a line says in the commit's message why it changed.
+/// The result of a job of testbench/examples/jobs, in either mode; half_donut is the default job. It changes with the
+/// datapath, the host, a default or the timing. The commit message must explain a changed line.
 struct JobResult {
     const char* name;
     std::uint64_t triangles;  ///< finished
     std::uint64_t splits;     ///< edges
     std::uint64_t edges;      ///< tested
     std::uint64_t cycles;     ///< timed mode
-    /// 64 bit FNV-1a of mesh.ply's lines after "end_header", sorted as the file has them.
+    /// 64 bit FNV-1a of mesh.ply's lines after "end_header", in the file's order.
     std::uint64_t mesh;
 };
 

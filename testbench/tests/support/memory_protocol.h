@@ -9,10 +9,10 @@
 
 #include "modules/sockets/memory_request.h"
 
-/// The other side of a memory's socket, or of a port on one: an initiator and a target whose phases are the test's.
+/// An initiator and a target whose phases are controlled by the test, to be connected to a memory or a memory port.
 namespace tessera::testing {
 
-/// An initiator whose phases are the test's.
+/// An initiator whose phases are controlled by the test.
 struct Initiator : sc_core::sc_module {
     tlm_utils::simple_initiator_socket<Initiator, 32, MemoryProtocol> socket{"socket"};
     std::vector<std::pair<tlm::tlm_phase, MemoryRequest*>> back;
@@ -33,13 +33,13 @@ struct Initiator : sc_core::sc_module {
     }
 };
 
-/// A target whose phases are the test's; keeps what it is sent.
+/// A target whose phases are controlled by the test; records received requests.
 struct Target : sc_core::sc_module {
     tlm_utils::passthrough_target_socket<Target, 32, MemoryProtocol> socket{"socket"};
     std::vector<MemoryRequest*> come;
     tlm::tlm_sync_enum status = tlm::TLM_UPDATED;
     tlm::tlm_phase phase_back = tlm::END_REQ;
-    std::function<void(MemoryRequest&)> on_request = [](MemoryRequest&) {};  ///< before that is returned
+    std::function<void(MemoryRequest&)> on_request = [](MemoryRequest&) {};  ///< called before the return
 
     explicit Target(const sc_core::sc_module_name& name) : sc_module(name) {
         socket.register_nb_transport_fw(this, &Target::nb_transport_fw);

@@ -64,7 +64,7 @@ void redirect(const char* file, int flags, int descriptor) {
     ::close(opened);
 }
 
-/// In the child: never comes back.
+/// Runs in the child process; does not return.
 [[noreturn]] void become(const std::vector<std::string>& command, const fs::path& folder,
                          const fs::path& outputs, const ProgramLimits& limits,
                          const Environment& environment) {
@@ -104,7 +104,7 @@ ProgramEnd run_program(const std::vector<std::string>& command, const fs::path& 
     REQUIRE(child >= 0);
     if (child == 0)
         become(command, folder, outputs.path(), limits, environment);
-    ::setpgid(child, child);  // in both, whoever comes first
+    ::setpgid(child, child);  // in parent and child, since either may run first
 
     ProgramEnd end;
     int status = 0;

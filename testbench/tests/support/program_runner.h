@@ -6,7 +6,7 @@
 
 namespace tessera {
 
-/// A folder that goes away with the test.
+/// A temporary folder, removed at the end of the test.
 class TestFolder {
   public:
     TestFolder();
@@ -15,35 +15,35 @@ class TestFolder {
     TestFolder& operator=(const TestFolder&) = delete;
 
     const std::filesystem::path& path() const { return path_; }
-    /// Names in the folder, sorted; those of hidden files too.
+    /// Sorted names in the folder, including hidden files.
     std::vector<std::string> names() const;
 
   private:
     std::filesystem::path path_;
 };
 
-/// How a program that was run came to its end.
+/// The end of a program's run.
 struct ProgramEnd {
     int exit_code = -1;  ///< -1: a signal ended it
     int signal = 0;
     bool timed_out = false;
     std::string out;
-    std::string err;      ///< without the lines of progress: how many there are is the machine's affair
+    std::string err;      ///< without progress lines, whose number depends on the machine's speed
     double peak_mib = 0;  ///< resident memory
 
-    std::string text() const;  ///< all of it, for a failed check's message
+    std::string text() const;  ///< all of the above, for a failed check's message
 };
 
 struct ProgramLimits {
-    unsigned cpu_seconds = 300;         ///< SIGXCPU beyond: busy machines slow the clock, not this
+    unsigned cpu_seconds = 300;         ///< SIGXCPU beyond; CPU time does not depend on other load
     unsigned wall_seconds = 550;        ///< killed beyond, with all its children
-    unsigned long long file_bytes = 0;  ///< largest file, as by `ulimit -f`; 0: any
+    unsigned long long file_bytes = 0;  ///< largest file, as `ulimit -f`; 0: no limit
 };
 
 using Environment = std::vector<std::pair<std::string, std::string>>;
 
-/// Runs a program in `folder`, as a user would, with nothing on standard input; neither output is a terminal.
-/// `environment` is set on top of the test's own.
+/// Runs a program in `folder` with an empty standard input; neither output is a terminal. `environment` is added to the
+/// test's own.
 ProgramEnd run_program(const std::vector<std::string>& command, const std::filesystem::path& folder,
                        const ProgramLimits& limits = {}, const Environment& environment = {});
 
@@ -54,17 +54,17 @@ Arguments operator+(Arguments a, const Arguments& b);
 ProgramEnd run_tessera(const Arguments& arguments, const std::filesystem::path& folder,
                        const ProgramLimits& limits = {});
 
-/// The same where exit code 0 is required and nothing on standard error.
+/// The same; requires exit code 0 and an empty standard error.
 ProgramEnd succeed(const Arguments& arguments, const std::filesystem::path& folder);
 
 std::string read_all(const std::filesystem::path& file);
 void write_all(const std::filesystem::path& file, const std::string& content);
 std::vector<std::string> lines_of(const std::string& text);
 
-/// The folder the project's sources lie in.
+/// The project's source folder.
 std::filesystem::path source_folder();
 
-/// Memory of a program under a sanitizer says nothing, and its time little.
+/// Under a sanitizer memory and time of a program are not representative.
 constexpr bool sanitized =
 #ifdef TESSERA_SANITIZE
     true;

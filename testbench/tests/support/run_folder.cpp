@@ -10,7 +10,7 @@ namespace tessera {
 
 nlohmann::ordered_json read_json(const std::filesystem::path& file) {
     INFO(file);
-    return nlohmann::ordered_json::parse(read_all(file));  // throws what is wrong, and where
+    return nlohmann::ordered_json::parse(read_all(file));  // throws with the error and its position
 }
 
 namespace {
@@ -131,7 +131,7 @@ void require_consistent(const RunFolder& run) {
     std::sort(wanted.begin(), wanted.end());
     CHECK(names == wanted);
 
-    // Triangles: what was finished, was listened to, was lit and was written.
+    // Triangles: finished, recorded, lit and written numbers agree.
     const std::uint64_t finished = run.count("run", "triangles_finished");
     const std::uint64_t culled = run.count("pass_or_tessellate", "culled");
     const PlyFacts ply = run.read_ply();
@@ -148,7 +148,7 @@ void require_consistent(const RunFolder& run) {
     }
     CHECK(sum == finished);
 
-    // Triangles in and out: whoever is split makes two, three or four.
+    // Triangles in and out: a split triangle has two, three or four children.
     const std::uint64_t base = run.count("host", "base_triangles");
     const std::uint64_t made_into_2 = run.count("tessellation", "made_into_2");
     const std::uint64_t made_into_3 = run.count("tessellation", "made_into_3");
@@ -157,7 +157,7 @@ void require_consistent(const RunFolder& run) {
     CHECK(run.count("get_triangle", "host_triangles") == base);
     CHECK(run.count("get_triangle", "queue_triangles") == run.count("triangle_queue", "taken"));
 
-    // Edges: three of each pass through the tests; the split ones are split by some test.
+    // Edges: three per pass through the tests; each split edge is split by some test.
     const std::uint64_t edges = run.count("run", "edges_tested");
     const std::uint64_t split = run.count("run", "edges_split");
     CHECK(edges == 3 * run.count("pass_or_tessellate", "passes"));
@@ -171,7 +171,7 @@ void require_consistent(const RunFolder& run) {
     CHECK(run.statistics.at("run").at("edges_per_triangle").at("value").get<double>() ==
           Approx(static_cast<double>(edges) / static_cast<double>(finished)));
 
-    // Memories: bytes are entries, and the ratio is of the same edges.
+    // Memories: bytes follow from entries, and the ratio from the same edges.
     for (const char* const memory : {"displacement_map", "normal_map", "summed_height_table"}) {
         INFO(memory);
         CHECK(run.count(memory, "bytes_read") == run.count(memory, "reads") * run.count(memory, "entry"));
@@ -183,7 +183,7 @@ void require_consistent(const RunFolder& run) {
                                                   run.count("normal_map", "size") +
                                                   run.count("summed_height_table", "size"));
 
-    // A unit's cycles add up to the run's, exactly, and nothing is left in it.
+    // A unit's cycles add up to the run's exactly, and it is empty at the end.
     const bool timed = run.statistics.contains("timing");
     for (const auto& [group, members] : run.statistics.items()) {
         if (group.rfind("timing.", 0) != 0)
@@ -202,7 +202,7 @@ void require_consistent(const RunFolder& run) {
     }
     CHECK(timed == job_says("mode = \"timed\"\n"));
 
-    // The table for spreadsheets has what the JSON has, in its order.
+    // The CSV has the JSON's figures, in its order.
     const std::vector<RunFolder::Row> rows = run.read_csv();
     std::size_t row = 0;
     for (const auto& [group, members] : run.statistics.items()) {
@@ -215,13 +215,13 @@ void require_consistent(const RunFolder& run) {
             CHECK(r.description == figure.at("description"));
             const auto& value = figure.at("value");
             const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
-            if (r.value != text)  // 1.5 and 1.50 are one number
+            if (r.value != text)  // 1.5 and 1.50 are equal
                 CHECK(std::stod(r.value) == std::stod(text));
         }
     }
     CHECK(row == rows.size());
 
-    // The report speaks of the same run.
+    // The report is of the same run.
     if (run.conformance.contains("conformance")) {
         CHECK(run.conformance["conformance"]["edges"] == edges);
         CHECK(run.conformance["conformance"]["mismatches"] == 0);
@@ -244,7 +244,7 @@ void require_same_files(const std::map<std::string, std::string>& a,
     for (const auto& [name, content] : a) {
         INFO(name);
         REQUIRE(b.count(name) == 1);
-        CHECK((content == b.at(name)));  // not both contents on the screen
+        CHECK((content == b.at(name)));  // the parentheses keep Catch2 from printing both contents
     }
 }
 

@@ -10,13 +10,13 @@ namespace tessera {
 
 nlohmann::ordered_json read_json(const std::filesystem::path& file);
 
-/// The header of a PLY file, and what its faces say of themselves.
+/// The header of a PLY file, and sums over its faces.
 struct PlyFacts {
     std::uint64_t vertices = 0, faces = 0;
     std::map<int, std::uint64_t> by_generation;
 };
 
-/// What a run left behind, read back; requires each part to be well-formed.
+/// The files of a run, read back; requires each to be well-formed.
 class RunFolder {
   public:
     explicit RunFolder(std::filesystem::path folder);
@@ -30,9 +30,9 @@ class RunFolder {
     struct Row {
         std::string name, value, unit, description;
     };
-    /// statistics.csv, without its heading.
+    /// The rows of statistics.csv without its heading.
     std::vector<Row> read_csv() const;
-    /// Name to content of every file.
+    /// The content of every file, by name.
     std::map<std::string, std::string> files() const;
 
     nlohmann::ordered_json statistics, conformance;
@@ -41,10 +41,10 @@ class RunFolder {
     std::filesystem::path folder_;
 };
 
-/// What must hold of every run that ended with exit code 0, whatever its job: files, and figures that agree.
+/// Requirements on every run that ended with exit code 0, for any job: its files exist and its figures agree.
 void require_consistent(const RunFolder& run);
 
-/// The same names and the same bytes; says which files differ.
+/// Requires equal names and bytes; reports the files that differ.
 void require_same_files(const std::map<std::string, std::string>& a,
                         const std::map<std::string, std::string>& b);
 

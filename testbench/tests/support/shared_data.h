@@ -5,8 +5,8 @@
 
 namespace tessera {
 
-/// NAME in the data folder beside the checkout, ../shared/data; empty where it is absent. The calling test then returns
-/// before it checks anything: ctest counts a test that prints these words as skipped (CMakeLists.txt).
+/// NAME in the data folder next to the checkout, ../shared/data; empty if it is absent. The calling test then returns
+/// without any check: ctest counts a test that prints these words as skipped (CMakeLists.txt).
 inline std::filesystem::path shared_data(const std::string& name = ".") {
     std::filesystem::path path = std::filesystem::path(TESSERA_SOURCE_DIR) / "../shared/data" / name;
     if (std::filesystem::exists(path))

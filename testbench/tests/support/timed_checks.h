@@ -8,7 +8,7 @@
 #include "testbench/machine/simulation.h"
 #include "testbench/tests/machine/mesh_keys.h"
 
-/// What must hold of every timed run, whatever its job and its timing.
+/// Requirements on every timed run, for any job and timing.
 namespace tessera::testing {
 
 inline MachineSetup setup_of(const Job& job) {
@@ -22,8 +22,8 @@ inline Job timed_job() {
     return job;
 }
 
-/// A plane on which every edge of every triangle splits until the generation limit: base triangles, 4, 16, 64 ... of
-/// each. Passes: base * (4^(limit + 1) - 1) / 3, none for normals only.
+/// A plane on which every edge of every triangle splits until the generation limit: each base triangle gives 4, 16, 64
+/// ... triangles. Passes: base * (4^(limit + 1) - 1) / 3, none for normals only.
 inline Job full_split_job(int side, int limit) {
     Job job = timed_job();
     job.mesh.columns = job.mesh.rows = side;
@@ -50,7 +50,7 @@ inline MachineSetup one_triangle(const Job& job = one_quad_job()) {
     return setup;
 }
 
-/// A unit's four states make up the run, and what it was blocked by makes up the cycles it was blocked.
+/// A unit's four states add up to the run's cycles, and the cycles blocked by each unit to its blocked cycles.
 inline void require_cycles_add_up(const Unit& unit, std::uint64_t cycles) {
     INFO(unit.name());
     const Activity& activity = unit.activity();
@@ -78,7 +78,7 @@ inline void require_empty(const Unit& unit) {
     CHECK(unit.describe_contents().empty());
 }
 
-/// Of the Tessellation Tests units, however many: what `figure` says of each, summed.
+/// Sum of `figure` over all Tessellation Tests units.
 template <class Figure>
 std::uint64_t sum_over_tests(const Pipeline& pipeline, Figure figure) {
     std::uint64_t sum = 0;
@@ -87,7 +87,7 @@ std::uint64_t sum_over_tests(const Pipeline& pipeline, Figure figure) {
     return sum;
 }
 
-/// What goes into one unit came out of another.
+/// Each unit receives as many items as another sends.
 inline void require_conservation(const Simulation& simulation) {
     for (const Conservation& equation : conservation(simulation)) {
         INFO(equation.name);
@@ -100,7 +100,7 @@ inline void require_conservation(const Simulation& simulation) {
         CHECK(p.summed_height_table_reads() >= 12 * p.edges_tested());
 }
 
-/// To be called after a timed run that drained.
+/// Call after a timed run that drained.
 inline void require_timed_identities(const Simulation& simulation) {
     const Pipeline& p = simulation.pipeline;
     for (const Unit* unit : p.units()) {
@@ -123,7 +123,7 @@ inline void require_timed_identities(const Simulation& simulation) {
     CHECK(slots <= simulation.cycles() * p.summed_height_table.slots_per_cycle());
 }
 
-/// Runs it to its end, and all of the above.
+/// Runs the simulation to its end and checks all of the above.
 inline void run_timed(Simulation& simulation) {
     const std::string stuck = simulation.run();
     INFO(stuck);

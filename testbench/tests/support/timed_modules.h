@@ -9,10 +9,10 @@
 #include "modules/sockets/stream_output.h"
 #include "modules/timing/cycle_scheduler.h"
 
-/// What stands before and behind a unit that is tested alone.
+/// Drivers and sinks for testing a single unit.
 namespace tessera::testing {
 
-/// Offers items one after another, each as soon as the one before has been taken and its own gap is over.
+/// Offers items one after another, each when the previous one has been accepted and its own gap has passed.
 template <class Payload>
 class Driver : public sc_core::sc_module, public CycleProcess {
   public:
@@ -47,14 +47,14 @@ class Driver : public sc_core::sc_module, public CycleProcess {
     std::size_t next_ = 0;
 };
 
-/// Takes items, after the stalls of its channel, and notes when; functional mode: likewise, without the when.
+/// Accepts items after the stalls of its channel and records the cycle (in timed mode).
 template <class Payload>
 class Sink : public sc_core::sc_module, public CycleProcess {
   public:
     StreamInput<Payload> in{"in"};
     std::vector<Payload> items;
     std::vector<std::uint64_t> cycles;
-    std::vector<sc_core::sc_time> delays;  ///< functional mode: as they came
+    std::vector<sc_core::sc_time> delays;  ///< functional mode: annotated delays on arrival
 
     Sink(const sc_core::sc_module_name& name, CycleScheduler& clock, const StallParameters& stalls = {})
         : sc_module(name), clock_(clock) {
@@ -79,7 +79,7 @@ class Sink : public sc_core::sc_module, public CycleProcess {
     CycleScheduler& clock_;
 };
 
-/// Does what a test tells it to when the clock calls it.
+/// Calls a test's function when the clock calls it.
 class Caller : public CycleProcess {
   public:
     explicit Caller(CycleScheduler& clock) { clock.attach(*this); }
@@ -89,7 +89,7 @@ class Caller : public CycleProcess {
     void step() override { on_step(); }
 };
 
-/// A producer that breaks the rules: a socket whose owner the test is.
+/// A producer that can violate the protocol: the test drives its socket.
 template <class Payload>
 class BareInitiator : public sc_core::sc_module, public tlm::tlm_bw_transport_if<Stream<Payload>> {
   public:
@@ -111,7 +111,7 @@ class BareInitiator : public sc_core::sc_module, public tlm::tlm_bw_transport_if
     void invalidate_direct_mem_ptr(sc_dt::uint64, sc_dt::uint64) override {}
 };
 
-/// A consumer that answers as the test tells it.
+/// A consumer whose responses are given by the test.
 template <class Payload>
 class BareTarget : public sc_core::sc_module, public tlm::tlm_fw_transport_if<Stream<Payload>> {
   public:
@@ -134,7 +134,7 @@ class BareTarget : public sc_core::sc_module, public tlm::tlm_fw_transport_if<St
     unsigned transport_dbg(Payload&) override { return 0; }
 };
 
-/// The message of the SC_ERROR that `action` ends in; empty: none.
+/// The message of the SC_ERROR raised by `action`; empty if none.
 template <class Action>
 std::string error_of(Action action) {
     try {
