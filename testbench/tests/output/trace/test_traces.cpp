@@ -589,9 +589,13 @@ TEST_CASE("trace.fst: --fst compresses the waveforms, or says which package is m
         write_all(here.path() / "tools/vcd2fst", script);
         fs::permissions(here.path() / "tools/vcd2fst", fs::perms::owner_all);
     };
-    make_tool("#!/bin/sh\nread line < \"$1\" && echo \"$line\" > \"$2\"\n");
+    make_tool(
+        "#!/bin/sh\nread line < \"$1\" && echo \"$line\" > \"$2\"\n"
+        "while read key value; do if [ $key = SigBlk: ]; then echo $value > blocked; fi; done "
+        "< /proc/self/status\n");
     require_fine(run());
     CHECK(read_all(here.path() / "out/trace.fst") == "$version tessera $end\n");
+    CHECK(read_all(here.path() / "blocked") == "0000000000000000\n");  // Ctrl-C ends it too
     make_tool("#!/bin/sh\nexit 1\n");
     const ProgramEnd failed = run();
     require_fine(failed);
