@@ -52,8 +52,8 @@ BakeRequest BakeOptions::request() const {
     request.output = output_;
     request.format = format_of(request.output);
     const std::size_t by = size_.find('x');
-    request.width = side_of(size_.substr(0, by));
-    request.height = by == std::string::npos ? -1 : side_of(size_.substr(by + 1));
+    request.width = parse_side(size_.substr(0, by));
+    request.height = by == std::string::npos ? -1 : parse_side(size_.substr(by + 1));
     const auto allowed = [](int side) { return side >= 1 && side <= largest_map_side; };
     if (!allowed(request.width) || !allowed(request.height))
         throw InputError(

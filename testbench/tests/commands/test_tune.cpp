@@ -192,5 +192,5 @@ TEST_CASE("tune overwrites nothing that it reads and nobody's mesh") {
     CHECK_THAT(
         refused({"tune", "--triangles", "30000", "--set", "mesh.source=run", "--set", "mesh.file=runs/tuned"},
                 here.path()),
-        Contains("take away its own base mesh"));
+        Contains("remove its own base mesh"));
 }

@@ -264,7 +264,7 @@ TEST_CASE("an input whose name lies in the output folder stays, wherever it lead
     const ProgramEnd end = run_tessera(arguments, here.path());
     INFO(end.text());
     CHECK(end.exit_code == 2);
-    CHECK_THAT(end.err, Contains("would take away its own map"));
+    CHECK_THAT(end.err, Contains("would remove its own map"));
     CHECK(fs::is_symlink(here.path() / "out/run/picture.png"));
 }
 

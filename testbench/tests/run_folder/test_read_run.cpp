@@ -225,7 +225,7 @@ TEST_CASE("a run's folder is read back, with paths that hold from there") {
     job.camera.near_plane = 0.1;
     write_file(run / "job.toml", dump_job(job, run));
     const auto read = [&] { return read_run(run, here.path() / "data"); };
-    CHECK_THROWS_WITH(read(), Contains("mesh.ply") && Contains("got stuck"));
+    CHECK_THROWS_WITH(read(), Contains("mesh.ply") && Contains("deadlocked"));
     write_ply(run / "mesh.ply", small_mesh(), units());
     const RecordedRun result = read();
     CHECK(result.mesh.triangles.size() == 2);
