@@ -1,21 +1,21 @@
 # shellcheck shell=bash
-# Sourced by the scripts: where the project lies, one way to configure and build a preset, and steps with a summary.
+# Sourced by the scripts: the project's folder, configuring and building a preset, and steps with a summary.
 
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.." && pwd)
 cores=$(nproc)
 
-# What was compiled before, here or in another clone, is not compiled again. No use where the cache cannot be written.
+# ccache avoids repeated compilation, also across clones. It is used only if its cache is writable.
 if command -v ccache >/dev/null && mkdir -p "$(ccache --get-config cache_dir)" 2>/dev/null; then
     export CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER-ccache}
-    # Clones lie in different places: paths below the project count as relative, the build folder's does not count.
+    # Clones have different paths: paths below the project are made relative, the build folder is ignored.
     export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$root} CCACHE_NOHASHDIR=1 CCACHE_MAXSIZE=${CCACHE_MAXSIZE:-5G}
 fi
 
-# configured PRESET [-DNAME=VALUE...]: whether its build folder is complete, of this place, and has these values.
+# configured PRESET [-DNAME=VALUE...]: whether its build folder is complete and has this path and these values.
 configured() {
     local folder="$root/build/$1" setting name
     [[ -f "$folder/build.ninja" ]] || return 1
-    # A build folder that was moved or copied with the project still points to the old place.
+    # A build folder that was moved or copied with the project still refers to the old path.
     grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$folder/CMakeCache.txt" || return 1
     for setting in "${@:2}"; do
         name=${setting#-D}
@@ -31,8 +31,8 @@ configure() {
     (cd "$root" && cmake --preset "$1" "${fresh[@]}" "${@:2}")
 }
 
-# build PRESET [TARGET...]: everything, or the targets. Ninja reconfigures by itself where a CMake file changed. A build
-# folder that cannot be written is left alone if nothing is to be built.
+# build PRESET [TARGET...]: everything, or the targets. Ninja reconfigures by itself if a CMake file changed. A build
+# folder that is not writable is accepted if it is up to date.
 build() {
     local folder="$root/build/$1" targets=()
     (($# > 1)) && targets=(--target "${@:2}")
@@ -41,21 +41,21 @@ build() {
         echo "$folder is not up to date and cannot be written: make it writable, or build in another checkout" >&2
         return 2
     fi
-    # Two builds in one folder at a time would overwrite each other's objects.
+    # Two simultaneous builds in one folder would overwrite each other's objects.
     (
         flock 9
         cmake --build "$folder" --parallel "$cores" "${targets[@]}"
     ) 9>"$folder/lock"
 }
 
-# What a script says of itself above its code, with the first line on its own a summary.
+# Prints a script's leading comment; its first line is a summary.
 explain() {
     sed -E '1d; /^(set |"""$)/Q; s/^(# ?|""")//' "$1"
 }
 
 summary=()
 failed_steps=()
-# step NAME COMMAND...: one that fails does not keep the others from running.
+# step NAME COMMAND...: runs a step; if it fails, later steps still run.
 step() {
     local name=$1 begin=$SECONDS verdict=passed line
     shift

@@ -35,12 +35,12 @@ def load(name):
 
 
 def perform(experiment, options):
-    """(Section, commands). A failed command becomes a claim, so that the rest still has its page."""
+    """(Section, commands). A failed command becomes a claim, so that the page is still written."""
     folder = (options.output / "runs" / experiment.name).resolve()
     study = Study(options.program, folder, options.picture_width)
 
     def nameless(text):
-        """The page names no place of this machine."""
+        """Removes this machine's paths from the page."""
         for place, name in ((f"{folder}/", f"runs/figures/runs/{experiment.name}/"), (f"{ROOT}/", ""),
                             (str(options.program), "tessera")):
             text = text.replace(place, name)
@@ -49,7 +49,7 @@ def perform(experiment, options):
     print(f"  {experiment.name}: begun", file=sys.stderr, flush=True)
     try:
         section = experiment.measure(study)
-    except Exception as error:  # whatever it is, the other experiments' page is wanted
+    except Exception as error:  # after any error the page of the other experiments is still written
         print(f"  {experiment.name}: {FAILED}: {error}", file=sys.stderr, flush=True)
         if not isinstance(error, ProgramError):
             traceback.print_exc()

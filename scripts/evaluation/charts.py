@@ -1,10 +1,10 @@
-"""Charts as SVG text, the same bytes from run to run."""
+"""Charts as SVG text, identical in every run."""
 import io
 
 import matplotlib
 
 matplotlib.use("svg")
-from matplotlib import pyplot  # noqa: E402  (the backend comes first)
+from matplotlib import pyplot  # noqa: E402  (the backend must be set before)
 from matplotlib.ticker import FuncFormatter, LogLocator  # noqa: E402
 
 matplotlib.rcParams.update({
@@ -19,7 +19,7 @@ matplotlib.rcParams.update({
     "axes.edgecolor": "#77756d",
     "lines.linewidth": 2,
 })
-# Told apart by people who see colours differently (Okabe and Ito), and by their markers.
+# Colours for colour-blind readers (Okabe and Ito), and different markers.
 STYLES = [("#d55e00", "o"), ("#0072b2", "s"), ("#009e73", "^"), ("#cc79a7", "D"), ("#e69f00", "v"), ("#56b4e9", "P")]
 
 

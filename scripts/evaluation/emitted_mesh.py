@@ -1,4 +1,4 @@
-"""A run's mesh.ply as arrays, and where on the map its triangles are."""
+"""A run's mesh.ply as arrays, and the positions of its triangles on the map."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +10,7 @@ TYPES = {"double": "<f8", "float": "<f4", "uchar": "u1", "ushort": "<u2", "int":
 class EmittedMesh:
     positions: np.ndarray  # n x 3, model units
     texture: np.ndarray  # n x 2, 0..1 over the map, t from its bottom row
-    triangles: np.ndarray  # m x 3 vertex numbers
+    triangles: np.ndarray  # m x 3 vertex indices
     generation: np.ndarray  # m
     stopped_by: np.ndarray  # m, bits as the file's header explains them
 
@@ -22,7 +22,7 @@ class EmittedMesh:
         return self.texture[self.triangles].mean(axis=1)
 
     def smallest_angles(self):
-        """Degrees, of the displaced triangles."""
+        """In degrees, of the displaced triangles."""
         corners = [self.positions[self.triangles[:, k]] for k in range(3)]
         angles = []
         for k in range(3):
@@ -56,7 +56,7 @@ def read_mesh(path):
 
 
 def values_at(mesh, image):
-    """The values that an image of the map, top row first, has at the triangles' centres."""
+    """The values of an image of the map, top row first, at the triangles' centres."""
     rows, columns = image.shape
     centres = mesh.centres()
     column = np.clip((centres[:, 0] * columns).astype(int), 0, columns - 1)
@@ -65,7 +65,7 @@ def values_at(mesh, image):
 
 
 def density_in(mesh, region):
-    """Triangles per unit of texture area where `region` (a boolean image of the map, top row first) is true: by the
-    triangles' centres. Of several regions the quotients say where the detail is."""
+    """Triangles per unit of texture area where `region` (a boolean image of the map, top row first) is true, counted by
+    their centres. The ratio between regions shows where the detail is."""
     share = region.mean()
     return float(values_at(mesh, region).sum() / share) if share > 0 else 0.0

@@ -1,4 +1,4 @@
-"""The page: one HTML file with everything in it, and the tables as CSV beside it."""
+"""The page: one self-contained HTML file, and the tables as CSV files."""
 import base64
 import csv
 import shutil
@@ -12,7 +12,7 @@ HERE = ROOT / "scripts/evaluation"
 
 
 def cell_text(value):
-    """As the page shows a figure: four digits; integers whole."""
+    """A figure as shown on the page: four digits; integers in full."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, int):
@@ -41,7 +41,7 @@ def data_uri(content, kind):
 
 
 def write_page(folder, parts):
-    """parts: [(Experiment, Section, commands)]. Leaves index.html, pictures/ and tables/ in the folder."""
+    """parts: [(Experiment, Section, commands)]. Writes index.html, pictures/ and tables/ to the folder."""
     for name in ("pictures", "tables"):
         shutil.rmtree(folder / name, ignore_errors=True)
         (folder / name).mkdir(parents=True)

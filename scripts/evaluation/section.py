@@ -1,4 +1,4 @@
-"""What an experiment leaves for the page: claims with verdicts, pictures, charts and tables."""
+"""An experiment's results for the page: claims with verdicts, pictures, charts and tables."""
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -6,12 +6,12 @@ REPRODUCED = "reproduced"
 PARTLY = "partly"
 NOT_REPRODUCED = "not reproduced"
 MEASURED = "measured"  # the paper makes no claim that could fail
-FAILED = "failed"  # the program refused or broke: the evaluation ends with an exit code
+FAILED = "failed"  # the program failed: the evaluation ends with an exit code
 
 
 @dataclass
 class Claim:
-    """One statement of the paper, and what was found. `verdict` follows from the figures in `measured`."""
+    """One statement of the paper, and the measurement. `verdict` follows from the figures in `measured`."""
 
     paper: str
     source: str  # section or figure of the paper
@@ -33,7 +33,7 @@ class Chart:
 
 @dataclass
 class Table:
-    """Columns are (name, unit); an empty unit is left out. Becomes NAME.csv and a table of the page."""
+    """Columns are (name, unit); an empty unit is omitted. Written as NAME.csv and as a table of the page."""
 
     name: str
     caption: str
@@ -48,7 +48,7 @@ class Section:
     charts: list = field(default_factory=list)
     tables: list = field(default_factory=list)
     notes: list = field(default_factory=list)
-    sources: list = field(default_factory=list)  # of data that a licence asks to be named
+    sources: list = field(default_factory=list)  # data sources whose licence requires attribution
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Experiment:
     name: str
     title: str
     figure: str  # of the paper
-    shows: str  # one sentence for somebody who does not know the paper
+    shows: str  # one sentence for readers who do not know the paper
     measure: object
 
 

@@ -1,4 +1,4 @@
-"""Runs of the program, and what they left: figures, errors, pictures, meshes."""
+"""Runs of the program and their results: figures, errors, pictures, meshes."""
 import json
 import shlex
 import subprocess
@@ -12,7 +12,7 @@ JOBS = ROOT / "testbench/examples/jobs"
 
 
 class ProgramError(Exception):
-    """The program ended with an exit code it should not have."""
+    """The program ended with an unexpected exit code."""
 
 
 def toml(value):
@@ -24,16 +24,16 @@ def toml(value):
 
 
 def figures_of(path):
-    """{"group.name": value} of a JSON report of tessera; what is no figure (a verdict, remarks) is left out."""
+    """{"group.name": value} of a JSON report of tessera, without non-numeric entries (a verdict, remarks)."""
     groups = {name: group for name, group in json.loads(path.read_text()).items() if isinstance(group, dict)}
     return {f"{group}.{name}": figure["value"] for group, figures in groups.items()
             for name, figure in figures.items() if isinstance(figure, dict) and "value" in figure}
 
 
 class Study:
-    """Runs the program in a folder of its own per experiment; writes down every command."""
+    """Runs the program in a separate folder per experiment and records every command."""
 
-    # The golden model checks every edge of every run; the files nobody reads here are left out.
+    # The golden model checks every edge of every run; files that are not used here are not written.
     QUIET = {"mode": "functional", "check.end_to_end": False, "output.obj": False, "output.picture": False}
 
     def __init__(self, program, folder, picture_width):
@@ -43,7 +43,7 @@ class Study:
         self.commands = []
 
     def call_highlight_study(self):
-        """The program beside `tessera` that measures per-vertex light, on the half donut."""
+        """Runs the separate program that measures per-vertex light, on the half donut."""
         return self.call(program=self.program.parent.parent / "benchmark/tessera_highlight_study")
 
     def call(self, *arguments, exit_codes=(0,), program=None):
@@ -55,7 +55,7 @@ class Study:
         return done
 
     def tune(self, name, triangles, job=None, tests="normal,summed_height", settings=None, grid=None):
-        """A run with the thresholds (and, with `grid`, the base mesh) of least RMS error for so many triangles."""
+        """A run with the thresholds (and, with `grid`, the base mesh) of least RMS error for a number of triangles."""
         self.folder.mkdir(parents=True, exist_ok=True)
         tuned = self.folder / f"{name}.toml"
         arguments = ["tune"] + ([] if job is None else [JOBS / f"{job}.toml"])
@@ -88,7 +88,7 @@ class Run:
         self.study = study
         self.folder = folder
         self.exit_code = exit_code
-        self.tuned = None  # what `tessera tune` found, as its JSON says
+        self.tuned = None  # the JSON result of `tessera tune`
 
     @cached_property
     def figures(self):
@@ -108,12 +108,12 @@ class Run:
 
     @cached_property
     def error(self):
-        """Against the densely displaced surface, the map interpolated: see `tessera compare`."""
+        """The error against the densely displaced surface with the map interpolated: see `tessera compare`."""
         self.study.call("compare", self.folder)
         return figures_of(self.folder / "error.json")
 
     def render(self, view, name=None, **options):
-        """A picture beside the mesh, or NAME.png; options as `tessera render` has them, underscores for hyphens."""
+        """A picture next to the mesh, or NAME.png; options of `tessera render` with underscores for hyphens."""
         output = self.folder / f"{name or view}.png"
         arguments = ["render", self.folder, "--view", view, "--output", output]
         if "size" not in options:

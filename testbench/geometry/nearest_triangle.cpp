@@ -187,8 +187,8 @@ NearestTriangle::Found NearestTriangle::nearest(const glm::dvec3& p, Guess& gues
             return std::min(radius, within);
         });
     };
-    // Search near the last point's distance first: usually sufficient, and much less than the distance to the triangle
-    // nearest to that point.
+    // First within a few times the last point's distance: usually sufficient, and much less than the distance to the
+    // triangle nearest to that point.
     const double near = 4 * guess.distance;
     const bool far = !(near < radius);
     if (!far)

@@ -12,8 +12,8 @@ WANTED = 95.0  # percent, of lines and of branches
 
 
 class File:
-    """What was counted of one source file: lines by number; branches by line, each by its condition's place in the
-    line and by the way it goes, with the largest count of its copies."""
+    """The counts of one source file: lines by number; branches by line, by the condition's position in the line and by
+    direction, with the largest count of all copies."""
 
     def __init__(self, text):
         self.text = text
@@ -30,12 +30,12 @@ class File:
         return sorted(line for line, count in self.lines.items() if count == 0)
 
     def unreached_branches(self):
-        """Line and (column, end line, end column, way) of each."""
+        """Line and (column, end line, end column, direction) of each."""
         return sorted((line, branch) for line, branches in self.branches.items()
                       for branch, count in branches.items() if count == 0)
 
     def unreached(self):
-        """{line: what of it is not reached}"""
+        """{line: its unreached parts}"""
         faults = defaultdict(list)
         for line in self.unreached_lines():
             faults[line].append("never executed")
@@ -49,7 +49,7 @@ class File:
 
 
 def count(root, folder):
-    """{path from the root: File}. A branch of a template, or of a header, is reached where any of its copies is."""
+    """{path from the root: File}. A branch of a template or header is reached if any of its copies is."""
     merged = folder / "counts.profdata"
     counts = sorted(str(path) for path in (folder / "counts").glob("*.profraw"))
     if not counts:
@@ -74,7 +74,7 @@ def count(root, folder):
         return subprocess.run(["llvm-cov", "export", f"--format={form}", "--skip-functions",
                                f"--instr-profile={merged}", *objects], check=True, capture_output=True, text=True).stdout
 
-    # A copy of a template has branches of its own in the lcov form; only the JSON form says that they are the same.
+    # In the lcov format each copy of a template has separate branches; only the JSON format identifies them.
     for record in exported("lcov").splitlines():
         kind, _, rest = record.partition(":")
         if kind == "SF":
@@ -92,7 +92,7 @@ def count(root, folder):
 
 
 class Reasons:
-    """Why a line is not reached, by file and by the line's text."""
+    """The reasons for unreached lines, by file and by the line's text."""
 
     def __init__(self, path):
         self.reasons = {(entry["file"], line): entry["reason"]

@@ -1,4 +1,4 @@
-"""Figure 11a: Crater Lake, and how good its meshes are."""
+"""Figure 11a: Crater Lake, and the quality of its meshes."""
 import csv
 from pathlib import Path
 
@@ -15,12 +15,12 @@ OTHER_METHODS = Path(__file__).with_name("crater_lake_curves.csv")
 BUDGETS = (1316, 2000, 3047, 6336, 10000, 16009, 20000)
 LIMITS_AT = (1316, 6336, 20000)
 SHOWN = 6336
-# `--grid auto` tries more base meshes, finds none better between 1,000 and 20,000 triangles, and takes longer.
+# `--grid auto` tries more base meshes and takes longer, but finds none better between 1,000 and 20,000 triangles.
 GRIDS = "16x22,lattice8,lattice16,lattice32,lattice128"
 SHORE = 20  # texels
 UNEVEN = 5  # m
 RMS, MAXIMUM = "vertical.rms_map", "vertical.max_map"
-# A triangle's stopped_by: what kept those of its edges whole that the Normal or Summed Height Test would split.
+# A triangle's stopped_by: the tests that prevented splits requested by the Normal or Summed Height Test.
 WHY_WHOLE = {"neither Normal nor Summed Height Test asked": 0, "Tex Coord Test": 8, "Generation Test": 16,
              "Tex Coord Test and Generation Test": 24}
 
@@ -42,7 +42,7 @@ def grown(mask, steps):
 
 
 def flooded(seeds, within):
-    """What can be reached from the seeds without leaving `within`."""
+    """The region connected to the seeds inside `within`."""
     reached, count = seeds & within, -1
     while count != reached.sum():
         count = reached.sum()
@@ -63,8 +63,8 @@ def largest_part(seeds, within):
 
 
 def regions_of(height):
-    """The lake lies at the map's most frequent height, give or take what the survey does; slopes that pass through that
-    height are not flat. The island is the land that no way over land leads to the map's border."""
+    """The lake has the map's most frequent height, within the survey's error; slopes at that height are excluded, since
+    they are not flat. The island is the land without a connection over land to the map's border."""
     level = np.bincount(height.ravel()).argmax()
     at_level = np.abs(height - level) <= UNEVEN
     water = largest_part(~grown(~at_level, 3), at_level)
@@ -108,7 +108,7 @@ def vertical_errors(mesh, height):
 
 
 def worst_spot(run, finest):
-    """The mesh where its vertical error is largest, and the finest mesh there, which shows the ground."""
+    """The mesh at its largest vertical error, and the finest mesh there for comparison."""
     spot = np.array([run.error[f"worst_vertical.{axis}"] for axis in "xyz"])
     ground = run.mesh.positions[np.argmin(((run.mesh.positions - spot)[:, :2] ** 2).sum(axis=1))]
     camera = {"eye": [float(x) for x in ground + (0.9, -1.3, 1.3)], "target": [float(x) for x in ground], "field_of_view": 38,
@@ -121,8 +121,8 @@ def worst_spot(run, finest):
 
 
 def squares_by(run, height, regions):
-    """Of a mesh's squared vertical error: the share of each reason a triangle was not split for, of each region, of each
-    generation; and of the worst hundredth of the grid points. Also triangles and RMS error by reason."""
+    """The shares in a mesh's squared vertical error: by the reason why a triangle was not split, by region, by
+    generation, and of the worst hundredth of the grid points. Also triangles and RMS error by reason."""
     errors, owner = vertical_errors(run.mesh, height)
     covered = owner >= 0
     square = np.where(covered, errors, 0) ** 2
@@ -142,7 +142,7 @@ def squares_by(run, height, regions):
 
 
 def at_equal_triangles(points, triangles):
-    """A reference curve's RMS at a number of triangles, between its points along a power law; None outside them."""
+    """A reference curve's RMS at a number of triangles, interpolated by a power law; None outside its points."""
     count, rms = np.log([point[0] for point in points]), np.log([point[1] for point in points])
     if not count[0] <= np.log(triangles) <= count[-1]:
         return None
@@ -150,7 +150,7 @@ def at_equal_triangles(points, triangles):
 
 
 def low_counts(rows, references):
-    """The claim of low triangle counts: against the rival that splits edges at midpoints too, and the best of the others."""
+    """The claim of low triangle counts, compared with the other midpoint method and the best of the other methods."""
     found, ratios = [], {}
     for method in ("rtin", "terra"):
         pairs = [(row, at_equal_triangles(references[method], row[1])) for row in rows]

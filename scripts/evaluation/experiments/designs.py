@@ -1,8 +1,8 @@
-"""Section 3: what the Triangle Queue needs, and what the latencies of the design cost."""
+"""Section 3: the required size of the Triangle Queue, and the cost of the design's latencies."""
 from section import Claim, Experiment, Section, Table, MEASURED
 from .tests_units import QUIET
 
-CAPACITIES = (0, 4, 16, 64, 256, 1024)  # triangles on chip; 0 is without bound
+CAPACITIES = (0, 4, 16, 64, 256, 1024)  # triangles on chip; 0: no limit
 ONE_PASS = {"mesh.columns": 1, "mesh.rows": 1, "tests.generation_limit": 1, "hardware.queue_order": "lifo"}
 TRANSFORM_LATENCIES = (1, 10, 20, 30, 40, 50, 60, 80)
 DISPLACE_LATENCIES = (1, 3, 6, 12, 24)

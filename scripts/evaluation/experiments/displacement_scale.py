@@ -1,4 +1,4 @@
-"""Section 5.1: the displacement scaled from frame to frame."""
+"""Section 5.1: displacement scale changing from frame to frame."""
 import csv
 
 from section import NOT_REPRODUCED, PARTLY, REPRODUCED, Claim, Experiment, Picture, Section, Table, reproduced_if
@@ -7,7 +7,7 @@ from study import Run
 FRAMES = 5
 SCALE = 0.25  # of the last frame
 FINE = {"tests.view_threshold": 1, "tests.normal_threshold": 0.05}
-# Who sends less? Name of the run, and what differs from the first.
+# Runs for comparing the host's traffic: name, and the difference from the first.
 CASES = {
     "S grows from 0": {},
     "S stays, only the camera moves": {"frames.first_scale": SCALE},
@@ -18,7 +18,7 @@ CASES = {
 
 
 def traffic(study):
-    """A row a case: bytes of frames sent, and of the tessellated meshes instead."""
+    """One row per case: bytes sent for the frames, and bytes of the tessellated meshes."""
     rows = []
     for number, (title, settings) in enumerate(CASES.items()):
         name = f"traffic_{number}"

@@ -1,4 +1,4 @@
-"""The fifth test, which the paper does not have: what happens without it."""
+"""The fifth test, which the paper does not have: results without it."""
 from section import Experiment, Claim, Section, Table, Chart, reproduced_if
 import charts
 

@@ -1,4 +1,4 @@
-"""Section 5: what the host sends."""
+"""Section 5: the host's traffic."""
 from section import Chart, Claim, Experiment, Section, Table, reproduced_if
 from .view_distances import SOURCE
 import charts

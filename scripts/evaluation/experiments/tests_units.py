@@ -1,4 +1,4 @@
-"""Section 3.1: one Tessellation Tests unit or three, and what hides behind Transform."""
+"""Section 3.1: one Tessellation Tests unit or three, and latencies hidden by Transform."""
 from section import Chart, Claim, Experiment, Section, Table, MEASURED, PARTLY, REPRODUCED, NOT_REPRODUCED
 import charts
 
@@ -17,7 +17,7 @@ def timed(study, units, ports, latency=None):
 
 
 def waited_for_tests(figures):
-    """Cycles in which Pass or Tessellate had all of Transform's part of a triangle and not all of the tests'."""
+    """Cycles in which Pass or Tessellate had all of a triangle's parts from Transform but not all from the tests."""
     of = {name: value for name, value in figures.items() if name.startswith("timing.pass_or_tessellate.starved_of_")}
     if "timing.pass_or_tessellate.starved" not in figures:
         raise KeyError("timing.pass_or_tessellate.starved")

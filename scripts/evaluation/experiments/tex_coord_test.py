@@ -1,4 +1,4 @@
-"""Section 2.5: what the Tex Coord Test saves."""
+"""Section 2.5: the savings by the Tex Coord Test."""
 from section import Claim, Experiment, Picture, Section, Table, NOT_REPRODUCED, PARTLY, REPRODUCED
 from .view_distances import LICENCE, SOURCE
 

@@ -13,7 +13,7 @@ SETTINGS = {
 
 
 def seen(points):
-    """On the image plane of SETTINGS' camera, up to scale."""
+    """Projects onto the image plane of SETTINGS' camera, up to scale."""
     eye, target = np.array(SETTINGS["camera.eye"]), np.array(SETTINGS["camera.target"])
     forward = (target - eye) / np.linalg.norm(target - eye)
     right = np.cross(forward, (0, 0, 1))
@@ -24,7 +24,7 @@ def seen(points):
 
 
 def beyond_the_plane(positions):
-    """Share of vertices that the camera sees outside the outline of the flat plane."""
+    """Fraction of vertices that appear outside the outline of the flat plane."""
     x, y = SETTINGS["mesh.width"] / 2, SETTINGS["mesh.depth"] / 2
     outline = seen(np.array([(-x, -y, 0), (x, -y, 0), (x, y, 0), (-x, y, 0)], float))
     points = seen(positions)

@@ -1,4 +1,4 @@
-"""Section 5 of the design, figure 6 of the paper: how a quadrilateral is cut."""
+"""Section 5 of golden/ALGORITHM.md, figure 6 of the paper: the diagonal of a quadrilateral."""
 import numpy as np
 
 from section import Claim, Experiment, Picture, Section, Table, NOT_REPRODUCED, PARTLY, REPRODUCED

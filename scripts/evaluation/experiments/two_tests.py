@@ -10,7 +10,7 @@ RMS, MAXIMUM = "vertical.rms", "vertical.max"
 
 
 def on_the_donut(side=512):
-    """The built-in map's ring, and the foot around it: where the half donut is."""
+    """The half donut's region of the built-in map: the ring and its foot."""
     x, y = np.meshgrid((np.arange(side) + 0.5) / side * 2 - 1, (np.arange(side) + 0.5) / side * 2 - 1)
     return np.abs(np.hypot(x, y) - 0.55) < 0.30
 
@@ -20,7 +20,8 @@ def only(tests):
 
 
 def verdict(runs, alone):
-    """Worse than both tests at every budget, at some, at none: in RMS, and by more than the search's own roughness."""
+    """Whether the RMS is worse than with both tests at every budget, at some or at none, by more than the search's
+    tolerance."""
     worse = sum(runs[alone, budget].error[RMS] > 1.05 * runs["both", budget].error[RMS] for budget in BUDGETS)
     return REPRODUCED if worse == len(BUDGETS) else PARTLY if worse else NOT_REPRODUCED
 

@@ -9,7 +9,7 @@ CHANGED = "ray-cast to a cylinder as a map of radii; licence: creativecommons.or
 SOURCE = f"{LICENCE}; {CHANGED}"
 EYE, TARGET = np.array([2.57, -10.38, 0.69]), np.array([0.0, 0.0, -0.06])
 DISTANCES = (1, 2, 4)
-# Where they are on the map, as fractions of its width and, from the top, of its height.
+# Positions on the map, as fractions of its width and of its height from the top.
 REGIONS = {
     "eyes": ((0.40, 0.47, 0.36, 0.43), (0.525, 0.60, 0.36, 0.43)),
     "nose": ((0.465, 0.53, 0.46, 0.57),),

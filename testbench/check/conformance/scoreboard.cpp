@@ -194,7 +194,7 @@ bool Scoreboard::compare_highlight(bool hardware, const golden::EdgeEvaluation& 
     const golden::Parameters& parameters = inputs_.parameters;
     const double leeway =
         bounds_.cosine(golden.inserted.vertex.displaced_normal, normal_bound, parameters.half_vector);
-    // The least and the greatest result that error bounds allow for each half of the test: in the highlight, different.
+    // `must`: true even for the least values within the error bounds; `may`: true for the greatest.
     const auto in_highlight = [&](double midpoint_cosine) {
         return std::max(golden.end_cosine, midpoint_cosine) > parameters.highlight_cosine;
     };

@@ -16,7 +16,7 @@ struct WorkResult {
     std::uint64_t triangles = 0;  ///< decided
     std::uint64_t equations = 0;  ///< of conservation.h
     std::uint64_t violations =
-        0;  ///< failed equations, base triangles whose sums do not cancel, and single findings
+        0;  ///< failed equations, base triangles whose hash sums are not zero, and single findings
     std::string first_violation;  ///< empty: none
 
     bool passed() const { return violations == 0; }

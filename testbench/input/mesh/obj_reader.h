@@ -11,8 +11,8 @@ namespace tessera {
 /// - Each distinct corner (v, vt, vn) becomes a vertex, in the order of first use; unused ones are omitted.
 /// - Polygons are triangulated by polygon_cutter.h. Outlines that are self-intersecting or not planar are accepted with
 ///   a repair.
-/// - Corners without texture coordinates are projected onto the mesh's bounding box along its thinnest axis, which the
-///   map spans; so are all corners if no triangle has an area in texture space.
+/// - Corners without texture coordinates get those of a projection along the bounding box's thinnest axis, with the map
+///   spanning the box; so do all corners if no triangle has an area in texture space.
 /// - Normals are normalised; missing or zero normals are replaced by those of smooth_normals.h.
 /// - Dropped and counted, with a repair: triangles of zero area or with a vertex twice; a triangle at the same three
 ///   positions as an earlier one, of either winding, unless its winding is opposite and its normals differ at all
