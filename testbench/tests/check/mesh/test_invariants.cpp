@@ -159,7 +159,7 @@ TEST_CASE("a triangle that differs in anything is found") {
             [](auto& t) { t.corners[2].displaced_normal.x += 1; },
             [](auto& t) { t.corners[1].displaced_normal.y += 1; },
             [](auto& t) { t.corners[0].displaced_normal.z -= 1; },
-            [](auto& t) { t.corners[0].generation ^= 1; },
+            [](auto& t) { --t.corners[0].generation; },
             [](auto& t) { t.split_by ^= datapath::summed_height_bit; },
             [](auto& t) { t.stopped_by ^= datapath::view_bit; },
             [](auto& t) { t.culled = !t.culled; },
