@@ -30,10 +30,10 @@ TableLayout as_indices(const TableLayout& layout) {
 
 }  // namespace
 
-BareRecursion::BareRecursion(const MachineSetup& setup) : setup_(setup), codes_(setup.map.codes) {
+BareRecursion::BareRecursion(const MachineSetup& setup) : setup_(setup) {
     const MapGeometry& map = setup.registers.map;
     const Formats& formats = setup.registers.formats;
-    normals_.reserve(codes_.size());
+    normals_.reserve(setup.map.codes.size());
     for (std::uint32_t y = 0; y < map.height; ++y)
         for (std::uint32_t x = 0; x < map.width; ++x)
             normals_.push_back(pack_normal(
@@ -74,7 +74,7 @@ Direction BareRecursion::map_normal_at(const TexCoord& t) const {
 
 std::uint32_t BareRecursion::code_at(const TexCoord& t) const {
     const Registers& r = setup_.registers;
-    return codes_[texel_address(t, as_indices(r.displacement_map), r.map, r.formats)];
+    return setup_.map.codes[texel_address(t, as_indices(r.displacement_map), r.map, r.formats)];
 }
 
 void BareRecursion::complete_base(Triangle& triangle) {

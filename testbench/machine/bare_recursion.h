@@ -51,7 +51,6 @@ class BareRecursion {
     std::uint32_t code_at(const datapath::TexCoord& t) const;
 
     const MachineSetup& setup_;
-    std::vector<std::uint16_t> codes_;
     std::vector<std::uint64_t> normals_;  // packed as the normal map's entries
     std::vector<std::uint32_t> sums_;     // narrow tables; else wide_sums_
     std::vector<std::uint64_t> wide_sums_;

@@ -69,7 +69,7 @@ std::vector<InvariantFigure> invariant_figures(const InvariantResult& result);
 /// Checks a whole emitted mesh, in any order, against the setup it was made of, whose base triangles are numbered in
 /// their order (make_setup does).
 /// Memory beyond the mesh: 4 bytes a triangle, 150 a triangle of the base triangle that has most, 200 a base triangle,
-/// 14 a texel. ResourceError beyond 2^32 - 2 triangles.
+/// 12 a texel. ResourceError beyond 2^32 - 2 triangles.
 InvariantResult check_invariants(const EmittedMesh& mesh, const MachineSetup& setup);
 
 }  // namespace tessera

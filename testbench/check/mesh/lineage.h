@@ -131,7 +131,6 @@ class Lineage {
     template <class Text>
     void fault(std::uint64_t& count, Text&& text);
     std::string vertex_text(const datapath::Vertex& vertex) const;
-    std::string where() const;
 
     const MachineSetup& setup_;
     std::uint64_t period_u_ = 0, period_v_ = 0;  // in LSB; 0: the axis does not repeat

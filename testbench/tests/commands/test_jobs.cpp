@@ -45,8 +45,8 @@ void run_job_well(const std::string& name) {
     CHECK(run.conformance["conformance"]["flips_percent"].get<double>() < 0.5);
     CHECK(run.conformance["conformance"]["mismatches"] == 0);
     for (const char* const figure :
-         {"cracks", "t_vertices", "collapsed", "turned_over", "area_mismatches", "duplicate_triangles",
-          "generation_violations", "inconsistent_vertices"}) {
+         {"cracks", "t_vertices", "collapsed", "turned_over", "missing_triangles", "extra_triangles",
+          "differing_triangles", "generation_violations", "inconsistent_vertices"}) {
         INFO(figure);
         CHECK(run.invariant(figure) == 0);
     }

@@ -92,6 +92,8 @@ TEST_CASE("summary: what was checked") {
     invariants.t_vertices = 2;
     invariants.collapsed = 3;
     invariants.turned_over = 4;
+    invariants.missing_triangles = 2;
+    invariants.extra_triangles = invariants.differing_triangles = 1500;
     checks.invariants = invariants;
     WorkResult work;
     work.triangles = 40;
@@ -109,8 +111,9 @@ TEST_CASE("summary: what was checked") {
     CHECK(value_of(text, "golden mesh") ==
           "1,015 triangles (+1.50 %, allowed 2 %); 1.00 % of the points farther apart than rounding explains "
           "(allowed 6), at most 0.5 model units, RMS 0.125 (allowed 0.45)");
-    CHECK(value_of(text, "invariants") ==
-          "FAILED: 1 cracks, 2 T-vertices; in texture space 3 collapsed, 4 turned over");
+    CHECK(
+        value_of(text, "invariants") ==
+        "FAILED: 1 cracks, 2 T-vertices, 3,002 triangles wrong; in texture space 3 collapsed, 4 turned over");
     CHECK(value_of(text, "texture seams") == "no such row");
     CHECK(value_of(text, "work conservation") ==
           "FAILED: 40 triangles and 2 balances of units checked, 7 violations");

