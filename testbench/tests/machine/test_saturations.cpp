@@ -215,10 +215,10 @@ TEST_CASE("saturations: opposite normals leave zero vectors, counted") {
 
 TEST_CASE("saturations: generations beyond their field, with the Generation Test off") {
     // spilled triangles are packed: what is in them fits their fields
-    const MachineSetup setup = setup_of(
-        with_settings(full_split_job(1, 3),
-                      "map.width=16 map.height=16 tests.generation=false formats.generation_bits=2 "
-                      "hardware.queue_capacity=4"));
+    const MachineSetup setup =
+        setup_of(with_settings(full_split_job(1, 3),
+                               "map.width=16 map.height=16 tests.generation=false formats.generation_bits=2 "
+                               "hardware.queue_capacity=4"));
     std::uint64_t expected = 0;
     int deepest = 0;
     Simulation simulation(setup, 100'000, 100'000);
@@ -284,9 +284,9 @@ TEST_CASE(
 
 TEST_CASE("saturations: what the host rounds is counted too") {
     // S is twice the range of a map of one bit: 2^(bits - 1), one LSB more than its register holds
-    const MachineSetup setup = setup_of(
-        small_job("formats.displacement_bits=1 tests.summed_height_threshold=2 displacement.scale=1 "
-                  "displacement.bias=-0.5 mesh.width=0.5 mesh.depth=0.5"));
+    const MachineSetup setup =
+        setup_of(small_job("formats.displacement_bits=1 tests.summed_height_threshold=2 displacement.scale=1 "
+                           "displacement.bias=-0.5 mesh.width=0.5 mesh.depth=0.5"));
     CHECK(setup.registers.displacement.scale == setup.registers.formats.position.highest);
     CHECK(setup.input_saturations.registers == 1);
     CHECK(setup.input_saturations.position == 0);
