@@ -120,24 +120,25 @@ TEST_CASE("mistyped names are reported with place and suggestion") {
     const std::string suggestion = "unknown key `mesh.colums`; did you mean `mesh.columns`?";
     expect_whole("[mesh]\nrows = 2\n\n  colums = 3\n", "job.toml:4:3: " + suggestion);
     expect_whole("mesh.colums = 3", "job.toml:1:6: " + suggestion);
-    expect_refusals(parse_error_of,
-                    {
-                        {"[mehs]\nrows = 2\n", {"unknown table `mehs`; did you mean `mesh`?"}},
-                        {"[mesh]\naddress_u = \"clamp\"\n", {"did you mean `map.address_u`?"}},
-                        {"queue_order = \"lifo\"\n", {"did you mean `hardware.queue_order`?"}},
-                        {"\"mesh.rows\" = 2\n", {"unknown key `\"mesh.rows\"`; did you mean `mesh.rows`?"}},
-                        {"xyzzyplugh = 2\n", {"unknown key `xyzzyplugh`; `tessera keys` lists"}},
-                        {"[[mesh]]\nrows = 2\n", {"`mesh` is an array of 1"}},
-                        {"mesh = 3\n", {"`mesh` is 3, an integer", "write [mesh]"}},
-                        {"[mesh.rows]\nx = 2\n", {"`mesh.rows` is a table; wanted is an integer"}},
-                        {"[mesh.more]\nx = 2\n", {"unknown table `mesh.more`"}},
-                        {"mesh.camera = {eye = [1, 2, 3]}\n",
-                         {"unknown table `mesh.camera`; did you mean the group `camera`?", "write [camera]",
-                          "eye, target, "}},
-                        {"camera = {eye = [1, 2, 3]}\n", {}},
-                        {"\"\" = 1\n", {"unknown key `\"\"`"}},
-                        {"folder = \"x\"\n", {"unknown key `folder`"}},
-                    });
+    expect_refusals(
+        {
+            {"[mehs]\nrows = 2\n", {"unknown table `mehs`; did you mean `mesh`?"}},
+            {"[mesh]\naddress_u = \"clamp\"\n", {"did you mean `map.address_u`?"}},
+            {"queue_order = \"lifo\"\n", {"did you mean `hardware.queue_order`?"}},
+            {"\"mesh.rows\" = 2\n", {"unknown key `\"mesh.rows\"`; did you mean `mesh.rows`?"}},
+            {"xyzzyplugh = 2\n", {"unknown key `xyzzyplugh`; `tessera keys` lists"}},
+            {"[[mesh]]\nrows = 2\n", {"`mesh` is an array of 1"}},
+            {"mesh = 3\n", {"`mesh` is 3, an integer", "write [mesh]"}},
+            {"[mesh.rows]\nx = 2\n", {"`mesh.rows` is a table; wanted is an integer"}},
+            {"[mesh.more]\nx = 2\n", {"unknown table `mesh.more`"}},
+            {"mesh.camera = {eye = [1, 2, 3]}\n",
+             {"unknown table `mesh.camera`; did you mean the group `camera`?", "write [camera]",
+              "eye, target, "}},
+            {"camera = {eye = [1, 2, 3]}\n", {}},
+            {"\"\" = 1\n", {"unknown key `\"\"`"}},
+            {"folder = \"x\"\n", {"unknown key `folder`"}},
+        },
+        parse_error_of);
     CHECK(nearest_name("mesh.file", {"mesh.file"}) == "mesh.file");
     CHECK(nearest_name(std::string(100000, 'a'), {"mesh.file"}).empty());
 }
@@ -152,15 +153,16 @@ TEST_CASE("values are reported with place, value and what is wanted") {
         "[map]\nsource = \"half-donut\"\n",
         "job.toml:2:1: `map.source` = \"half-donut\" is not a choice; the choices are half_donut, text, "
         "noise, constant, ramp, file; did you mean \"half_donut\"?");
-    expect_refusals(parse_error_of,
-                    {
-                        {"[mesh]\ncolumns = 3.0\n", {"is 3.0, a floating-point number"}},
-                        {"[map]\ntext = \"a\\u0000b\"\n", {"without NUL"}},
-                        {"[map]\ntext = \"" + std::string(5000, 'x') + "\"\n", {"has 5000 bytes"}},
-                        {"[output]\nfolder = \"\"\n", {"`output.folder` = \"\" is empty"}},
-                        {"[output]\nply = 1\n[mesh]\nrows = -1\n",
-                         {"job.toml:2:1: `output.ply`", "\njob.toml:4:1: `mesh.rows`"}},
-                    });
+    expect_refusals(
+        {
+            {"[mesh]\ncolumns = 3.0\n", {"is 3.0, a floating-point number"}},
+            {"[map]\ntext = \"a\\u0000b\"\n", {"without NUL"}},
+            {"[map]\ntext = \"" + std::string(5000, 'x') + "\"\n", {"has 5000 bytes"}},
+            {"[output]\nfolder = \"\"\n", {"`output.folder` = \"\" is empty"}},
+            {"[output]\nply = 1\n[mesh]\nrows = -1\n",
+             {"job.toml:2:1: `output.ply`", "\njob.toml:4:1: `mesh.rows`"}},
+        },
+        parse_error_of);
 }
 
 TEST_CASE("TOML's own errors carry file, line and column") {
@@ -206,7 +208,6 @@ TEST_CASE("files that are no job files") {
 
 TEST_CASE("keys that contradict each other") {
     expect_refusals(
-        settings_error_of,
         {
             {"mesh.source=file", {"`mesh.file` is empty"}},
             {"mesh.source=patches", {"`mesh.file` is empty, but `mesh.source` = \"patches\""}},
@@ -251,7 +252,8 @@ TEST_CASE("keys that contradict each other") {
              {"`output.vcd` = true"}},
             {"fault.kind=dropped; fault.place=host.to_get_triangle; output.timeline=true",
              {"`output.timeline` = true"}},
-        });
+        },
+        settings_error_of);
 
     Job out_of_range;  // made in code, past the checks of reading
     out_of_range.tests.normal_threshold = -1;

@@ -306,7 +306,6 @@ TEST_CASE("a threshold that its register cannot tell from 0 is refused with the 
         return {};
     };
     expect_refusals(
-        error_of,
         {
             {"tests.normal_threshold=1e-5",
              {"tests.normal_threshold = 1e-05", "6.103515625e-05", "formats.normal_fraction"}},
@@ -321,5 +320,6 @@ TEST_CASE("a threshold that its register cannot tell from 0 is refused with the 
             {"tests.normal_threshold=0", {}},
             {"tests.highlight_normal_threshold=1e-5", {}},  // there is no such test
             {"tests.normal=false tests.normal_threshold=1e-5", {}},
-        });
+        },
+        error_of);
 }

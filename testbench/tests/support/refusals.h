@@ -14,7 +14,7 @@ struct Refusal {
 
 /// error_of(input): the message, empty where there is none.
 template <class ErrorOf>
-void expect_refusals(ErrorOf error_of, std::initializer_list<Refusal> rows) {
+void expect_refusals(std::initializer_list<Refusal> rows, ErrorOf error_of) {
     for (const Refusal& row : rows) {
         const std::string error = error_of(row.input);
         CAPTURE(row.input, error);

@@ -97,41 +97,30 @@ TEST_CASE("surface file: a long row of numbers is no deep key") {
     std::string deep = "a";
     for (int k = 0; k < 100000; ++k)
         deep += ".a";
-    expect_refusals(error_of, {
-                                  {deep + " = 1\n", {"s.toml:1:1: 100000 dots"}},
-                                  {"b = {c = 1, " + deep + " = 1}\n", {"dots in one line"}},
-                              });
+    CHECK_THAT(error_of(deep + " = 1\n"), Contains("s.toml:1:1: 100000 dots"));
+    CHECK_THAT(error_of("b = {c = 1, " + deep + " = 1}\n"), Contains("dots in one line"));
     std::string quoted = "\"a,b\"";
     for (int k = 0; k < 100000; ++k)
         quoted += ".\",\"";
-    expect_refusals(error_of, {
-                                  {quoted + " = 1\n", {"dots in one line"}},
-                              });
+    CHECK_THAT(error_of(quoted + " = 1\n"), Contains("dots in one line"));
 }
 
 TEST_CASE("surface file: faults of a quadric are told with file and line") {
-    expect_refusals(error_of,
-                    {
-                        {"", {"s.toml: there is no surface"}},
-                        {"[domain]\nx = [0, 1]\n", {"there is no surface"}},
-                        {"quadric = 3\n", {"s.toml:1:11: `quadric` is 3, an integer; write [quadric]"}},
-                        {"[quadrics]\n", {"s.toml:1:", "unknown table `quadrics`; did you mean `quadric`?"}},
-                        {"[quadric\n", {"s.toml:1:", "not TOML"}},
-                        {quadric("shape = \"sphere\"\nradius = 1\n[bezier]\nheights = [[0, 1], [2, 3]]\n"),
-                         {"s.toml:4:", "[quadric] and [bezier] are both there"}},
-                        {quadric(""), {"s.toml:1:1: [quadric] has no `shape`"}},
-                        {quadric("shape = \"spere\""), {"s.toml:2:9:", "did you mean \"sphere\"?"}},
-                        {quadric("shape = 1"), {"`shape` is 1, an integer"}},
-                        {quadric("shape = \"sphere\""), {"[quadric] has no `radius`"}},
-                        {quadric("shape = \"sphere\"\nradius = -1"),
-                         {"s.toml:3:10: -1, an integer in `radius`; wanted is a number, 1e-06 .. 1e+06"}},
-                    });
-    for (const std::string bad : {"0", "nan", "inf", "1e7", "\"one\"", "[1]"})
-        CHECK_THAT(error_of(quadric("shape = \"sphere\"\nradius = " + bad)),
-                   Contains("s.toml:3:10:") && Contains("`radius`"));
     expect_refusals(
-        error_of,
         {
+            {"", {"s.toml: there is no surface"}},
+            {"[domain]\nx = [0, 1]\n", {"there is no surface"}},
+            {"quadric = 3\n", {"s.toml:1:11: `quadric` is 3, an integer; write [quadric]"}},
+            {"[quadrics]\n", {"s.toml:1:", "unknown table `quadrics`; did you mean `quadric`?"}},
+            {"[quadric\n", {"s.toml:1:", "not TOML"}},
+            {quadric("shape = \"sphere\"\nradius = 1\n[bezier]\nheights = [[0, 1], [2, 3]]\n"),
+             {"s.toml:4:", "[quadric] and [bezier] are both there"}},
+            {quadric(""), {"s.toml:1:1: [quadric] has no `shape`"}},
+            {quadric("shape = \"spere\""), {"s.toml:2:9:", "did you mean \"sphere\"?"}},
+            {quadric("shape = 1"), {"`shape` is 1, an integer"}},
+            {quadric("shape = \"sphere\""), {"[quadric] has no `radius`"}},
+            {quadric("shape = \"sphere\"\nradius = -1"),
+             {"s.toml:3:10: -1, an integer in `radius`; wanted is a number, 1e-06 .. 1e+06"}},
             {quadric("shape = \"sphere\"\nradius = 1\nsemi_axes = [1, 1, 1]"),
              {"s.toml:4:1: unknown key `semi_axes`"}},
             {quadric("shape = \"ellipsoid\"\nradius = 1\nsemi_axes = [1, 1, 1]"),
@@ -153,14 +142,17 @@ TEST_CASE("surface file: faults of a quadric are told with file and line") {
             {"[domain]\ny = [1, 1]\n", {"`y` goes from"}},
             {"[domain]\nz = [1, 2]\n", {"unknown key `z` of [domain]"}},
             {std::string(2000000, '#'), {"over 1048576 bytes"}},
-        });
+        },
+        error_of);
+    for (const std::string bad : {"0", "nan", "inf", "1e7", "\"one\"", "[1]"})
+        CHECK_THAT(error_of(quadric("shape = \"sphere\"\nradius = " + bad)),
+                   Contains("s.toml:3:10:") && Contains("`radius`"));
     CHECK_THROWS_WITH(read_surface("nowhere.toml"), Equals("nowhere.toml: no such surface file"));
     CHECK_THROWS_WITH(read_surface("."), Contains("is a folder"));
 }
 
 TEST_CASE("surface file: faults of a NURBS patch are told with file and line") {
     expect_refusals(
-        error_of,
         {
             {nurbs("degree_u", ""), {"s.toml:1:1: [nurbs] has no `degree_u`"}},
             {nurbs("degree_u", "degree_u = 0"), {"s.toml:2:12:", "1 .. 32"}},
@@ -183,26 +175,21 @@ TEST_CASE("surface file: faults of a NURBS patch are told with file and line") {
              {"row 2 of `heights` has 1 number(s) and the first has 2"}},
             {nurbs("heights", "heights = [[0, 1, 2, inf], [4, 5, 6, 7]]"), {"`heights`; wanted is a number"}},
             {nurbs("weights", "weights = [[1, 1, 1, 1]]"), {"s.toml:7:11: `weights` has 1 row(s) of 4"}},
-        });
-    for (const std::string bad : {"0", "-1", "nan", "1e10", "1e-10"})
-        CHECK_THAT(error_of(nurbs("weights", "weights = [[1, 1, 1, 1], [1, " + bad + ", 1, 1]]")),
-                   Contains("s.toml:7:30:") && Contains("`weights`"));
-    expect_refusals(
-        error_of,
-        {
             {nurbs("weights", "wieghts = [[1]]"), {"did you mean `weights`?"}},
             {"[bezier]\nheights = [[0], [1]]\n", {"s.toml:2:11: `heights` of a Bezier patch has 1 columns"}},
             {"[bezier]\nheights = [[0, 1]]\n", {"has 1 rows"}},
             {"[bezier]\nheights = [[0, 1], [0, 1]]\ndegree_u = 1\n", {"unknown key `degree_u` of [bezier]"}},
-        });
+        },
+        error_of);
+    for (const std::string bad : {"0", "-1", "nan", "1e10", "1e-10"})
+        CHECK_THAT(error_of(nurbs("weights", "weights = [[1, 1, 1, 1], [1, " + bad + ", 1, 1]]")),
+                   Contains("s.toml:7:30:") && Contains("`weights`"));
     // Inside, a knot may be there `degree` times: a crease. Once more would tear it.
     CHECK(error_of("[nurbs]\ndegree_u = 1\ndegree_v = 1\nknots_u = [0, 0, 1, 2, 2]\nknots_v = [0, 0, 1, "
                    "1]\nheights = [[0, 1, 2], [0, 1, 2]]\n")
               .empty());
-    expect_refusals(
-        error_of, {
-                      {"[nurbs]\ndegree_u = 1\ndegree_v = 1\nknots_u = [0, 0, 1, 1, 2, 2]\nknots_v = [0, 0, "
-                       "1, 1]\nheights = [[0, 1, 2, 3], [0, 1, 2, 3]]\n",
-                       {"`knots_u` has the knot 1.0 more than 1 times", "tear"}},
-                  });
+    CHECK_THAT(
+        error_of("[nurbs]\ndegree_u = 1\ndegree_v = 1\nknots_u = [0, 0, 1, 1, 2, 2]\nknots_v = [0, 0, 1, 1]\n"
+                 "heights = [[0, 1, 2, 3], [0, 1, 2, 3]]\n"),
+        Contains("`knots_u` has the knot 1.0 more than 1 times") && Contains("tear"));
 }
