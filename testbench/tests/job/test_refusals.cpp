@@ -18,6 +18,7 @@
 #include "testbench/job/toml_text.h"
 #include "testbench/job/validate_job.h"
 #include "testbench/tests/job/job_cases.h"
+#include "testbench/tests/support/refusals.h"
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -33,37 +34,20 @@ std::string validate_error_of(const Job& job) {
     return error_of([&] { validate(job); });
 }
 
-/// Something a user wrote, and all that the message must say; nothing: it is accepted.
-struct Row {
-    std::string input;
-    std::vector<std::string> says;
-};
-
-void expect(const Row& row, const std::string& error) {
-    CAPTURE(row.input, error);
-    CHECK(error.empty() == row.says.empty());
-    for (const std::string& part : row.says)
-        CHECK_THAT(error, Contains(part));
-}
-
-/// Of the text of a job file.
-void expect_of_file(const Row& row) {
-    expect(row, parse_error_of(row.input));
-}
 void expect_whole(const std::string& input, const std::string& message) {
     INFO(input);
     CHECK(parse_error_of(input) == message);
 }
 
-/// Settings one after another, separated by "; ", and what validate() says of them together.
-void expect_of_settings(const Row& row) {
+/// Settings one after another, separated by "; ": what validate() says of them together.
+std::string settings_error_of(const std::string& settings) {
     Job job;
-    for (std::size_t from = 0; from < row.input.size();) {
-        const std::size_t end = std::min(row.input.find("; ", from), row.input.size());
-        apply_setting(job, row.input.substr(from, end - from));
+    for (std::size_t from = 0; from < settings.size();) {
+        const std::size_t end = std::min(settings.find("; ", from), settings.size());
+        apply_setting(job, settings.substr(from, end - from));
         from = end + 2;
     }
-    expect(row, validate_error_of(job));
+    return validate_error_of(job);
 }
 
 }  // namespace
@@ -137,25 +121,26 @@ TEST_CASE("mistyped names are reported with place and suggestion") {
     const std::string suggestion = "unknown key `mesh.colums`; did you mean `mesh.columns`?";
     expect_whole("[mesh]\nrows = 2\n\n  colums = 3\n", "job.toml:4:3: " + suggestion);
     expect_whole("mesh.colums = 3", "job.toml:1:6: " + suggestion);
-    const Row rows[] = {
-        {"[mehs]\nrows = 2\n", {"unknown table `mehs`; did you mean `mesh`?"}},
-        {"[mesh]\naddress_u = \"clamp\"\n", {"did you mean `map.address_u`?"}},
-        {"queue_order = \"lifo\"\n", {"did you mean `hardware.queue_order`?"}},
-        {"\"mesh.rows\" = 2\n", {"unknown key `\"mesh.rows\"`; did you mean `mesh.rows`?"}},
-        {"xyzzyplugh = 2\n", {"unknown key `xyzzyplugh`; `tessera keys` lists"}},
-        {"[[mesh]]\nrows = 2\n", {"`mesh` is an array of 1"}},
-        {"mesh = 3\n", {"`mesh` is 3, an integer", "write [mesh]"}},
-        {"[mesh.rows]\nx = 2\n", {"`mesh.rows` is a table; expected an integer"}},
-        {"[mesh.more]\nx = 2\n", {"unknown table `mesh.more`"}},
-        {"mesh.camera = {eye = [1, 2, 3]}\n",
-         {"unknown table `mesh.camera`; did you mean the group `camera`?", "write [camera]", "eye, target, "}},
-        {"camera = {eye = [1, 2, 3]}\n", {}},
-        {"\"\" = 1\n", {"unknown key `\"\"`"}},
-        {"folder = \"x\"\n", {"unknown key `folder`"}},
-        {"[mesh]\n\n[fault]\nkind = \"none\"\n", {"job.toml:3:1: unknown table `fault`"}},
-    };
-    for (const Row& row : rows)
-        expect_of_file(row);
+    expect_refusals(
+        {
+            {"[mehs]\nrows = 2\n", {"unknown table `mehs`; did you mean `mesh`?"}},
+            {"[mesh]\naddress_u = \"clamp\"\n", {"did you mean `map.address_u`?"}},
+            {"queue_order = \"lifo\"\n", {"did you mean `hardware.queue_order`?"}},
+            {"\"mesh.rows\" = 2\n", {"unknown key `\"mesh.rows\"`; did you mean `mesh.rows`?"}},
+            {"xyzzyplugh = 2\n", {"unknown key `xyzzyplugh`; `tessera keys` lists"}},
+            {"[[mesh]]\nrows = 2\n", {"`mesh` is an array of 1"}},
+            {"mesh = 3\n", {"`mesh` is 3, an integer", "write [mesh]"}},
+            {"[mesh.rows]\nx = 2\n", {"`mesh.rows` is a table; expected an integer"}},
+            {"[mesh.more]\nx = 2\n", {"unknown table `mesh.more`"}},
+            {"mesh.camera = {eye = [1, 2, 3]}\n",
+             {"unknown table `mesh.camera`; did you mean the group `camera`?", "write [camera]",
+              "eye, target, "}},
+            {"camera = {eye = [1, 2, 3]}\n", {}},
+            {"\"\" = 1\n", {"unknown key `\"\"`"}},
+            {"folder = \"x\"\n", {"unknown key `folder`"}},
+            {"[mesh]\n\n[fault]\nkind = \"none\"\n", {"job.toml:3:1: unknown table `fault`"}},
+        },
+        parse_error_of);
     CHECK(nearest_name("mesh.file", {"mesh.file"}) == "mesh.file");
     CHECK(nearest_name(std::string(100000, 'a'), {"mesh.file"}).empty());
 }
@@ -170,16 +155,16 @@ TEST_CASE("values are reported with place, value and what is wanted") {
         "[map]\nsource = \"half-donut\"\n",
         "job.toml:2:1: `map.source` = \"half-donut\" is not a choice; the choices are half_donut, text, "
         "noise, constant, ramp, file; did you mean \"half_donut\"?");
-    const Row rows[] = {
-        {"[mesh]\ncolumns = 3.0\n", {"is 3.0, a floating-point number"}},
-        {"[map]\ntext = \"a\\u0000b\"\n", {"without NUL"}},
-        {"[map]\ntext = \"" + std::string(5000, 'x') + "\"\n", {"has 5000 bytes"}},
-        {"[output]\nfolder = \"\"\n", {"`output.folder` = \"\" is empty"}},
-        {"[output]\nply = 1\n[mesh]\nrows = -1\n",
-         {"job.toml:2:1: `output.ply`", "\njob.toml:4:1: `mesh.rows`"}},
-    };
-    for (const Row& row : rows)
-        expect_of_file(row);
+    expect_refusals(
+        {
+            {"[mesh]\ncolumns = 3.0\n", {"is 3.0, a floating-point number"}},
+            {"[map]\ntext = \"a\\u0000b\"\n", {"without NUL"}},
+            {"[map]\ntext = \"" + std::string(5000, 'x') + "\"\n", {"has 5000 bytes"}},
+            {"[output]\nfolder = \"\"\n", {"`output.folder` = \"\" is empty"}},
+            {"[output]\nply = 1\n[mesh]\nrows = -1\n",
+             {"job.toml:2:1: `output.ply`", "\njob.toml:4:1: `mesh.rows`"}},
+        },
+        parse_error_of);
 }
 
 TEST_CASE("TOML's own errors carry file, line and column") {
@@ -222,43 +207,44 @@ TEST_CASE("files that are no job files") {
 }
 
 TEST_CASE("keys that contradict each other") {
-    const Row rows[] = {
-        {"mesh.source=file", {"`mesh.file` is empty"}},
-        {"mesh.source=patches", {"`mesh.file` is empty, but `mesh.source` = \"patches\""}},
-        {"mesh.source=patches; mesh.file=a.txt", {}},
-        {"mesh.file=a.obj; mesh.source=plane", {"`mesh.file` = \"a.obj\", but `mesh.source` = \"plane\""}},
-        {"map.source=file", {"`map.file` is empty"}},
-        {"map.file=a.exr; map.source=half_donut", {"`map.source` = \"half_donut\" reads no file"}},
-        {"map.source=file; map.file=a.exr; mesh.source=file; mesh.file=a.obj", {}},
-        {"mesh.source=file; map.source=file", {"`mesh.file`", "\n`map.file`"}},
-        {"mesh.source=cylinder; mesh.columns=2", {"a cylinder closes around itself"}},
-        {"mesh.source=sphere; mesh.rows=1", {"a sphere has 2 or more"}},
-        {"map.source=text; map.text=", {"`map.text` is empty"}},
+    expect_refusals(
+        {
+            {"mesh.source=file", {"`mesh.file` is empty"}},
+            {"mesh.source=patches", {"`mesh.file` is empty, but `mesh.source` = \"patches\""}},
+            {"mesh.source=patches; mesh.file=a.txt", {}},
+            {"mesh.file=a.obj; mesh.source=plane",
+             {"`mesh.file` = \"a.obj\", but `mesh.source` = \"plane\""}},
+            {"map.source=file", {"`map.file` is empty"}},
+            {"map.file=a.exr; map.source=half_donut", {"`map.source` = \"half_donut\" reads no file"}},
+            {"map.source=file; map.file=a.exr; mesh.source=file; mesh.file=a.obj", {}},
+            {"mesh.source=file; map.source=file", {"`mesh.file`", "\n`map.file`"}},
+            {"mesh.source=cylinder; mesh.columns=2", {"a cylinder closes around itself"}},
+            {"mesh.source=sphere; mesh.rows=1", {"a sphere has 2 or more"}},
+            {"map.source=text; map.text=", {"`map.text` is empty"}},
 
-        {"formats.texture_integer=8; map.width=256; map.height=256", {}},
-        {"formats.texture_integer=7", {"`formats.texture_integer` = 7 addresses at most 128"}},
-        {"formats.position_bits=16", {"`formats.position_fraction` = 16 must be less than"}},
-        {"formats.position_bits=17", {}},
-        {"formats.screen_bits=8", {"`formats.screen_fraction` = 8 must be less than"}},
-        {"formats.screen_bits=18", {"reaches only 512 pixels"}},
-        {"formats.normal_bits=15", {"`formats.normal_fraction` = 14 leaves 1"}},
-        {"formats.generation_bits=3", {"`formats.generation_bits` = 3 counts to 7"}},
-        {"formats.generation_bits=3; tests.generation_limit=7", {}},
+            {"formats.texture_integer=8; map.width=256; map.height=256", {}},
+            {"formats.texture_integer=7", {"`formats.texture_integer` = 7 addresses at most 128"}},
+            {"formats.position_bits=16", {"`formats.position_fraction` = 16 must be less than"}},
+            {"formats.position_bits=17", {}},
+            {"formats.screen_bits=8", {"`formats.screen_fraction` = 8 must be less than"}},
+            {"formats.screen_bits=18", {"reaches only 512 pixels"}},
+            {"formats.normal_bits=15", {"`formats.normal_fraction` = 14 leaves 1"}},
+            {"formats.generation_bits=3", {"`formats.generation_bits` = 3 counts to 7"}},
+            {"formats.generation_bits=3; tests.generation_limit=7", {}},
 
-        {"camera.eye=[0, 0, 0]; camera.target=[0, 0, 0]", {"are the same point"}},
-        {"camera.up=[0, 0, 0]", {"`camera.up` = [0.0, 0.0, 0.0] has no direction"}},
-        {"camera.eye=[0, 0, 5]; camera.target=[0, 0, 0]; camera.up=[0, 0, 1]",
-         {"is parallel to the view direction [0.0, 0.0, -5.0]"}},
-        {"camera.eye=[0, 0, 5]; camera.up=[0, 1, 0]", {}},
-        {"hardware.light=[0, 0, 0]", {"`hardware.light`"}},
+            {"camera.eye=[0, 0, 0]; camera.target=[0, 0, 0]", {"are the same point"}},
+            {"camera.up=[0, 0, 0]", {"`camera.up` = [0.0, 0.0, 0.0] has no direction"}},
+            {"camera.eye=[0, 0, 5]; camera.target=[0, 0, 0]; camera.up=[0, 0, 1]",
+             {"is parallel to the view direction [0.0, 0.0, -5.0]"}},
+            {"camera.eye=[0, 0, 5]; camera.up=[0, 1, 0]", {}},
+            {"hardware.light=[0, 0, 0]", {"`hardware.light`"}},
 
-        {"map.fingerprint=0123456789abcdef", {"`map.file` is empty"}},
-        {"map.source=file; map.file=a.exr; map.fingerprint=0123456789ABCDEF",
-         {"wanted are 16 hexadecimal digits"}},
-        {"map.source=file; map.file=a.exr; map.fingerprint=0123456789abcdef", {}},
-    };
-    for (const Row& row : rows)
-        expect_of_settings(row);
+            {"map.fingerprint=0123456789abcdef", {"`map.file` is empty"}},
+            {"map.source=file; map.file=a.exr; map.fingerprint=0123456789ABCDEF",
+             {"wanted are 16 hexadecimal digits"}},
+            {"map.source=file; map.file=a.exr; map.fingerprint=0123456789abcdef", {}},
+        },
+        settings_error_of);
 
     Job out_of_range;  // made in code, past the checks of reading
     out_of_range.tests.normal_threshold = -1;

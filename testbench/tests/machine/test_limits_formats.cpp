@@ -70,35 +70,36 @@ struct Row {
     std::string formats;
 };
 
-const CaseTable meshes(
-    "formats: ",
-    {
-        Row{"the narrowest, a plane, functional", "functional", plane, narrowest},
-        {"the narrowest, a plane, timed", "timed", plane, narrowest},
-        {"the narrowest, a cylinder in repeat that spills, timed", "timed", cylinder,
-         narrowest + "formats.texture_integer=6"},
-        {"the widest, a plane, functional", "functional", plane, widest},
-        {"the widest, a cylinder in repeat that spills, timed", "timed", cylinder, widest},
-        {"odd ones, a plane, functional", "functional", plane, odd},
-        {"odd ones, a cylinder in repeat that spills, timed", "timed", cylinder, odd},
-        {"whole numbers, a cylinder in repeat that spills, timed", "timed", cylinder, whole_numbers},
-        {"fractions only, a plane, timed", "timed", plane, fractions},
-    },
-    [](const Row& row) {
-        const Job job = with_settings({}, "mode=" + row.mode + " " + row.job + row.formats);
-        check(width_run_of(job));
-        const CheckedRun run(job);
-        CHECK(run.counts.edges_split > 0);
-        CHECK(run.setup.input_saturations.position == 0);
-        CHECK(run.setup.input_saturations.normal == 0);
-        const datapath::Saturations counted = run.pipeline.saturations();
-        // by validation: 1.0 fits a normal, the farthest corner fits w, the model fits half of the position's range
-        CHECK(counted.normal == 0);
-        CHECK(counted.screen_normal == 0);
-        CHECK(counted.view_distance == 0);
-        CHECK(counted.displaced_position == 0);
-        CHECK(counted.generation == 0);
-    });
+const CaseTable meshes("formats: ",
+                       {
+                           Row{"the narrowest, a plane, functional", "functional", plane, narrowest},
+                           {"the narrowest, a plane, timed", "timed", plane, narrowest},
+                           {"the narrowest, a cylinder in repeat that spills, timed", "timed", cylinder,
+                            narrowest + "formats.texture_integer=6"},
+                           {"the widest, a plane, functional", "functional", plane, widest},
+                           {"the widest, a cylinder in repeat that spills, timed", "timed", cylinder, widest},
+                           {"odd ones, a plane, functional", "functional", plane, odd},
+                           {"odd ones, a cylinder in repeat that spills, timed", "timed", cylinder, odd},
+                           {"whole numbers, a cylinder in repeat that spills, timed", "timed", cylinder,
+                            whole_numbers},
+                           {"fractions only, a plane, timed", "timed", plane, fractions},
+                       },
+                       [](const Row& row) {
+                           const Job job =
+                               with_settings({}, "mode=" + row.mode + " " + row.job + row.formats);
+                           check(width_run_of(job));
+                           const CheckedRun run(job);
+                           CHECK(run.counts.edges_split > 0);
+                           CHECK(run.setup.input_saturations.position == 0);
+                           CHECK(run.setup.input_saturations.normal == 0);
+                           const datapath::Saturations counted = run.pipeline.saturations();
+                           // by validation: 1.0 fits a normal, the farthest corner fits w, the model fits half of the position's range
+                           CHECK(counted.normal == 0);
+                           CHECK(counted.screen_normal == 0);
+                           CHECK(counted.view_distance == 0);
+                           CHECK(counted.displaced_position == 0);
+                           CHECK(counted.generation == 0);
+                       });
 
 }  // namespace
 

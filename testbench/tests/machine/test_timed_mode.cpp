@@ -101,7 +101,8 @@ const CaseTable spills(
         Spill{"first in first out, one place, spills", queue("fifo", 1), 1},
         {"first in first out, 8 places, spills and stalls", queue("fifo", 8) + stalls(21, 300), 8},
         {"first in first out, 64 places, spills to a slow memory",
-         queue("fifo", 64) + "timing.off_chip_latency=500 timing.off_chip_bandwidth=3 timing.off_chip_buffer=1",
+         queue("fifo", 64) +
+             "timing.off_chip_latency=500 timing.off_chip_bandwidth=3 timing.off_chip_buffer=1",
          64},
         {"last in first out, one place, spills", queue("lifo", 1), 1},
         {"last in first out, 8 places, spills and stalls", queue("lifo", 8) + stalls(22, 300), 8},
@@ -138,8 +139,8 @@ TEST_CASE("timed mesh: a cylinder in repeat, whose rectangles wrap") {
 }
 
 TEST_CASE("timed mesh: culling") {
-    const CheckedRun run(with_settings(
-        timed_job(), small + "hardware.culling=back camera.eye=[0,-4,0.6] " + stalls(6, 100)));
+    const CheckedRun run(
+        with_settings(timed_job(), small + "hardware.culling=back camera.eye=[0,-4,0.6] " + stalls(6, 100)));
     CHECK(run.counts.culled > 0);
     CHECK(run.simulation.rasteriser.triangles() > 0);
 }

@@ -74,8 +74,7 @@ const CaseTable cycles(
         {"300 cycles for it", "timing.highlight_test_latency=300", 342 + 38 + 1},
     },
     [](const Timed& row) {
-        const MachineSetup setup =
-            one_triangle(with_settings(with_highlight(one_quad_job()), row.settings));
+        const MachineSetup setup = one_triangle(with_settings(with_highlight(one_quad_job()), row.settings));
         Simulation simulation(setup, 1000);
         run_timed(simulation);
         CHECK(simulation.cycles() == row.cycles);

@@ -1,7 +1,11 @@
 #include <catch2/catch.hpp>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "testbench/tests/support/case_table.h"
+#include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/timed_checks.h"
 
 // A machine that is stopped anywhere, cycle by cycle: a unit says that it holds something while it does, in
@@ -56,15 +60,6 @@ bool any_contains(const Texts& texts, const std::string& unit, const std::string
     return false;
 }
 
-void set_every_unit(Timing& timing, const UnitTiming& its) {
-    for (UnitTiming* unit :
-         {&timing.get_triangle, &timing.calculate_new_p, &timing.displace_vertex, &timing.transform,
-          &timing.calculate_new_u, &timing.tex_coord_test, &timing.summed_height_test, &timing.normal_test,
-          &timing.view_test, &timing.pass_or_tessellate, &timing.tessellation, &timing.triangle_queue,
-          &timing.lighting})
-        *unit = its;
-}
-
 /// What there is to see whenever Pipeline::drained() is notified, of base triangles that become 16 each.
 struct DrainedWatch : sc_core::sc_module {
     explicit DrainedWatch(Simulation& simulation) : sc_module("watch"), simulation_(simulation) {
@@ -103,59 +98,53 @@ unsigned expect_drained_when_empty(const Job& job) {
     return watch.notified;
 }
 
+struct Row {
+    std::string name;
+    std::string settings;
+    std::vector<std::pair<std::string, std::string>> said;  ///< by which unit, what
+};
+
+const CaseTable stopped(
+    "stopped anywhere: ",
+    {
+        Row{"the paper's design, items stalled at random",
+            "timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=9 "
+            "hardware.queue_capacity=2",
+            {{"get_triangle", "not all of it sent"},
+             {"get_triangle", "may not take: the queue is at its watermark"},
+             {"pass_or_tessellate", "waiting for both branches"},
+             {"pass_or_tessellate", "waiting for Tessellation Tests"},
+             {"transform", "waiting at the input"},
+             {"summed_height_table", "one waiting at the input"},
+             {"off_chip_memory", "one waiting at the input"}}},
+        // A triangle's nine edges take the tests some sixty cycles: each of the last three units then waits for the one
+        // behind it.
+        {"every unit slower to begin than to end, a queue of three that spills",
+         every_unit("latency", 1) + every_unit("interval", 7) + every_unit("buffer", 1) +
+             "hardware.queue_capacity=3 hardware.queue_order=lifo timing.pass_or_tessellate_interval=100 "
+             "timing.pass_or_tessellate_buffer=8 timing.tessellation_interval=60 "
+             "timing.triangle_queue_interval=100",
+         {{"pass_or_tessellate", "the first (#) complete"},
+          {"triangle_queue", "of them off chip"},
+          {"triangle_queue", "no place for the next (capacity #)"},
+          {"tessellation", "children of a triangle, a triangle that waits"}}},
+        {"three tests units, a slow Transform, host triangles at any time",
+         "hardware.tests_units=3 hardware.queue_watermark=1000 timing.summed_height_table_ports=12 "
+         "timing.transform_latency=300 timing.transform_interval=90",
+         {{"pass_or_tessellate", "waiting for Transform"}, {"get_triangle", "a host triangle"}}},
+        {"a queue without bound that takes a triangle every forty cycles",
+         "timing.triangle_queue_latency=50 timing.triangle_queue_interval=40",
+         {{"triangle_queue", "of them on the way out"}, {"triangle_queue", "no place for the next"}}},
+    },
+    [](const Row& row) {
+        const Texts texts = texts_of_every_cycle(setup_of(with_settings(full_split_job(2, 2), row.settings)));
+        for (const auto& [unit, what] : row.said) {
+            CAPTURE(unit, what);
+            CHECK(any_contains(texts, unit, what));
+        }
+    });
+
 }  // namespace
-
-TEST_CASE("stopped anywhere: the paper's design, items stalled at random") {
-    Job job = full_split_job(2, 2);
-    job.timing.stalls = {3, 300, 9};
-    job.hardware.queue_capacity = 2;
-    const Texts texts = texts_of_every_cycle(setup_of(job));
-    CHECK(any_contains(texts, "get_triangle", "not all of it sent"));
-    CHECK(any_contains(texts, "get_triangle", "may not take: the queue is at its watermark"));
-    CHECK(any_contains(texts, "pass_or_tessellate", "waiting for both branches"));
-    CHECK(any_contains(texts, "pass_or_tessellate", "waiting for Tessellation Tests"));
-    CHECK(any_contains(texts, "transform", "waiting at the input"));
-    CHECK(any_contains(texts, "summed_height_table", "one waiting at the input"));
-    CHECK(any_contains(texts, "off_chip_memory", "one waiting at the input"));
-}
-
-TEST_CASE("stopped anywhere: every unit slower to begin than to end, a queue of three that spills") {
-    Job job = full_split_job(2, 2);
-    job.hardware.queue_capacity = 3;
-    job.hardware.queue_order = QueueOrder::lifo;
-    MachineSetup setup = setup_of(job);
-    set_every_unit(setup.design.timing, {1, 7, 1});
-    // A triangle's nine edges take the tests some sixty cycles: each of these then waits for the one behind it.
-    setup.design.timing.pass_or_tessellate = {1, 100, 8};
-    setup.design.timing.tessellation = {1, 60, 1};
-    setup.design.timing.triangle_queue = {1, 100, 1};
-    const Texts texts = texts_of_every_cycle(setup);
-    CHECK(any_contains(texts, "pass_or_tessellate", "the first (#) complete"));
-    CHECK(any_contains(texts, "triangle_queue", "of them off chip"));
-    CHECK(any_contains(texts, "triangle_queue", "no place for the next (capacity #)"));
-    CHECK(any_contains(texts, "tessellation", "children of a triangle, a triangle that waits"));
-}
-
-TEST_CASE("stopped anywhere: three tests units, a slow Transform, host triangles at any time") {
-    Job job = full_split_job(2, 2);
-    job.hardware.tests_units = 3;
-    job.hardware.queue_watermark = 1000;
-    job.timing.summed_height_table.ports = 12;
-    MachineSetup setup = setup_of(job);
-    setup.design.timing.transform = {300, 90, 1};
-    const Texts texts = texts_of_every_cycle(setup);
-    CHECK(any_contains(texts, "pass_or_tessellate", "waiting for Transform"));
-    CHECK(any_contains(texts, "get_triangle", "a host triangle"));
-}
-
-TEST_CASE("stopped anywhere: a queue without bound that takes a triangle every forty cycles") {
-    Job job = full_split_job(2, 2);
-    MachineSetup setup = setup_of(job);
-    setup.design.timing.triangle_queue = {50, 40, 1};
-    const Texts texts = texts_of_every_cycle(setup);
-    CHECK(any_contains(texts, "triangle_queue", "of them on the way out"));
-    CHECK(any_contains(texts, "triangle_queue", "no place for the next"));
-}
 
 TEST_CASE("drained: timed, notified once a frame, when all has gone out") {
     CHECK(expect_drained_when_empty(full_split_job(2, 2)) == 2);

@@ -91,18 +91,18 @@ const CaseTable rates(
         // now longer than the work on the ones before it, so each of 18 may hold the table up for so long at most.
         {"four ports on the Summed Height Table: 9 cycles a pass, still bound by it",
          "timing.summed_height_table_ports=4", fill + 9 * passes + drain,
-         fill + 9 * passes + drain + base * until_on_screen, "summed_height_table", 9 * passes},
+         fill + 9 * passes + drain + base* until_on_screen, "summed_height_table", 9 * passes},
         // 64 ports: a rectangle takes no more than its cycle, and what binds is one part a cycle, out of Get Triangle
         // and through Calculate New P, Displace Vertex and Transform alike.
         {"with ports to spare a part a cycle is what binds", "timing.summed_height_table_ports=64",
-         a_part_a_cycle, a_part_a_cycle + base * until_on_screen, "get_triangle", parts},
+         a_part_a_cycle, a_part_a_cycle + base* until_on_screen, "get_triangle", parts},
         // They share the one port: nothing gained but the first triangle's three cycles and one vertex.
         {"three tests units on one port: 36 cycles a pass as before", "hardware.tests_units=3",
          fill_of_three + 36 * passes + drain, fill_of_three + 36 * passes + drain, "summed_height_table",
          36 * passes},
         {"three tests units on four ports: 9 cycles a pass",
          "hardware.tests_units=3 timing.summed_height_table_ports=4", fill_of_three + 9 * passes + drain,
-         fill_of_three + 9 * passes + drain + base * until_on_screen, "summed_height_table", 9 * passes},
+         fill_of_three + 9 * passes + drain + base* until_on_screen, "summed_height_table", 9 * passes},
         // The table, with four ports, needs 9 cycles of the 24 and more that three edges take here.
         {"Transform every 8 cycles binds: 8 cycles a part",
          "timing.summed_height_table_ports=4 timing.transform_interval=8", transform_every_8,
@@ -216,7 +216,8 @@ TEST_CASE("banks in conflict are a bottleneck though their ports idle") {
 
 TEST_CASE("an interval that lasts is no lack of work") {
     const MachineSetup setup = full_split(
-        "timing.displace_vertex_latency=1 timing.displace_vertex_interval=100 timing.pass_or_tessellate_interval=50");
+        "timing.displace_vertex_latency=1 timing.displace_vertex_interval=100 "
+        "timing.pass_or_tessellate_interval=50");
     Simulation simulation(setup, 1'000'000);
     run_full_split(simulation);
     const Pipeline& p = simulation.pipeline;

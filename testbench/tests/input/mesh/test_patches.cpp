@@ -9,9 +9,11 @@
 #include "testbench/input/mesh/mesh_limits.h"
 #include "testbench/input/mesh/obj_reader.h"
 #include "testbench/tests/input/mesh/mesh_checks.h"
+#include "testbench/tests/support/refusals.h"
 #include "testbench/tests/support/shared_data.h"
 
 using namespace tessera;
+using namespace tessera::testing;
 using Catch::Matchers::Contains;
 namespace fs = std::filesystem;
 
@@ -251,33 +253,33 @@ TEST_CASE("patches: text as it may come loads") {
 
 TEST_CASE("patches: hostile text ends in one message with its line") {
     const std::string text = text_of(one_patch([](int i, int j) { return glm::dvec3(i, j, i * j); }));
-    CHECK_THAT(parse_error(""), Contains("p.txt:0: the file ends before the number of patches"));
-    CHECK_THAT(parse_error("\n \n"), Contains("the file ends before the number of patches"));
-    CHECK_THAT(parse_error("0\n"), Contains("p.txt:1: '0'"));
-    CHECK_THAT(parse_error("-3\n"), Contains("p.txt:1: '-3'"));
-    CHECK_THAT(parse_error("1.5\n"), Contains("'1.5'"));
-    CHECK_THAT(parse_error("nan\n"), Contains("'nan'"));
-    CHECK_THAT(parse_error("v 1 2 3\n"), Contains("'v 1 2 3'"));
-    CHECK_THAT(parse_error(std::string("\0\0\0", 3)), Contains("\\x00"));
-    CHECK_THAT(parse_error("99999999999999999999\n"), Contains("limit: p.txt:1:") && Contains("4000000"));
-    CHECK_THAT(parse_error("inf\n"), Contains("limit: p.txt:1:"));
-    CHECK_THAT(parse_error("4000000\n"), Contains("before patch 1 of 4000000"));
-    CHECK_THAT(parse_error(with_line(text, 3, "17000000")),
-               Contains("limit: p.txt:3:") && Contains("16000000"));
-    CHECK_THAT(parse_error(with_line(text, 3, "4")),
-               Contains("p.txt:8:") && Contains("behind the last of 4 points"));
-    CHECK_THAT(parse_error(with_line(text, 3, "17")), Contains("before point 17 of 17"));
     const std::string row = "1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,";
-    CHECK_THAT(parse_error(with_line(text, 2, row + "17")),
-               Contains("p.txt:2: patch 1 names point 17, but there are 16"));
+    expect_refusals(
+        {
+            {"", {"p.txt:0: the file ends before the number of patches"}},
+            {"\n \n", {"the file ends before the number of patches"}},
+            {"0\n", {"p.txt:1: '0'"}},
+            {"-3\n", {"p.txt:1: '-3'"}},
+            {"1.5\n", {"'1.5'"}},
+            {"nan\n", {"'nan'"}},
+            {"v 1 2 3\n", {"'v 1 2 3'"}},
+            {std::string("\0\0\0", 3), {"\\x00"}},
+            {"99999999999999999999\n", {"limit: p.txt:1:", "4000000"}},
+            {"inf\n", {"limit: p.txt:1:"}},
+            {"4000000\n", {"before patch 1 of 4000000"}},
+            {with_line(text, 3, "17000000"), {"limit: p.txt:3:", "16000000"}},
+            {with_line(text, 3, "4"), {"p.txt:8:", "behind the last of 4 points"}},
+            {with_line(text, 3, "17"), {"before point 17 of 17"}},
+            {with_line(text, 2, row + "17"), {"p.txt:2: patch 1 names point 17, but there are 16"}},
+            {with_line(text, 2, "1,2,3"), {"p.txt:2: patch 1 of 1", "3 number(s)"}},
+            {with_line(text, 2, row + "16,1"), {"17 number(s)"}},
+        },
+        parse_error);
     for (const std::string last : {"0", "-1", "1.5", "x", "", "1e300", "nan"}) {
         INFO(last);
         CHECK_THAT(parse_error(with_line(text, 2, row + last)),
                    Contains("p.txt:2:") && Contains("'" + last + "'"));
     }
-    CHECK_THAT(parse_error(with_line(text, 2, "1,2,3")),
-               Contains("p.txt:2: patch 1 of 1") && Contains("3 number(s)"));
-    CHECK_THAT(parse_error(with_line(text, 2, row + "16,1")), Contains("17 number(s)"));
     for (const std::string point : {"1,2", "1,2,3,4", "1 2 3"}) {
         CHECK_THAT(parse_error(with_line(text, 7, point)), Contains("p.txt:7: point 4 of 16"));
     }

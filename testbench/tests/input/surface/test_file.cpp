@@ -3,8 +3,10 @@
 
 #include "testbench/common/error.h"
 #include "testbench/input/surface/surface_file.h"
+#include "testbench/tests/support/refusals.h"
 
 using namespace tessera;
+using namespace tessera::testing;
 using Catch::Matchers::Contains;
 using Catch::Matchers::Equals;
 
@@ -104,96 +106,90 @@ TEST_CASE("surface file: a long row of numbers is no deep key") {
 }
 
 TEST_CASE("surface file: faults of a quadric are told with file and line") {
-    CHECK_THAT(error_of(""), Contains("s.toml: there is no surface"));
-    CHECK_THAT(error_of("[domain]\nx = [0, 1]\n"), Contains("there is no surface"));
-    CHECK_THAT(error_of("quadric = 3\n"),
-               Contains("s.toml:1:11: `quadric` is 3, an integer; write [quadric]"));
-    CHECK_THAT(error_of("[quadrics]\n"),
-               Contains("s.toml:1:") && Contains("unknown table `quadrics`; did you mean `quadric`?"));
-    CHECK_THAT(error_of("[quadric\n"), Contains("s.toml:1:") && Contains("not TOML"));
-    CHECK_THAT(error_of(quadric("shape = \"sphere\"\nradius = 1\n[bezier]\nheights = [[0, 1], [2, 3]]\n")),
-               Contains("s.toml:4:") && Contains("[quadric] and [bezier] are both there"));
-    CHECK_THAT(error_of(quadric("")), Contains("s.toml:1:1: [quadric] has no `shape`"));
-    CHECK_THAT(error_of(quadric("shape = \"spere\"")),
-               Contains("s.toml:2:9:") && Contains("did you mean \"sphere\"?"));
-    CHECK_THAT(error_of(quadric("shape = 1")), Contains("`shape` is 1, an integer"));
-    CHECK_THAT(error_of(quadric("shape = \"sphere\"")), Contains("[quadric] has no `radius`"));
-    CHECK_THAT(error_of(quadric("shape = \"sphere\"\nradius = -1")),
-               Contains("s.toml:3:10: -1, an integer in `radius`; wanted is a number, 1e-06 .. 1e+06"));
+    expect_refusals(
+        {
+            {"", {"s.toml: there is no surface"}},
+            {"[domain]\nx = [0, 1]\n", {"there is no surface"}},
+            {"quadric = 3\n", {"s.toml:1:11: `quadric` is 3, an integer; write [quadric]"}},
+            {"[quadrics]\n", {"s.toml:1:", "unknown table `quadrics`; did you mean `quadric`?"}},
+            {"[quadric\n", {"s.toml:1:", "not TOML"}},
+            {quadric("shape = \"sphere\"\nradius = 1\n[bezier]\nheights = [[0, 1], [2, 3]]\n"),
+             {"s.toml:4:", "[quadric] and [bezier] are both there"}},
+            {quadric(""), {"s.toml:1:1: [quadric] has no `shape`"}},
+            {quadric("shape = \"spere\""), {"s.toml:2:9:", "did you mean \"sphere\"?"}},
+            {quadric("shape = 1"), {"`shape` is 1, an integer"}},
+            {quadric("shape = \"sphere\""), {"[quadric] has no `radius`"}},
+            {quadric("shape = \"sphere\"\nradius = -1"),
+             {"s.toml:3:10: -1, an integer in `radius`; wanted is a number, 1e-06 .. 1e+06"}},
+            {quadric("shape = \"sphere\"\nradius = 1\nsemi_axes = [1, 1, 1]"),
+             {"s.toml:4:1: unknown key `semi_axes`"}},
+            {quadric("shape = \"ellipsoid\"\nradius = 1\nsemi_axes = [1, 1, 1]"),
+             {"s.toml:3:10: `radius` and `semi_axes`"}},
+            {quadric("shape = \"ellipsoid\"\nsemi_axes = [1, -1, 1]"), {"s.toml:3:17: -1.0 in `semi_axes`"}},
+            {quadric("shape = \"paraboloid\"\nsemi_axes = [1, -1, 1]"), {"-1.0 in `semi_axes`"}},
+            {quadric("shape = \"paraboloid\"\nsemi_axes = [1, 1, 0]"), {"0.0 in `semi_axes`", "negative"}},
+            {quadric("shape = \"ellipsoid\"\nsemi_axes = [1, 1]"), {"an array of 2; wanted is a list of 3"}},
+            {quadric("shape = \"sphere\"\nradius = 1\ncentre = [0, 0, 1e7]"), {"`centre`"}},
+            {quadric("shape = \"sphere\"\nradius = 1\ncenter = [0, 0, 1]"),
+             {"s.toml:4:1:", "did you mean `centre`?"}},
+            {quadric("shape = \"cone\"\nradius = 1\naxis = \"w\""), {"wanted is one of x, y, z"}},
+            {quadric("shape = \"hyperboloid\"\nradius = 1"), {"has no `sheets`"}},
+            {quadric("shape = \"hyperboloid\"\nradius = 1\nsheets = 3"), {"an integer, 1 .. 2"}},
+            {quadric("shape = \"general\"\ncoefficients = [1, 2, 3]"), {"a list of 10"}},
+            {quadric("shape = \"general\"\ncoefficients = [0, 0, 0, 0, 0, 0, 0, 0, 0, 1]"),
+             {"s.toml:3:", "all 0 but the last"}},
+            {"[domain]\nx = [1, -1]\n", {"s.toml:2:5: `x` goes from 1.0 to -1.0"}},
+            {"[domain]\ny = [1, 1]\n", {"`y` goes from"}},
+            {"[domain]\nz = [1, 2]\n", {"unknown key `z` of [domain]"}},
+            {std::string(2000000, '#'), {"over 1048576 bytes"}},
+        },
+        error_of);
     for (const std::string bad : {"0", "nan", "inf", "1e7", "\"one\"", "[1]"})
         CHECK_THAT(error_of(quadric("shape = \"sphere\"\nradius = " + bad)),
                    Contains("s.toml:3:10:") && Contains("`radius`"));
-    CHECK_THAT(error_of(quadric("shape = \"sphere\"\nradius = 1\nsemi_axes = [1, 1, 1]")),
-               Contains("s.toml:4:1: unknown key `semi_axes`"));
-    CHECK_THAT(error_of(quadric("shape = \"ellipsoid\"\nradius = 1\nsemi_axes = [1, 1, 1]")),
-               Contains("s.toml:3:10: `radius` and `semi_axes`"));
-    CHECK_THAT(error_of(quadric("shape = \"ellipsoid\"\nsemi_axes = [1, -1, 1]")),
-               Contains("s.toml:3:17: -1.0 in `semi_axes`"));
-    CHECK_THAT(error_of(quadric("shape = \"paraboloid\"\nsemi_axes = [1, -1, 1]")),
-               Contains("-1.0 in `semi_axes`"));
-    CHECK_THAT(error_of(quadric("shape = \"paraboloid\"\nsemi_axes = [1, 1, 0]")),
-               Contains("0.0 in `semi_axes`") && Contains("negative"));
-    CHECK_THAT(error_of(quadric("shape = \"ellipsoid\"\nsemi_axes = [1, 1]")),
-               Contains("an array of 2; wanted is a list of 3"));
-    CHECK_THAT(error_of(quadric("shape = \"sphere\"\nradius = 1\ncentre = [0, 0, 1e7]")),
-               Contains("`centre`"));
-    CHECK_THAT(error_of(quadric("shape = \"sphere\"\nradius = 1\ncenter = [0, 0, 1]")),
-               Contains("s.toml:4:1:") && Contains("did you mean `centre`?"));
-    CHECK_THAT(error_of(quadric("shape = \"cone\"\nradius = 1\naxis = \"w\"")),
-               Contains("wanted is one of x, y, z"));
-    CHECK_THAT(error_of(quadric("shape = \"hyperboloid\"\nradius = 1")), Contains("has no `sheets`"));
-    CHECK_THAT(error_of(quadric("shape = \"hyperboloid\"\nradius = 1\nsheets = 3")),
-               Contains("an integer, 1 .. 2"));
-    CHECK_THAT(error_of(quadric("shape = \"general\"\ncoefficients = [1, 2, 3]")), Contains("a list of 10"));
-    CHECK_THAT(error_of(quadric("shape = \"general\"\ncoefficients = [0, 0, 0, 0, 0, 0, 0, 0, 0, 1]")),
-               Contains("s.toml:3:") && Contains("all 0 but the last"));
-    CHECK_THAT(error_of("[domain]\nx = [1, -1]\n"), Contains("s.toml:2:5: `x` goes from 1.0 to -1.0"));
-    CHECK_THAT(error_of("[domain]\ny = [1, 1]\n"), Contains("`y` goes from"));
-    CHECK_THAT(error_of("[domain]\nz = [1, 2]\n"), Contains("unknown key `z` of [domain]"));
-    CHECK_THAT(error_of(std::string(2000000, '#')), Contains("over 1048576 bytes"));
     CHECK_THROWS_WITH(read_surface("nowhere.toml"), Equals("nowhere.toml: no such surface file"));
     CHECK_THROWS_WITH(read_surface("."), Contains("is a folder"));
 }
 
 TEST_CASE("surface file: faults of a NURBS patch are told with file and line") {
-    CHECK_THAT(error_of(nurbs("degree_u", "")), Contains("s.toml:1:1: [nurbs] has no `degree_u`"));
-    CHECK_THAT(error_of(nurbs("degree_u", "degree_u = 0")), Contains("s.toml:2:12:") && Contains("1 .. 32"));
-    CHECK_THAT(error_of(nurbs("degree_u", "degree_u = 33")), Contains("33, an integer"));
-    CHECK_THAT(error_of(nurbs("degree_u", "degree_u = 4")),
-               Contains("s.toml:6:11: `heights` has 4 column(s) and `degree_u` = 4 needs 5"));
-    CHECK_THAT(error_of(nurbs("degree_v", "degree_v = 2")), Contains("`heights` has 2 row(s)"));
-    CHECK_THAT(error_of(nurbs("knots_u", "knots_u = [0, 0, 0, 1, 1, 1]")),
-               Contains("s.toml:4:11: `knots_u` has 6 knot(s); wanted are 7"));
-    CHECK_THAT(error_of(nurbs("knots_u", "knots_u = [0, 0, 0, 2, 1, 2, 2]")),
-               Contains("s.toml:4:24: `knots_u` falls from 2.0 to 1.0"));
-    CHECK_THAT(error_of(nurbs("knots_u", "knots_u = [0, 0, 0, 0, 2, 2, 2]")), Contains("more than 3 times"));
-    CHECK_THAT(error_of(nurbs("knots_u", "knots_u = [0, 0, 0, 1e-12, 2, 2, 2]")),
-               Contains("make them the same, or more different"));
-    CHECK_THAT(error_of(nurbs("knots_v", "knots_v = [0, 1, 1, 2]")), Contains("`knots_v` leaves no range"));
-    CHECK_THAT(error_of(nurbs("knots_u", "knots_u = [0, 0, 0, nan, 2, 2, 2]")), Contains("s.toml:4:21:"));
-    CHECK_THAT(error_of(nurbs("heights", "heights = []")), Contains("`heights` is an array of 0"));
-    CHECK_THAT(error_of(nurbs("heights", "heights = [1, 2]")),
-               Contains("row 1 of `heights` is 1, an integer"));
-    CHECK_THAT(error_of(nurbs("heights", "heights = [[1, 2], [1]]")),
-               Contains("row 2 of `heights` has 1 number(s) and the first has 2"));
-    CHECK_THAT(error_of(nurbs("heights", "heights = [[0, 1, 2, inf], [4, 5, 6, 7]]")),
-               Contains("`heights`; wanted is a number"));
-    CHECK_THAT(error_of(nurbs("weights", "weights = [[1, 1, 1, 1]]")),
-               Contains("s.toml:7:11: `weights` has 1 row(s) of 4"));
+    expect_refusals(
+        {
+            {nurbs("degree_u", ""), {"s.toml:1:1: [nurbs] has no `degree_u`"}},
+            {nurbs("degree_u", "degree_u = 0"), {"s.toml:2:12:", "1 .. 32"}},
+            {nurbs("degree_u", "degree_u = 33"), {"33, an integer"}},
+            {nurbs("degree_u", "degree_u = 4"),
+             {"s.toml:6:11: `heights` has 4 column(s) and `degree_u` = 4 needs 5"}},
+            {nurbs("degree_v", "degree_v = 2"), {"`heights` has 2 row(s)"}},
+            {nurbs("knots_u", "knots_u = [0, 0, 0, 1, 1, 1]"),
+             {"s.toml:4:11: `knots_u` has 6 knot(s); wanted are 7"}},
+            {nurbs("knots_u", "knots_u = [0, 0, 0, 2, 1, 2, 2]"),
+             {"s.toml:4:24: `knots_u` falls from 2.0 to 1.0"}},
+            {nurbs("knots_u", "knots_u = [0, 0, 0, 0, 2, 2, 2]"), {"more than 3 times"}},
+            {nurbs("knots_u", "knots_u = [0, 0, 0, 1e-12, 2, 2, 2]"),
+             {"make them the same, or more different"}},
+            {nurbs("knots_v", "knots_v = [0, 1, 1, 2]"), {"`knots_v` leaves no range"}},
+            {nurbs("knots_u", "knots_u = [0, 0, 0, nan, 2, 2, 2]"), {"s.toml:4:21:"}},
+            {nurbs("heights", "heights = []"), {"`heights` is an array of 0"}},
+            {nurbs("heights", "heights = [1, 2]"), {"row 1 of `heights` is 1, an integer"}},
+            {nurbs("heights", "heights = [[1, 2], [1]]"),
+             {"row 2 of `heights` has 1 number(s) and the first has 2"}},
+            {nurbs("heights", "heights = [[0, 1, 2, inf], [4, 5, 6, 7]]"), {"`heights`; wanted is a number"}},
+            {nurbs("weights", "weights = [[1, 1, 1, 1]]"), {"s.toml:7:11: `weights` has 1 row(s) of 4"}},
+            {nurbs("weights", "wieghts = [[1]]"), {"did you mean `weights`?"}},
+            {"[bezier]\nheights = [[0], [1]]\n", {"s.toml:2:11: `heights` of a Bezier patch has 1 columns"}},
+            {"[bezier]\nheights = [[0, 1]]\n", {"has 1 rows"}},
+            {"[bezier]\nheights = [[0, 1], [0, 1]]\ndegree_u = 1\n", {"unknown key `degree_u` of [bezier]"}},
+        },
+        error_of);
     for (const std::string bad : {"0", "-1", "nan", "1e10", "1e-10"})
         CHECK_THAT(error_of(nurbs("weights", "weights = [[1, 1, 1, 1], [1, " + bad + ", 1, 1]]")),
                    Contains("s.toml:7:30:") && Contains("`weights`"));
-    CHECK_THAT(error_of(nurbs("weights", "wieghts = [[1]]")), Contains("did you mean `weights`?"));
-    CHECK_THAT(error_of("[bezier]\nheights = [[0], [1]]\n"),
-               Contains("s.toml:2:11: `heights` of a Bezier patch has 1 columns"));
-    CHECK_THAT(error_of("[bezier]\nheights = [[0, 1]]\n"), Contains("has 1 rows"));
-    CHECK_THAT(error_of("[bezier]\nheights = [[0, 1], [0, 1]]\ndegree_u = 1\n"),
-               Contains("unknown key `degree_u` of [bezier]"));
     // Inside, a knot may be there `degree` times: a crease. Once more would tear it.
     CHECK(error_of("[nurbs]\ndegree_u = 1\ndegree_v = 1\nknots_u = [0, 0, 1, 2, 2]\nknots_v = [0, 0, 1, "
                    "1]\nheights = [[0, 1, 2], [0, 1, 2]]\n")
               .empty());
-    CHECK_THAT(error_of("[nurbs]\ndegree_u = 1\ndegree_v = 1\nknots_u = [0, 0, 1, 1, 2, 2]\nknots_v = [0, 0, "
-                        "1, 1]\nheights = [[0, 1, 2, 3], [0, 1, 2, 3]]\n"),
-               Contains("`knots_u` has the knot 1.0 more than 1 times") && Contains("tear"));
+    CHECK_THAT(
+        error_of("[nurbs]\ndegree_u = 1\ndegree_v = 1\nknots_u = [0, 0, 1, 1, 2, 2]\nknots_v = [0, 0, 1, 1]\n"
+                 "heights = [[0, 1, 2, 3], [0, 1, 2, 3]]\n"),
+        Contains("`knots_u` has the knot 1.0 more than 1 times") && Contains("tear"));
 }

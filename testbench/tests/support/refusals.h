@@ -1,0 +1,27 @@
+#pragma once
+#include <catch2/catch.hpp>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+namespace tessera::testing {
+
+/// What a user wrote, and all that the message must say; nothing: it is accepted.
+struct Refusal {
+    std::string input;
+    std::vector<std::string> says;
+};
+
+/// error_of(input): the message, empty where there is none.
+template <class ErrorOf>
+void expect_refusals(std::initializer_list<Refusal> rows, ErrorOf error_of) {
+    for (const Refusal& row : rows) {
+        const std::string error = error_of(row.input);
+        CAPTURE(row.input, error);
+        CHECK(error.empty() == row.says.empty());
+        for (const std::string& part : row.says)
+            CHECK_THAT(error, Catch::Contains(part));
+    }
+}
+
+}  // namespace tessera::testing
