@@ -27,7 +27,7 @@ Job benchmark_job() {
 }
 
 MachineSetup benchmark_setup() {
-    const Inputs inputs = load_inputs(benchmark_job(), {});
+    const Inputs inputs = load_inputs(benchmark_job());
     return make_setup(inputs.resolved.job, inputs.mesh, inputs.map);
 }
 

@@ -6,6 +6,7 @@
 #include <systemc>
 
 #include "testbench/benchmark/gouraud_error.h"
+#include "testbench/job/job_paths.h"
 #include "testbench/job/read_job.h"
 #include "testbench/job/validate_job.h"
 #include "testbench/machine/bare_recursion.h"
@@ -27,8 +28,8 @@ struct Row {
 
 class Study {
   public:
-    Study(const Job& job, const std::filesystem::path& data)
-        : mesh_(load_mesh(job, data)), map_(load_map(job, data)), job_(resolve_job(job, mesh_, map_).job) {
+    explicit Study(const Job& job)
+        : mesh_(load_mesh(job)), map_(load_map(job)), job_(resolve_job(job, mesh_, map_).job) {
         const MachineSetup setup = setup_of(true, job_.tests.normal_threshold);
         const auto& half = setup.registers.tests.half_vector;
         highlight_.half_vector =
@@ -111,7 +112,8 @@ Study make_study(int argc, char** argv) {
             apply_setting(job, argument);
     }
     validate(job);
-    return {job, data};
+    resolve_paths(job, data);
+    return Study(job);
 }
 
 }  // namespace

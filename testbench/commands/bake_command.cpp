@@ -24,22 +24,21 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The job whose map is to be baked: the base mesh's, or the default one on a plane of the surface's size.
-Job base_job(const BakeRequest& request, const Surface& surface) {
+Job base_job(const BakeRequest& request, const Surface& surface, const fs::path& data_folder) {
     Job job;
     if (request.mesh_job.empty()) {
         job.mesh.width = surface.high.x - surface.low.x;
         job.mesh.depth = surface.high.y - surface.low.y;
         return job;
     }
-    return load_job(request.mesh_job.string(), {});
+    return load_job(request.mesh_job.string(), {}, data_folder);
 }
 
-BakedMap bake(const BakeRequest& request, const Surface& surface, const Job& job,
-              const fs::path& data_folder) {
+BakedMap bake(const BakeRequest& request, const Surface& surface, const Job& job) {
     const auto* const quadric = std::get_if<QuadricSurface>(&surface.shape);
     if (quadric == nullptr || request.mesh_job.empty())
         return bake_heights(surface, request.width, request.height);
-    return bake_over_mesh(*quadric, load_mesh(job, data_folder), job.map, request.width, request.height);
+    return bake_over_mesh(*quadric, load_mesh(job), job.map, request.width, request.height);
 }
 
 /// The job must not be written over what it is made from.
@@ -87,7 +86,7 @@ std::string summary(const BakedMap& map, const EncodedMap& file) {
 
 ExitCode bake_command(const BakeRequest& request, const fs::path& data_folder) {
     const Surface surface = read_surface(request.surface);
-    Job job = base_job(request, surface);
+    Job job = base_job(request, surface, data_folder);
     const fs::path folder = request.output.has_parent_path() ? request.output.parent_path() : fs::path(".");
     check_output_folder(folder, "--output");
     const std::string name = request.output.stem().string();
@@ -96,18 +95,19 @@ ExitCode bake_command(const BakeRequest& request, const fs::path& data_folder) {
 
     Progress progress;
     progress.show("baking", 0);
-    const BakedMap map = bake(request, surface, job, data_folder);
+    const BakedMap map = bake(request, surface, job);
     const EncodedMap file = encode_height_map(map.width, map.height, map.values, request.format);
     progress.clear();
 
     job.map.source = MapSource::file;
     job.map.file = rebase_path(request.output.string(), "", job.folder);
+    job.map.path = request.output;
     job.map.fingerprint.clear();
     job.map.channel.clear();
     job.displacement = {file.scale, file.bias};
     job.output.folder = "runs/" + name;
     validate(job);
-    require_inputs_stay(job, data_folder);
+    require_inputs_stay(job);
     const std::string job_text = dump_short_job(
         job, folder,
         fmt::format("What `tessera bake` made of {}.", printable(request.surface.filename().string())));

@@ -16,8 +16,8 @@ ExitCode compare_run(const Command& command) {
     Progress progress;
     progress.show("reading the run", 0);
     const RecordedRun run = read_run(command.run_folder, command.data_folder);
-    const BaseMesh base = load_mesh(run.job, command.data_folder);
-    const HeightMap map = load_map(run.job, command.data_folder);
+    const BaseMesh base = load_mesh(run.job);
+    const HeightMap map = load_map(run.job);
     MeasureLimits limits;
     limits.progress = [&](double part) { progress.show("measuring distances", 0.1 + 0.9 * part); };
     const MeshError error = measure_error(base, map, DisplacementOf::from(run.job, map), run.mesh, limits);

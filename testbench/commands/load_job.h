@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -6,7 +7,9 @@
 
 namespace tessera {
 
-/// The job in a file (empty: the default job) with its --set settings, valid. Throws what reading and validating throw.
-Job load_job(const std::string& file, const std::vector<std::string>& settings);
+/// The job in a file (empty: the default job) with its --set settings, valid, its paths resolved. data_folder: what
+/// `data:` paths begin at. Throws what reading and validating throw.
+Job load_job(const std::string& file, const std::vector<std::string>& settings,
+             const std::filesystem::path& data_folder);
 
 }  // namespace tessera

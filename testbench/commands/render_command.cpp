@@ -107,8 +107,8 @@ bool asks_for(const RenderRequest& request, PictureView view) {
 
 /// The colours span what all but a hundredth of the surface keeps, or what was asked for: a few triangles on a step of
 /// the map, where errors are as large as the step, leave no colour for the rest.
-void add_errors(const RecordedRun& run, const fs::path& data_folder, RenderMesh& mesh, ErrorScale& scale) {
-    RunError error = measure_run_error(run, data_folder);
+void add_errors(const RecordedRun& run, RenderMesh& mesh, ErrorScale& scale) {
+    RunError error = measure_run_error(run);
     mesh.triangle_errors = std::move(error.triangles);
     scale.texel = error.texel;
     scale.beyond = largest_of(mesh.triangle_errors);
@@ -156,7 +156,7 @@ ExitCode render_command(const RenderRequest& asked, const fs::path& data_folder)
     Progress progress;
     if (asks_for(request, PictureView::error)) {
         progress.show("measuring", 0);
-        add_errors(run, data_folder, mesh, request.picture.errors);
+        add_errors(run, mesh, request.picture.errors);
     }
     progress.show("rendering", 0);
     const std::vector<Picture> pictures = draw(request, mesh, camera);

@@ -7,9 +7,9 @@
 
 namespace tessera {
 
-RunError measure_run_error(const RecordedRun& run, const std::filesystem::path& data_folder) {
-    const BaseMesh base = load_mesh(run.job, data_folder);
-    const HeightMap map = load_map(run.job, data_folder);
+RunError measure_run_error(const RecordedRun& run) {
+    const BaseMesh base = load_mesh(run.job);
+    const HeightMap map = load_map(run.job);
     const SurfaceError error = measure_surface_error(base, map, DisplacementOf::from(run.job, map), run.mesh,
                                                      Sampling::interpolated);
     RunError result;

@@ -1,5 +1,4 @@
 #pragma once
-#include <filesystem>
 #include <vector>
 
 #include "testbench/run_folder/read_run.h"
@@ -14,6 +13,6 @@ struct RunError {
 
 /// Reads the run's mesh and map anew and measures against the map read between its samples (Sampling::interpolated), as
 /// `tessera compare` does. About 5 s for 200,000 triangles. Throws what reading and measuring throw.
-RunError measure_run_error(const RecordedRun& run, const std::filesystem::path& data_folder);
+RunError measure_run_error(const RecordedRun& run);
 
 }  // namespace tessera

@@ -14,7 +14,6 @@
 #include "testbench/common/error.h"
 #include "testbench/job/dump_job.h"
 #include "testbench/job/frame_job.h"
-#include "testbench/job/job_paths.h"
 
 namespace tessera {
 
@@ -140,7 +139,7 @@ void require_run_folder(const Job& job) {
     }
 }
 
-void require_inputs_stay(const Job& job, const fs::path& data_folder) {
+void require_inputs_stay(const Job& job) {
     const fs::path output = real_place(job.output.folder);
     const auto refuse = [&](const char* what, const char* key, const std::string& file) {
         throw InputError(
@@ -148,32 +147,25 @@ void require_inputs_stay(const Job& job, const fs::path& data_folder) {
                         "choose another output.folder",
                         job.output.folder, what, key, file));
     };
-    const auto path_of = [&](const std::string& file) { return resolve_path(file, job.folder, data_folder); };
-    const auto taken = [&](const std::string& file) {
-        for (const fs::path& place : {place_of_name(path_of(file)), real_place(path_of(file))})
+    const auto taken = [&](const fs::path& file) {
+        for (const fs::path& place : {place_of_name(file), real_place(file)})
             if (is_of(place.parent_path(), output) && is_run_file(place.filename().string()))
                 return true;
         return false;
     };
-    if (job.mesh.source == MeshSource::run ? is_of(real_place(path_of(job.mesh.file)), output)
-                                           : reads_file(job.mesh.source) && taken(job.mesh.file))
+    if (job.mesh.source == MeshSource::run ? is_of(real_place(job.mesh.path), output)
+                                           : reads_file(job.mesh.source) && taken(job.mesh.path))
         refuse("base mesh", "mesh.file", job.mesh.file);
-    if (job.map.source == MapSource::file && taken(job.map.file))
+    if (job.map.source == MapSource::file && taken(job.map.path))
         refuse("map", "map.file", job.map.file);
 }
 
 void require_inputs_kept(const std::string& output, const std::vector<fs::path>& written,
-                         const std::string& job_file, const Job& job, const fs::path& data_folder) {
-    std::vector<fs::path> read;
-    if (!job_file.empty())
-        read.emplace_back(job_file);
-    if (reads_file(job.mesh.source))
-        read.push_back(resolve_path(job.mesh.file, job.folder, data_folder));
-    if (job.map.source == MapSource::file)
-        read.push_back(resolve_path(job.map.file, job.folder, data_folder));
+                         const std::string& job_file, const Job& job) {
     for (const fs::path& to : written)
-        for (const fs::path& from : read)
-            if (place_of_name(to) == place_of_name(from) || place_of_name(to) == real_place(from))
+        for (const fs::path& from : {fs::path(job_file), job.mesh.path, job.map.path})
+            if (!from.empty() &&
+                (place_of_name(to) == place_of_name(from) || place_of_name(to) == real_place(from)))
                 throw InputError(
                     fmt::format("--output {}: {} would overwrite {}, which is read; choose another name",
                                 output, to.string(), from.string()));

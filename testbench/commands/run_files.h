@@ -26,12 +26,11 @@ void require_run_folder(const Job& job);
 
 /// Throws InputError if this run would take away what it reads: the run of mesh.source = "run" lies in output.folder or
 /// is a frame in it, or a mesh or map file there has the name of one that a run leaves.
-void require_inputs_stay(const Job& job, const std::filesystem::path& data_folder);
+void require_inputs_stay(const Job& job);
 
 /// Throws InputError if one of the files that `--output` has written would take the place of one that the job is made
 /// from: the job file (if there is one), its mesh or its map.
 void require_inputs_kept(const std::string& output, const std::vector<std::filesystem::path>& written,
-                         const std::string& job_file, const Job& job,
-                         const std::filesystem::path& data_folder);
+                         const std::string& job_file, const Job& job);
 
 }  // namespace tessera

@@ -50,10 +50,10 @@ MachineSetup set_up(const Frame& frame, const BaseMesh& mesh, const HeightMap& m
 }
 
 /// All frames, refused together if one cannot be, with what the host sends for each.
-std::vector<Frame> plan_frames(const Job& asked, const fs::path& data_folder, ResolvedJob& resolved_job) {
+std::vector<Frame> plan_frames(const Job& asked, ResolvedJob& resolved_job) {
     Progress progress;
     progress.show("reading mesh and map", 0);
-    const auto [mesh, map, resolved] = load_inputs(asked, data_folder);
+    const auto [mesh, map, resolved] = load_inputs(asked);
     resolved_job = resolved;
     const Job& job = resolved_job.job;
     std::vector<Frame> frames;
@@ -132,9 +132,9 @@ void print_failure(const Frame& frame, const std::string& why) {
 
 }  // namespace
 
-ExitCode run_frames(const Job& asked, const fs::path& data_folder, const RunFrame& run) {
+ExitCode run_frames(const Job& asked, const RunFrame& run) {
     ResolvedJob resolved;
-    std::vector<Frame> frames = plan_frames(asked, data_folder, resolved);
+    std::vector<Frame> frames = plan_frames(asked, resolved);
     const Job& job = resolved.job;
     const fs::path folder = job.output.folder;
     std::string text = frames_heading();

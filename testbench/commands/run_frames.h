@@ -25,6 +25,6 @@ using RunFrame =
 ///
 /// A message names the frame that failed; its exit code is returned. A frame that a signal ends, ends this process by
 /// the same signal; one that this process is sent goes on to its frame's, which ends first.
-ExitCode run_frames(const Job& asked, const std::filesystem::path& data_folder, const RunFrame& run);
+ExitCode run_frames(const Job& asked, const RunFrame& run);
 
 }  // namespace tessera

@@ -46,8 +46,8 @@ struct Loaded {
 };
 
 /// What was mended in the job's mesh and map on the way in joins the setup's own remarks.
-Loaded load(const Job& asked, const std::filesystem::path& data_folder) {
-    Loaded loaded{load_inputs(asked, data_folder), {}};
+Loaded load(const Job& asked) {
+    Loaded loaded{load_inputs(asked), {}};
     const Inputs& inputs = loaded.inputs;
     loaded.setup = make_setup(inputs.resolved.job, inputs.mesh, inputs.map);
     std::vector<std::string> remarks;
@@ -200,7 +200,7 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
 
     Progress progress(name);
     progress.show("reading mesh and map", 0);
-    const Loaded loaded = load(asked, command.data_folder);
+    const Loaded loaded = load(asked);
     const Inputs& inputs = loaded.inputs;
     const MachineSetup& setup = loaded.setup;
     const Job& job = inputs.resolved.job;
@@ -313,7 +313,7 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
 }  // namespace
 
 ExitCode run_job(const Command& command) {
-    Job job = load_job(command.job_file, command.settings);
+    Job job = load_job(command.job_file, command.settings, command.data_folder);
     if (command.dump_config) {
         fmt::print("{}", dump_job(job));
         return ExitCode::fine;
@@ -323,12 +323,11 @@ ExitCode run_job(const Command& command) {
             fmt::format("{} chooses what to trace, and nothing is traced: add --vcd, --timeline or both",
                         command.trace_option));
     require_run_folder(job);
-    require_inputs_stay(job, command.data_folder);
-    record_fingerprints(job, command.data_folder);
+    require_inputs_stay(job);
+    record_fingerprints(job);
     if (job.frames.count > 1)
         return run_frames(
-            job, command.data_folder,
-            [&](const Job& frame, const std::string& name, const std::filesystem::path& replaced) {
+            job, [&](const Job& frame, const std::string& name, const std::filesystem::path& replaced) {
                 return run_once(frame, command, name, replaced).code;
             });
     const Ending ending = run_once(job, command, {}, job.output.folder);

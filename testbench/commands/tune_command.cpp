@@ -120,9 +120,9 @@ void choose_tests(const TuneOrder& order, TuneRequest& request) {
             "hardware.culling=none and set it in the tuned job");
 }
 
-TuneRequest request_of(const TuneOrder& order) {
+TuneRequest request_of(const TuneOrder& order, const fs::path& data_folder) {
     TuneRequest request;
-    request.job = load_job(order.job_file, order.settings);
+    request.job = load_job(order.job_file, order.settings, data_folder);
     request.threads = order.jobs;
     choose_tests(order, request);
     request.goal.triangles = order.triangles;
@@ -153,9 +153,9 @@ std::string own_run_folder(const fs::path& job_file) {
 }
 
 /// Nothing that is written may take the place of something read, of another file written, or of somebody's mesh.
-void check_places(const TuneOrder& order, const Job& job, const fs::path& data_folder,
-                  const std::vector<fs::path>& written, const fs::path& obj_file) {
-    require_inputs_kept(order.output, written, order.job_file, job, data_folder);
+void check_places(const TuneOrder& order, const Job& job, const std::vector<fs::path>& written,
+                  const fs::path& obj_file) {
+    require_inputs_kept(order.output, written, order.job_file, job);
     for (std::size_t k = 0; k < written.size(); ++k)
         for (std::size_t other = 0; other < k; ++other)
             if (place_of_name(written[k]) == place_of_name(written[other]))
@@ -170,7 +170,7 @@ void check_places(const TuneOrder& order, const Job& job, const fs::path& data_f
                         order.output, obj_file.string()));
     Job tuned = job;
     tuned.output.folder = own_run_folder(order.output);
-    require_inputs_stay(tuned, data_folder);
+    require_inputs_stay(tuned);
 }
 
 /// The job as it will be written: its lattice beside it, a run folder of its own.
@@ -185,7 +185,7 @@ Job finished_job(const TuneResult& result, const fs::path& job_file, const fs::p
 }  // namespace
 
 ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
-    TuneRequest request = request_of(order);
+    TuneRequest request = request_of(order, data_folder);
     const fs::path job_file = order.output;
     const auto beside = [&](const char* extension) {
         return fs::path(job_file).replace_extension(extension);
@@ -202,11 +202,11 @@ ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
     std::vector<fs::path> written{job_file, json_file, obj_file};
     if (!order.tried.empty())
         written.emplace_back(order.tried);
-    check_places(order, request.job, data_folder, written, obj_file);
+    check_places(order, request.job, written, obj_file);
 
     Progress progress;
     progress.show("reading mesh and map", 0);
-    const Inputs inputs = load_inputs(request.job, data_folder);
+    const Inputs inputs = load_inputs(request.job);
     const HeightMap& map = inputs.map;
     request.job = inputs.resolved.job;
     if (order.grids.empty())
@@ -222,13 +222,13 @@ ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
     for (int round = 0; round < most_rounds; ++round) {
         if (order.error > 0 && round == 0) {
             const Job job = job_with_base(request.job, request.bases.front());
-            unit = error_unit(job, base_mesh_of(job, request.bases.front(), map, data_folder), map);
+            unit = error_unit(job, base_mesh_of(job, request.bases.front(), map), map);
             bound = order.error * unit.model_units;
             request.goal.error = bound;
         }
-        result = tune(request, map, data_folder,
+        result = tune(request, map,
                       [&](const std::string& what, double part) { progress.show(what, 0.95 * part); });
-        const BaseMesh base = base_mesh_of(result.job, request.bases[result.base], map, data_folder);
+        const BaseMesh base = base_mesh_of(result.job, request.bases[result.base], map);
         unit = error_unit(result.job, base, map);
         const MachineSetup setup = make_setup(result.job, base, map);
         EmittedMesh mesh;
@@ -253,7 +253,7 @@ ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
     const Job job = finished_job(result, job_file, obj_file);
     Job functional = job;
     functional.mode = Mode::functional;
-    const BaseMesh base = base_mesh_of(job, request.bases[result.base], map, data_folder);
+    const BaseMesh base = base_mesh_of(job, request.bases[result.base], map);
     const MachineSetup setup = make_setup(functional, base, map);
     Simulation simulation(setup, static_cast<std::uint64_t>(job.limits.triangles));
     if (const std::string stuck = simulation.run(); !stuck.empty())

@@ -80,9 +80,9 @@ SweptQuantity swept_quantity(const Quantity& quantity, const WidthsOrder& order,
     return swept;
 }
 
-WidthRequest request_of(const WidthsOrder& order) {
+WidthRequest request_of(const WidthsOrder& order, const fs::path& data_folder) {
     WidthRequest request;
-    request.job = load_job(order.job_file, order.settings);
+    request.job = load_job(order.job_file, order.settings, data_folder);
     if (request.job.frames.count > 1)
         throw InputError(fmt::format(
             "frames.count = {}: widths are swept for one frame; use --set frames.count=1, and --set "
@@ -140,13 +140,13 @@ std::string all_refused(const WidthSweep& sweep) {
 }  // namespace
 
 ExitCode widths_command(const WidthsOrder& order, const fs::path& data_folder) {
-    WidthRequest request = request_of(order);
+    WidthRequest request = request_of(order, data_folder);
     const Output output = output_of(order);
-    require_inputs_kept(order.output, {output.csv, output.json}, order.job_file, request.job, data_folder);
+    require_inputs_kept(order.output, {output.csv, output.json}, order.job_file, request.job);
 
     Progress progress;
     progress.show("reading mesh and map", 0);
-    const auto [mesh, map, resolved] = load_inputs(request.job, data_folder);
+    const auto [mesh, map, resolved] = load_inputs(request.job);
     request.job = resolved.job;
     const WidthSweep sweep = sweep_widths(
         request, mesh, map, [&](const std::string& what, double part) { progress.show(what, part); });

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <string>
 
@@ -73,6 +74,8 @@ struct Job {
         double depth = 2;          // plane: size along y
         double radius = 1;         // cylinder, sphere
         double height = 2;         // cylinder
+
+        std::filesystem::path path;  // not a key: where `file` is (job_paths.h); empty: none is read
     } mesh;
 
     struct Map {
@@ -88,6 +91,8 @@ struct Job {
         MapRange range;
         Addressing address_u = Addressing::clamp;
         Addressing address_v = Addressing::clamp;
+
+        std::filesystem::path path;  // not a key, as above
     } map;
 
     struct Displacement {

@@ -26,10 +26,12 @@ std::filesystem::path canonical_folder(const std::filesystem::path& folder) {
     return failed ? absolute.lexically_normal() : canonical;
 }
 
-}  // namespace
-
+/// The path to open; empty for an empty text.
 std::filesystem::path resolve_path(const std::string& text, const std::filesystem::path& job_folder,
                                    const std::filesystem::path& data_folder) {
+    if (text.empty()) {
+        return {};
+    }
     if (!is_data_path(text)) {
         return job_folder / text;
     }
@@ -40,6 +42,13 @@ std::filesystem::path resolve_path(const std::string& text, const std::filesyste
             printable(text)));
     }
     return data_folder / inside;
+}
+
+}  // namespace
+
+void resolve_paths(Job& job, const std::filesystem::path& data_folder) {
+    job.mesh.path = resolve_path(job.mesh.file, job.folder, data_folder);
+    job.map.path = resolve_path(job.map.file, job.folder, data_folder);
 }
 
 std::string rebase_path(const std::string& text, const std::filesystem::path& from_folder,

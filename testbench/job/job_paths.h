@@ -8,21 +8,18 @@ namespace tessera {
 
 // Paths in a job
 //  * `data:NAME` is NAME inside the data folder, whoever asks. It may not be absolute or contain `..`.
-//  * A relative path of mesh.file or map.file is relative to the job file's folder (Job::folder). Job keeps
-//  the
-//    text as given; resolve_path makes the path to open.
-//  * --set comes from a command line: there it is relative to the current directory, and apply_setting
-//  rewrites
-//    it to be relative to Job::folder.
-//  * dump_job(job, run_folder) rewrites it to be relative to the run folder, so that the dumped job runs
-//  again
-//    from where it lies and two checkouts leave the same bytes.
+//  * A relative path of mesh.file or map.file is relative to the job file's folder (Job::folder). Job keeps the text as
+//    given, and resolve_paths() adds the path to open.
+//  * --set comes from a command line: there it is relative to the current directory, and apply_setting rewrites it to be
+//    relative to Job::folder.
+//  * dump_job(job, run_folder) rewrites it to be relative to the run folder, so that the dumped job runs again from where
+//    it lies and two checkouts leave the same bytes.
 //  * An absolute path stays as it is, everywhere.
 //  * output.folder is relative to the current directory, everywhere.
 
-/// The path to open. Throws InputError for a `data:` path that leaves the data folder.
-std::filesystem::path resolve_path(const std::string& text, const std::filesystem::path& job_folder,
-                                   const std::filesystem::path& data_folder);
+/// Sets mesh.path and map.path, the paths to open; empty where mesh.file or map.file is. To be called once, when a job is
+/// read and its --set settings are applied. Throws InputError for a `data:` path that leaves the data folder.
+void resolve_paths(Job& job, const std::filesystem::path& data_folder);
 
 /// The text that means from `to_folder` what `text` means from `from_folder`.
 std::string rebase_path(const std::string& text, const std::filesystem::path& from_folder,

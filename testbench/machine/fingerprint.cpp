@@ -7,7 +7,6 @@
 #include <fstream>
 
 #include "testbench/common/error.h"
-#include "testbench/job/job_paths.h"
 
 namespace tessera {
 
@@ -16,16 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// What is read: of a run's folder its mesh. Empty: the job reads none.
-fs::path mesh_file(const Job& job, const fs::path& data_folder) {
-    if (!reads_file(job.mesh.source))
-        return {};
-    const fs::path path = resolve_path(job.mesh.file, job.folder, data_folder);
-    return job.mesh.source == MeshSource::run ? path / "mesh.ply" : path;
-}
-
-fs::path map_file(const Job& job, const fs::path& data_folder) {
-    return job.map.source == MapSource::file ? resolve_path(job.map.file, job.folder, data_folder)
-                                             : fs::path{};
+fs::path mesh_file(const Job& job) {
+    return job.mesh.source == MeshSource::run ? job.mesh.path / "mesh.ply" : job.mesh.path;
 }
 
 void check(const std::string& table, const fs::path& file, const std::string& wanted) {
@@ -58,19 +49,21 @@ std::string fingerprint_of(const fs::path& file) {
     return in.bad() ? std::string{} : fmt::format("{:016x}", hash);
 }
 
-void record_fingerprints(Job& job, const fs::path& data_folder) {
-    if (const fs::path file = mesh_file(job, data_folder); job.mesh.fingerprint.empty() && !file.empty())
-        job.mesh.fingerprint = fingerprint_of(file);
-    if (const fs::path file = map_file(job, data_folder); job.map.fingerprint.empty() && !file.empty())
-        job.map.fingerprint = fingerprint_of(file);
+void record_fingerprints(Job& job) {
+    const auto record = [](const fs::path& file, std::string& fingerprint) {
+        if (fingerprint.empty() && !file.empty())
+            fingerprint = fingerprint_of(file);
+    };
+    record(mesh_file(job), job.mesh.fingerprint);
+    record(job.map.path, job.map.fingerprint);
 }
 
-void check_mesh_fingerprint(const Job& job, const fs::path& data_folder) {
-    check("mesh", mesh_file(job, data_folder), job.mesh.fingerprint);
+void check_mesh_fingerprint(const Job& job) {
+    check("mesh", mesh_file(job), job.mesh.fingerprint);
 }
 
-void check_map_fingerprint(const Job& job, const fs::path& data_folder) {
-    check("map", map_file(job, data_folder), job.map.fingerprint);
+void check_map_fingerprint(const Job& job) {
+    check("map", job.map.path, job.map.fingerprint);
 }
 
 }  // namespace tessera

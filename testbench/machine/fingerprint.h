@@ -11,10 +11,10 @@ std::string fingerprint_of(const std::filesystem::path& file);
 
 /// Fills in mesh.fingerprint and map.fingerprint where a job reads a file and does not say which: what it is run with,
 /// so that its results are never set beside another file's.
-void record_fingerprints(Job& job, const std::filesystem::path& data_folder);
+void record_fingerprints(Job& job);
 
 /// Throws InputError if a file of the job is not the one its fingerprint stands for.
-void check_mesh_fingerprint(const Job& job, const std::filesystem::path& data_folder);
-void check_map_fingerprint(const Job& job, const std::filesystem::path& data_folder);
+void check_mesh_fingerprint(const Job& job);
+void check_map_fingerprint(const Job& job);
 
 }  // namespace tessera

@@ -4,23 +4,19 @@
 #include "testbench/input/map/map_displacement.h"
 #include "testbench/input/map/read_height_map.h"
 #include "testbench/input/mesh/make_base_mesh.h"
-#include "testbench/job/job_paths.h"
 #include "testbench/job/validate_job.h"
 #include "testbench/machine/fingerprint.h"
 
 namespace tessera {
 
-BaseMesh load_mesh(const Job& job, const std::filesystem::path& data_folder) {
-    check_mesh_fingerprint(job, data_folder);
-    std::string file;
-    if (reads_file(job.mesh.source))
-        file = resolve_path(job.mesh.file, job.folder, data_folder).string();
-    return make_base_mesh(job.mesh, file);
+BaseMesh load_mesh(const Job& job) {
+    check_mesh_fingerprint(job);
+    return make_base_mesh(job.mesh, job.mesh.path.string());
 }
 
 namespace {
 
-HeightMap make_map(const Job& job, const std::filesystem::path& data_folder) {
+HeightMap make_map(const Job& job) {
     const Job::Map& map = job.map;
     switch (map.source) {
         case MapSource::half_donut:
@@ -36,20 +32,20 @@ HeightMap make_map(const Job& job, const std::filesystem::path& data_folder) {
         case MapSource::file:
             break;
     }
-    return read_height_map(resolve_path(map.file, job.folder, data_folder), map.channel);
+    return read_height_map(map.path, map.channel);
 }
 
 }  // namespace
 
-HeightMap load_map(const Job& job, const std::filesystem::path& data_folder) {
-    check_map_fingerprint(job, data_folder);
-    HeightMap map = make_map(job, data_folder);
+HeightMap load_map(const Job& job) {
+    check_map_fingerprint(job);
+    HeightMap map = make_map(job);
     span_values(map, job.map.range);
     return map;
 }
 
-Inputs load_inputs(const Job& job, const std::filesystem::path& data_folder) {
-    Inputs inputs{load_mesh(job, data_folder), load_map(job, data_folder), {}};
+Inputs load_inputs(const Job& job) {
+    Inputs inputs{load_mesh(job), load_map(job), {}};
     inputs.resolved = resolve_job(job, inputs.mesh, inputs.map);
     validate(inputs.resolved.job);
     return inputs;

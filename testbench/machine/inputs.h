@@ -1,6 +1,4 @@
 #pragma once
-#include <filesystem>
-
 #include "testbench/input/map/height_map.h"
 #include "testbench/input/mesh/base_mesh.h"
 #include "testbench/job/job.h"
@@ -8,10 +6,10 @@
 
 namespace tessera {
 
-/// Mesh and map of a job, built or read. data_folder: what `data:` paths begin at.
+/// Mesh and map of a job, built or read from where its paths (job_paths.h) say.
 /// Throws InputError, ResourceError as the readers do, and InputError on a file of another fingerprint than the job's.
-BaseMesh load_mesh(const Job& job, const std::filesystem::path& data_folder);
-HeightMap load_map(const Job& job, const std::filesystem::path& data_folder);
+BaseMesh load_mesh(const Job& job);
+HeightMap load_map(const Job& job);
 
 /// Both, and the job with what it leaves to the program found from them.
 struct Inputs {
@@ -19,6 +17,6 @@ struct Inputs {
     HeightMap map;
     ResolvedJob resolved;
 };
-Inputs load_inputs(const Job& job, const std::filesystem::path& data_folder);
+Inputs load_inputs(const Job& job);
 
 }  // namespace tessera

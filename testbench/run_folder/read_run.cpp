@@ -20,9 +20,8 @@ bool is_there(const fs::path& path) {
     return fs::exists(path, ignored);
 }
 
-void find_input(const char* key, const std::string& text, const Job& job, const fs::path& data_folder) {
-    const fs::path file = resolve_path(text, job.folder, data_folder);
-    if (is_there(file))
+void find_input(const char* key, const std::string& text, const fs::path& file, const Job& job) {
+    if (file.empty() || is_there(file))
         return;
     const bool in_data = text.rfind("data:", 0) == 0;
     throw InputError(fmt::format(
@@ -95,10 +94,9 @@ RecordedRun read_run(const fs::path& folder, const fs::path& data_folder) {
     RecordedRun run;
     run.folder = folder;
     run.job = read_run_job(folder);
-    if (!run.job.mesh.file.empty())
-        find_input("mesh.file", run.job.mesh.file, run.job, data_folder);
-    if (!run.job.map.file.empty())
-        find_input("map.file", run.job.map.file, run.job, data_folder);
+    resolve_paths(run.job, data_folder);
+    find_input("mesh.file", run.job.mesh.file, run.job.mesh.path, run.job);
+    find_input("map.file", run.job.map.file, run.job.map.path, run.job);
     run.mesh = read_mesh(folder, run.job);
     require_numbers(folder, run.job);
     return run;

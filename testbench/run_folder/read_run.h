@@ -9,7 +9,7 @@ namespace tessera {
 /// A run as it lies in its folder.
 struct RecordedRun {
     std::filesystem::path folder;
-    Job job;  ///< the effective job; its paths are relative to `folder`, as load_mesh and load_map take them
+    Job job;            ///< the effective job; its paths resolved, unless read for the mesh alone
     RecordedMesh mesh;  ///< what it emitted, but for culled triangles
 };
 

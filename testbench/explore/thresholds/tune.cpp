@@ -31,10 +31,9 @@ struct Ground {
     TexelError errors;
     RefinementForest forest;
 
-    Ground(const TuneRequest& request, const BaseChoice& base, const HeightMap& map,
-           const std::filesystem::path& data_folder)
+    Ground(const TuneRequest& request, const BaseChoice& base, const HeightMap& map)
         : job(job_with_base(request.job, base)),
-          setup(make_setup(job, base_mesh_of(job, base, map, data_folder), map)),
+          setup(make_setup(job, base_mesh_of(job, base, map), map)),
           errors(setup, map, DisplacementOf::from(job, map)),
           forest(setup, &errors) {}
 };
@@ -154,20 +153,20 @@ Job job_with_base(const Job& job, const BaseChoice& base) {
     const bool lattice = base.kind == BaseChoice::Kind::lattice;
     result.mesh.source = lattice ? MeshSource::file : MeshSource::plane;
     result.mesh.file.clear();
+    result.mesh.path.clear();
     result.mesh.fingerprint.clear();
     result.mesh.columns = lattice ? 0 : base.columns;
     result.mesh.rows = lattice ? 0 : base.rows;
     return result;
 }
 
-BaseMesh base_mesh_of(const Job& job, const BaseChoice& base, const HeightMap& map,
-                      const std::filesystem::path& data_folder) {
+BaseMesh base_mesh_of(const Job& job, const BaseChoice& base, const HeightMap& map) {
     if (base.kind == BaseChoice::Kind::lattice)
         return parse_obj(lattice_obj(base, job.mesh, map.width, map.height), "lattice");
-    return load_mesh(job, data_folder);
+    return load_mesh(job);
 }
 
-TuneResult tune(const TuneRequest& request, const HeightMap& map, const std::filesystem::path& data_folder,
+TuneResult tune(const TuneRequest& request, const HeightMap& map,
                 const std::function<void(const std::string&, double)>& on_progress) {
     const TuneGoal& goal = request.goal;
     const std::size_t bases = request.bases.size();
@@ -175,7 +174,7 @@ TuneResult tune(const TuneRequest& request, const HeightMap& map, const std::fil
     SharedProgress exploring(bases, on_progress);
     on_threads(bases, request.threads, [&](std::size_t k) {
         Explored& e = explored[k];
-        Ground ground(request, request.bases[k], map, data_folder);
+        Ground ground(request, request.bases[k], map);
         e.base_triangles = ground.setup.base_triangles.size();
         e.too_large = goal.triangles > 0 && e.base_triangles > goal.triangles;
         if (e.too_large)
@@ -201,8 +200,7 @@ TuneResult tune(const TuneRequest& request, const HeightMap& map, const std::fil
         if (goal.triangles > 0)
             refuse_budget(request, explored);
         const Job job = job_with_base(request.job, request.bases.front());
-        const ErrorUnit unit =
-            error_unit(job, base_mesh_of(job, request.bases.front(), map, data_folder), map);
+        const ErrorUnit unit = error_unit(job, base_mesh_of(job, request.bases.front(), map), map);
         refuse_error(request, explored, unit.model_units, unit.map_units ? "map units" : "model units");
     }
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -212,7 +210,7 @@ TuneResult tune(const TuneRequest& request, const HeightMap& map, const std::fil
     SharedProgress refining(order.size(), on_progress);
     std::vector<ThresholdSearch::Found> refined(order.size());
     on_threads(order.size(), request.threads, [&](std::size_t k) {
-        Ground ground(request, request.bases[order[k]], map, data_folder);
+        Ground ground(request, request.bases[order[k]], map);
         ThresholdSearch search(
             ground.forest, ground.setup, ground.job, goal, request.space, [&](double done) {
                 refining.set(k, done, fmt::format("refining the best {}", order.size()), 0.5, 1);

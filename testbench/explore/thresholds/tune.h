@@ -1,6 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -40,13 +39,12 @@ struct TuneResult {
 Job job_with_base(const Job& job, const BaseChoice& base);
 
 /// Its base mesh, exactly as the job will read it.
-BaseMesh base_mesh_of(const Job& job, const BaseChoice& base, const HeightMap& map,
-                      const std::filesystem::path& data_folder);
+BaseMesh base_mesh_of(const Job& job, const BaseChoice& base, const HeightMap& map);
 
 /// Finds the best thresholds over all base meshes: explore() on each, refine() on the best three. The result does not
 /// depend on the number of threads. on_progress(what, 0..1) is called from one thread at a time. Throws InputError if
 /// the goal cannot be met, saying what can be had, and what make_setup() throws.
-TuneResult tune(const TuneRequest& request, const HeightMap& map, const std::filesystem::path& data_folder,
+TuneResult tune(const TuneRequest& request, const HeightMap& map,
                 const std::function<void(const std::string&, double)>& on_progress);
 
 }  // namespace tessera

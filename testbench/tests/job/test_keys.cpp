@@ -355,13 +355,24 @@ TEST_CASE("settings of the command line") {
 }
 
 TEST_CASE("paths") {
-    CHECK(resolve_path("a/b.obj", "jobs", "/data") == fs::path("jobs/a/b.obj"));
-    CHECK(resolve_path("/a/b.obj", "jobs", "/data") == fs::path("/a/b.obj"));
-    CHECK(resolve_path("data:a/b.obj", "jobs", "/data") == fs::path("/data/a/b.obj"));
-    CHECK(resolve_path("b.obj", "", "/data") == fs::path("b.obj"));
+    Job job;
+    job.folder = "jobs";
+    const auto resolve = [&](const std::string& mesh, const std::string& map) {
+        job.mesh.file = mesh;
+        job.map.file = map;
+        resolve_paths(job, "/data");
+        return std::pair(job.mesh.path, job.map.path);
+    };
+    using Paths = std::pair<fs::path, fs::path>;
+    CHECK(resolve("a/b.obj", "/a/b.png") == Paths("jobs/a/b.obj", "/a/b.png"));
+    CHECK(resolve("data:a/b.obj", "data:b.png") == Paths("/data/a/b.obj", "/data/b.png"));
+    CHECK(resolve("", "") == Paths("", ""));
     for (const std::string text : {"data:", "data:/etc/passwd", "data:../x", "data:a/../../x"}) {
-        CHECK_THROWS_AS(resolve_path(text, "jobs", "/data"), InputError);
+        CHECK_THROWS_AS(resolve(text, ""), InputError);
+        CHECK_THROWS_AS(resolve("", text), InputError);
     }
+    job.folder = "";
+    CHECK(resolve("b.obj", "") == Paths("b.obj", ""));
     CHECK(rebase_path("a/b.obj", "jobs", "runs/one") == "../../jobs/a/b.obj");
     CHECK(rebase_path("../b.obj", "jobs", "runs/one") == "../../b.obj");
     CHECK(rebase_path("data:b.obj", "jobs", "runs/one") == "data:b.obj");
@@ -378,16 +389,20 @@ TEST_CASE("a job dumped into a run folder runs again from there") {
     const fs::path file = root.write("jobs/head.toml",
                                      "mesh.source = \"file\"\nmesh.file = \"meshes/head.obj\"\n"
                                      "map.source = \"file\"\nmap.file = \"data:head.exr\"\n");
+    const auto mesh_path = [](Job of) {
+        resolve_paths(of, "data");
+        return of.mesh.path;
+    };
     const Job job = read_job(file);
     CHECK(job.mesh.file == "meshes/head.obj");
-    CHECK(fs::exists(resolve_path(job.mesh.file, job.folder, "data")));
+    CHECK(fs::exists(mesh_path(job)));
     CHECK_THAT(dump_job(job), Contains("file = \"meshes/head.obj\""));
 
     const std::string dump = dump_job(job, root.path() / "runs/one");
     CHECK_THAT(dump,
                Contains("file = \"../../jobs/meshes/head.obj\"") && Contains("file = \"data:head.exr\""));
     const Job again = read_job(root.write("runs/one/job.toml", dump));
-    CHECK(fs::exists(resolve_path(again.mesh.file, again.folder, "data")));
+    CHECK(fs::exists(mesh_path(again)));
     CHECK(dump_job(again, root.path() / "runs/one") == dump);
     CHECK_THAT(dump_job(again, root.path() / "runs/two/deep"), Contains("\"../../../jobs/meshes/head.obj\""));
 
@@ -395,13 +410,12 @@ TEST_CASE("a job dumped into a run folder runs again from there") {
     fs::create_directories(root.path() / "disk/a/b/c");
     fs::create_directory_symlink(root.path() / "disk/a/b/c", root.path() / "runs/link");
     const Job linked = read_job(root.write("runs/link/job.toml", dump_job(job, root.path() / "runs/link")));
-    CHECK(fs::exists(resolve_path(linked.mesh.file, linked.folder, "data")));
+    CHECK(fs::exists(mesh_path(linked)));
 
     // --set comes from the current directory.
     Job set = job;
     apply_setting(set, "mesh.file=here.obj");
-    CHECK(fs::weakly_canonical(resolve_path(set.mesh.file, set.folder, "data")) ==
-          fs::weakly_canonical(fs::current_path() / "here.obj"));
+    CHECK(fs::weakly_canonical(mesh_path(set)) == fs::weakly_canonical(fs::current_path() / "here.obj"));
     apply_setting(set, "output.folder=runs/x");
     CHECK(set.output.folder == "runs/x");
     apply_setting(set, "mesh.file=");

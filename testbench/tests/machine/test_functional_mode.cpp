@@ -22,7 +22,7 @@ namespace {
 /// In functional mode; test_timed_*.cpp have the other.
 MachineSetup setup_of(Job job) {
     job.mode = Mode::functional;
-    const Inputs inputs = load_inputs(job, {});
+    const Inputs inputs = load_inputs(job);
     return make_setup(inputs.resolved.job, inputs.mesh, inputs.map);
 }
 

@@ -120,7 +120,7 @@ void check(const WidthRun& run) {
 /// Both ways of the machine, and the datapath alone.
 void expect_one_mesh(const Job& job) {
     validate(job);
-    const auto [mesh, map, resolved] = load_inputs(job, {});
+    const auto [mesh, map, resolved] = load_inputs(job);
     const MachineSetup setup = make_setup(resolved.job, mesh, map);
     CHECK(setup.input_saturations.position == 0);
     CHECK(setup.input_saturations.normal == 0);
@@ -179,8 +179,8 @@ TEST_CASE("formats: fractions only, a plane, timed") {
 
 TEST_CASE("formats: what an intermediate of the datapath cannot hold is refused with its name") {
     Job job;
-    const BaseMesh mesh = load_mesh(job, {});
-    const HeightMap map = load_map(job, {});
+    const BaseMesh mesh = load_mesh(job);
+    const HeightMap map = load_map(job);
     job = resolve_job(job, mesh, map).job;
     job.formats.normal_bits = 40;  // beyond the key's range, which validate() would refuse
     job.formats.normal_fraction = 26;
@@ -197,13 +197,13 @@ TEST_CASE("formats: what an intermediate of the datapath cannot hold is refused 
 TEST_CASE("formats: a map larger than its registers hold is refused, even where no texture coordinate is") {
     Job job;
     job.formats.texture_integer = 5;
-    BaseMesh mesh = load_mesh(job, {});
+    BaseMesh mesh = load_mesh(job);
     for (BaseVertex& vertex : mesh.vertices)
         vertex.texture *= 0.25;
     const auto refused = [&](std::int64_t width, std::int64_t height, const std::string& side) {
         job.map.width = width;
         job.map.height = height;
-        const HeightMap map = load_map(job, {});
+        const HeightMap map = load_map(job);
         CHECK_THROWS_WITH(make_setup(resolve_job(job, mesh, map).job, mesh, map),
                           "the register map." + side +
                               " has 6 bits and cannot hold 64: use a smaller map or raise "
@@ -239,7 +239,7 @@ TEST_CASE("formats: any that a job may have, on any small job: within the bounds
         INFO("case " << k);
         try {
             validate(job);
-            const auto [mesh, map, resolved] = load_inputs(job, {});
+            const auto [mesh, map, resolved] = load_inputs(job);
             const MachineSetup setup = make_setup(resolved.job, mesh, map);
             check(run_widths(setup, ExactModel(resolved.job, mesh, map), 1'000'000));
             ++ran;

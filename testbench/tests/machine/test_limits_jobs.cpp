@@ -69,7 +69,7 @@ std::vector<Extreme> extremes_of(const Key& key) {
 std::string outcome_of(const Job& job) {
     try {
         validate(job);
-        const auto [mesh, map, resolved] = load_inputs(job, {});
+        const auto [mesh, map, resolved] = load_inputs(job);
         const MachineSetup setup = make_setup(resolved.job, mesh, map);
         const WidthRun run = run_widths(setup, ExactModel(resolved.job, mesh, map), 300'000);
         INFO(run.conformance.first_mismatch);

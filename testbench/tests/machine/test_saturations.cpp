@@ -287,9 +287,9 @@ TEST_CASE("saturations: each says what to widen, what it means, or is remarked o
 TEST_CASE(
     "saturations: texture coordinates beyond a map that clamps are counted, and the setup remarks on them") {
     const Job job = small_job();
-    BaseMesh mesh = load_mesh(job, {});
+    BaseMesh mesh = load_mesh(job);
     mesh.vertices.front().texture.x = -0.25;
-    const HeightMap map = load_map(job, {});
+    const HeightMap map = load_map(job);
     const MachineSetup setup = make_setup(resolve_job(job, mesh, map).job, mesh, map);
     const auto figures = saturation_figures(setup, {});
     CHECK(saturations_text(figures) == "input texture 1");

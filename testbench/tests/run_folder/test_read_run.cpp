@@ -229,7 +229,7 @@ TEST_CASE("a run's folder is read back, with paths that hold from there") {
     write_ply(run / "mesh.ply", small_mesh(), units());
     const RecordedRun result = read();
     CHECK(result.mesh.triangles.size() == 2);
-    CHECK(fs::equivalent(fs::path(result.job.folder) / result.job.map.file, here.path() / "map.pgm"));
+    CHECK(fs::equivalent(result.job.map.path, here.path() / "map.pgm"));
     CHECK(result.folder == run);
     write_file(run / "job.toml", unresolved);
     CHECK_THROWS_WITH(read_run(run, {}), Contains("displacement.scale = \"auto\", which no run writes"));
@@ -239,6 +239,7 @@ TEST_CASE("a run's folder is read back, with paths that hold from there") {
     job.map.file = "data:map.pgm";
     write_file(run / "job.toml", dump_job(job, run));
     CHECK(read().job.map.file == "data:map.pgm");
+    CHECK(read().job.map.path == here.path() / "data/map.pgm");
     CHECK_THROWS_WITH(read_run(run, here.path()), Contains("--data FOLDER"));
     job.output.ply = false;
     write_file(run / "job.toml", dump_job(job, run));

@@ -12,7 +12,7 @@
 namespace tessera::testing {
 
 inline MachineSetup setup_of(const Job& job) {
-    const Inputs inputs = load_inputs(job, {});
+    const Inputs inputs = load_inputs(job);
     return make_setup(inputs.resolved.job, inputs.mesh, inputs.map);
 }
 

@@ -22,7 +22,7 @@ namespace {
 
 /// A job's run as the program makes it, in functional mode, up to the set-up check.
 struct CheckedRun {
-    explicit CheckedRun(const Job& job) : CheckedRun(job, load_mesh(job, {}), load_map(job, {})) {}
+    explicit CheckedRun(const Job& job) : CheckedRun(job, load_mesh(job), load_map(job)) {}
     CheckedRun(const Job& job, const BaseMesh& its_mesh, const HeightMap& its_map)
         : mesh(its_mesh),
           map(its_map),
@@ -360,7 +360,7 @@ TEST_CASE("a base triangle that collapses in the formats is left out, any other 
     job.formats.position_fraction = 4;
     job.formats.texture_fraction = 0;
     job.tests.generation_limit = 1;
-    BaseMesh mesh = load_mesh(job, {});
+    BaseMesh mesh = load_mesh(job);
     // A sliver, much less than an LSB wide, on the third triangle's edge.
     const auto corners = mesh.triangles[2];
     BaseVertex moved = mesh.vertices[corners[0]];
@@ -369,7 +369,7 @@ TEST_CASE("a base triangle that collapses in the formats is left out, any other 
     mesh.vertices.push_back(moved);
     const auto last = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
     mesh.triangles.insert(mesh.triangles.begin() + 3, {corners[0], last, corners[1]});
-    CheckedRun run{job, mesh, load_map(job, {})};
+    CheckedRun run{job, mesh, load_map(job)};
     const SetupResult result = run.check();
     INFO(result.first_wrong);
     CHECK(result.passed());

@@ -27,7 +27,7 @@ Job small_job() {
     job.map.height = 40;
     job.displacement.scale = 0.25;
     job.tests.view = false;
-    return load_inputs(job, {}).resolved.job;
+    return load_inputs(job).resolved.job;
 }
 
 TuneRequest request_for(const Job& job) {
@@ -39,7 +39,7 @@ TuneRequest request_for(const Job& job) {
 }
 
 TuneResult tuned(const TuneRequest& request) {
-    return tune(request, load_map(request.job, {}), {}, [](const std::string&, double) {});
+    return tune(request, load_map(request.job), [](const std::string&, double) {});
 }
 
 /// A job's tests and what measures them.
@@ -52,8 +52,8 @@ struct Ground {
     RefinementForest forest;
 
     explicit Ground(const Job& the_job)
-        : map(load_map(the_job, {})),
-          base(load_mesh(the_job, {})),
+        : map(load_map(the_job)),
+          base(load_mesh(the_job)),
           job(resolve_job(the_job, base, map).job),
           setup(make_setup(job, base, map)),
           errors(setup, map, DisplacementOf::from(job, map)),
@@ -296,7 +296,7 @@ TEST_CASE("a View Test that is searched is used, and alone too") {
 TEST_CASE("the result does not depend on the number of threads") {
     TuneRequest request = request_for(small_job());
     request.goal.triangles = 500;
-    const HeightMap map = load_map(request.job, {});
+    const HeightMap map = load_map(request.job);
     for (const BaseChoice& base : usual_bases(request.job.mesh, map.width, map.height, 250))
         request.bases.push_back(base);
     REQUIRE(request.bases.size() > 4);

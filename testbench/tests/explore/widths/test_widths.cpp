@@ -37,7 +37,7 @@ Job sphere_job() {
 
 WidthSweep sweep(const Job& job, const std::vector<SweptQuantity>& swept, unsigned threads = 1,
                  std::optional<double> flips = {}, std::optional<double> error = {}) {
-    const auto [mesh, map, resolved] = load_inputs(job, {});
+    const auto [mesh, map, resolved] = load_inputs(job);
     const WidthRequest request{resolved.job, swept, threads, flips, error};
     return sweep_widths(request, mesh, map, [](const std::string&, double) {});
 }
@@ -47,7 +47,7 @@ WidthTable table_of(const Job& job, const char* quantity, std::vector<std::int64
 }
 
 WidthRun run_of(const Job& job) {
-    const auto [mesh, map, resolved] = load_inputs(job, {});
+    const auto [mesh, map, resolved] = load_inputs(job);
     return run_widths(make_setup(resolved.job, mesh, map), ExactModel(resolved.job, mesh, map), 1'000'000);
 }
 
@@ -292,7 +292,7 @@ TEST_CASE("widths: base triangles that collapse in a narrow format are left out 
     job.formats.texture_fraction = 0;
     const MachineSetup setup = setup_of(job);
     REQUIRE(setup.base_dropped > 0);
-    const auto [mesh, map, resolved] = load_inputs(job, {});
+    const auto [mesh, map, resolved] = load_inputs(job);
     const ExactModel exact(resolved.job, mesh, map);
     const auto corners = exact.corners_of(setup);
     REQUIRE(corners.size() == setup.base_triangles.size());

@@ -44,8 +44,7 @@ TEST_CASE("random case: from its files it is the same as from memory") {
         const RandomCase made = make_random_case(seed);
         made.write(here.path(), Mode::functional);
         const Job job = read_job((here.path() / "job.toml").string());
-        const MachineSetup written = make_setup(job, load_mesh(job, {}), load_map(job, {})),
-                           kept = made.setup();
+        const MachineSetup written = make_setup(job, load_mesh(job), load_map(job)), kept = made.setup();
         INFO("seed " << seed);
         CHECK(job.mode == Mode::functional);
         CHECK(written.map.codes == kept.map.codes);
