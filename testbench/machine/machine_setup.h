@@ -10,20 +10,11 @@
 #include "testbench/input/mesh/base_mesh.h"
 #include "testbench/job/job.h"
 #include "testbench/machine/quantised_map.h"
+#include "testbench/machine/setup/model_scale.h"
 
 namespace tessera {
 
-/// From the model's units to the machine's world and back: world = scale * (model - centre), scale a power of two, so
-/// that undoing it costs no precision.
-struct ModelScale {
-    double scale = 1;
-    glm::dvec3 centre{0};
-
-    glm::dvec3 to_world(const glm::dvec3& model) const { return (model - centre) * scale; }
-    glm::dvec3 to_model(const glm::dvec3& world) const { return world / scale + centre; }
-};
-
-/// What of the host's own values did not fit its format and was set to the nearest value that does. fit()
+/// What of the host's own values did not fit its format and was set to the nearest value that does. fit_model()
 /// leaves room, so that nothing should.
 struct InputSaturations {
     std::uint64_t position = 0;   ///< components of base vertices
@@ -56,8 +47,5 @@ struct MachineSetup {
 /// rectangle, an eye too far away, a texture coordinate beyond the format, a threshold beyond its register or
 /// below its step), with value, limit and what to do.
 MachineSetup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& map);
-
-/// The tests' part of it alone: the registers a job's [tests] are rounded to. InputError as above.
-datapath::TestParameters make_tests(const Job& job, const datapath::Formats& formats);
 
 }  // namespace tessera

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "testbench/explore/thresholds/threshold_level.h"
+#include "testbench/machine/setup/thresholds.h"
 
 namespace tessera {
 
@@ -96,9 +97,7 @@ Job::Tests ThresholdSearch::tests_at(const Shape& shape, const Place& place) con
 }
 
 datapath::TestParameters ThresholdSearch::registers_of(const Job::Tests& tests) const {
-    Job job;
-    job.tests = tests;
-    return make_tests(job, setup_.registers.formats);
+    return make_tests(tests, setup_.registers.formats);
 }
 
 datapath::TestParameters ThresholdSearch::finest() const {

@@ -14,6 +14,7 @@
 #include "testbench/input/mesh/obj_reader.h"
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/inputs.h"
+#include "testbench/machine/setup/thresholds.h"
 
 using namespace tessera;
 using Catch::Contains;
@@ -60,7 +61,7 @@ struct Ground {
           forest(setup, &errors) {}
 
     Outcome measure(const Job& of) {
-        return forest.measure(make_tests(of, setup.registers.formats), setup.registers.triangulation,
+        return forest.measure(make_tests(of.tests, setup.registers.formats), setup.registers.triangulation,
                               1000000);
     }
 };

@@ -1,0 +1,44 @@
+#include "testbench/machine/setup/formats.h"
+
+#include <fmt/core.h>
+
+#include "modules/datapath/all_intermediates.h"
+#include "testbench/common/error.h"
+
+namespace tessera {
+
+using datapath::Format;
+
+namespace {
+
+/// That the model's integers hold every intermediate: so in all formats within the ranges of their keys.
+void check_intermediates(const datapath::Formats& formats) {
+    datapath::visit_intermediates(formats, [](const char* function, const auto& widths) {
+        if (const char* const name = datapath::first_too_wide(widths))
+            throw InputError(
+                fmt::format("[formats]: {} in {} (modules/datapath) is wider than the model's integers: "
+                            "narrow the formats to the ranges of their keys",
+                            name, function));
+    });
+}
+
+}  // namespace
+
+datapath::Formats make_formats(const Job::Formats& job) {
+    const auto bits = [](std::int64_t value) { return static_cast<int>(value); };
+    datapath::Formats formats;
+    formats.position = Format::make_signed(bits(job.position_bits), bits(job.position_fraction));
+    formats.view_distance = formats.position;
+    formats.normal = Format::make_signed(bits(job.normal_bits), bits(job.normal_fraction));
+    formats.texture = Format::make_unsigned(bits(job.texture_integer + job.texture_fraction) + 1,
+                                            bits(job.texture_fraction));
+    formats.displacement = Format::make_unsigned(bits(job.displacement_bits), bits(job.displacement_bits));
+    formats.summed_height =
+        Format::make_unsigned(bits(job.summed_height_bits == 0 ? 32 : job.summed_height_bits), 0);
+    formats.screen = Format::make_signed(bits(job.screen_bits), bits(job.screen_fraction));
+    formats.generation_bits = bits(job.generation_bits);
+    check_intermediates(formats);
+    return formats;
+}
+
+}  // namespace tessera

@@ -1,0 +1,29 @@
+#pragma once
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "modules/datapath/parameters.h"
+#include "testbench/job/job.h"
+#include "testbench/machine/setup/model_scale.h"
+
+namespace tessera {
+
+/// View space's axes in world space, unit length: x right, y up, z towards the viewer.
+struct View {
+    glm::dvec3 right, up, backward;
+};
+
+View make_view(const Job::Camera& camera);
+
+/// In: a camera in model units, resolved. Out: Transform's registers: world to pixels (x right, y up, (0, 0) the
+/// viewport's lower left corner), the near plane, and the rotation of normals to view space; saturated entries of the
+/// rotation are counted. Throws InputError if the eye is too far from the mesh's centre for Transform's sums.
+datapath::TransformParameters make_transform(const Job::Camera& camera, const ModelScale& model_scale,
+                                             const datapath::Formats& formats, std::uint64_t& saturated);
+
+/// The format of distances along the view axis: as wide as a position; the point moved up until the distance of the
+/// farthest corner of the position's range fits.
+datapath::Format view_distance_format(const datapath::TransformParameters& transform,
+                                      const datapath::Format& position);
+
+}  // namespace tessera
