@@ -74,60 +74,34 @@ std::vector<Frame> plan_frames(const Job& asked, ResolvedJob& resolved_job) {
     return frames;
 }
 
-/// How the process of a frame ended. In that process itself: what it is to return.
-struct End {
-    bool in_frame = false;
-    ExitCode code = ExitCode::fine;
-    int signal = 0;  ///< if one ended it
-};
-
-End run_in_process(const Frame& frame, const RunFrame& run, const fs::path& replaced) {
+/// A process for a frame, asked to end when this one has; 0 in it.
+pid_t fork_frame(const Frame& frame) {
     std::fflush(nullptr);  // what waits in a buffer would be printed twice
     const pid_t parent = ::getpid();
-    pid_t child = -1;
-    std::optional<Interruption::Child> looked_after;
-    {
-        const Interruption::Delay delay;
-        child = ::fork();
-        if (child < 0)
-            throw std::system_error(errno, std::generic_category(),
-                                    fmt::format("{}: no process for it", frame.text()));
-        if (child > 0)
-            looked_after.emplace(child);
-        else
-            Interruption::leave_the_line_to_parent();
-    }
-    End end;
+    const pid_t child = ::fork();
+    if (child < 0)
+        throw std::system_error(errno, std::generic_category(),
+                                fmt::format("{}: no process for it", frame.text()));
     if (child == 0) {
-        end.in_frame = true;
         ::prctl(PR_SET_PDEATHSIG, SIGTERM);
         if (::getppid() != parent)  // it ended before it could be watched
-            ::raise(SIGTERM);
-        end.code = run(frame.job, frame.row.name + ": ", replaced);
-        return end;
+            ::kill(::getpid(), SIGTERM);
     }
+    return child;
+}
+
+/// How a frame's process ended: its exit code or, as shells have it, 128 and the signal that ended it.
+int wait_for(pid_t child, const Frame& frame) {
     int status = 0;
     while (::waitpid(child, &status, 0) < 0)
         if (errno != EINTR)
             throw std::system_error(errno, std::generic_category(), frame.text());
-    looked_after.reset();  // a signal that was handed on ends this process here
-    if (WIFSIGNALED(status))
-        end.signal = WTERMSIG(status);
-    else
-        end.code = static_cast<ExitCode>(WEXITSTATUS(status));
-    return end;
+    return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
 }
 
 void print_failure(const Frame& frame, const std::string& why) {
     std::fflush(stdout);
     fmt::print(stderr, "tessera: {}: {}\n", frame.text(), why);
-}
-
-[[noreturn]] void end_by(int signal) {
-    std::fflush(nullptr);
-    std::signal(signal, SIG_DFL);
-    ::raise(signal);
-    ::_exit(128 + signal);
 }
 
 }  // namespace
@@ -144,24 +118,22 @@ ExitCode run_frames(const Job& asked, const RunFrame& run) {
     for (Frame& frame : frames) {
         Interruption::note(
             fmt::format("at {} of {} frames, complete in {}", rows.size(), frames.size(), folder.string()));
-        const End end = run_in_process(frame, run, rows.empty() ? folder : fs::path(frame.job.output.folder));
-        if (end.in_frame)
-            return end.code;
-        const std::string rest =
-            fmt::format("; {} of {} frames are complete, in {}", rows.size(), frames.size(), folder.string());
-        if (end.signal != 0) {
-            print_failure(frame,
-                          fmt::format("ended by signal {}, {}{}", end.signal, ::strsignal(end.signal), rest));
-            end_by(end.signal);
-        }
-        if (end.code == ExitCode::check_failed &&
+        const pid_t child = fork_frame(frame);
+        if (child == 0)
+            return run(frame.job, frame.row.name + ": ",
+                       rows.empty() ? folder : fs::path(frame.job.output.folder));
+        const int code = wait_for(child, frame);
+        if (code == static_cast<int>(ExitCode::check_failed) &&
             fs::exists(fs::path(frame.job.output.folder) / "statistics.json")) {
             print_failure(frame,
                           fmt::format("checks failed, see {}/conformance.txt", frame.job.output.folder));
             worst = ExitCode::check_failed;
-        } else if (end.code != ExitCode::fine) {
-            print_failure(frame, fmt::format("ended with exit code {}{}", static_cast<int>(end.code), rest));
-            return end.code;
+        } else if (code != static_cast<int>(ExitCode::fine)) {
+            print_failure(frame,
+                          fmt::format("ended with exit code {}{}; {} of {} frames are complete, in {}", code,
+                                      code > 128 ? fmt::format(" ({})", ::strsignal(code - 128)) : "",
+                                      rows.size(), frames.size(), folder.string()));
+            return static_cast<ExitCode>(code);
         }
         read_counts(frame.job.output.folder, frame.row);
         rows.push_back(frame.row);

@@ -23,8 +23,8 @@ using RunFrame =
 /// When all are done, output.folder holds frames.csv and frames.txt (frame_table.h), and job.toml. A frame whose checks
 /// fail (exit code 1) is complete, and the others run; any other failure ends the run there, without these three files.
 ///
-/// A message names the frame that failed; its exit code is returned. A frame that a signal ends, ends this process by
-/// the same signal; one that this process is sent goes on to its frame's, which ends first.
+/// A message names the frame that failed; its exit code is returned, 128 + n if signal n ended it. Ctrl-C reaches both
+/// processes; when this one ends otherwise, its frame's is sent SIGTERM.
 ExitCode run_frames(const Job& asked, const RunFrame& run);
 
 }  // namespace tessera

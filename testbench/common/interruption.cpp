@@ -34,12 +34,10 @@ std::atomic<std::size_t> current_note{0};
 
 std::atomic<int> delays{0};
 std::atomic<int> waiting_signal{0};
-std::atomic<pid_t> child{0};
-std::atomic<bool> silent{false};
 pthread_t main_thread;
 
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free &&
-              std::atomic<std::size_t>::is_always_lock_free && std::atomic<pid_t>::is_always_lock_free);
+              std::atomic<std::size_t>::is_always_lock_free);
 
 void remove_unfinished() {
     std::size_t folders = 0;
@@ -94,8 +92,7 @@ void write_line(int signal) {
 
 void end_by(int signal) {
     remove_unfinished();
-    if (!silent)
-        write_line(signal);
+    write_line(signal);
     std::signal(signal, SIG_DFL);
     sigset_t set;
     sigemptyset(&set);
@@ -108,13 +105,10 @@ void handle(int signal) {
     const int error = errno;
     if (pthread_equal(pthread_self(), main_thread) == 0)
         pthread_kill(main_thread, signal);  // the thread that writes must not go on beside this
-    else if (delays > 0) {
+    else if (delays > 0)
         waiting_signal = signal;
-        if (child > 0)
-            ::kill(child, signal);
-    } else {
+    else
         end_by(signal);
-    }
     errno = error;
 }
 
@@ -151,20 +145,6 @@ Interruption::Delay::~Delay() {
         return;
     if (const int signal = waiting_signal.exchange(0))
         std::raise(signal);
-}
-
-Interruption::Child::Child(pid_t process) {
-    child = process;
-    if (const int signal = waiting_signal)
-        ::kill(process, signal);
-}
-
-Interruption::Child::~Child() {
-    child = 0;
-}
-
-void Interruption::leave_the_line_to_parent() {
-    silent = true;
 }
 
 Unfinished::Unfinished(const std::filesystem::path& path) {

@@ -1,5 +1,4 @@
 #pragma once
-#include <sys/types.h>
 #include <filesystem>
 #include <string_view>
 
@@ -24,22 +23,6 @@ class Interruption {
         Delay(const Delay&) = delete;
         Delay& operator=(const Delay&) = delete;
     };
-
-    /// While one lives, a signal is handed on to this process and else waits: for work that another process
-    /// does. One at a time.
-    class Child {
-      public:
-        explicit Child(pid_t process);
-        ~Child();
-        Child(const Child&) = delete;
-        Child& operator=(const Child&) = delete;
-
-      private:
-        Delay delay_;
-    };
-
-    /// In a forked process: its parent says how far the work was.
-    static void leave_the_line_to_parent();
 };
 
 /// A file or a folder that goes away should the process be interrupted while this lives; a folder only if it is empty
