@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "modules/datapath/map_entry.h"
+#include "modules/datapath/reciprocal.h"
+#include "modules/datapath/rectangle.h"
 #include "testbench/common/error.h"
 
 namespace tessera {
