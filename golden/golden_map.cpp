@@ -23,14 +23,12 @@ std::int64_t integer_part(double texels) {
 
 std::int64_t first_texel(double centre, std::int64_t length, std::int64_t size, AddressMode mode) {
     const std::int64_t first = integer_part(centre) - (length >> 1);
-    return mode == AddressMode::clamp ? std::clamp<std::int64_t>(first, 0, size - length)
-                                      : address(first, size, mode);
+    return mode == AddressMode::clamp ? std::clamp<std::int64_t>(first, 0, size - length) : address(first, size, mode);
 }
 
 // The arguments are checked here, before the summed-area table is built from them.
 std::vector<std::uint32_t> checked(int width, int height, const std::vector<double>& codes) {
-    if (width < 1 || height < 1 ||
-        codes.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
+    if (width < 1 || height < 1 || codes.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
         throw std::invalid_argument("golden map: size and number of codes do not agree");
     }
     double sum = 0;
@@ -48,8 +46,7 @@ std::vector<std::uint32_t> checked(int width, int height, const std::vector<doub
 
 }  // namespace
 
-Map::Map(int width, int height, AddressMode address_u, AddressMode address_v,
-         const std::vector<double>& codes)
+Map::Map(int width, int height, AddressMode address_u, AddressMode address_v, const std::vector<double>& codes)
     : width_(width),
       height_(height),
       address_u_(address_u),
@@ -105,8 +102,8 @@ Rectangle Map::rectangle_size(const glm::dvec2& t_i, const glm::dvec2& t_j) cons
 }
 
 Rectangle Map::rectangle_about(const glm::dvec2& t, const Rectangle& size) const {
-    return {first_texel(t.x, size.width, width_, address_u_),
-            first_texel(t.y, size.height, height_, address_v_), size.width, size.height};
+    return {first_texel(t.x, size.width, width_, address_u_), first_texel(t.y, size.height, height_, address_v_),
+            size.width, size.height};
 }
 
 std::uint64_t Map::brute_force_sum(const Rectangle& r) const {

@@ -17,8 +17,7 @@ class Map {
   public:
     /// `codes` row by row from the bottom: integers 0 .. 2^32 - 1, all sums below 2^52. Throws std::invalid_argument
     /// otherwise. The normal map starts flat.
-    Map(int width, int height, AddressMode address_u, AddressMode address_v,
-        const std::vector<double>& codes);
+    Map(int width, int height, AddressMode address_u, AddressMode address_v, const std::vector<double>& codes);
 
     int width() const { return width_; }
     int height() const { return height_; }

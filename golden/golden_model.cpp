@@ -22,8 +22,8 @@ double displace_and_transform(Vertex& v, const Map& map, const Parameters& param
     const glm::dvec4 p(v.displaced_position, 1);
     v.w = glm::dot(parameters.row_w, p);
     v.in_front = v.w > parameters.near_plane;
-    v.screen = v.in_front ? glm::dvec2(glm::dot(parameters.row_x, p), glm::dot(parameters.row_y, p)) / v.w
-                          : glm::dvec2(0);
+    v.screen =
+        v.in_front ? glm::dvec2(glm::dot(parameters.row_x, p), glm::dot(parameters.row_y, p)) / v.w : glm::dvec2(0);
     return bumped.length;
 }
 
@@ -47,8 +47,7 @@ Normalised normalise(const glm::dvec3& v) {
     return {length > 0 ? v / length : glm::dvec3(0), length};
 }
 
-Normalised bump(const glm::dvec3& normal, const glm::dvec3& tangent, double handedness,
-                const glm::dvec3& map_normal) {
+Normalised bump(const glm::dvec3& normal, const glm::dvec3& tangent, double handedness, const glm::dvec3& map_normal) {
     const glm::dvec3 bitangent = handedness * glm::cross(normal, tangent);
     return normalise(map_normal.x * tangent + map_normal.y * bitangent + map_normal.z * normal);
 }
@@ -99,8 +98,8 @@ EdgeEvaluation evaluate_edge(const Vertex& i, const Vertex& j, const Map& map, c
     e.rectangle_height = size.height;
     e.summed_height = static_cast<double>(std::abs(2 * sum_about(m) - (sum_about(i) + sum_about(j))));
     // Section 4.2 multiplied by four, so that the left side of the comparison is exact.
-    e.summed_height_limit = parameters.summed_height_threshold *
-                            (parameters.area ? static_cast<double>(size.width * size.height) : 4.0);
+    e.summed_height_limit =
+        parameters.summed_height_threshold * (parameters.area ? static_cast<double>(size.width * size.height) : 4.0);
     e.summed_height_test = enabled.summed_height && e.summed_height > e.summed_height_limit;
 
     e.view_length = view_length(i, j);
@@ -116,17 +115,15 @@ EdgeEvaluation evaluate_edge(const Vertex& i, const Vertex& j, const Map& map, c
     e.end_cosine = std::max(glm::dot(i.displaced_normal, parameters.half_vector),
                             glm::dot(j.displaced_normal, parameters.half_vector));
     e.midpoint_cosine = glm::dot(m.displaced_normal, parameters.half_vector);
-    e.highlight_test = enabled.highlight &&
-                       std::max(e.end_cosine, e.midpoint_cosine) > parameters.highlight_cosine &&
+    e.highlight_test = enabled.highlight && std::max(e.end_cosine, e.midpoint_cosine) > parameters.highlight_cosine &&
                        e.normal_difference > parameters.highlight_normal_threshold;
 
-    e.split = (e.normal_test || e.summed_height_test || e.highlight_test) && e.view_test &&
-              e.tex_coord_test && e.generation_test;
+    e.split = (e.normal_test || e.summed_height_test || e.highlight_test) && e.view_test && e.tex_coord_test &&
+              e.generation_test;
     return e;
 }
 
-Subdivision subdivide(const std::array<bool, 3>& split, const std::array<Vertex, 6>& vertices,
-                      Diagonal diagonal) {
+Subdivision subdivide(const std::array<bool, 3>& split, const std::array<Vertex, 6>& vertices, Diagonal diagonal) {
     const int splits = int{split[0]} + int{split[1]} + int{split[2]};
     if (splits == 0) {
         return {1, {{{0, 1, 2}}}};
@@ -172,9 +169,8 @@ int Triangle::generation() const {
     return std::max({vertices[0].generation, vertices[1].generation, vertices[2].generation});
 }
 
-Tessellation tessellate(const std::vector<std::array<Vertex, 3>>& base, const Map& map,
-                        const Parameters& parameters, std::uint64_t bound,
-                        const std::function<void(const Triangle&)>& emit) {
+Tessellation tessellate(const std::vector<std::array<Vertex, 3>>& base, const Map& map, const Parameters& parameters,
+                        std::uint64_t bound, const std::function<void(const Triangle&)>& emit) {
     Tessellation result;
     std::vector<Triangle> waiting;
     for (std::size_t index = base.size(); index-- > 0;) {
@@ -195,8 +191,7 @@ Tessellation tessellate(const std::vector<std::array<Vertex, 3>>& base, const Ma
         std::array<Vertex, 6> vertices{t.vertices[0], t.vertices[1], t.vertices[2]};
         std::array<bool, 3> split{};
         for (std::size_t edge = 0; edge < 3; ++edge) {
-            const EdgeEvaluation e =
-                evaluate_edge(t.vertices[edge], t.vertices[(edge + 1) % 3], map, parameters);
+            const EdgeEvaluation e = evaluate_edge(t.vertices[edge], t.vertices[(edge + 1) % 3], map, parameters);
             split[edge] = e.split;
             vertices[3 + edge] = e.inserted.vertex;
         }

@@ -38,8 +38,7 @@ struct Parameters {
     double highlight_normal_threshold = 0;
 
     struct Enabled {
-        bool normal = true, summed_height = true, view = true, tex_coord = true, generation = true,
-             highlight = false;
+        bool normal = true, summed_height = true, view = true, tex_coord = true, generation = true, highlight = false;
     } enabled;
 
     Diagonal diagonal = Diagonal::shorter;
@@ -80,8 +79,7 @@ struct Normalised {
 Normalised normalise(const glm::dvec3& v);
 
 /// Section 3: N' = normalise(N_d.x * T + N_d.y * handedness * cross(N, T) + N_d.z * N).
-Normalised bump(const glm::dvec3& normal, const glm::dvec3& tangent, double handedness,
-                const glm::dvec3& map_normal);
+Normalised bump(const glm::dvec3& normal, const glm::dvec3& tangent, double handedness, const glm::dvec3& map_normal);
 
 /// Completes a base vertex with P', N' and screen position; generation 0.
 Vertex complete_base_vertex(const Vertex& base, const Map& map, const Parameters& parameters);
@@ -99,12 +97,12 @@ Insertion insert_vertex(const Vertex& i, const Vertex& j, const Map& map, const 
 struct EdgeEvaluation {
     Insertion inserted;
 
-    double normal_difference = 0;  ///< largest of the six; NT = it > normal_threshold
+    double normal_difference = 0;                            ///< largest of the six; NT = it > normal_threshold
     std::int64_t rectangle_width = 1, rectangle_height = 1;  ///< texels, all three rectangles
     double summed_height = 0;                                ///< |2 S(r_ij) - S(r_i) - S(r_j)|, exact
     double summed_height_limit = 0;  ///< SHT = summed_height > it: 4 * threshold, or threshold * area
-    double view_length = 0;  ///< VT = it > view_threshold; Manhattan, pixels; +infinity if one end is not in
-                             ///< front, -infinity if both are not
+    double view_length = 0;          ///< VT = it > view_threshold; Manhattan, pixels; +infinity if one end is not in
+                                     ///< front, -infinity if both are not
     /// Cosine between N' and the half vector: the greater of the two ends, and the midpoint's. HT = one of them >
     /// highlight_cosine and normal_difference > highlight_normal_threshold.
     double end_cosine = 0, midpoint_cosine = 0;
@@ -131,8 +129,7 @@ struct Subdivision {
     int count = 0;
     std::array<std::array<int, 3>, 4> children{};
 };
-Subdivision subdivide(const std::array<bool, 3>& split, const std::array<Vertex, 6>& vertices,
-                      Diagonal diagonal);
+Subdivision subdivide(const std::array<bool, 3>& split, const std::array<Vertex, 6>& vertices, Diagonal diagonal);
 
 struct Triangle {
     std::array<Vertex, 3> vertices;
@@ -150,9 +147,8 @@ struct Tessellation {
 /// Sections 4 and 5: tessellates base triangles (the first five members of each vertex are read), depth first in the
 /// children's order. Without the generation test the recursion may not end, so it stops when the triangles emitted and
 /// waiting exceed `bound`; each waiting triangle yields at least one of the mesh.
-Tessellation tessellate(const std::vector<std::array<Vertex, 3>>& base, const Map& map,
-                        const Parameters& parameters, std::uint64_t bound,
-                        const std::function<void(const Triangle&)>& emit);
+Tessellation tessellate(const std::vector<std::array<Vertex, 3>>& base, const Map& map, const Parameters& parameters,
+                        std::uint64_t bound, const std::function<void(const Triangle&)>& emit);
 
 /// Manhattan length of a world-space vector.
 double manhattan(const glm::dvec3& v);

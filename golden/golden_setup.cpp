@@ -75,16 +75,13 @@ double code_of(double value, double low, double high, double highest_code) {
     return high > low ? std::clamp((value - low) / (high - low), 0.0, 1.0) * highest_code : 0;
 }
 
-Vertex place_vertex(const Vertex& in_model_units, const glm::dvec2& uv, const Placement& placement,
-                    const Map& map) {
+Vertex place_vertex(const Vertex& in_model_units, const glm::dvec2& uv, const Placement& placement, const Map& map) {
     const auto texels = [](double coordinate, int size, AddressMode mode) {
-        return mode == AddressMode::clamp ? std::clamp(coordinate * size, 0.0, double(size))
-                                          : coordinate * size;
+        return mode == AddressMode::clamp ? std::clamp(coordinate * size, 0.0, double(size)) : coordinate * size;
     };
     Vertex result = in_model_units;
     result.position = placement.to_world(in_model_units.position);
-    result.texture = {texels(uv.x, map.width(), map.address_u()),
-                      texels(uv.y, map.height(), map.address_v())};
+    result.texture = {texels(uv.x, map.width(), map.address_u()), texels(uv.y, map.height(), map.address_v())};
     return result;
 }
 

@@ -30,8 +30,7 @@ struct View {
     glm::dvec3 eye{0};                                          ///< world
     glm::dvec4 row_x{0}, row_y{0}, row_w{0};
     double near_plane = 0;  ///< world units
-    double rounding =
-        0;  ///< bound on the double-precision error of the axes' components: 2^-49 / sin(up, backward)
+    double rounding = 0;    ///< bound on the double-precision error of the axes' components: 2^-49 / sin(up, backward)
 };
 View make_view(const Camera& camera, const Placement& placement);
 
@@ -68,8 +67,7 @@ double code_of(double value, double low, double high, double highest_code);
 
 /// A base vertex in world units and texels. `uv` spans the map once from 0 to 1; on a clamped axis it is clamped to the
 /// map.
-Vertex place_vertex(const Vertex& in_model_units, const glm::dvec2& uv, const Placement& placement,
-                    const Map& map);
+Vertex place_vertex(const Vertex& in_model_units, const glm::dvec2& uv, const Placement& placement, const Map& map);
 
 /// A base vertex's texture coordinate rounded to the nearest multiple of `step`, ties to even.
 glm::dvec2 on_grid(const glm::dvec2& t, double step);

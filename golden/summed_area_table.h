@@ -45,8 +45,7 @@ class SummedAreaTable {
         const auto periods_x = static_cast<std::uint64_t>((x - column) / width_);
         const auto periods_y = static_cast<std::uint64_t>((y - row) / height_);
         return table_[index(column, row)] + periods_x * table_[index(width_, row)] +
-               periods_y * table_[index(column, height_)] +
-               periods_x * periods_y * table_[index(width_, height_)];
+               periods_y * table_[index(column, height_)] + periods_x * periods_y * table_[index(width_, height_)];
     }
 
     static std::int64_t floor_modulo(std::int64_t a, std::int64_t n) {
@@ -54,9 +53,7 @@ class SummedAreaTable {
         return remainder < 0 ? remainder + n : remainder;
     }
 
-    std::size_t index(std::int64_t x, std::int64_t y) const {
-        return static_cast<std::size_t>(y * (width_ + 1) + x);
-    }
+    std::size_t index(std::int64_t x, std::int64_t y) const { return static_cast<std::size_t>(y * (width_ + 1) + x); }
 
     std::int64_t width_, height_;
     std::vector<std::uint64_t> table_;  // (width + 1) x (height + 1), first row and column zero

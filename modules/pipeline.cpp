@@ -29,8 +29,8 @@ UnitFactory& standard_units() {
 
 }  // namespace
 
-Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Registers& registers,
-                   const Design& design, UnitFactory* factory)
+Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Registers& registers, const Design& design,
+                   UnitFactory* factory)
     : sc_module(name),
       clock("clock", clock_period(this->name(), design.timing.cycle_picoseconds)),
       made_(make({clock, registers, design}, factory == nullptr ? standard_units() : *factory)),
@@ -41,15 +41,14 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
       summed_height_table("summed_height_table", clock, registers.summed_height_table,
                           design.timing.summed_height_table, design.timing.stalls),
       off_chip_memory("off_chip_memory", clock, design.timing.off_chip_memory, design.timing.stalls,
-                      design.queue.off_chip_triangles * (datapath::packed_triangle_bytes(registers.formats) +
-                                                         datapath::packed_triangle_tag_bytes),
+                      design.queue.off_chip_triangles *
+                          (datapath::packed_triangle_bytes(registers.formats) + datapath::packed_triangle_tag_bytes),
                       datapath::packed_triangle_tag_bytes),
       transport_(design.transport),
       random_stalls_(design.timing.stalls.per_mille > 0) {
     UnitFactory& units = factory == nullptr ? standard_units() : *factory;
     tessellation_tests.init(design.tests_units, [&](const char* unit_name, std::size_t number) {
-        return new TessellationTests(unit_name, {clock, registers, design}, units,
-                                     static_cast<unsigned>(number));
+        return new TessellationTests(unit_name, {clock, registers, design}, units, static_cast<unsigned>(number));
     });
     attach();
     wire(units);
@@ -97,8 +96,8 @@ void Pipeline::attach() {
     for (TessellationTests& tests : tessellation_tests)
         for (Unit* unit : tests.units())
             units_.push_back(unit);
-    units_.insert(units_.end(), {&pass_or_tessellate, &tessellation, &triangle_queue, &lighting,
-                                 &displacement_map, &normal_map, &summed_height_table, &off_chip_memory});
+    units_.insert(units_.end(), {&pass_or_tessellate, &tessellation, &triangle_queue, &lighting, &displacement_map,
+                                 &normal_map, &summed_height_table, &off_chip_memory});
     clock.attach(off_chip_memory);
     for (Unit* memory : {static_cast<Unit*>(&displacement_map), static_cast<Unit*>(&normal_map),
                          static_cast<Unit*>(&summed_height_table)})

@@ -2,8 +2,7 @@
 
 namespace tessera {
 
-TessellationTests::Units TessellationTests::make(const UnitContext& context, UnitFactory& factory,
-                                                 unsigned number) {
+TessellationTests::Units TessellationTests::make(const UnitContext& context, UnitFactory& factory, unsigned number) {
     const Parts takes = parts_for_tests(number, context.design.tests_units);
     Units made;
     made.calculate_new_u = factory.calculate_new_u("calculate_new_u", context);

@@ -50,8 +50,7 @@ class TessellationTests : public sc_core::sc_module {
 
     /// In the order of figure 8.
     std::array<Unit*, 6> units() {
-        return {&calculate_new_u, &tex_coord_test, &summed_height_test,
-                &normal_test,     &view_test,      &collect_tests};
+        return {&calculate_new_u, &tex_coord_test, &summed_height_test, &normal_test, &view_test, &collect_tests};
     }
 
   private:

@@ -49,8 +49,7 @@ constexpr Direction bump(const Direction& n, const Direction& t, int handedness,
     const auto combine = [&](std::int64_t tangent, std::int64_t bitangent, std::int64_t normal) {
         return round_shift(map_normal.x * tangent + map_normal.y * bitangent + map_normal.z * normal, down);
     };
-    return normalise(combine(t.x, bx, n.x), combine(t.y, by, n.y), combine(t.z, bz, n.z), formats,
-                     saturations);
+    return normalise(combine(t.x, bx, n.x), combine(t.y, by, n.y), combine(t.z, bz, n.z), formats, saturations);
 }
 
 }  // namespace tessera::datapath

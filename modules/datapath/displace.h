@@ -29,9 +29,8 @@ constexpr Position displace(const Position& p, const Direction& n, std::uint32_t
     const std::int64_t height =
         round_shift(std::int64_t{parameters.scale} * code, formats.displacement.bits) + parameters.bias;
     const auto along = [&](std::int64_t base, std::int64_t normal) {
-        return static_cast<std::int32_t>(
-            saturate(base + round_shift(height * normal, formats.normal.fraction), formats.position,
-                     saturations.displaced_position));
+        return static_cast<std::int32_t>(saturate(base + round_shift(height * normal, formats.normal.fraction),
+                                                  formats.position, saturations.displaced_position));
     };
     return {along(p.x, n.x), along(p.y, n.y), along(p.z, n.z)};
 }

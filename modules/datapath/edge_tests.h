@@ -25,9 +25,7 @@ struct EdgeTestWidths : Intermediates {
     Width index{"TCT: integer parts", f.texture.bits - f.texture.fraction};
     Width product{"HT: N'.x * H.x", 2 * f.normal.bits};
     Width cosine{"HT: N' . H", product.bits + 1};
-    constexpr auto all() const {
-        return std::array{normal, sums, area, limit, screen, length, index, product, cosine};
-    }
+    constexpr auto all() const { return std::array{normal, sums, area, limit, screen, length, index, product, cosine}; }
 };
 static_assert(fits_every_format<EdgeTestWidths>());
 
@@ -45,8 +43,7 @@ constexpr std::uint64_t largest_difference(const Direction& i, const Direction& 
 }
 
 /// Whether any component of N'_ij differs from N'_i's or N'_j's by more than the threshold (normal's format).
-constexpr bool normals_differ(const Direction& i, const Direction& j, const Direction& ij,
-                              std::uint64_t threshold) {
+constexpr bool normals_differ(const Direction& i, const Direction& j, const Direction& ij, std::uint64_t threshold) {
     return absolute_difference(ij.x, i.x) > threshold || absolute_difference(ij.y, i.y) > threshold ||
            absolute_difference(ij.z, i.z) > threshold || absolute_difference(ij.x, j.x) > threshold ||
            absolute_difference(ij.y, j.y) > threshold || absolute_difference(ij.z, j.z) > threshold;
@@ -62,8 +59,7 @@ constexpr bool normal_test(const Direction& i, const Direction& j, const Directi
 /// compare, exact: sum and register have twice the normal's fraction bits.
 constexpr bool in_highlight(const Direction& n, const TestParameters& parameters) {
     const auto& h = parameters.half_vector;
-    const std::int64_t cosine =
-        std::int64_t{n.x} * h[0] + std::int64_t{n.y} * h[1] + std::int64_t{n.z} * h[2];
+    const std::int64_t cosine = std::int64_t{n.x} * h[0] + std::int64_t{n.y} * h[1] + std::int64_t{n.z} * h[2];
     return cosine > parameters.highlight_cosine;
 }
 
@@ -77,8 +73,7 @@ constexpr bool highlight_test(const Direction& i, const Direction& j, const Dire
 }
 
 /// SHT's left operand: | 2 S_ij - (S_i + S_j) |.
-constexpr std::uint64_t summed_height_difference(std::uint64_t sum_i, std::uint64_t sum_j,
-                                                 std::uint64_t sum_ij) {
+constexpr std::uint64_t summed_height_difference(std::uint64_t sum_i, std::uint64_t sum_j, std::uint64_t sum_ij) {
     const auto ends = static_cast<std::int64_t>(sum_i + sum_j);
     return absolute_difference(static_cast<std::int64_t>(2 * sum_ij), ends);
 }
@@ -111,8 +106,7 @@ constexpr bool view_test(const ScreenPosition& i, const ScreenPosition& j, const
 }
 
 /// TCT (paper 2.5): false if t_ij lies in the same texel as t_i or t_j, so that the map's resolution is reached.
-constexpr bool tex_coord_test(const TexCoord& i, const TexCoord& j, const TexCoord& ij,
-                              const Formats& formats) {
+constexpr bool tex_coord_test(const TexCoord& i, const TexCoord& j, const TexCoord& ij, const Formats& formats) {
     const std::uint32_t u = integer_part(ij.u, formats);
     const std::uint32_t v = integer_part(ij.v, formats);
     const bool same_as_i = u == integer_part(i.u, formats) && v == integer_part(i.v, formats);
@@ -129,8 +123,7 @@ constexpr std::uint8_t inserted_generation(std::uint8_t generation_i, std::uint8
 
 /// GT (golden/ALGORITHM.md 4.5): the inserted vertex does not exceed the generation limit. Depends on the edge alone;
 /// terminates the recursion.
-constexpr bool generation_test(std::uint8_t generation_i, std::uint8_t generation_j,
-                               const TestParameters& parameters) {
+constexpr bool generation_test(std::uint8_t generation_i, std::uint8_t generation_j, const TestParameters& parameters) {
     return inserted_generation(generation_i, generation_j) <= parameters.generation_limit;
 }
 

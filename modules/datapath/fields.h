@@ -56,8 +56,7 @@ class Fields {
     constexpr void screen(const char* name, S& s, const char* meaning) {
         pass(named(name, "x", formats_.screen.bits, FormatLimits::screen_bits.most, true, meaning), s.x);
         pass(named(name, "y", formats_.screen.bits, FormatLimits::screen_bits.most, true, meaning), s.y);
-        pass(named(name, "w", formats_.view_distance.bits, FormatLimits::position_bits.most, true, meaning),
-             s.w);
+        pass(named(name, "w", formats_.view_distance.bits, FormatLimits::position_bits.most, true, meaning), s.w);
         pass(named(name, "in_front", 1, 1, false, meaning), s.in_front);
     }
     template <class N>

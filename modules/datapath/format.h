@@ -63,8 +63,8 @@ struct Saturations {
     std::uint64_t view_distance = 0;  ///< w
     std::uint64_t screen_normal = 0;
     std::uint64_t degenerate_normal = 0;  ///< normalisations of a zero vector, which stays zero
-    std::uint64_t generation = 0;  ///< only with the Generation Test off, since the limit fits the field
-    std::uint64_t intensity = 0;   ///< vertices that face the light fully: 256 of 256
+    std::uint64_t generation = 0;         ///< only with the Generation Test off, since the limit fits the field
+    std::uint64_t intensity = 0;          ///< vertices that face the light fully: 256 of 256
 
     constexpr Saturations& operator+=(const Saturations& other) {
         displaced_position += other.displaced_position;
@@ -78,8 +78,8 @@ struct Saturations {
         return *this;
     }
     constexpr std::uint64_t total() const {
-        return displaced_position + normal + screen_position + view_distance + screen_normal +
-               degenerate_normal + generation + intensity;
+        return displaced_position + normal + screen_position + view_distance + screen_normal + degenerate_normal +
+               generation + intensity;
     }
 };
 

@@ -53,10 +53,8 @@ constexpr bool fits_every_format() {
         f.view_distance = Format::make_signed(Limits::position_bits.most,
                                               position_fraction - fraction(4, Limits::view_distance_shift));
         f.normal = Format::make_signed(Limits::normal_bits.most, fraction(1, Limits::normal_fraction));
-        f.texture =
-            Format::make_unsigned(Limits::texture_integer.most + texture_fraction + 1, texture_fraction);
-        f.displacement =
-            Format::make_unsigned(Limits::displacement_bits.most, Limits::displacement_bits.most);
+        f.texture = Format::make_unsigned(Limits::texture_integer.most + texture_fraction + 1, texture_fraction);
+        f.displacement = Format::make_unsigned(Limits::displacement_bits.most, Limits::displacement_bits.most);
         f.summed_height = Format::make_unsigned(Limits::summed_height_bits.most, 0);
         f.screen = Format::make_signed(Limits::screen_bits.most, fraction(3, Limits::screen_fraction));
         f.generation_bits = Limits::generation_bits.most;

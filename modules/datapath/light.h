@@ -23,8 +23,8 @@ static_assert(fits_every_format<LightWidths>());
 /// Diffuse per-vertex lighting in screen space: ambient + (256 - ambient) * max(0, N's . L), 0..255, truncated. Full
 /// light, 256, saturates, counted.
 /// The pipeline's existing unit, reduced to one directional light.
-constexpr std::uint8_t light(const Direction& screen_normal, const LightParameters& parameters,
-                             const Formats& formats, Saturations& saturations) {
+constexpr std::uint8_t light(const Direction& screen_normal, const LightParameters& parameters, const Formats& formats,
+                             Saturations& saturations) {
     const std::int64_t dot = std::int64_t{screen_normal.x} * parameters.direction[0] +
                              std::int64_t{screen_normal.y} * parameters.direction[1] +
                              std::int64_t{screen_normal.z} * parameters.direction[2];

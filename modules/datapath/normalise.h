@@ -30,8 +30,7 @@ constexpr std::array<std::uint32_t, 256> make_reciprocal_root_seeds() {
     std::array<std::uint32_t, 256> seeds{};
     for (std::uint64_t k = 64; k < 256; ++k) {
         // 1/sqrt((2k+1)/128) = sqrt(128/(2k+1)), with 2 * 9 fraction bits under the root
-        const std::uint64_t root =
-            integer_square_root((std::uint64_t{128} << 40) / (2 * k + 1));  // 20 fraction bits
+        const std::uint64_t root = integer_square_root((std::uint64_t{128} << 40) / (2 * k + 1));  // 20 fraction bits
         seeds[k] = static_cast<std::uint32_t>(((root + (1 << 10)) >> 11) << 22);
     }
     return seeds;
@@ -82,8 +81,8 @@ static_assert(fits_every_format<NormaliseWidths>());
 /// of an edge alike, and is counted.
 constexpr Direction normalise(std::int64_t x, std::int64_t y, std::int64_t z, const Formats& formats,
                               Saturations& saturations) {
-    const std::uint64_t square = static_cast<std::uint64_t>(x * x) + static_cast<std::uint64_t>(y * y) +
-                                 static_cast<std::uint64_t>(z * z);
+    const std::uint64_t square =
+        static_cast<std::uint64_t>(x * x) + static_cast<std::uint64_t>(y * y) + static_cast<std::uint64_t>(z * z);
     if (square == 0) {
         ++saturations.degenerate_normal;
         return {};
@@ -92,9 +91,8 @@ constexpr Direction normalise(std::int64_t x, std::int64_t y, std::int64_t z, co
     const std::uint64_t root = reciprocal_root(static_cast<std::uint32_t>((square << shift) >> 32));
     const int down = 62 - formats.normal.fraction - shift / 2;
     const auto scaled = [&](std::int64_t component) {
-        return static_cast<std::int32_t>(
-            saturate(round_shift(component * static_cast<std::int64_t>(root), down), formats.normal,
-                     saturations.normal));
+        return static_cast<std::int32_t>(saturate(round_shift(component * static_cast<std::int64_t>(root), down),
+                                                  formats.normal, saturations.normal));
     };
     return {scaled(x), scaled(y), scaled(z)};
 }

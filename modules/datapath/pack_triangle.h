@@ -102,8 +102,7 @@ class FieldReader {
 
 /// Writes packed_triangle_bytes() and then packed_triangle_tag_bytes. Returns false if a value does not fit its field
 /// and loses its highest bits (possible for a generation with the Generation Test off); the others are correct.
-[[nodiscard]] constexpr bool pack_triangle(const Triangle& triangle, const Formats& formats,
-                                           unsigned char* bytes) {
+[[nodiscard]] constexpr bool pack_triangle(const Triangle& triangle, const Formats& formats, unsigned char* bytes) {
     FieldWriter writer(bytes);
     Fields<FieldWriter> fields(writer, formats);
     describe_triangle(fields, triangle);

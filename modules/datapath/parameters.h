@@ -49,7 +49,7 @@ struct TestParameters {
     /// H, the half vector between the directions to the light and to the viewer, both infinitely far: unit length,
     /// world space, normal's format. Zero: no normal lies in the highlight.
     std::array<std::int32_t, 3> half_vector{};
-    std::int64_t highlight_cosine = 0;  ///< N'.H at the highlight's border, twice the normal's fraction bits
+    std::int64_t highlight_cosine = 0;             ///< N'.H at the highlight's border, twice the normal's fraction bits
     std::uint32_t highlight_normal_threshold = 0;  ///< normal's format
 };
 

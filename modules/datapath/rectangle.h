@@ -37,8 +37,7 @@ constexpr RectangleSize rectangle_size(const TexCoord& a, const TexCoord& b, con
     };
     const std::uint32_t du = a.u > b.u ? a.u - b.u : b.u - a.u;
     const std::uint32_t dv = a.v > b.v ? a.v - b.v : b.v - a.v;
-    return {side(du, formats.texture.fraction + 1, map.width),
-            side(dv, formats.texture.fraction + 2, map.height)};
+    return {side(du, formats.texture.fraction + 1, map.width), side(dv, formats.texture.fraction + 2, map.height)};
 }
 
 /// First texel of a rectangle of `extent` texels about `centre`. Clamp shifts it inside the map without clipping;
@@ -82,8 +81,7 @@ constexpr unsigned most_rectangle_entries = 9;
 /// Past the map (repeat) the table reads periodically: SAT(x + W, y) = SAT(x, y) + SAT(W, y), one more read and
 /// one more add per corner and axis: four reads, or up to nine when r wraps.
 template <class Entry>
-constexpr void rectangle_entries(const Rectangle& r, const MapGeometry& map, const TableLayout& table,
-                                 Entry&& entry) {
+constexpr void rectangle_entries(const Rectangle& r, const MapGeometry& map, const TableLayout& table, Entry&& entry) {
     const auto in_row = [&](std::uint32_t x, std::uint32_t y, bool subtracted) {
         if (x > map.width) {
             entry(table.address(map.width, y), subtracted);

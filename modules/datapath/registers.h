@@ -25,8 +25,7 @@ struct Register {
 template <class Visit>
 constexpr void visit_registers(const Registers& r, Visit&& visit) {
     const Formats& f = r.formats;
-    const auto field = [&](const char* name, RegisterKind kind, int bits, const char* meaning,
-                           auto... values) {
+    const auto field = [&](const char* name, RegisterKind kind, int bits, const char* meaning, auto... values) {
         visit(Register{name, kind, bits, meaning}, std::array{static_cast<std::int64_t>(values)...});
     };
     constexpr RegisterKind choice = RegisterKind::choice;
@@ -78,15 +77,13 @@ constexpr void visit_registers(const Registers& r, Visit&& visit) {
     row("transform.row_x", "transform.row_x.offset", "screen x, 24 fraction bits", r.transform.row_x);
     row("transform.row_y", "transform.row_y.offset", "screen y, likewise", r.transform.row_y);
     row("transform.row_w", "transform.row_w.offset", "w, likewise", r.transform.row_w);
-    field("transform.exponent", number, 5, "shift: x and y are multiplied by its power of two",
-          r.transform.exponent);
-    field("transform.view_distance_shift", number, 5,
-          "shift: fraction bits that w has less than the position",
+    field("transform.exponent", number, 5, "shift: x and y are multiplied by its power of two", r.transform.exponent);
+    field("transform.view_distance_shift", number, 5, "shift: fraction bits that w has less than the position",
           f.position.fraction - f.view_distance.fraction);
     field("transform.near_plane", number, 63, "w as row_w gives it", r.transform.near_plane);
     const auto& n = r.transform.normal_rows;
-    field("transform.normal_rows", with_sign, f.normal.bits, "world to view, normal's format", n[0][0],
-          n[0][1], n[0][2], n[1][0], n[1][1], n[1][2], n[2][0], n[2][1], n[2][2]);
+    field("transform.normal_rows", with_sign, f.normal.bits, "world to view, normal's format", n[0][0], n[0][1],
+          n[0][2], n[1][0], n[1][1], n[1][2], n[2][0], n[2][1], n[2][2]);
 
     direction("light.direction", "in view space, normal's format", r.light.direction);
     field("light.ambient", number, 9, "of 256", r.light.ambient);

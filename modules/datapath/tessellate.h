@@ -8,8 +8,7 @@
 namespace tessera::datapath {
 
 /// The generation of an inserted vertex, saturated to its field, counted. With the Generation Test on it always fits.
-constexpr std::uint8_t kept_generation(std::uint8_t generation, const Formats& formats,
-                                       Saturations& saturations) {
+constexpr std::uint8_t kept_generation(std::uint8_t generation, const Formats& formats, Saturations& saturations) {
     return static_cast<std::uint8_t>(
         saturate(generation, Format::make_unsigned(formats.generation_bits, 0), saturations.generation));
 }
@@ -17,8 +16,8 @@ constexpr std::uint8_t kept_generation(std::uint8_t generation, const Formats& f
 /// Calls child(triangle) for each child of a pass whose edges are decided, with all known values of its vertices.
 /// Returns the number of children.
 template <class Child>
-int tessellate(const TrianglePass& pass, Triangulation choice, const Formats& formats,
-               Saturations& saturations, Child&& child) {
+int tessellate(const TrianglePass& pass, Triangulation choice, const Formats& formats, Saturations& saturations,
+               Child&& child) {
     std::array<Vertex, 3> inserted;
     std::array<const Vertex*, 6> vertices;
     std::uint8_t split_by = 0;
@@ -30,12 +29,11 @@ int tessellate(const TrianglePass& pass, Triangulation choice, const Formats& fo
         Vertex& vertex = inserted[static_cast<std::size_t>(k)];
         vertex = inserted_vertex(pass, k);
         vertex.generation = kept_generation(vertex.generation, formats, saturations);
-        split_by = static_cast<std::uint8_t>(
-            split_by | (pass.edges[static_cast<std::size_t>(k)].tests & requesting_tests));
+        split_by =
+            static_cast<std::uint8_t>(split_by | (pass.edges[static_cast<std::size_t>(k)].tests & requesting_tests));
     }
     const bool second = choose_second_diagonal(
-        pass.split, choice,
-        [&](std::uint8_t index) -> const Position& { return vertices[index]->displaced; });
+        pass.split, choice, [&](std::uint8_t index) -> const Position& { return vertices[index]->displaced; });
     const ChildIndices indices = triangulate(pass.split, second);
     Triangle triangle;
     triangle.base = pass.triangle.base;

@@ -50,8 +50,8 @@ constexpr std::int64_t transform_row(const std::array<std::int64_t, 4>& row, con
 
 /// 2^exponent * numerator / denominator in the screen's format. The denominator is given by its inverse and scale:
 /// denominator ~ mantissa * 2^scale, inverse = 2^63 / mantissa.
-constexpr std::int32_t perspective_divide(std::int64_t numerator, std::uint64_t inverse, int scale,
-                                          int exponent, const Format& screen, std::uint64_t& saturated) {
+constexpr std::int32_t perspective_divide(std::int64_t numerator, std::uint64_t inverse, int scale, int exponent,
+                                          const Format& screen, std::uint64_t& saturated) {
     if (numerator == 0)
         return 0;
     const std::uint64_t magnitude = static_cast<std::uint64_t>(numerator < 0 ? -numerator : numerator);
@@ -72,12 +72,12 @@ constexpr std::int32_t perspective_divide(std::int64_t numerator, std::uint64_t 
 /// numerator's upper 30 bits, rounded to nearest; error at most 1/2 LSB + |result| * 2^-28. w is rounded to nearest in
 /// the view distance's format, which has no more fraction bits than the position's. x, y and w saturate, counted. On or
 /// behind the near plane (w <= near) there is no screen position: x = y = 0 and in_front is false.
-constexpr ScreenPosition transform(const Position& p, const TransformParameters& parameters,
-                                   const Formats& formats, Saturations& saturations) {
+constexpr ScreenPosition transform(const Position& p, const TransformParameters& parameters, const Formats& formats,
+                                   Saturations& saturations) {
     const std::int64_t w = transform_row(parameters.row_w, p);
     ScreenPosition result;
-    result.w = static_cast<std::int32_t>(saturate(round_shift(w, view_distance_down(formats)),
-                                                  formats.view_distance, saturations.view_distance));
+    result.w = static_cast<std::int32_t>(
+        saturate(round_shift(w, view_distance_down(formats)), formats.view_distance, saturations.view_distance));
     if (w <= parameters.near_plane)
         return result;
     result.in_front = true;
@@ -93,11 +93,10 @@ constexpr ScreenPosition transform(const Position& p, const TransformParameters&
 }
 
 /// Rotates a normal from world to view space, rounded to nearest.
-constexpr Direction transform_normal(const Direction& n, const TransformParameters& parameters,
-                                     const Formats& formats, Saturations& saturations) {
+constexpr Direction transform_normal(const Direction& n, const TransformParameters& parameters, const Formats& formats,
+                                     Saturations& saturations) {
     const auto row = [&](const std::array<std::int32_t, 3>& r) {
-        const std::int64_t sum =
-            std::int64_t{r[0]} * n.x + std::int64_t{r[1]} * n.y + std::int64_t{r[2]} * n.z;
+        const std::int64_t sum = std::int64_t{r[0]} * n.x + std::int64_t{r[1]} * n.y + std::int64_t{r[2]} * n.z;
         return static_cast<std::int32_t>(
             saturate(round_shift(sum, formats.normal.fraction), formats.normal, saturations.screen_normal));
     };

@@ -38,8 +38,7 @@ constexpr std::uint64_t manhattan_length(const Position& a, const Position& b) {
 /// The quadrilateral that remains when two edges split, in the triangle's order: the boundary v0, m01, v1, m12, v2, m20
 /// without the unsplit edge's midpoint and the corner opposite that edge.
 constexpr std::array<std::uint8_t, 4> remaining_quadrilateral(int whole_edge) {
-    constexpr std::array<std::array<std::uint8_t, 4>, 3> by_whole_edge = {
-        {{0, 1, 4, 5}, {3, 1, 2, 5}, {0, 3, 4, 2}}};
+    constexpr std::array<std::array<std::uint8_t, 4>, 3> by_whole_edge = {{{0, 1, 4, 5}, {3, 1, 2, 5}, {0, 3, 4, 2}}};
     return by_whole_edge[static_cast<std::size_t>(whole_edge)];
 }
 

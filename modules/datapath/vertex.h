@@ -23,9 +23,7 @@ struct Direction {
 /// A texture coordinate in texels, in the texture's format; v = 0 is the map's bottom row.
 struct TexCoord {
     std::uint32_t u = 0, v = 0;
-    friend constexpr bool operator==(const TexCoord& a, const TexCoord& b) {
-        return a.u == b.u && a.v == b.v;
-    }
+    friend constexpr bool operator==(const TexCoord& a, const TexCoord& b) { return a.u == b.u && a.v == b.v; }
 };
 
 /// P's: pixels in the screen's format, and the distance w from the eye along the view direction in the view distance's

@@ -58,9 +58,7 @@ class BankedPorts {
     /// Port slots a cycle, of all banks.
     std::uint64_t slots_per_cycle() const { return std::uint64_t{ports_} * banks_; }
     /// Cycles that the busiest bank's ports needed.
-    std::uint64_t occupied_cycles() const {
-        return *std::max_element(bank_slots_.begin(), bank_slots_.end()) / ports_;
-    }
+    std::uint64_t occupied_cycles() const { return *std::max_element(bank_slots_.begin(), bank_slots_.end()) / ports_; }
 
   private:
     std::size_t bank_of(std::uint64_t address) const {

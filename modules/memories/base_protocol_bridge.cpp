@@ -28,8 +28,8 @@ struct BaseProtocolBridge::Entry {
     MemoryRequest* request = nullptr;  // null: answered
 };
 
-BaseProtocolBridge::BaseProtocolBridge(const sc_core::sc_module_name& name, CycleScheduler& clock,
-                                       unsigned buffer, const StallParameters& stalls)
+BaseProtocolBridge::BaseProtocolBridge(const sc_core::sc_module_name& name, CycleScheduler& clock, unsigned buffer,
+                                       const StallParameters& stalls)
     : MemoryServer(name, clock, buffer, stalls) {
     clock.attach(*this);
     to_memory.register_nb_transport_bw(this, &BaseProtocolBridge::nb_transport_bw);
@@ -50,8 +50,8 @@ BaseProtocolBridge::Entry& BaseProtocolBridge::unused_entry() {
 
 void BaseProtocolBridge::free(tlm::tlm_generic_payload* payload) {
     payload->reset();
-    const auto entry = std::find_if(entries_.begin(), entries_.end(),
-                                    [&](const auto& one) { return &one->payload == payload; });
+    const auto entry =
+        std::find_if(entries_.begin(), entries_.end(), [&](const auto& one) { return &one->payload == payload; });
     unused_.push_back(entry->get());
 }
 
@@ -101,8 +101,7 @@ void BaseProtocolBridge::send_entry(std::uint64_t cycle) {
     if (status == tlm::TLM_UPDATED && phase == tlm::END_REQ)
         return;
     if (status == tlm::TLM_UPDATED && phase != tlm::BEGIN_RESP)
-        stream_protocol_error(to_memory.name(), "BEGIN_REQ was answered by neither END_REQ nor BEGIN_RESP",
-                              &clock_);
+        stream_protocol_error(to_memory.name(), "BEGIN_REQ was answered by neither END_REQ nor BEGIN_RESP", &clock_);
     if (status == tlm::TLM_UPDATED) {
         phase = tlm::END_RESP;
         to_memory->nb_transport_fw(entry.payload, phase, delay);
@@ -112,8 +111,8 @@ void BaseProtocolBridge::send_entry(std::uint64_t cycle) {
 
 /// The answer to an entry is there in `cycle`; with the last one, its request's.
 void BaseProtocolBridge::answered(Entry& entry, std::uint64_t cycle) {
-    const auto gather = std::find_if(gathers_.begin(), gathers_.end(),
-                                     [&](const Gather& one) { return one.request == entry.request; });
+    const auto gather =
+        std::find_if(gathers_.begin(), gathers_.end(), [&](const Gather& one) { return one.request == entry.request; });
     if (entry.payload.get_response_status() != tlm::TLM_OK_RESPONSE)
         gather->request->response = entry.payload.get_response_status();
     gather->answer_at = std::max(gather->answer_at, cycle);
@@ -125,8 +124,8 @@ void BaseProtocolBridge::answered(Entry& entry, std::uint64_t cycle) {
     gathers_.erase(gather);
 }
 
-tlm::tlm_sync_enum BaseProtocolBridge::nb_transport_bw(tlm::tlm_generic_payload& payload,
-                                                       tlm::tlm_phase& phase, sc_core::sc_time& delay) {
+tlm::tlm_sync_enum BaseProtocolBridge::nb_transport_bw(tlm::tlm_generic_payload& payload, tlm::tlm_phase& phase,
+                                                       sc_core::sc_time& delay) {
     if (phase != tlm::END_REQ && phase != tlm::BEGIN_RESP)
         return tlm::TLM_ACCEPTED;  // no phase of the base protocol's: it may be ignored
     const std::uint64_t cycle = now() + clock_.cycles(delay);

@@ -68,8 +68,7 @@ class MemoryServer : public Unit {
         std::uint64_t answer_at = ~std::uint64_t{0};
     };
 
-    tlm::tlm_sync_enum nb_transport_fw(int id, MemoryRequest& request, tlm::tlm_phase& phase,
-                                       sc_core::sc_time& delay);
+    tlm::tlm_sync_enum nb_transport_fw(int id, MemoryRequest& request, tlm::tlm_phase& phase, sc_core::sc_time& delay);
     unsigned host_transport_dbg(tlm::tlm_generic_payload& payload);
     void admit(std::uint64_t cycle);
     void answer(const Served& served);

@@ -4,13 +4,9 @@
 
 namespace tessera {
 
-OffChipMemory::OffChipMemory(const sc_core::sc_module_name& name, CycleScheduler& clock,
-                             const OffChipTiming& timing, const StallParameters& stalls, std::uint64_t size,
-                             unsigned uncounted)
-    : MemoryServer(name, clock, timing.buffer, stalls),
-      storage_(0, size),
-      channel_(timing),
-      uncounted_(uncounted) {}
+OffChipMemory::OffChipMemory(const sc_core::sc_module_name& name, CycleScheduler& clock, const OffChipTiming& timing,
+                             const StallParameters& stalls, std::uint64_t size, unsigned uncounted)
+    : MemoryServer(name, clock, timing.buffer, stalls), storage_(0, size), channel_(timing), uncounted_(uncounted) {}
 
 unsigned OffChipMemory::counted(const MemoryRequest& request) const {
     return request.bytes() > uncounted_ ? request.bytes() - uncounted_ : request.bytes();

@@ -7,11 +7,8 @@
 namespace tessera {
 
 TableMemory::TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock,
-                         const datapath::TableLayout& layout, const MemoryTiming& timing,
-                         const StallParameters& stalls)
-    : MemoryServer(name, clock, timing.buffer, stalls),
-      storage_(layout.base, layout.bytes()),
-      ports_(timing, layout) {
+                         const datapath::TableLayout& layout, const MemoryTiming& timing, const StallParameters& stalls)
+    : MemoryServer(name, clock, timing.buffer, stalls), storage_(layout.base, layout.bytes()), ports_(timing, layout) {
     storage_.all();
 }
 

@@ -19,18 +19,15 @@ namespace tessera {
 /// Errors: a write gives TLM_COMMAND_ERROR_RESPONSE, an address outside TLM_ADDRESS_ERROR_RESPONSE.
 class TableMemory : public MemoryServer {
   public:
-    TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock,
-                const datapath::TableLayout& layout, const MemoryTiming& timing,
-                const StallParameters& stalls);
+    TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock, const datapath::TableLayout& layout,
+                const MemoryTiming& timing, const StallParameters& stalls);
 
     /// Entries read by transactions; reads through DMI are counted by the reader.
     std::uint64_t transactions() const { return transactions_; }
     std::uint64_t slots_taken() const { return ports_.slots_taken(); }
     std::uint64_t slots_per_cycle() const { return ports_.slots_per_cycle(); }
 
-    std::uint64_t occupied_cycles() const override {
-        return std::max(ports_.occupied_cycles(), cycles_held_up());
-    }
+    std::uint64_t occupied_cycles() const override { return std::max(ports_.occupied_cycles(), cycles_held_up()); }
     void trace_signals(Signals& signals) const override;
 
   private:

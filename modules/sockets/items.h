@@ -44,8 +44,7 @@ struct BasePoint {
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
         describe_tag(fields, item.tag);
         fields.position("p", item.p, "P");
-        fields.direction("n", item.n,
-                         "N; of an edge (N_i + N_j) / 2, not yet of unit length; of a normal N'");
+        fields.direction("n", item.n, "N; of an edge (N_i + N_j) / 2, not yet of unit length; of a normal N'");
         fields.texture("t", item.t, "t");
     }
 };
@@ -422,11 +421,10 @@ struct ItemTypes {
     }
 };
 /// The item of every stream: `StreamItems::for_each([](auto type) { using Item = typename decltype(type)::Item; ... })`.
-using StreamItems =
-    ItemTypes<datapath::Triangle, QueueLevel, TakenTriangle, GeometryOperands, BasePoint, DisplacedPoint,
-              ScreenPoint, ScreenCorner, TestOperands, TexCoordOperands, HeightOperands, NormalOperands,
-              ViewOperands, TexCoordResult, HeightResult, NormalResult, ViewResult, TestedEdge,
-              DecidedTriangle, TriangleToLight, LitTriangle>;
+using StreamItems = ItemTypes<datapath::Triangle, QueueLevel, TakenTriangle, GeometryOperands, BasePoint,
+                              DisplacedPoint, ScreenPoint, ScreenCorner, TestOperands, TexCoordOperands, HeightOperands,
+                              NormalOperands, ViewOperands, TexCoordResult, HeightResult, NormalResult, ViewResult,
+                              TestedEdge, DecidedTriangle, TriangleToLight, LitTriangle>;
 
 /// Whether a stream's payload describes its fields.
 template <class Item, class = void>

@@ -91,14 +91,12 @@ void MemoryPort::offer(tlm::tlm_command command, const std::uint64_t* addresses,
         return;
     const bool on_offer = std::exchange(on_offer_, false);
     if (status != tlm::TLM_UPDATED || phase != tlm::END_REQ)
-        stream_protocol_error(socket.name(), "BEGIN_REQ was answered by neither END_REQ nor TLM_ACCEPTED",
-                              clock_);
+        stream_protocol_error(socket.name(), "BEGIN_REQ was answered by neither END_REQ nor TLM_ACCEPTED", clock_);
     if (!on_offer)
         stream_protocol_error(socket.name(), "END_REQ by return for a request that was taken", clock_);
 }
 
-tlm::tlm_sync_enum MemoryPort::nb_transport_bw(MemoryRequest& request, tlm::tlm_phase& phase,
-                                               sc_core::sc_time& delay) {
+tlm::tlm_sync_enum MemoryPort::nb_transport_bw(MemoryRequest& request, tlm::tlm_phase& phase, sc_core::sc_time& delay) {
     const std::uint64_t cycle = clock_->cycle() + clock_->cycles(delay);
     clock_->wake_at(*unit_, cycle);
     if (phase == tlm::END_REQ) {

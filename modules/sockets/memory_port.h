@@ -65,9 +65,7 @@ class MemoryPort {
     };
 
     /// The entry at a byte address, zero-extended. Adds the memory's read time to `delay`.
-    std::uint64_t read(std::uint64_t address, sc_core::sc_time& delay) {
-        return Burst(*this, delay).read(address);
-    }
+    std::uint64_t read(std::uint64_t address, sc_core::sc_time& delay) { return Burst(*this, delay).read(address); }
 
     /// Timed mode. most_under_way: requests that may be unanswered at a time; most_entries: of one of them.
     void clocked_by(CycleScheduler& clock, CycleProcess& unit, std::size_t most_under_way,
@@ -144,8 +142,7 @@ class MemoryPort {
     void ask_for_direct_memory(MemoryRequest& request);
     void invalidate_direct_mem_ptr(sc_dt::uint64, sc_dt::uint64) { direct_bytes_ = 0; }
     void offer(tlm::tlm_command command, const std::uint64_t* addresses, unsigned count);
-    tlm::tlm_sync_enum nb_transport_bw(MemoryRequest& request, tlm::tlm_phase& phase,
-                                       sc_core::sc_time& delay);
+    tlm::tlm_sync_enum nb_transport_bw(MemoryRequest& request, tlm::tlm_phase& phase, sc_core::sc_time& delay);
 
     unsigned entry_bytes_;
     std::uint64_t mask_;

@@ -46,8 +46,7 @@ class Reader : public datapath::FieldReader {
 
 /// False: a value does not fit its field, and its highest bits are lost.
 template <class Item>
-[[nodiscard]] bool pack_item(const Item& item, const datapath::Formats& formats, int tag_bits,
-                             PackedItem& packed) {
+[[nodiscard]] bool pack_item(const Item& item, const datapath::Formats& formats, int tag_bits, PackedItem& packed) {
     packed::Writer writer(packed);
     describe_item(writer, item, formats, tag_bits);
     writer.finish();

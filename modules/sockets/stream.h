@@ -23,8 +23,7 @@ struct Stream {
 };
 
 /// Reports a breach of that protocol: an SC_ERROR that names the socket, the rule and, with a clock, the cycle.
-[[noreturn]] void stream_protocol_error(const char* socket, const char* rule,
-                                        const CycleScheduler* clock = nullptr);
+[[noreturn]] void stream_protocol_error(const char* socket, const char* rule, const CycleScheduler* clock = nullptr);
 
 /// The module at the other end of a bound socket or port, if the module itself or one of its sockets implements the
 /// interface there; else null (TLM's convenience sockets).

@@ -35,8 +35,7 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
     }
 
     /// Timed mode: `unit` is called when an item arrives. depth: at least 1. Call once.
-    void clocked_by(CycleScheduler& clock, CycleProcess& unit, std::size_t depth,
-                    const StallParameters& stalls) {
+    void clocked_by(CycleScheduler& clock, CycleProcess& unit, std::size_t depth, const StallParameters& stalls) {
         clock_ = &clock;
         unit_ = &unit;
         unit.add_input(*this);
@@ -87,8 +86,7 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
         (*this)->nb_transport_bw(payload, phase, delay);
     }
 
-    tlm::tlm_sync_enum nb_transport_fw(Payload& payload, tlm::tlm_phase& phase,
-                                       sc_core::sc_time& delay) override {
+    tlm::tlm_sync_enum nb_transport_fw(Payload& payload, tlm::tlm_phase& phase, sc_core::sc_time& delay) override {
         if (phase != tlm::BEGIN_REQ)
             stream_protocol_error(this->name(), "a phase other than BEGIN_REQ", clock_);
         if (!pending_.empty())

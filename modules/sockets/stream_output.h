@@ -76,8 +76,7 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
         if (status == tlm::TLM_UPDATED && phase == tlm::END_REQ)
             return true;
         if (status != tlm::TLM_ACCEPTED)
-            stream_protocol_error(this->name(), "BEGIN_REQ was answered by neither END_REQ nor TLM_ACCEPTED",
-                                  clock_);
+            stream_protocol_error(this->name(), "BEGIN_REQ was answered by neither END_REQ nor TLM_ACCEPTED", clock_);
         on_offer_ = &sent;
         return false;
     }
@@ -114,8 +113,7 @@ class StreamOutput : public tlm::tlm_initiator_socket<32, Stream<Payload>>,
         }
     }
 
-    tlm::tlm_sync_enum nb_transport_bw(Payload& payload, tlm::tlm_phase& phase,
-                                       sc_core::sc_time& delay) override {
+    tlm::tlm_sync_enum nb_transport_bw(Payload& payload, tlm::tlm_phase& phase, sc_core::sc_time& delay) override {
         if (on_offer_ != &payload || phase != tlm::END_REQ)
             stream_protocol_error(this->name(), "a phase other than the END_REQ that was due", clock_);
         on_offer_ = nullptr;

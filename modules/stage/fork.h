@@ -81,8 +81,7 @@ class Fork {
     template <class Payload>
     class To final : public Branch {
       public:
-        To(StreamOutput<Payload>& output, Payload (*select)(const Item&))
-            : output_(output), select_(select) {}
+        To(StreamOutput<Payload>& output, Payload (*select)(const Item&)) : output_(output), select_(select) {}
 
         bool deliver(Item& item) override {
             if constexpr (std::is_same_v<Payload, Item>) {
@@ -101,9 +100,7 @@ class Fork {
                 output_.transport(selected, delay);
             }
         }
-        const sc_core::sc_object* blocked_by() const override {
-            return output_.free() ? nullptr : output_.consumer();
-        }
+        const sc_core::sc_object* blocked_by() const override { return output_.free() ? nullptr : output_.consumer(); }
 
       private:
         StreamOutput<Payload>& output_;

@@ -137,8 +137,7 @@ class Signals {
     bool declaring_ = true;
     bool running_ = false;
     std::vector<Declared> declared_;
-    std::size_t next_ =
-        0;  // of these: where the search begins, for calls mostly come in the order of declaration
+    std::size_t next_ = 0;  // of these: where the search begins, for calls mostly come in the order of declaration
 };
 
 }  // namespace tessera

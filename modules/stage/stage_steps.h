@@ -61,8 +61,8 @@ struct Stage<In, Out>::Machinery {
 };
 
 template <class In, class Out>
-Stage<In, Out>::Stage(const sc_core::sc_module_name& name, const UnitContext& context,
-                      const UnitTiming& timing, unsigned servers, unsigned memory_latency)
+Stage<In, Out>::Stage(const sc_core::sc_module_name& name, const UnitContext& context, const UnitTiming& timing,
+                      unsigned servers, unsigned memory_latency)
     : Unit(name, context.clock),
       timing_(timing),
       latency_(clock_.period() * timing.latency),
@@ -102,8 +102,7 @@ template <class In, class Out>
 void Stage<In, Out>::b_transport(In& item, sc_core::sc_time& delay) {
     if (may_wait_) {
         if (!may_start(item))
-            SC_REPORT_ERROR("tessera/stage",
-                            (std::string(name()) + ": an item came before what it waits for").c_str());
+            SC_REPORT_ERROR("tessera/stage", (std::string(name()) + ": an item came before what it waits for").c_str());
         delay = std::max(delay, may_start_after(item));
     }
     Out result = read_and_process(item, delay);

@@ -50,8 +50,7 @@ class Unit : public CycleProcess, public sc_core::sc_module {
 
 /// occupied_cycles() of a unit that holds one item at a time and sends it on in parts: the first a latency after its
 /// arrival, each at least an interval after the last.
-constexpr std::uint64_t one_at_a_time_cycles(const UnitTiming& timing, std::uint64_t items,
-                                             std::uint64_t parts) {
+constexpr std::uint64_t one_at_a_time_cycles(const UnitTiming& timing, std::uint64_t items, std::uint64_t parts) {
     const std::uint64_t first = timing.latency > timing.interval ? timing.latency : timing.interval;
     return items * first + (parts - items) * timing.interval;
 }

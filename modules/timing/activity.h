@@ -21,8 +21,7 @@ constexpr std::size_t states = 4;
 class ActivityObserver {
   public:
     /// [begin, end); by: the module that blocks or is waited for; may be null.
-    virtual void stretch(State state, const sc_core::sc_object* by, std::uint64_t begin,
-                         std::uint64_t end) = 0;
+    virtual void stretch(State state, const sc_core::sc_object* by, std::uint64_t begin, std::uint64_t end) = 0;
     virtual ~ActivityObserver() = default;
 };
 

@@ -13,8 +13,7 @@ sc_core::sc_time clock_period(const char* instance, unsigned picoseconds) {
         (steps_a_second == 0 || picoseconds % (picoseconds_a_second / steps_a_second) != 0)) {
         const std::string message =
             std::string(instance) + ": a clock period of " + std::to_string(picoseconds) +
-            " ps is no multiple of SystemC's time resolution, " +
-            sc_core::sc_get_time_resolution().to_string() +
+            " ps is no multiple of SystemC's time resolution, " + sc_core::sc_get_time_resolution().to_string() +
             "; choose another period, or call sc_set_time_resolution(1, SC_PS) before anything is built";
         SC_REPORT_ERROR("tessera/clock", message.c_str());
     }
@@ -165,8 +164,7 @@ void CycleScheduler::tick() {
     } else {
         scheduled_ = true;
         const std::uint64_t cycles = next_tick_ - cycle_;
-        tick_event_.notify(cycles < delays_.size() ? delays_[cycles]
-                                                   : sc_core::sc_time::from_value(cycles * period_));
+        tick_event_.notify(cycles < delays_.size() ? delays_[cycles] : sc_core::sc_time::from_value(cycles * period_));
     }
 }
 

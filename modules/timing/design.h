@@ -47,15 +47,13 @@ struct Design {
 #ifdef NDEBUG
     bool packed_streams = false;
 #else
-    bool packed_streams =
-        true;  ///< each item goes through its packed form: slow, proves that the form is complete
+    bool packed_streams = true;  ///< each item goes through its packed form: slow, proves that the form is complete
 #endif
 };
 
 /// Register stages of a pipeline, all servers together. further_stages: cycles an item spends outside (in a memory)
 /// while others follow it.
-constexpr unsigned register_stages(const UnitTiming& timing, unsigned servers = 1,
-                                   unsigned further_stages = 0) {
+constexpr unsigned register_stages(const UnitTiming& timing, unsigned servers = 1, unsigned further_stages = 0) {
     return servers * std::max(1u, (timing.latency + further_stages + timing.interval - 1) / timing.interval);
 }
 

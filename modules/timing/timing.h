@@ -40,9 +40,8 @@ struct Timing {
     UnitTiming calculate_new_u{1, 1, 1};
     UnitTiming tex_coord_test{1, 1, 1};
     UnitTiming summed_height_test{3, 1, 1};  ///< differences, addresses, compare; the table reads come on top
-    UnitTiming normal_test{9, 1, 1};  ///< normalise, bump, normalise, compare; the map read comes on top
-    unsigned highlight_test_latency =
-        1;  ///< N'.H: on top of the Normal Test's, in a design with a Highlight Test
+    UnitTiming normal_test{9, 1, 1};         ///< normalise, bump, normalise, compare; the map read comes on top
+    unsigned highlight_test_latency = 1;     ///< N'.H: on top of the Normal Test's, in a design with a Highlight Test
     UnitTiming view_test{1, 1, 1};
     UnitTiming pass_or_tessellate{1, 1, 8};  ///< buffer: triangles of which one branch has arrived
     UnitTiming tessellation{1, 1, 1};

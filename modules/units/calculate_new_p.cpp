@@ -14,8 +14,7 @@ CalculateNewP::CalculateNewP(const sc_core::sc_module_name& name, const UnitCont
 BasePoint CalculateNewP::process(const GeometryOperands& part, const Entries&) {
     if (!part.tag.is_edge())
         return {part.tag, part.p_i, part.n_i, part.t_i};
-    return {part.tag, midpoint(part.p_i, part.p_j), midpoint(part.n_i, part.n_j),
-            midpoint(part.t_i, part.t_j)};
+    return {part.tag, midpoint(part.p_i, part.p_j), midpoint(part.n_i, part.n_j), midpoint(part.t_i, part.t_j)};
 }
 
 }  // namespace tessera

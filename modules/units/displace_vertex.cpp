@@ -27,10 +27,9 @@ DisplacedPoint DisplaceVertex::process(const BasePoint& point, const Entries& co
     DisplacedPoint displaced{point, {}};
     if (point.tag.is_normal())
         return displaced;
-    const datapath::Direction normal =
-        point.tag.is_edge() ? normalise(point.n, formats, saturations_) : point.n;
-    displaced.displaced = displace(point.p, normal, static_cast<std::uint32_t>(codes[0]),
-                                   registers_.displacement, formats, saturations_);
+    const datapath::Direction normal = point.tag.is_edge() ? normalise(point.n, formats, saturations_) : point.n;
+    displaced.displaced =
+        displace(point.p, normal, static_cast<std::uint32_t>(codes[0]), registers_.displacement, formats, saturations_);
     return displaced;
 }
 

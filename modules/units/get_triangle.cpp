@@ -215,9 +215,8 @@ std::string GetTriangle::describe_contents() const {
     if (sending_)
         text = "triangle " + std::to_string(taken_.origin.pass) + ", not all of it sent";
     if (!from_host.empty())
-        text =
-            listed(text, below_watermark_ ? "a host triangle"
-                                          : "a host triangle it may not take: the queue is at its watermark");
+        text = listed(text, below_watermark_ ? "a host triangle"
+                                             : "a host triangle it may not take: the queue is at its watermark");
     return listed(text, from_triangle_queue.empty() ? "" : "a triangle from the queue");
 }
 

@@ -30,8 +30,7 @@ class GetTriangle : public Unit {
     StreamInput<datapath::Triangle> from_triangle_queue{"from_triangle_queue"};
     StreamInput<QueueLevel> queue_level{"queue_level"};
     StreamOutput<GeometryOperands> to_calculate_new_p{"to_calculate_new_p"};
-    sc_core::sc_vector<StreamOutput<TestOperands>>
-        to_tessellation_tests;  ///< one per Tessellation Tests unit
+    sc_core::sc_vector<StreamOutput<TestOperands>> to_tessellation_tests;  ///< one per Tessellation Tests unit
     StreamOutput<TakenTriangle> to_pass_or_tessellate{"to_pass_or_tessellate"};
 
     GetTriangle(const sc_core::sc_module_name& name, const UnitContext& context);
@@ -65,8 +64,8 @@ class GetTriangle : public Unit {
     void b_transport_level(QueueLevel& level, sc_core::sc_time& delay);
     void send_whole(const datapath::Triangle& triangle, sc_core::sc_time& delay);
     template <class Item>
-    void send_whole(Branch<Item>& branch, const TakenTriangle& taken, Parts parts,
-                    const sc_core::sc_time& start, sc_core::sc_time& delay);
+    void send_whole(Branch<Item>& branch, const TakenTriangle& taken, Parts parts, const sc_core::sc_time& start,
+                    sc_core::sc_time& delay);
     TakenTriangle taken(const datapath::Triangle& triangle);
     void step() override;
     bool begin(std::uint64_t cycle);

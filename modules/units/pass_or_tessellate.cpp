@@ -220,9 +220,8 @@ const sc_core::sc_object* PassOrTessellate::late_branch() const {
     }
     const Incomplete& first = incomplete_.oldest();
     if (first.geometry_left == 0)
-        return tests_[tests_.size() == 1
-                          ? 0
-                          : static_cast<std::size_t>(__builtin_ctz(first.tests_left)) - first_edge_part];
+        return tests_[tests_.size() == 1 ? 0
+                                         : static_cast<std::size_t>(__builtin_ctz(first.tests_left)) - first_edge_part];
     return first.tests_left == 0 ? transform_ : nullptr;
 }
 
@@ -292,8 +291,7 @@ void PassOrTessellate::decide_edges(datapath::TrianglePass& pass) {
     for (unsigned k = 0; k < 3; ++k) {
         const datapath::EdgeTests& edge = pass.edges[k];
         if (!(edge.texture == pass.new_vertex[k].texture))
-            SC_REPORT_ERROR("tessera/pass_or_tessellate",
-                            "the two branches disagree on the midpoint of an edge");
+            SC_REPORT_ERROR("tessera/pass_or_tessellate", "the two branches disagree on the midpoint of an edge");
         const unsigned wanted = edge.tests & datapath::requesting_tests;
         if (datapath::split_decision(edge.tests)) {
             split |= 1u << k;

@@ -19,9 +19,8 @@ Tessellation::Tessellation(const sc_core::sc_module_name& name, const UnitContex
 
 void Tessellation::b_transport(DecidedTriangle& decided, sc_core::sc_time& delay) {
     delay += latency_;
-    const int children =
-        tessellate(decided.pass, registers_.triangulation, registers_.formats, saturations_,
-                   [&](datapath::Triangle& child) { to_triangle_queue.transport(child, delay); });
+    const int children = tessellate(decided.pass, registers_.triangulation, registers_.formats, saturations_,
+                                    [&](datapath::Triangle& child) { to_triangle_queue.transport(child, delay); });
     ++made_into_[static_cast<std::size_t>(children)];
 }
 
@@ -60,8 +59,8 @@ void Tessellation::step() {
 std::string Tessellation::describe_contents() const {
     std::string text;
     if (made_ > 0)
-        text = std::to_string(made_ - sent_ + (to_triangle_queue.free() ? 0u : 1u)) + " of " +
-               std::to_string(made_) + " children of a triangle";
+        text = std::to_string(made_ - sent_ + (to_triangle_queue.free() ? 0u : 1u)) + " of " + std::to_string(made_) +
+               " children of a triangle";
     return listed(text, from_pass_or_tessellate.empty() ? "" : "a triangle that waits");
 }
 

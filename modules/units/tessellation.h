@@ -29,9 +29,7 @@ class Tessellation : public Unit {
 
     /// Triangles split into 2, 3, 4 children; index 1: passed unchanged.
     const std::array<std::uint64_t, 5>& made_into() const { return made_into_; }
-    std::uint64_t children() const {
-        return made_into_[1] + 2 * made_into_[2] + 3 * made_into_[3] + 4 * made_into_[4];
-    }
+    std::uint64_t children() const { return made_into_[1] + 2 * made_into_[2] + 3 * made_into_[3] + 4 * made_into_[4]; }
 
     const datapath::Saturations& saturations() const { return saturations_; }
 

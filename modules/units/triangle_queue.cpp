@@ -14,10 +14,9 @@ constexpr unsigned triangles_between_waits = 1024;
 
 TriangleQueue::TriangleQueue(const sc_core::sc_module_name& name, const UnitContext& context)
     : Unit(name, context.clock),
-      off_chip_memory(
-          "off_chip_memory",
-          datapath::packed_triangle_bytes(context.registers.formats) + datapath::packed_triangle_tag_bytes,
-          false),
+      off_chip_memory("off_chip_memory",
+                      datapath::packed_triangle_bytes(context.registers.formats) + datapath::packed_triangle_tag_bytes,
+                      false),
       registers_(context.registers),
       design_(context.design.queue),
       timing_(context.timing().triangle_queue),
@@ -130,8 +129,7 @@ bool TriangleQueue::put(const datapath::Triangle& triangle) {
 void TriangleQueue::take_back() {
     while (off_chip_memory.answered()) {
         if (off_chip_memory.answer_is_read()) {
-            const datapath::Triangle triangle =
-                datapath::unpack_triangle(off_chip_memory.answer(), registers_.formats);
+            const datapath::Triangle triangle = datapath::unpack_triangle(off_chip_memory.answer(), registers_.formats);
             if (design_.order == TriangleOrder::fifo)
                 store_.push(triangle);
             else
@@ -206,8 +204,7 @@ std::string TriangleQueue::describe_contents() const {
         text += ", " + std::to_string(leaving_.size()) + " of them on the way out";
     if (from_tessellation.empty())
         return text;
-    const std::string capacity =
-        design_.capacity == 0 ? "" : " (capacity " + std::to_string(design_.capacity) + ")";
+    const std::string capacity = design_.capacity == 0 ? "" : " (capacity " + std::to_string(design_.capacity) + ")";
     return listed(text, "no place for the next" + capacity, "; ");
 }
 

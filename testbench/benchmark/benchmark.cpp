@@ -32,8 +32,7 @@ MachineSetup benchmark_setup() {
 }
 
 void report(benchmark::State& state, std::uint64_t edges, std::size_t triangles) {
-    state.counters["edges_per_second"] =
-        benchmark::Counter(static_cast<double>(edges), benchmark::Counter::kIsRate);
+    state.counters["edges_per_second"] = benchmark::Counter(static_cast<double>(edges), benchmark::Counter::kIsRate);
     state.counters["triangles"] = static_cast<double>(triangles);
 }
 
@@ -76,8 +75,7 @@ void one_frame(benchmark::State& state, Simulation& simulation) {
     }
     report(state, edges_so_far() - before, simulation.monitor.mesh.triangles.size());
     if (timed)
-        state.counters["cycles"] =
-            benchmark::Counter(static_cast<double>(cycles), benchmark::Counter::kAvgIterations);
+        state.counters["cycles"] = benchmark::Counter(static_cast<double>(cycles), benchmark::Counter::kAvgIterations);
 }
 
 MachineSetup in_timed_mode(MachineSetup setup) {

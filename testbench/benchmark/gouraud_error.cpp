@@ -63,8 +63,8 @@ class TrueNormals {
 
     glm::dvec3 at(std::uint32_t base, const glm::dvec2& t) const {
         const auto& v = setup_.base_triangles[base].vertices;
-        const TextureTriangle triangle({dequantise_.texture(v[0].texture), dequantise_.texture(v[1].texture),
-                                        dequantise_.texture(v[2].texture)});
+        const TextureTriangle triangle(
+            {dequantise_.texture(v[0].texture), dequantise_.texture(v[1].texture), dequantise_.texture(v[2].texture)});
         const glm::dvec3 w = triangle.flat() ? glm::dvec3(1, 0, 0) : triangle.weights(t);
         glm::dvec3 normal(0), tangent(0);
         for (int k = 0; k < 3; ++k) {
@@ -72,8 +72,8 @@ class TrueNormals {
             normal += w[k] * dequantise_.direction(corner.normal);
             tangent += w[k] * dequantise_.direction(corner.tangent);
         }
-        return golden::bump(golden::normalise(normal).direction, golden::normalise(tangent).direction,
-                            v[0].handedness, inputs_.map.normal(inputs_.map.texel(t)))
+        return golden::bump(golden::normalise(normal).direction, golden::normalise(tangent).direction, v[0].handedness,
+                            inputs_.map.normal(inputs_.map.texel(t)))
             .direction;
     }
 
@@ -91,9 +91,7 @@ GouraudError measure_gouraud(const EmittedMesh& mesh, const MachineSetup& setup,
     const double border = std::cos(highlight.angle * degree);
     const Dequantise dequantise(setup.registers.formats);
     const TrueNormals normals(setup, inputs);
-    const auto cosine = [&](const glm::dvec3& n) {
-        return std::max(0.0, glm::dot(n, highlight.half_vector));
-    };
+    const auto cosine = [&](const glm::dvec3& n) { return std::max(0.0, glm::dot(n, highlight.half_vector)); };
     GouraudError result;
     double squares = 0, highlight_squares = 0;
     for (const EmittedTriangle& triangle : mesh.triangles) {
@@ -124,9 +122,7 @@ GouraudError measure_gouraud(const EmittedMesh& mesh, const MachineSetup& setup,
             result.other_triangles += 1 - share;
         }
     }
-    const auto over = [](double sum, std::uint64_t count) {
-        return count == 0 ? 0 : sum / static_cast<double>(count);
-    };
+    const auto over = [](double sum, std::uint64_t count) { return count == 0 ? 0 : sum / static_cast<double>(count); };
     result.rms = std::sqrt(over(squares, result.texels));
     result.highlight_rms = std::sqrt(over(highlight_squares, result.highlight_texels));
     result.highlight_triangles = over(result.highlight_triangles, result.highlight_texels);

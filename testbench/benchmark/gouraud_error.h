@@ -18,9 +18,8 @@ struct Highlight {
 /// How far specular light interpolated over each emitted triangle from its three vertices (Gouraud) lies from that of
 /// each texel's own displaced normal. Full scale: the light's intensity where N' = H.
 struct GouraudError {
-    double rms = 0;  ///< over the base mesh's texels, all weighing alike
-    double highlight_rms =
-        0;  ///< over those of them whose own normal lies in the highlight; 0: there are none
+    double rms = 0;            ///< over the base mesh's texels, all weighing alike
+    double highlight_rms = 0;  ///< over those of them whose own normal lies in the highlight; 0: there are none
     double largest = 0;
     std::uint64_t texels = 0, highlight_texels = 0;
     double highlight_triangles = 0;  ///< emitted triangles a texel in the highlight: their density there

@@ -75,8 +75,8 @@ class Study {
 
 void print_row(const char* what, double threshold, const Row& row) {
     const GouraudError& e = row.error;
-    fmt::print("| {} | {:.4f} | {} | {:.4f} | {:.4f} | {:.4f} | {:.3f} | {:.3f} |\n", what, threshold,
-               row.triangles, e.rms, e.highlight_rms, e.largest, e.highlight_triangles, e.other_triangles);
+    fmt::print("| {} | {:.4f} | {} | {:.4f} | {:.4f} | {:.4f} | {:.3f} | {:.3f} |\n", what, threshold, row.triangles,
+               e.rms, e.highlight_rms, e.largest, e.highlight_triangles, e.other_triangles);
 }
 
 void print_study(const Study& study) {

@@ -46,9 +46,8 @@ void check_job_file(const BakeRequest& request, const fs::path& job_file) {
     for (const fs::path& read : {request.surface, request.mesh_job}) {
         std::error_code absent;
         if (!read.empty() && fs::equivalent(job_file, read, absent))
-            throw InputError(
-                fmt::format("--output {}: the job {} beside it would overwrite {}: choose another name",
-                            request.output.string(), job_file.filename().string(), read.string()));
+            throw InputError(fmt::format("--output {}: the job {} beside it would overwrite {}: choose another name",
+                                         request.output.string(), job_file.filename().string(), read.string()));
     }
 }
 
@@ -59,11 +58,10 @@ std::string share(std::size_t texels, const BakedMap& map) {
 
 std::string summary(const BakedMap& map, const EncodedMap& file) {
     const auto [low, high] = std::minmax_element(map.values.begin(), map.values.end());
-    std::string text =
-        fmt::format("  map               {} x {} texels, displacements {:.6g} .. {:.6g} model units\n",
-                    map.width, map.height, *low, *high);
-    text += file.step > 0 ? fmt::format("  rounding          16 bits, to half a step of {:.3g} model units\n",
-                                        file.step)
+    std::string text = fmt::format("  map               {} x {} texels, displacements {:.6g} .. {:.6g} model units\n",
+                                   map.width, map.height, *low, *high);
+    text += file.step > 0
+                ? fmt::format("  rounding          16 bits, to half a step of {:.3g} model units\n", file.step)
             : *low < *high ? "  rounding          to 32-bit floats\n"
                            : "  rounding          none: all displacements are the same\n";
     if (map.absent > 0)
@@ -74,9 +72,8 @@ std::string summary(const BakedMap& map, const EncodedMap& file) {
         text += fmt::format("  no base triangle  at {}: their nearest neighbours' values there\n",
                             share(map.uncovered, map));
     if (map.overlaps > 0)
-        text +=
-            fmt::format("  note: {} lie in several base triangles: the first one's surface is in the map\n",
-                        share(map.overlaps, map));
+        text += fmt::format("  note: {} lie in several base triangles: the first one's surface is in the map\n",
+                            share(map.overlaps, map));
     text += fmt::format("  for a job         displacement.scale = {}, displacement.bias = {}\n",
                         toml_number(file.scale), toml_number(file.bias));
     return text;
@@ -109,17 +106,15 @@ ExitCode bake_command(const BakeRequest& request, const fs::path& data_folder) {
     validate(job);
     require_inputs_stay(job);
     const std::string job_text = dump_short_job(
-        job, folder,
-        fmt::format("Written by `tessera bake` from {}.", printable(request.surface.filename().string())));
+        job, folder, fmt::format("Written by `tessera bake` from {}.", printable(request.surface.filename().string())));
 
     AtomicSet files;
     files.make_folder(folder);
     write_file(request.output, file.bytes);
     write_file(job_file, job_text);
     files.commit();
-    fmt::print("{}  {} and {}: tessera run {}\n", summary(map, file),
-               request.output.lexically_normal().string(), job_file.filename().string(),
-               job_file.lexically_normal().string());
+    fmt::print("{}  {} and {}: tessera run {}\n", summary(map, file), request.output.lexically_normal().string(),
+               job_file.filename().string(), job_file.lexically_normal().string());
     return ExitCode::fine;
 }
 

@@ -23,22 +23,20 @@ MapFormat format_of(const std::filesystem::path& output) {
         return MapFormat::png;
     if (ending == ".exr")
         return MapFormat::exr;
-    throw InputError(fmt::format(
-        "--output {}: maps are written as FILE.pgm, FILE.png (16 bit) or FILE.exr (float)", output.string()));
+    throw InputError(fmt::format("--output {}: maps are written as FILE.pgm, FILE.png (16 bit) or FILE.exr (float)",
+                                 output.string()));
 }
 
 }  // namespace
 
 void BakeOptions::add_to(CLI::App& bake) {
     bake.add_option("SURFACE", surface_, "surface file (TOML): [quadric], [nurbs] or [bezier]")->required();
-    bake.add_option(
-            "--output", output_,
-            "the map, FILE.pgm or FILE.png (16 bit) or FILE.exr (float); FILE.job.toml is written beside it")
+    bake.add_option("--output", output_,
+                    "the map, FILE.pgm or FILE.png (16 bit) or FILE.exr (float); FILE.job.toml is written beside it")
         ->required();
     bake.add_option("--size", size_, "WIDTHxHEIGHT of the map in texels; default: 256x256");
     mesh_given_ = bake.add_option(
-        "--mesh", mesh_,
-        "JOB whose base mesh the surface lies over, along its normals; default: the plane z = 0");
+        "--mesh", mesh_, "JOB whose base mesh the surface lies over, along its normals; default: the plane z = 0");
 }
 
 BakeRequest BakeOptions::request() const {
@@ -57,8 +55,8 @@ BakeRequest BakeOptions::request() const {
     const auto allowed = [](int side) { return side >= 1 && side <= largest_map_side; };
     if (!allowed(request.width) || !allowed(request.height))
         throw InputError(
-            fmt::format("--size {}: expected WIDTHxHEIGHT in texels, each from 1 to {}, as in --size 256x256",
-                        size_, largest_map_side));
+            fmt::format("--size {}: expected WIDTHxHEIGHT in texels, each from 1 to {}, as in --size 256x256", size_,
+                        largest_map_side));
     return request;
 }
 

@@ -27,17 +27,14 @@ class TraceOptions {
     void add_to(CLI::App& run) {
         const std::string group = "Traces (mode = \"timed\")";
         run.add_flag("--vcd", vcd_, "write waveforms, trace.vcd: as --set output.vcd=true")->group(group);
-        run.add_flag("--fst", fst_, "and compress them, trace.fst (with vcd2fst of the package gtkwave)")
-            ->group(group);
-        run.add_flag("--timeline", timeline_,
-                     "write activity per unit, timeline.json: as --set output.timeline=true")
+        run.add_flag("--fst", fst_, "and compress them, trace.fst (with vcd2fst of the package gtkwave)")->group(group);
+        run.add_flag("--timeline", timeline_, "write activity per unit, timeline.json: as --set output.timeline=true")
             ->group(group);
         run.add_option("--trace", window_,
                        "cycles to trace, FROM:TO: as --set output.trace_from=FROM --set output.trace_to=TO")
             ->group(group);
-        run.add_option(
-               "--trace-units", units_,
-               "waveforms of units whose name contains one of these words: as --set output.trace_units")
+        run.add_option("--trace-units", units_,
+                       "waveforms of units whose name contains one of these words: as --set output.trace_units")
             ->group(group);
     }
 
@@ -75,24 +72,21 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     Command command;
     std::string data = default_data_folder().lexically_normal().string();
 
-    CLI::App app{
-        "tessera: a SystemC model of hardware that renders displacement maps by adaptive tessellation"};
+    CLI::App app{"tessera: a SystemC model of hardware that renders displacement maps by adaptive tessellation"};
     app.set_version_flag("--version", TESSERA_VERSION);
     app.require_subcommand(0, 1);  // a missing verb is reported below
     app.footer(
         "exit codes: 0 fine, 1 conformance or an invariant violated, 2 bad input or usage, 3 deadlock,\n"
         "            4 a stated resource limit");
 
-    CLI::App* const run =
-        app.add_subcommand("run", "run a job: tessellate, check against the golden model, report");
-    CLI::Option* const job = run->add_option(
-        "JOB", command.job_file, "job file (TOML); default: the half donut on the plane of 18 triangles");
+    CLI::App* const run = app.add_subcommand("run", "run a job: tessellate, check against the golden model, report");
+    CLI::Option* const job = run->add_option("JOB", command.job_file,
+                                             "job file (TOML); default: the half donut on the plane of 18 triangles");
     run->add_option("--set", command.settings, "set one key of the job, as in --set tests.view_threshold=2")
         ->take_all()
         ->allow_extra_args(false);
     run->add_option("--data", data, "folder of `data:` paths in the job; default: $TESSERA_DATA");
-    run->add_flag("--dump-config", command.dump_config,
-                  "print the effective job with every key documented, then exit");
+    run->add_flag("--dump-config", command.dump_config, "print the effective job with every key documented, then exit");
 
     TraceOptions traces;
     traces.add_to(*run);
@@ -108,15 +102,14 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     render_options.add_to(*render);
     render->add_option("--data", data, "folder of `data:` paths in the run's job; default: $TESSERA_DATA");
 
-    CLI::App* const bake = app.add_subcommand(
-        "bake", "sample a curved surface, a quadric or NURBS patch, into a displacement map");
+    CLI::App* const bake =
+        app.add_subcommand("bake", "sample a curved surface, a quadric or NURBS patch, into a displacement map");
     BakeOptions bake_options;
     bake_options.add_to(*bake);
-    bake->add_option("--data", data,
-                     "folder of `data:` paths in the base mesh's job; default: $TESSERA_DATA");
+    bake->add_option("--data", data, "folder of `data:` paths in the base mesh's job; default: $TESSERA_DATA");
 
-    CLI::App* const tune = app.add_subcommand(
-        "tune", "find a job's thresholds for a number of triangles or a bound on the error");
+    CLI::App* const tune =
+        app.add_subcommand("tune", "find a job's thresholds for a number of triangles or a bound on the error");
     TuneOptions tune_options;
     tune_options.add_to(*tune);
     tune->add_option("--data", data, "folder of `data:` paths in the job; default: $TESSERA_DATA");
@@ -127,8 +120,7 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     widths_options.add_to(*widths);
     widths->add_option("--data", data, "folder of `data:` paths in the job; default: $TESSERA_DATA");
 
-    CLI::App* const keys =
-        app.add_subcommand("keys", "print every key of a job file: unit, default, range, meaning");
+    CLI::App* const keys = app.add_subcommand("keys", "print every key of a job file: unit, default, range, meaning");
 
     try {
         app.parse(argc, argv);

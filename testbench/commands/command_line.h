@@ -24,7 +24,7 @@ struct Command {
     BakeRequest bake;                   ///< Verb::bake
     TuneOrder tune;                     ///< Verb::tune
     WidthsOrder widths;                 ///< Verb::widths
-    std::string trace_option;  ///< --trace or --trace-units, if given: it requires --vcd, --fst or --timeline
+    std::string trace_option;           ///< --trace or --trace-units, if given: it requires --vcd, --fst or --timeline
 };
 
 /// Reads the command line. Prints help or version itself; the result is then empty. Throws InputError on wrong usage.

@@ -50,8 +50,7 @@ std::string frames_csv(const std::vector<FrameRow>& rows) {
         text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", row.name, row.scale, row.triangles,
                             row.edges_tested, row.edges_split, row.cycles ? std::to_string(*row.cycles) : "",
                             row.sent.base_mesh, row.sent.displacement_map, row.sent.normal_map,
-                            row.sent.summed_height_table, row.sent.registers, row.sent.total(),
-                            row.tessellated_bytes);
+                            row.sent.summed_height_table, row.sent.registers, row.sent.total(), row.tessellated_bytes);
     return text;
 }
 
@@ -73,12 +72,11 @@ std::string frames_traffic(const std::vector<FrameRow>& rows) {
         all += row.sent.total();
         tessellated += row.tessellated_bytes;
     }
-    const auto most = std::max_element(
-        rows.begin() + 1, rows.end(),
-        [](const FrameRow& a, const FrameRow& b) { return a.sent.total() < b.sent.total(); });
+    const auto most = std::max_element(rows.begin() + 1, rows.end(), [](const FrameRow& a, const FrameRow& b) {
+        return a.sent.total() < b.sent.total();
+    });
     std::string text = fmt::format("  {:<26}{}\n", "sent for the first frame", traffic_text(rows[0].sent));
-    text +=
-        fmt::format("  {:<26}{} (the most, {})\n", "for a later one", traffic_text(most->sent), most->name);
+    text += fmt::format("  {:<26}{} (the most, {})\n", "for a later one", traffic_text(most->sent), most->name);
     text += fmt::format(
         "  {:<26}{} bytes; the tessellated meshes, indexed, would be {}: the host sends {:.2f} times as "
         "much\n",

@@ -16,8 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 [[noreturn]] void refuse(const std::string& key, const fs::path& folder, const std::string& why) {
-    throw InputError(
-        fmt::format("{} = \"{}\": cannot write there: {}; choose another", key, folder.string(), why));
+    throw InputError(fmt::format("{} = \"{}\": cannot write there: {}; choose another", key, folder.string(), why));
 }
 
 bool is_there(const fs::path& path) {

@@ -19,8 +19,7 @@ const Progress::Clock::time_point program_began = Progress::Clock::now();
 }  // namespace
 
 Progress::Progress(std::string before)
-    : Progress(std::move(before),
-               {stderr, isatty(STDERR_FILENO) != 0, program_began, &Progress::Clock::now}) {
+    : Progress(std::move(before), {stderr, isatty(STDERR_FILENO) != 0, program_began, &Progress::Clock::now}) {
     if (!display_.terminal)
         begin_to_say();
 }
@@ -60,8 +59,7 @@ void Progress::write(const std::string& text) {
 
 void Progress::report_until_stopped() {
     std::unique_lock lock(mutex_);
-    while (
-        !stop_.wait_until(lock, display_.begin + (reported_ + 1) * between_lines, [&] { return stopped_; }))
+    while (!stop_.wait_until(lock, display_.begin + (reported_ + 1) * between_lines, [&] { return stopped_; }))
         report_if_due_locked();
 }
 
@@ -77,15 +75,13 @@ void Progress::report_if_due_locked() {
     reported_ = now;
     if (text_size_ == 0)
         return;
-    const auto elapsed =
-        std::chrono::duration_cast<std::chrono::seconds>(display_.now() - display_.begin).count();
+    const auto elapsed = std::chrono::duration_cast<std::chrono::seconds>(display_.now() - display_.begin).count();
     write(fmt::format("tessera: after {} s {}\n", elapsed, text()));
 }
 
 void Progress::show(const std::string& what, double part) {
     const std::lock_guard lock(mutex_);
-    const auto end =
-        fmt::format_to_n(text_.data(), text_.size(), "at {:.0f} %, {}{}", 100 * part, before_, what);
+    const auto end = fmt::format_to_n(text_.data(), text_.size(), "at {:.0f} %, {}{}", 100 * part, before_, what);
     text_size_ = std::min(end.size, text_.size());
     Interruption::note(text());
     report_if_due_locked();
@@ -100,8 +96,8 @@ void Progress::show_on_terminal(const std::string& what, double part) {
     next_ = now + std::chrono::milliseconds(100);
     constexpr int width = 30;
     const int full = static_cast<int>(std::clamp(part, 0.0, 1.0) * width);
-    write(fmt::format("\r\x1b[K[{:=<{}}{: <{}}] {:3.0f} %  {}{}", "", full, "", width - full, 100 * part,
-                      before_, what));
+    write(
+        fmt::format("\r\x1b[K[{:=<{}}{: <{}}] {:3.0f} %  {}{}", "", full, "", width - full, 100 * part, before_, what));
     shown_ = true;
 }
 

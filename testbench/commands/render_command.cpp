@@ -47,13 +47,13 @@ Output choose_output(const RenderRequest& request) {
         return output;
     const std::string ending = lower_case(request.output.extension().string());
     if (ending != ".png" && ending != ".exr")
-        throw InputError(fmt::format(
-            "--output {}: pictures are written as FILE.png or FILE.exr; to name a new folder, end "
-            "it with a /",
-            request.output.string()));
+        throw InputError(
+            fmt::format("--output {}: pictures are written as FILE.png or FILE.exr; to name a new folder, end "
+                        "it with a /",
+                        request.output.string()));
     if (request.views.size() > 1)
-        throw InputError(fmt::format("--output {}: {} views need {} files; name a folder",
-                                     request.output.string(), request.views.size(), request.views.size()));
+        throw InputError(fmt::format("--output {}: {} views need {} files; name a folder", request.output.string(),
+                                     request.views.size(), request.views.size()));
     if (ending == ".png" && request.exr)
         throw InputError(
             fmt::format("--output {}: does not agree with --exr; name it FILE.exr", request.output.string()));
@@ -75,8 +75,7 @@ View choose_camera(const RenderRequest& request, Job job) {
         validate(job);
     } catch (const InputError& error) {
         throw InputError(fmt::format(
-            "invalid camera from --eye, --target, --up and --field-of-view (default: the run's): {}",
-            error.what()));
+            "invalid camera from --eye, --target, --up and --field-of-view (default: the run's): {}", error.what()));
     }
     return make_view(job.camera);
 }
@@ -86,10 +85,10 @@ void check_size(const RenderRequest& request, const RenderMesh& mesh, const View
     for (const PictureView view : request.views)
         pixels += std::int64_t{request.picture.width} * picture_height(mesh, camera, view, request.picture);
     if (pixels > most_picture_pixels)
-        throw InputError(fmt::format(
-            "--size: {} pixels in {} picture{}; the limit for all views together is {}: make the pictures "
-            "smaller or render fewer views at once",
-            pixels, request.views.size(), request.views.size() == 1 ? "" : "s", most_picture_pixels));
+        throw InputError(
+            fmt::format("--size: {} pixels in {} picture{}; the limit for all views together is {}: make the pictures "
+                        "smaller or render fewer views at once",
+                        pixels, request.views.size(), request.views.size() == 1 ? "" : "s", most_picture_pixels));
 }
 
 bool asks_for(const RenderRequest& request, PictureView view) {
@@ -147,8 +146,8 @@ ExitCode render_command(const RenderRequest& asked, const fs::path& data_folder)
     for (std::size_t i = 0; i < pictures.size(); ++i)
         fmt::print("  {}: {} x {} pixels\n", output.path_of(request.views[i]).lexically_normal().string(),
                    pictures[i].image.width, pictures[i].image.height);
-    const bool in_sight = std::any_of(pictures.begin(), pictures.end(),
-                                      [](const Picture& picture) { return picture.mesh_in_sight; });
+    const bool in_sight =
+        std::any_of(pictures.begin(), pictures.end(), [](const Picture& picture) { return picture.mesh_in_sight; });
     if (!in_sight)
         fmt::print("  {}\n", mesh.triangles.empty() ? "the run's mesh is empty: all of it was culled"
                                                     : "no part of the mesh is in this camera's view");

@@ -19,8 +19,8 @@ struct RenderRequest {
     PictureOptions picture;
     std::optional<std::array<double, 3>> eye, target, up;  ///< instead of the run's camera's; model units
     std::optional<double> field_of_view;                   ///< vertical, degrees
-    std::filesystem::path output;   ///< FILE.png, FILE.exr or a folder; empty: the run's own
-    std::optional<ExrSamples> exr;  ///< EXR files instead of PNG
+    std::filesystem::path output;                          ///< FILE.png, FILE.exr or a folder; empty: the run's own
+    std::optional<ExrSamples> exr;                         ///< EXR files instead of PNG
 };
 
 /// Reads a run's folder and writes one picture per view: VIEW.png or VIEW.exr in a folder, or the one file asked for.

@@ -10,8 +10,8 @@ namespace tessera {
 RunError measure_run_error(const RecordedRun& run) {
     const BaseMesh base = load_mesh(run.job);
     const HeightMap map = load_map(run.job);
-    const SurfaceError error = measure_surface_error(base, map, DisplacementOf::from(run.job, map), run.mesh,
-                                                     Sampling::interpolated);
+    const SurfaceError error =
+        measure_surface_error(base, map, DisplacementOf::from(run.job, map), run.mesh, Sampling::interpolated);
     RunError result;
     result.texel = texel_length(base, map);
     result.triangles.reserve(error.triangles.size());

@@ -21,10 +21,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* run_file_names[] = {
-    "job.toml",        "mesh.ply",         "mesh.obj",   "statistics.json",  "statistics.csv",
-    "conformance.txt", "conformance.json", "timing.txt", "queue_levels.csv", "picture.png",
-    "error.json",      "error.txt",        "trace.vcd",  "trace.fst",        "timeline.json",
-    "frames.csv",      "frames.txt"};
+    "job.toml",         "mesh.ply",   "mesh.obj",         "statistics.json", "statistics.csv", "conformance.txt",
+    "conformance.json", "timing.txt", "queue_levels.csv", "picture.png",     "error.json",     "error.txt",
+    "trace.vcd",        "trace.fst",  "timeline.json",    "frames.csv",      "frames.txt"};
 
 /// Whether a run, or a command on it, writes or removes a file of this name.
 bool is_run_file(const std::string& name) {
@@ -125,10 +124,10 @@ void require_run_folder(const Job& job) {
     for (const fs::path& folder : folders) {
         const std::vector<std::string> taken = names_taken(folder);
         if (!taken.empty() && !is_run_folder(folder))
-            refuse(fmt::format(
-                "the run would replace {}, and no run of tessera left that folder: move the file away, "
-                "or choose another output.folder",
-                (folder / taken.front()).string()));
+            refuse(
+                fmt::format("the run would replace {}, and no run of tessera left that folder: move the file away, "
+                            "or choose another output.folder",
+                            (folder / taken.front()).string()));
     }
 }
 
@@ -153,15 +152,13 @@ void require_inputs_stay(const Job& job) {
         refuse("map", "map.file", job.map.file);
 }
 
-void require_inputs_kept(const std::string& output, const std::vector<fs::path>& written,
-                         const std::string& job_file, const Job& job) {
+void require_inputs_kept(const std::string& output, const std::vector<fs::path>& written, const std::string& job_file,
+                         const Job& job) {
     for (const fs::path& to : written)
         for (const fs::path& from : {fs::path(job_file), job.mesh.path, job.map.path})
-            if (!from.empty() &&
-                (place_of_name(to) == place_of_name(from) || place_of_name(to) == real_place(from)))
-                throw InputError(
-                    fmt::format("--output {}: {} would overwrite {}, which is read; choose another name",
-                                output, to.string(), from.string()));
+            if (!from.empty() && (place_of_name(to) == place_of_name(from) || place_of_name(to) == real_place(from)))
+                throw InputError(fmt::format("--output {}: {} would overwrite {}, which is read; choose another name",
+                                             output, to.string(), from.string()));
 }
 
 }  // namespace tessera

@@ -59,8 +59,7 @@ std::vector<Frame> plan_frames(const Job& asked, ResolvedJob& resolved_job) {
     std::vector<Frame> frames;
     std::optional<MachineSetup> before;
     for (std::int64_t k = 0; k < job.frames.count; ++k) {
-        progress.show("making the frames ready",
-                      static_cast<double>(k) / static_cast<double>(job.frames.count));
+        progress.show("making the frames ready", static_cast<double>(k) / static_cast<double>(job.frames.count));
         Frame frame;
         frame.job = frame_job(job, k);
         frame.row.name = frame_name(k);
@@ -80,8 +79,7 @@ pid_t fork_frame(const Frame& frame) {
     const pid_t parent = ::getpid();
     const pid_t child = ::fork();
     if (child < 0)
-        throw std::system_error(errno, std::generic_category(),
-                                fmt::format("{}: no process for it", frame.text()));
+        throw std::system_error(errno, std::generic_category(), fmt::format("{}: no process for it", frame.text()));
     if (child == 0) {
         ::prctl(PR_SET_PDEATHSIG, SIGTERM);
         if (::getppid() != parent)  // it ended before it could be watched
@@ -120,19 +118,16 @@ ExitCode run_frames(const Job& asked, const RunFrame& run) {
             fmt::format("at {} of {} frames, complete in {}", rows.size(), frames.size(), folder.string()));
         const pid_t child = fork_frame(frame);
         if (child == 0)
-            return run(frame.job, frame.row.name + ": ",
-                       rows.empty() ? folder : fs::path(frame.job.output.folder));
+            return run(frame.job, frame.row.name + ": ", rows.empty() ? folder : fs::path(frame.job.output.folder));
         const int code = wait_for(child, frame);
         if (code == static_cast<int>(ExitCode::check_failed) &&
             fs::exists(fs::path(frame.job.output.folder) / "statistics.json")) {
-            print_failure(frame,
-                          fmt::format("checks failed, see {}/conformance.txt", frame.job.output.folder));
+            print_failure(frame, fmt::format("checks failed, see {}/conformance.txt", frame.job.output.folder));
             worst = ExitCode::check_failed;
         } else if (code != static_cast<int>(ExitCode::fine)) {
-            print_failure(frame,
-                          fmt::format("ended with exit code {}{}; {} of {} frames are complete, in {}", code,
-                                      code > 128 ? fmt::format(" ({})", ::strsignal(code - 128)) : "",
-                                      rows.size(), frames.size(), folder.string()));
+            print_failure(frame, fmt::format("ended with exit code {}{}; {} of {} frames are complete, in {}", code,
+                                             code > 128 ? fmt::format(" ({})", ::strsignal(code - 128)) : "",
+                                             rows.size(), frames.size(), folder.string()));
             return static_cast<ExitCode>(code);
         }
         read_counts(frame.job.output.folder, frame.row);

@@ -60,9 +60,7 @@ Loaded load(const Job& asked) {
 
 class Stopwatch {
   public:
-    double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    }
+    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
 
   private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
@@ -82,8 +80,7 @@ void write_run_folder(const std::filesystem::path& folder, const Job& job, const
                           setup.model_scale.centre};
     if (job.mode == Mode::timed) {
         write_file(folder / "timing.txt", timing_text(simulation.pipeline, simulation.cycles()));
-        write_file(folder / "queue_levels.csv",
-                   queue_levels_csv(simulation.pipeline.triangle_queue.history()));
+        write_file(folder / "queue_levels.csv", queue_levels_csv(simulation.pipeline.triangle_queue.history()));
     }
     progress.show("writing the mesh", 0.87);
     if (job.output.ply)
@@ -113,8 +110,8 @@ std::string finish_traces(Traces& traces, const Command& command, const std::fil
 const char* verdict(const Checks& checks) {
     if (!checks.passed())
         return "CHECKS FAILED, see conformance.txt";
-    const bool any = checks.setup || checks.conformance || checks.end_to_end || checks.invariants ||
-                     checks.work || checks.reads;
+    const bool any =
+        checks.setup || checks.conformance || checks.end_to_end || checks.invariants || checks.work || checks.reads;
     return any ? "all checks passed" : "nothing was checked";
 }
 
@@ -161,9 +158,8 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
     TexelBorders borders(setup.registers.formats);
     simulation.pipeline.pass_or_tessellate.decided.bind(borders);
     simulation.monitor.on_progress([&](std::size_t triangles) {
-        progress.show(
-            fmt::format("simulating, {} triangles", triangles),
-            0.6 * static_cast<double>(simulation.host.sent()) / static_cast<double>(simulation.host.total()));
+        progress.show(fmt::format("simulating, {} triangles", triangles),
+                      0.6 * static_cast<double>(simulation.host.sent()) / static_cast<double>(simulation.host.total()));
     });
 
     AtomicSet files;
@@ -216,8 +212,7 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
     if (job.check.end_to_end) {
         // Golden's own run saturates nothing: with values that did there is nothing to judge it by.
         const datapath::Saturations saturated = simulation.pipeline.saturations();
-        const bool judged =
-            saturated.displaced_position + saturated.screen_position + saturated.view_distance == 0;
+        const bool judged = saturated.displaced_position + saturated.screen_position + saturated.view_distance == 0;
         checks.end_to_end = compare_end_to_end(
             setup, *golden_job, checks.setup->base_triangles, mesh,
             judged ? job.check.allowed_triangles : std::numeric_limits<double>::infinity(),
@@ -244,17 +239,15 @@ ExitCode run_job(const Command& command) {
         return ExitCode::fine;
     }
     if (!command.trace_option.empty() && !Traces::wanted(job))
-        throw InputError(
-            fmt::format("{} chooses what to trace, and nothing is traced: add --vcd, --timeline or both",
-                        command.trace_option));
+        throw InputError(fmt::format("{} chooses what to trace, and nothing is traced: add --vcd, --timeline or both",
+                                     command.trace_option));
     require_run_folder(job);
     require_inputs_stay(job);
     record_fingerprints(job);
     if (job.frames.count > 1)
-        return run_frames(
-            job, [&](const Job& frame, const std::string& name, const std::filesystem::path& replaced) {
-                return run_once(frame, command, name, replaced).code;
-            });
+        return run_frames(job, [&](const Job& frame, const std::string& name, const std::filesystem::path& replaced) {
+            return run_once(frame, command, name, replaced).code;
+        });
     const Ending ending = run_once(job, command, {}, job.output.folder);
     fmt::print("{}", ending.text);
     return ending.code;

@@ -40,12 +40,10 @@ std::string checks_rows(const Checks& checks) {
         const ConformanceResult& c = *checks.conformance;
         std::string verdict;
         if (c.flips_percent() > checks.allowed_flips)
-            verdict =
-                fmt::format(", more than the {} % that check.allowed_flips allows", checks.allowed_flips);
-        text += check_row(
-            "golden model", c.passed(checks.allowed_flips),
-            fmt::format("{} edges compared, {} mismatches, {} allowed flips ({:.3f} %){}", count(c.edges),
-                        count(c.mismatches), count(c.flipped_edges), c.flips_percent(), verdict));
+            verdict = fmt::format(", more than the {} % that check.allowed_flips allows", checks.allowed_flips);
+        text += check_row("golden model", c.passed(checks.allowed_flips),
+                          fmt::format("{} edges compared, {} mismatches, {} allowed flips ({:.3f} %){}", count(c.edges),
+                                      count(c.mismatches), count(c.flipped_edges), c.flips_percent(), verdict));
     }
     if (checks.end_to_end) {
         const EndToEndResult& e = *checks.end_to_end;
@@ -53,62 +51,56 @@ std::string checks_rows(const Checks& checks) {
             "golden mesh", e.passed(),
             e.bound_hit
                 ? fmt::format("more than {} triangles, where its run was stopped", count(e.bound))
-                : fmt::format(
-                      "{} triangles ({:+.2f} %, allowed {}); {:.2f} % of the points farther apart than "
-                      "rounding explains (allowed {:.3g}), at most {:.3g} model units, RMS {:.3g} (allowed "
-                      "{:.3g})",
-                      count(e.golden_triangles), e.more_triangles(),
-                      std::isinf(e.allowed.triangles) ? std::string("any, since values saturated")
-                                                      : fmt::format("{} %", e.allowed.triangles),
-                      e.farther(), e.allowed_farther(), e.max_model(), e.rms_model(), e.allowed_rms_model()));
+                : fmt::format("{} triangles ({:+.2f} %, allowed {}); {:.2f} % of the points farther apart than "
+                              "rounding explains (allowed {:.3g}), at most {:.3g} model units, RMS {:.3g} (allowed "
+                              "{:.3g})",
+                              count(e.golden_triangles), e.more_triangles(),
+                              std::isinf(e.allowed.triangles) ? std::string("any, since values saturated")
+                                                              : fmt::format("{} %", e.allowed.triangles),
+                              e.farther(), e.allowed_farther(), e.max_model(), e.rms_model(), e.allowed_rms_model()));
         const double unseen = std::max(e.hardware_to_golden.unseen, e.golden_to_hardware.unseen);
         if (unseen > 0)
-            text += row(
-                "", fmt::format("at {} of {} points; with {} % confidence at most {:.2g} % lie farther apart",
-                                count(e.hardware_to_golden.measured + e.golden_to_hardware.measured),
-                                count(e.hardware_to_golden.points + e.golden_to_hardware.points),
-                                100 * EndToEndResult::confidence, 100 * unseen));
+            text += row("", fmt::format("at {} of {} points; with {} % confidence at most {:.2g} % lie farther apart",
+                                        count(e.hardware_to_golden.measured + e.golden_to_hardware.measured),
+                                        count(e.hardware_to_golden.points + e.golden_to_hardware.points),
+                                        100 * EndToEndResult::confidence, 100 * unseen));
     }
     if (checks.invariants) {
         const InvariantResult& i = *checks.invariants;
         const std::string wrong =
             i.wrong_triangles() == 0 ? "" : fmt::format(", {} triangles wrong", count(i.wrong_triangles()));
-        text +=
-            check_row("invariants", i.passed(),
-                      fmt::format("{} cracks, {} T-vertices{}; in texture space {} collapsed, {} turned over",
-                                  i.cracks, i.t_vertices, wrong, i.collapsed, i.turned_over));
+        text += check_row("invariants", i.passed(),
+                          fmt::format("{} cracks, {} T-vertices{}; in texture space {} collapsed, {} turned over",
+                                      i.cracks, i.t_vertices, wrong, i.collapsed, i.turned_over));
         if (i.open_texture_seam_edges > 0)
-            text += row(
-                "texture seams",
-                fmt::format("{} edges open: the map is not continuous across a seam of this mesh's texture "
-                            "coordinates",
-                            count(i.open_texture_seam_edges)));
+            text += row("texture seams",
+                        fmt::format("{} edges open: the map is not continuous across a seam of this mesh's texture "
+                                    "coordinates",
+                                    count(i.open_texture_seam_edges)));
     }
     if (checks.work)
-        text += check_row("work conservation", checks.work->passed(),
-                          fmt::format("{} triangles and {} balances of units checked, {} violations",
-                                      count(checks.work->triangles), count(checks.work->equations),
-                                      count(checks.work->violations)));
+        text += check_row(
+            "work conservation", checks.work->passed(),
+            fmt::format("{} triangles and {} balances of units checked, {} violations", count(checks.work->triangles),
+                        count(checks.work->equations), count(checks.work->violations)));
     if (checks.reads)
-        text += check_row("reads", checks.reads->passed(),
-                          fmt::format("{} entries compared, {} wrong", count(checks.reads->entries),
-                                      count(checks.reads->wrong)));
+        text += check_row(
+            "reads", checks.reads->passed(),
+            fmt::format("{} entries compared, {} wrong", count(checks.reads->entries), count(checks.reads->wrong)));
     return text;
 }
 
 /// Repeated work, beside what the mesh needs.
 std::string work_rows(const Simulation& simulation, const MeshCounts& mesh) {
     const Pipeline& p = simulation.pipeline;
-    const double tests = mesh.tested_edges() == 0 ? 0
-                                                  : static_cast<double>(p.edges_tested()) /
-                                                        static_cast<double>(mesh.tested_edges());
+    const double tests =
+        mesh.tested_edges() == 0 ? 0 : static_cast<double>(p.edges_tested()) / static_cast<double>(mesh.tested_edges());
     return row("distinct edges",
                fmt::format("{}, each tested {:.1f} times on average", count(mesh.tested_edges()), tests)) +
-           row("distinct vertices",
-               fmt::format("{}; {} computed, {} of them discarded, and {} normals transformed",
-                           count(mesh.vertices), count(p.transform.positions()),
-                           count(thrown_away_vertices(p, simulation.setup.base_triangles.size())),
-                           count(p.transform.normals())));
+           row("distinct vertices", fmt::format("{}; {} computed, {} of them discarded, and {} normals transformed",
+                                                count(mesh.vertices), count(p.transform.positions()),
+                                                count(thrown_away_vertices(p, simulation.setup.base_triangles.size())),
+                                                count(p.transform.normals())));
 }
 
 std::string timing_rows(const Simulation& simulation) {
@@ -118,16 +110,14 @@ std::string timing_rows(const Simulation& simulation) {
     };
     const double period = simulation.setup.design.timing.cycle_picoseconds * 1e-12;
     std::string text = row(
-        "cycles",
-        fmt::format("{}: {:.1f} a finished triangle, {:.1f} a pass, {:.1f} an edge; {:.3g} ms at {:.4g} MHz",
-                    count(simulation.cycles()), per(p.pass_or_tessellate.counts().finished),
-                    per(p.pass_or_tessellate.counts().passes), per(p.edges_tested()),
-                    static_cast<double>(simulation.cycles()) * period * 1e3, 1e-6 / period));
+        "cycles", fmt::format("{}: {:.1f} a finished triangle, {:.1f} a pass, {:.1f} an edge; {:.3g} ms at {:.4g} MHz",
+                              count(simulation.cycles()), per(p.pass_or_tessellate.counts().finished),
+                              per(p.pass_or_tessellate.counts().passes), per(p.edges_tested()),
+                              static_cast<double>(simulation.cycles()) * period * 1e3, 1e-6 / period));
     text += row("bottleneck", bottleneck_text(p, simulation.cycles()));
     if (p.triangle_queue.spilled() > 0)
-        text +=
-            row("spilled", fmt::format("{} triangles, at most {} on chip", count(p.triangle_queue.spilled()),
-                                       count(p.triangle_queue.on_chip_high_water_mark())));
+        text += row("spilled", fmt::format("{} triangles, at most {} on chip", count(p.triangle_queue.spilled()),
+                                           count(p.triangle_queue.on_chip_high_water_mark())));
     return text;
 }
 
@@ -149,19 +139,17 @@ std::string summary(const MachineSetup& setup, const Simulation& simulation, con
     const std::uint64_t table_reads = p.summed_height_table_reads();
 
     std::string text;
-    text += row(
-        "triangles",
-        fmt::format("{} base -> {} finished{}", count(setup.base_triangles.size()), count(counts.finished),
-                    counts.culled > 0 ? fmt::format(", {} culled", count(counts.culled)) : ""));
-    text += row("edges", fmt::format("{} tested, {} split ({:.1f} %)", count(edges),
-                                     count(counts.edges_split), percent(counts.edges_split, edges)));
-    text +=
-        row("  split by",
-            fmt::format("normal alone {}, summed height alone {}, both {}{}", count(counts.split_by_normal),
-                        count(counts.split_by_summed_height), count(counts.split_by_both),
-                        setup.registers.tests.highlight_test
-                            ? fmt::format(", highlight alone {}", count(counts.split_by_highlight))
-                            : ""));
+    text += row("triangles",
+                fmt::format("{} base -> {} finished{}", count(setup.base_triangles.size()), count(counts.finished),
+                            counts.culled > 0 ? fmt::format(", {} culled", count(counts.culled)) : ""));
+    text += row("edges", fmt::format("{} tested, {} split ({:.1f} %)", count(edges), count(counts.edges_split),
+                                     percent(counts.edges_split, edges)));
+    text += row("  split by",
+                fmt::format("normal alone {}, summed height alone {}, both {}{}", count(counts.split_by_normal),
+                            count(counts.split_by_summed_height), count(counts.split_by_both),
+                            setup.registers.tests.highlight_test
+                                ? fmt::format(", highlight alone {}", count(counts.split_by_highlight))
+                                : ""));
     text += row("  wanted, but stopped by",
                 fmt::format("view alone {}, tex coord alone {}, generation alone {}, several {}",
                             count(counts.stopped_by_view_alone), count(counts.stopped_by_tex_coord_alone),
@@ -172,8 +160,7 @@ std::string summary(const MachineSetup& setup, const Simulation& simulation, con
     text +=
         row("summed height table",
             fmt::format("{} bytes, {} bit entries{}; {} reads, {:.1f} an edge",
-                        count(setup.registers.summed_height_table.bytes()),
-                        setup.registers.formats.summed_height.bits,
+                        count(setup.registers.summed_height_table.bytes()), setup.registers.formats.summed_height.bits,
                         setup.summed_height_bits_chosen ? " (chosen)" : "", count(table_reads),
                         edges == 0 ? 0.0 : static_cast<double>(table_reads) / static_cast<double>(edges)));
     const std::vector<SaturationFigure> saturations = saturation_figures(setup, p.saturations());
@@ -182,10 +169,9 @@ std::string summary(const MachineSetup& setup, const Simulation& simulation, con
     const bool timed = setup.design.transport == Transport::non_blocking;
     if (timed)
         text += timing_rows(simulation);
-    text +=
-        row(timed ? "timed mode" : "functional mode",
-            fmt::format("simulated in {:.2f} s, {:.2f} million edges a second, with the checks of each edge",
-                        seconds, static_cast<double>(edges) / seconds / 1e6));
+    text += row(timed ? "timed mode" : "functional mode",
+                fmt::format("simulated in {:.2f} s, {:.2f} million edges a second, with the checks of each edge",
+                            seconds, static_cast<double>(edges) / seconds / 1e6));
     for (const std::string& warning : saturation_warnings(saturations))
         text += fmt::format("  warning: {}\n", warning);
     if (!checks.texel_borders.empty())

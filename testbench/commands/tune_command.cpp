@@ -32,17 +32,15 @@ constexpr int most_rounds = 20;
 
 /// A positive whole number; 0 for anything else.
 std::int64_t number_in(const std::string& text) {
-    const bool digits = !text.empty() && text.size() <= 6 &&
-                        std::all_of(text.begin(), text.end(),
-                                    [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; });
+    const bool digits = !text.empty() && text.size() <= 6 && std::all_of(text.begin(), text.end(), [](char c) {
+        return std::isdigit(static_cast<unsigned char>(c)) != 0;
+    });
     return digits ? std::stol(text) : 0;
 }
 
 void add_grid(const std::string& grid, const TuneRequest& request, const HeightMap& map,
               std::vector<BaseChoice>& bases) {
-    const auto refuse = [&](const std::string& why) {
-        throw InputError(fmt::format("--grid {}: {}", grid, why));
-    };
+    const auto refuse = [&](const std::string& why) { throw InputError(fmt::format("--grid {}: {}", grid, why)); };
     if (request.job.mesh.source != MeshSource::plane)
         refuse("applies to a plane (mesh.source = \"plane\") only; leave --grid out");
     if (grid == "auto") {
@@ -101,10 +99,10 @@ void choose_tests(const TuneOrder& order, TuneRequest& request) {
             "switch "
             "one on");
     if (request.job.frames.count > 1)
-        throw InputError(fmt::format(
-            "frames.count = {}: thresholds are tuned for one frame; tune with --set frames.count=1 and "
-            "set it in the tuned job, whose other frames may have more triangles",
-            request.job.frames.count));
+        throw InputError(
+            fmt::format("frames.count = {}: thresholds are tuned for one frame; tune with --set frames.count=1 and "
+                        "set it in the tuned job, whose other frames may have more triangles",
+                        request.job.frames.count));
     if (tests.highlight)
         throw InputError(
             "tests.highlight = true: the search does not consider highlights; tune with --set "
@@ -125,9 +123,8 @@ TuneRequest request_of(const TuneOrder& order, const fs::path& data_folder) {
     request.goal.most_triangles =
         std::min(most_tuned_triangles, static_cast<std::uint64_t>(request.job.limits.triangles));
     if (order.triangles > request.goal.most_triangles)
-        throw InputError(
-            fmt::format("--triangles {}: at most {} can be tuned for (2^22 and limits.triangles)",
-                        order.triangles, request.goal.most_triangles));
+        throw InputError(fmt::format("--triangles {}: at most {} can be tuned for (2^22 and limits.triangles)",
+                                     order.triangles, request.goal.most_triangles));
     return request;
 }
 
@@ -136,8 +133,8 @@ void check_output(const std::string& option, const fs::path& file) {
     const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
     std::error_code error;
     if (!fs::is_directory(folder, error))
-        throw InputError(fmt::format("{} {}: there is no folder {}; make it first", option, file.string(),
-                                     folder.string()));
+        throw InputError(
+            fmt::format("{} {}: there is no folder {}; make it first", option, file.string(), folder.string()));
     check_output_folder(folder, option);
     if (fs::is_directory(file, error))
         throw InputError(fmt::format("{} {}: is a folder; name a file", option, file.string()));
@@ -154,8 +151,8 @@ void check_places(const TuneOrder& order, const Job& job, const std::vector<fs::
     for (std::size_t k = 0; k < written.size(); ++k)
         for (std::size_t other = 0; other < k; ++other)
             if (place_of_name(written[k]) == place_of_name(written[other]))
-                throw InputError(fmt::format(
-                    "--tried {}: the tuned job's files include this name; choose another", order.tried));
+                throw InputError(
+                    fmt::format("--tried {}: the tuned job's files include this name; choose another", order.tried));
     std::ifstream mesh(obj_file);
     std::string first;
     if (!order.grids.empty() && std::getline(mesh, first) && first.rfind("# tessera tune:", 0) != 0)
@@ -182,9 +179,7 @@ Job finished_job(const TuneResult& result, const fs::path& job_file, const fs::p
 ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
     TuneRequest request = request_of(order, data_folder);
     const fs::path job_file = order.output;
-    const auto beside = [&](const char* extension) {
-        return fs::path(job_file).replace_extension(extension);
-    };
+    const auto beside = [&](const char* extension) { return fs::path(job_file).replace_extension(extension); };
     const fs::path json_file = beside(".json"), obj_file = beside(".obj");
     if (job_file.extension() != ".toml")
         throw InputError(
@@ -221,8 +216,7 @@ ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
             bound = order.error * unit.model_units;
             request.goal.error = bound;
         }
-        result = tune(request, map,
-                      [&](const std::string& what, double part) { progress.show(what, 0.95 * part); });
+        result = tune(request, map, [&](const std::string& what, double part) { progress.show(what, 0.95 * part); });
         const BaseMesh base = base_mesh_of(result.job, request.bases[result.base], map);
         unit = error_unit(result.job, base, map);
         const MachineSetup setup = make_setup(result.job, base, map);
@@ -258,9 +252,9 @@ ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
     const std::uint64_t expected = figures.triangles;
     figures = measure_tuned(job, base, map, setup, mesh);
     if (figures.triangles != expected || figures.triangles != result.point.outcome.triangles)
-        throw std::runtime_error(fmt::format(
-            "functional mode's mesh has {} triangles, the search's {}: this is a bug in tessera tune",
-            figures.triangles, result.point.outcome.triangles));
+        throw std::runtime_error(
+            fmt::format("functional mode's mesh has {} triangles, the search's {}: this is a bug in tessera tune",
+                        figures.triangles, result.point.outcome.triangles));
     progress.clear();
 
     request.goal.error = bound;  // as asked for
@@ -275,8 +269,7 @@ ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
         names += ", " + obj_file.string();
     }
     write_file(json_file, tune_json(request, result, figures, unit));
-    write_file(job_file,
-               tune_comment(request, result, figures, unit) + dump_job(job, job_file.parent_path()));
+    write_file(job_file, tune_comment(request, result, figures, unit) + dump_job(job, job_file.parent_path()));
     files.commit();
     fmt::print("{}  {:<24}{}\n", tune_text(request, result, figures, unit), "written", names);
     return ExitCode::fine;

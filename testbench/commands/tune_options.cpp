@@ -23,26 +23,24 @@ std::string triangles_complaint(const std::string& text) {
         return text + " is negative";
     errno = 0;
     static_cast<void>(std::strtoull(text.c_str(), nullptr, 10));
-    return errno == ERANGE ? fmt::format("{}: at most {}, and limits.triangles, can be tuned for", text,
-                                         most_tuned_triangles)
-                           : std::string{};
+    return errno == ERANGE
+               ? fmt::format("{}: at most {}, and limits.triangles, can be tuned for", text, most_tuned_triangles)
+               : std::string{};
 }
 
 }  // namespace
 
 void TuneOptions::add_to(CLI::App& tune) {
     job_given_ = tune.add_option("JOB", order_.job_file, "job file (TOML); default: the half donut");
-    triangles_given_ = tune.add_option("--triangles", order_.triangles,
-                                       "find the least error with at most this many triangles")
-                           ->check(triangles_complaint);
-    error_given_ =
-        tune.add_option("--error", order_.error,
-                        "find the fewest triangles with at most this error: units of the map's file on "
-                        "a height field, else model units");
+    triangles_given_ =
+        tune.add_option("--triangles", order_.triangles, "find the least error with at most this many triangles")
+            ->check(triangles_complaint);
+    error_given_ = tune.add_option("--error", order_.error,
+                                   "find the fewest triangles with at most this error: units of the map's file on "
+                                   "a height field, else model units");
     tune.add_option("--metric", metric_, "error to use: rms or max");
-    tune.add_option(
-            "--tests", order_.tests,
-            "thresholds to search: normal, summed_height, view; default: of the tests the job enables")
+    tune.add_option("--tests", order_.tests,
+                    "thresholds to search: normal, summed_height, view; default: of the tests the job enables")
         ->delimiter(',')
         ->allow_extra_args(false);
     vary_given_ = tune.add_option("--vary", vary_,
@@ -50,19 +48,15 @@ void TuneOptions::add_to(CLI::App& tune) {
                                   "(tests.generation_limit), triangulation, or none; default: all three")
                       ->delimiter(',')
                       ->allow_extra_args(false);
-    tune.add_option(
-            "--grid", order_.grids,
-            "base meshes to try, for a plane: COLUMNSxROWS, latticeSPACING (vertices at texel centres, "
-            "SPACING texels apart, written as OBJ), or auto; default: the job's own")
+    tune.add_option("--grid", order_.grids,
+                    "base meshes to try, for a plane: COLUMNSxROWS, latticeSPACING (vertices at texel centres, "
+                    "SPACING texels apart, written as OBJ), or auto; default: the job's own")
         ->delimiter(',')
         ->allow_extra_args(false);
-    tune.add_option("--output", order_.output,
-                    "the tuned job; its figures beside it as .json, a lattice as .obj");
+    tune.add_option("--output", order_.output, "the tuned job; its figures beside it as .json, a lattice as .obj");
     tune.add_option("--tried", order_.tried, "CSV file for a table of everything tried");
     tune.add_option("--jobs", order_.jobs, "threads; the result does not depend on them");
-    tune.add_option("--set", order_.settings, "set one key of the job first")
-        ->take_all()
-        ->allow_extra_args(false);
+    tune.add_option("--set", order_.settings, "set one key of the job first")->take_all()->allow_extra_args(false);
 }
 
 TuneOrder TuneOptions::order() const {
@@ -91,8 +85,7 @@ TuneOrder TuneOptions::order() const {
             else if (choice == "triangulation")
                 order.vary.triangulation = true;
             else if (choice != "none" || vary_.size() > 1)
-                refuse(fmt::format("--vary {}: must be unit, generation or triangulation, or none alone",
-                                   choice));
+                refuse(fmt::format("--vary {}: must be unit, generation or triangulation, or none alone", choice));
         }
     }
     if (order.jobs < 1 || order.jobs > most_jobs)

@@ -41,13 +41,12 @@ Output output_of(const WidthsOrder& order) {
     output.json = fs::path(wanted).replace_extension(".json");
     std::error_code error;
     if (!fs::is_directory(output.folder, error))
-        throw InputError(fmt::format("--output {}: there is no folder {}; make it first", wanted.string(),
-                                     output.folder.string()));
+        throw InputError(
+            fmt::format("--output {}: there is no folder {}; make it first", wanted.string(), output.folder.string()));
     check_output_folder(output.folder, "--output");
     for (const fs::path& file : {output.csv, output.json})
         if (fs::is_directory(file, error))
-            throw InputError(
-                fmt::format("--output {}: {} is a folder; name a file", wanted.string(), file.string()));
+            throw InputError(fmt::format("--output {}: {} is a folder; name a file", wanted.string(), file.string()));
     return output;
 }
 
@@ -70,8 +69,8 @@ SweptQuantity swept_quantity(const Quantity& quantity, const WidthsOrder& order,
         return {&quantity, usual_widths(quantity, job.formats)};
     const auto [from, to] = *order.bits;
     if (to < quantity.least || from > quantity.most)
-        throw InputError(fmt::format("--bits {}..{}: {} has {} to {} bits", from, to, quantity.name,
-                                     quantity.least, quantity.most));
+        throw InputError(
+            fmt::format("--bits {}..{}: {} has {} to {} bits", from, to, quantity.name, quantity.least, quantity.most));
     SweptQuantity swept{&quantity, {}};
     for (std::int64_t bits = to; bits >= from; --bits)
         swept.widths.push_back(bits);
@@ -82,10 +81,10 @@ WidthRequest request_of(const WidthsOrder& order, const fs::path& data_folder) {
     WidthRequest request;
     request.job = load_job(order.job_file, order.settings, data_folder);
     if (request.job.frames.count > 1)
-        throw InputError(fmt::format(
-            "frames.count = {}: widths are swept for one frame; use --set frames.count=1, and --set "
-            "displacement.scale for the frame",
-            request.job.frames.count));
+        throw InputError(
+            fmt::format("frames.count = {}: widths are swept for one frame; use --set frames.count=1, and --set "
+                        "displacement.scale for the frame",
+                        request.job.frames.count));
     request.threads = order.jobs;
     request.most_flips = order.most_flips;
     request.most_error = order.most_error;
@@ -109,12 +108,11 @@ std::string first_failure(const WidthSweep& sweep) {
     for (const WidthTable& table : sweep.tables)
         for (const WidthRow& row : table.rows)
             if (row.refused.empty() && (row.run.conformance.mismatches > 0 || !row.run.invariants.passed()))
-                return fmt::format(
-                    "{}, {} bits: {} mismatches with the golden model, {} invariants violated\n{}",
-                    table.swept.quantity->name, row.bits, row.run.conformance.mismatches,
-                    row.run.invariants.violations(),
-                    row.run.conformance.mismatches > 0 ? row.run.conformance.first_mismatch
-                                                       : row.run.invariants.first_violation);
+                return fmt::format("{}, {} bits: {} mismatches with the golden model, {} invariants violated\n{}",
+                                   table.swept.quantity->name, row.bits, row.run.conformance.mismatches,
+                                   row.run.invariants.violations(),
+                                   row.run.conformance.mismatches > 0 ? row.run.conformance.first_mismatch
+                                                                      : row.run.invariants.first_violation);
     return {};
 }
 
@@ -140,8 +138,8 @@ ExitCode widths_command(const WidthsOrder& order, const fs::path& data_folder) {
     progress.show("reading mesh and map", 0);
     const auto [mesh, map, resolved] = load_inputs(request.job);
     request.job = resolved.job;
-    const WidthSweep sweep = sweep_widths(
-        request, mesh, map, [&](const std::string& what, double part) { progress.show(what, part); });
+    const WidthSweep sweep =
+        sweep_widths(request, mesh, map, [&](const std::string& what, double part) { progress.show(what, part); });
     progress.clear();
 
     AtomicSet files;
@@ -149,8 +147,7 @@ ExitCode widths_command(const WidthsOrder& order, const fs::path& data_folder) {
     write_file(output.csv, widths_csv(sweep));
     write_file(output.json, widths_json(request, sweep));
     files.commit();
-    fmt::print("{}\n  written in {} and {}\n", widths_text(request, sweep), output.csv.string(),
-               output.json.string());
+    fmt::print("{}\n  written in {} and {}\n", widths_text(request, sweep), output.csv.string(), output.json.string());
     const std::string failure = first_failure(sweep);
     const std::string refusal = all_refused(sweep);
     if (failure.empty() && refusal.empty())

@@ -12,14 +12,13 @@ namespace tessera {
 
 /// The arguments of `tessera widths`.
 struct WidthsOrder {
-    std::string job_file;                 ///< empty: the default job
-    std::vector<std::string> settings;    ///< --set
-    std::vector<std::string> quantities;  ///< empty: all
-    std::optional<std::pair<std::int64_t, std::int64_t>>
-        bits;                            ///< from, to; none: each quantity's usual widths
-    std::optional<double> most_flips;    ///< percent
-    std::optional<double> most_error;    ///< model units
-    std::string output = "runs/widths";  ///< a folder, or a .csv, with a .json beside it
+    std::string job_file;                                       ///< empty: the default job
+    std::vector<std::string> settings;                          ///< --set
+    std::vector<std::string> quantities;                        ///< empty: all
+    std::optional<std::pair<std::int64_t, std::int64_t>> bits;  ///< from, to; none: each quantity's usual widths
+    std::optional<double> most_flips;                           ///< percent
+    std::optional<double> most_error;                           ///< model units
+    std::string output = "runs/widths";                         ///< a folder, or a .csv, with a .json beside it
     unsigned jobs = 1;
 };
 

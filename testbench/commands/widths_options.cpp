@@ -20,9 +20,9 @@ void refuse(const std::string& what) {
 
 /// A positive whole number; 0 for anything else.
 std::int64_t number_in(const std::string& text) {
-    const bool digits = !text.empty() && text.size() <= 3 &&
-                        std::all_of(text.begin(), text.end(),
-                                    [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; });
+    const bool digits = !text.empty() && text.size() <= 3 && std::all_of(text.begin(), text.end(), [](char c) {
+        return std::isdigit(static_cast<unsigned char>(c)) != 0;
+    });
     return digits ? std::stol(text) : 0;
 }
 
@@ -31,8 +31,7 @@ std::pair<std::int64_t, std::int64_t> range_in(const std::string& text) {
     const std::int64_t from = number_in(text.substr(0, dots));
     const std::int64_t to = dots == std::string::npos ? from : number_in(text.substr(dots + 2));
     if (from < 1 || to < 1)
-        refuse(fmt::format("--bits {}: expected a range of widths in bits, as in --bits 8..16, or one width",
-                           text));
+        refuse(fmt::format("--bits {}: expected a range of widths in bits, as in --bits 8..16, or one width", text));
     if (from > to)
         refuse(fmt::format("--bits {}: ends before it begins; write {}..{}", text, to, from));
     if (to > most_bits)
@@ -50,23 +49,19 @@ void WidthsOptions::add_to(CLI::App& widths) {
                     "screen_range, generation")
         ->delimiter(',')
         ->allow_extra_args(false);
-    bits_given_ =
-        widths.add_option("--bits", bits_,
-                          "total widths to try, in bits, as in 8..16; default: all that the format allows, "
-                          "in steps where there are many");
-    flips_given_ =
-        widths.add_option("--flips", flips_,
-                          "limit for the knee: percent of the edges whose split decision differs from exact "
-                          "arithmetic; default: 0.5 more than at the widest");
+    bits_given_ = widths.add_option("--bits", bits_,
+                                    "total widths to try, in bits, as in 8..16; default: all that the format allows, "
+                                    "in steps where there are many");
+    flips_given_ = widths.add_option("--flips", flips_,
+                                     "limit for the knee: percent of the edges whose split decision differs from exact "
+                                     "arithmetic; default: 0.5 more than at the widest");
     error_given_ = widths.add_option("--error", error_,
                                      "limit for the knee: RMS error of displaced positions in model units; "
                                      "default: 1.25 times that of the widest");
     widths.add_option("--output", order_.output,
                       "folder for widths.csv and widths.json, or a .csv file, with a .json beside it");
     widths.add_option("--jobs", order_.jobs, "threads; the result does not depend on them");
-    widths.add_option("--set", order_.settings, "set one key of the job first")
-        ->take_all()
-        ->allow_extra_args(false);
+    widths.add_option("--set", order_.settings, "set one key of the job first")->take_all()->allow_extra_args(false);
 }
 
 WidthsOrder WidthsOptions::order() const {

@@ -52,15 +52,13 @@ void synchronise(const fs::path& folder) {
 class Moves {
   public:
     bool put_aside(const fs::path& file, const fs::path& aside) {
-        return !aside.empty() &&
-               (move(file, aside, {aside, file}) || errno == ENOENT);  // another run took it
+        return !aside.empty() && (move(file, aside, {aside, file}) || errno == ENOENT);  // another run took it
     }
 
     /// What stands at `to` is kept as `aside`.
     bool replace(const fs::path& from, const fs::path& to, const fs::path& aside) {
         const bool kept = ::link(to.c_str(), aside.c_str()) == 0;
-        if (!kept && errno != ENOENT && errno != EPERM &&
-            errno != EOPNOTSUPP)  // nothing there; no links here
+        if (!kept && errno != ENOENT && errno != EPERM && errno != EOPNOTSUPP)  // nothing there; no links here
             return false;
         return move(from, to, kept ? Move{aside, to} : Move{to, from});
     }
@@ -92,8 +90,7 @@ bool is_job(const fs::path& file) {
 }  // namespace
 
 void throw_file_error(const fs::path& path, const char* what, int error) {
-    const std::string message =
-        fmt::format("{}: {}: {}", path.string(), what, std::generic_category().message(error));
+    const std::string message = fmt::format("{}: {}: {}", path.string(), what, std::generic_category().message(error));
     for (const int shortage : {ENOSPC, EDQUOT, EFBIG, EIO, ENOMEM, EMFILE, ENFILE})
         if (error == shortage)
             throw ResourceError(message);
@@ -131,8 +128,7 @@ void AtomicSet::make_folder(const fs::path& folder) {
     const Interruption::Delay delay;
     std::vector<fs::path> missing;
     std::error_code absent;
-    for (fs::path path = fs::absolute(folder); !fs::exists(fs::symlink_status(path, absent));
-         path = path.parent_path())
+    for (fs::path path = fs::absolute(folder); !fs::exists(fs::symlink_status(path, absent)); path = path.parent_path())
         missing.push_back(path);
     for (auto path = missing.rbegin(); path != missing.rend(); ++path)
         if (::mkdir(path->c_str(), 0777) == 0)
@@ -169,8 +165,7 @@ fs::path AtomicSet::staged(const fs::path& path) {
 int AtomicSet::open(const fs::path& path) {
     const Interruption::Delay delay;
     const fs::path staged = in_staging("new-", path);
-    const int file =
-        staged.empty() ? -1 : ::open(staged.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    const int file = staged.empty() ? -1 : ::open(staged.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (file < 0)
         throw_file_error(path, "cannot write", errno);
     return file;

@@ -29,9 +29,9 @@ State* state = new State;  // never destroyed: the thread outlives main(). A for
 void write_line(int signal) {
     const char* const name = signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "SIGHUP";
     const std::lock_guard<std::mutex> lock(state->note_mutex);
-    const std::string line = fmt::format("{}tessera: interrupted ({}){}{}; no unfinished file is left\n",
-                                         ::isatty(STDERR_FILENO) != 0 ? "\r\x1b[K" : "", name,
-                                         state->note.empty() ? "" : " ", state->note);
+    const std::string line =
+        fmt::format("{}tessera: interrupted ({}){}{}; no unfinished file is left\n",
+                    ::isatty(STDERR_FILENO) != 0 ? "\r\x1b[K" : "", name, state->note.empty() ? "" : " ", state->note);
     const ssize_t ignored = ::write(STDERR_FILENO, line.data(), line.size());
     static_cast<void>(ignored);  // there is nobody left to tell
 }

@@ -34,8 +34,7 @@ OnThreads::~OnThreads() {
     chosen_threads = 0;
 }
 
-void share_chunks(std::size_t chunks, const std::function<void(const NextChunk& next)>& work,
-                  std::size_t threads) {
+void share_chunks(std::size_t chunks, const std::function<void(const NextChunk& next)>& work, std::size_t threads) {
     threads = sharing ? 1 : std::min(threads, chunks);
     std::atomic<std::size_t> handed_out{0};
     std::mutex failing;

@@ -37,8 +37,7 @@ void for_each_chunk(std::size_t chunks, const MakeWorker& make_worker) {
 }
 
 /// Calls work(k) for each k from 0 to count - 1, on at most this many threads.
-inline void parallel_for(std::size_t count, std::size_t threads,
-                         const std::function<void(std::size_t)>& work) {
+inline void parallel_for(std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& work) {
     share_chunks(
         count,
         [&](const NextChunk& next) {

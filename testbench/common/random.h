@@ -42,9 +42,7 @@ class Random {
     bool chance(unsigned percent) { return bits() % 100 < percent; }
 
     /// low..high, evenly, in steps of 2^-53 of the way.
-    double real(double low, double high) {
-        return low + (high - low) * (static_cast<double>(bits() >> 11) * 0x1p-53);
-    }
+    double real(double low, double high) { return low + (high - low) * (static_cast<double>(bits() >> 11) * 0x1p-53); }
 
     template <class Value>
     Value one_of(std::initializer_list<Value> values) {

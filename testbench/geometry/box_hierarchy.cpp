@@ -20,9 +20,8 @@ struct ReleaseScene {
 
 float rounded_down(double value) {
     const auto result = static_cast<float>(value);
-    return static_cast<double>(result) <= value
-               ? result
-               : std::nextafter(result, -std::numeric_limits<float>::infinity());
+    return static_cast<double>(result) <= value ? result
+                                                : std::nextafter(result, -std::numeric_limits<float>::infinity());
 }
 float rounded_up(double value) {
     return -rounded_down(-value);
@@ -32,8 +31,7 @@ float rounded_up(double value) {
     if (error == RTC_ERROR_OUT_OF_MEMORY)
         throw ResourceError(std::string("Embree ran out of memory and could not ") + what +
                             "; measure a smaller mesh or give the process more");
-    throw std::runtime_error(std::string("Embree could not ") + what + " (error " + std::to_string(error) +
-                             ")");
+    throw std::runtime_error(std::string("Embree could not ") + what + " (error " + std::to_string(error) + ")");
 }
 
 using BoxOf = std::function<BoxHierarchy::Box(std::size_t)>;

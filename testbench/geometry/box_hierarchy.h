@@ -14,8 +14,7 @@ namespace tessera {
 class BoxHierarchy {
   public:
     struct Box {
-        glm::dvec3 low{std::numeric_limits<double>::infinity()},
-            high{-std::numeric_limits<double>::infinity()};
+        glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
 
         void add(const glm::dvec3& p) {
             low = glm::min(low, p);

@@ -162,9 +162,7 @@ std::vector<NearestTriangle::Part> NearestTriangle::cut(const TriangleSoup& soup
     std::vector<Part> parts;
     parts.reserve(count);
     for (std::size_t k = 0; k < soup.size(); ++k)
-        for_each_part(soup[k], thin, 1, [&](unsigned path) {
-            parts.push_back({static_cast<std::uint32_t>(k), path});
-        });
+        for_each_part(soup[k], thin, 1, [&](unsigned path) { parts.push_back({static_cast<std::uint32_t>(k), path}); });
     return parts;
 }
 
@@ -208,13 +206,11 @@ std::size_t NearestTriangle::boxes_around(const glm::dvec3& p) const {
     return count;
 }
 
-bool NearestTriangle::within(const glm::dvec3& p, double radius, std::size_t most,
-                             std::vector<Found>& found) const {
+bool NearestTriangle::within(const glm::dvec3& p, double radius, std::size_t most, std::vector<Found>& found) const {
     found.clear();
     const double largest = radius * radius * rounding_slack;
     const auto drop_doubles = [&] {
-        std::sort(found.begin(), found.end(),
-                  [](const Found& a, const Found& b) { return a.triangle < b.triangle; });
+        std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.triangle < b.triangle; });
         found.erase(std::unique(found.begin(), found.end(),
                                 [](const Found& a, const Found& b) { return a.triangle == b.triangle; }),
                     found.end());

@@ -52,8 +52,7 @@ std::size_t choice(std::size_t k, std::size_t chosen, std::size_t all) {
     if (chosen == all)
         return k;
     const double place = static_cast<double>(k) + Random(k).real(0, 1);
-    return std::min(all - 1,
-                    static_cast<std::size_t>(place / static_cast<double>(chosen) * static_cast<double>(all)));
+    return std::min(all - 1, static_cast<std::size_t>(place / static_cast<double>(chosen) * static_cast<double>(all)));
 }
 
 /// Number of points to measure: all, or a power of two.
@@ -81,8 +80,7 @@ double SurfaceDistance::unseen(double confidence) const {
     return -std::expm1(std::log1p(-confidence) / static_cast<double>(measured));
 }
 
-SurfaceDistance distance_between(const TriangleSoup& from, const TriangleSoup& to, std::uint64_t most,
-                                 double near) {
+SurfaceDistance distance_between(const TriangleSoup& from, const TriangleSoup& to, std::uint64_t most, double near) {
     SurfaceDistance result;
     if (from.empty())
         return result;

@@ -34,7 +34,7 @@ inline constexpr std::uint64_t most_looks = std::uint64_t{1} << 24;
 /// cost of a point is estimated from the number of boxes that contain some pilot points. Distances are in double
 /// precision; Embree's single precision only excludes triangles. The same soups give the same result on any number of
 /// threads.
-SurfaceDistance distance_between(const TriangleSoup& from, const TriangleSoup& to,
-                                 std::uint64_t most = most_looks, double near = 0);
+SurfaceDistance distance_between(const TriangleSoup& from, const TriangleSoup& to, std::uint64_t most = most_looks,
+                                 double near = 0);
 
 }  // namespace tessera

@@ -12,8 +12,7 @@ std::string document_keys() {
     for (const KeyTable& table : job_tables()) {
         out += fmt::format(
             "{}### {}\n\n{}\n\n| key | default | range | unit | meaning |\n| --- | --- | --- | --- | --- |\n",
-            out.empty() ? "" : "\n", table.name.empty() ? "Top level" : '`' + table.name + '`',
-            table.description);
+            out.empty() ? "" : "\n", table.name.empty() ? "Top level" : '`' + table.name + '`', table.description);
         for (const Key& key : table.keys) {
             out += fmt::format("| `{}` | `{}` | {} | {} | {} |\n", key.name, toml_value(default_of(key)),
                                range_text(key), key.unit, key.description);

@@ -18,8 +18,7 @@ Job frame_job(const Job& job, std::int64_t k) {
     const double first = job.frames.first_scale, last = job.displacement.scale;
     const std::int64_t steps = job.frames.count - 1;
     if (k < steps)
-        frame.displacement.scale =
-            first + (last - first) * static_cast<double>(k) / static_cast<double>(steps);
+        frame.displacement.scale = first + (last - first) * static_cast<double>(k) / static_cast<double>(steps);
     frame.output.folder = (std::filesystem::path(job.output.folder) / frame_name(k)).string();
     return frame;
 }

@@ -128,8 +128,8 @@ struct Job {
         Triangulation triangulation = Triangulation::shorter;
         Culling culling = Culling::none;
         QueueOrder queue_order = QueueOrder::fifo;
-        std::int64_t queue_watermark = 1;  // host triangles are taken while fewer than this many wait
-        std::int64_t queue_capacity = 0;   // triangles on chip; 0: unbounded
+        std::int64_t queue_watermark = 1;           // host triangles are taken while fewer than this many wait
+        std::int64_t queue_capacity = 0;            // triangles on chip; 0: unbounded
         std::int64_t off_chip_triangles = 1 << 20;  // that may be spilled at a time
         Overflow queue_overflow = Overflow::spill;
         std::int64_t tests_units = 1;  // Tessellation Tests units: 1 or 3

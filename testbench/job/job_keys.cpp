@@ -72,8 +72,7 @@ class TableWriter {
              const char* description) const {
         add_plain(leaf, member, KeyKind::integer, unit, range, description);
     }
-    void add(const char* leaf, double Group::*member, const char* unit, KeyRange range,
-             const char* description) const {
+    void add(const char* leaf, double Group::*member, const char* unit, KeyRange range, const char* description) const {
         add_plain(leaf, member, KeyKind::number, unit, range, description);
     }
     void add(const char* leaf, std::array<double, 3> Group::*member, const char* unit, KeyRange range,
@@ -109,9 +108,7 @@ class TableWriter {
     void add(const char* leaf, Enum Group::*member, const char* description) const {
         Key& key = push(leaf, KeyKind::choice, "-", description);
         key.choices = names_of<Enum>();
-        key.get = [select = select_, member](const Job& job) {
-            return std::string(name_of(select(job).*member));
-        };
+        key.get = [select = select_, member](const Job& job) { return std::string(name_of(select(job).*member)); };
         key.set = [select = select_, member](Job& job, const JobValue& value) {
             const std::vector<std::string_view> names = names_of<Enum>();
             const auto found = std::find(names.begin(), names.end(), std::get<std::string>(value));
@@ -125,9 +122,7 @@ class TableWriter {
                   const std::string& description) const {
         Key& key = push(leaf, KeyKind::integer, unit, description);
         key.range = range;
-        key.get = [select = select_, member](const Job& job) {
-            return static_cast<std::int64_t>(member(select(job)));
-        };
+        key.get = [select = select_, member](const Job& job) { return static_cast<std::int64_t>(member(select(job))); };
         key.set = [select = select_, member](Job& job, const JobValue& value) {
             auto& it = member(select(job));
             it = static_cast<std::remove_reference_t<decltype(it)>>(std::get<std::int64_t>(value));
@@ -202,33 +197,33 @@ void add_unit(const Writer& key, const std::string& leaf, const std::string& nam
               const std::string& besides_latency = "",
               const std::string& buffered = "items that may wait at its input") {
     key.add_deep(
-        leaf + "_latency", [unit](auto& t) -> auto& { return unit(t).latency; }, "cycles",
-        between(1, most_cycles), name + ": from an item's start to its result" + besides_latency);
+        leaf + "_latency", [unit](auto& t) -> auto& { return unit(t).latency; }, "cycles", between(1, most_cycles),
+        name + ": from an item's start to its result" + besides_latency);
     key.add_deep(
-        leaf + "_interval", [unit](auto& t) -> auto& { return unit(t).interval; }, "cycles",
-        between(1, most_cycles), name + ": between the starts of two items");
+        leaf + "_interval", [unit](auto& t) -> auto& { return unit(t).interval; }, "cycles", between(1, most_cycles),
+        name + ": between the starts of two items");
     key.add_deep(
-        leaf + "_buffer", [unit](auto& t) -> auto& { return unit(t).buffer; }, "items",
-        between(1, most_places), name + ": " + buffered);
+        leaf + "_buffer", [unit](auto& t) -> auto& { return unit(t).buffer; }, "items", between(1, most_places),
+        name + ": " + buffered);
 }
 
 template <typename Writer, typename Select>
 void add_memory(const Writer& key, const std::string& leaf, const std::string& name, Select memory) {
     key.add_deep(
-        leaf + "_ports", [memory](auto& t) -> auto& { return memory(t).ports; }, "entries a cycle",
-        between(1, 64), name + ": ports of each bank");
+        leaf + "_ports", [memory](auto& t) -> auto& { return memory(t).ports; }, "entries a cycle", between(1, 64),
+        name + ": ports of each bank");
     key.add_deep(
         leaf + "_banks", [memory](auto& t) -> auto& { return memory(t).banks; }, "-", between(1, 64),
         name + ": banks, interleaved entry by entry");
     key.add_deep(
-        leaf + "_latency", [memory](auto& t) -> auto& { return memory(t).latency; }, "cycles",
-        between(0, most_places), name + ": from an entry's address to its data");
+        leaf + "_latency", [memory](auto& t) -> auto& { return memory(t).latency; }, "cycles", between(0, most_places),
+        name + ": from an entry's address to its data");
     key.add_deep(
-        leaf + "_width", [memory](auto& t) -> auto& { return memory(t).width; }, "bytes a cycle",
-        between(0, 64), name + ": what a port moves; 0: a whole entry");
+        leaf + "_width", [memory](auto& t) -> auto& { return memory(t).width; }, "bytes a cycle", between(0, 64),
+        name + ": what a port moves; 0: a whole entry");
     key.add_deep(
-        leaf + "_buffer", [memory](auto& t) -> auto& { return memory(t).buffer; }, "requests",
-        between(1, most_places), name + ": requests that may wait");
+        leaf + "_buffer", [memory](auto& t) -> auto& { return memory(t).buffer; }, "requests", between(1, most_places),
+        name + ": requests that may wait");
 }
 
 template <typename Writer>
@@ -250,23 +245,20 @@ void add_timing(const Writer& key) {
     add_unit(
         key, "tex_coord_test", "Tex Coord Test", [](auto& t) -> auto& { return t.tex_coord_test; });
     add_unit(
-        key, "summed_height_test", "Summed Height Test",
-        [](auto& t) -> auto& { return t.summed_height_test; }, ", table reads come on top");
-    add_unit(
-        key, "normal_test", "Normal Test", [](auto& t) -> auto& { return t.normal_test; },
+        key, "summed_height_test", "Summed Height Test", [](auto& t) -> auto& { return t.summed_height_test; },
         ", table reads come on top");
+    add_unit(
+        key, "normal_test", "Normal Test", [](auto& t) -> auto& { return t.normal_test; }, ", table reads come on top");
     key.add_deep(
         "highlight_test_latency", [](auto& t) -> auto& { return t.highlight_test_latency; }, "cycles",
-        between(0, most_cycles),
-        "Highlight Test, if there is one: what it adds to the Normal Test's latency");
+        between(0, most_cycles), "Highlight Test, if there is one: what it adds to the Normal Test's latency");
     add_unit(
         key, "view_test", "View Test", [](auto& t) -> auto& { return t.view_test; });
     key.add_deep(
         "results_buffer", [](auto& t) -> auto& { return t.results_buffer; }, "edges", between(1, most_places),
         "Edges decided by one test that may wait for the other three");
     add_unit(
-        key, "pass_or_tessellate", "Pass or Tessellate",
-        [](auto& t) -> auto& { return t.pass_or_tessellate; }, "",
+        key, "pass_or_tessellate", "Pass or Tessellate", [](auto& t) -> auto& { return t.pass_or_tessellate; }, "",
         "triangles of which not all parts have come from both branches");
     add_unit(
         key, "tessellation", "Tessellation", [](auto& t) -> auto& { return t.tessellation; });
@@ -279,8 +271,7 @@ void add_timing(const Writer& key) {
     add_memory(
         key, "normal_map", "Normal map", [](auto& t) -> auto& { return t.normal_map; });
     add_memory(
-        key, "summed_height_table", "Summed Height Table",
-        [](auto& t) -> auto& { return t.summed_height_table; });
+        key, "summed_height_table", "Summed Height Table", [](auto& t) -> auto& { return t.summed_height_table; });
     key.add_deep(
         "off_chip_latency", [](auto& t) -> auto& { return t.off_chip_memory.latency; }, "cycles",
         between(0, most_places), "Off-chip memory: from a request's last byte to its answer");
@@ -291,8 +282,8 @@ void add_timing(const Writer& key) {
         "off_chip_buffer", [](auto& t) -> auto& { return t.off_chip_memory.buffer; }, "requests",
         between(1, most_places), "Off-chip memory: requests that may wait");
     key.add_deep(
-        "stalls_per_mille", [](auto& t) -> auto& { return t.stalls.per_mille; }, "per mille of items",
-        between(0, 1000), "For tests: items delayed at random on every channel");
+        "stalls_per_mille", [](auto& t) -> auto& { return t.stalls.per_mille; }, "per mille of items", between(0, 1000),
+        "For tests: items delayed at random on every channel");
     key.add_deep(
         "stalls_longest", [](auto& t) -> auto& { return t.stalls.longest; }, "cycles", between(1, 1000000),
         "For tests: the longest of these delays");

@@ -16,8 +16,7 @@ namespace tessera {
 inline constexpr std::string_view auto_word = "auto";
 
 /// A key's value as a job file writes it; a choice is its name.
-using JobValue =
-    std::variant<bool, std::int64_t, double, std::array<double, 2>, std::array<double, 3>, std::string>;
+using JobValue = std::variant<bool, std::int64_t, double, std::array<double, 2>, std::array<double, 3>, std::string>;
 
 enum class KeyKind {
     flag,

@@ -35,9 +35,7 @@ bool in_range(const KeyRange& range, double value) {
 
 struct WithUnit {
     const Key& key;
-    std::string operator()(const std::string& range) const {
-        return key.unit == "-" ? range : range + " " + key.unit;
-    }
+    std::string operator()(const std::string& range) const { return key.unit == "-" ? range : range + " " + key.unit; }
 };
 
 // Each returns what is wrong, as the end of the sentence "`key` = value ...".
@@ -48,9 +46,7 @@ struct Fault {
         if (!std::isfinite(value)) {
             return "is not a finite number; the range is " + WithUnit{key}(range_numbers(key));
         }
-        return in_range(key.range, value)
-                   ? ""
-                   : "is out of range; the range is " + WithUnit{key}(range_numbers(key));
+        return in_range(key.range, value) ? "" : "is out of range; the range is " + WithUnit{key}(range_numbers(key));
     }
 
     std::string text(const std::string& value) const {
@@ -83,9 +79,7 @@ struct Fault {
     std::string operator()(std::int64_t value) const {
         return key.kind == KeyKind::integer ? number(static_cast<double>(value)) : wrong_kind();
     }
-    std::string operator()(double value) const {
-        return key.kind == KeyKind::number ? number(value) : wrong_kind();
-    }
+    std::string operator()(double value) const { return key.kind == KeyKind::number ? number(value) : wrong_kind(); }
     std::string operator()(const std::array<double, 2>& value) const {
         if (key.kind != KeyKind::span) {
             return wrong_kind();
@@ -109,9 +103,8 @@ struct Fault {
         return "";
     }
     std::string operator()(const std::string& value) const {
-        const bool textual = key.kind == KeyKind::choice || key.kind == KeyKind::span ||
-                             key.kind == KeyKind::text || key.kind == KeyKind::file ||
-                             key.kind == KeyKind::folder;
+        const bool textual = key.kind == KeyKind::choice || key.kind == KeyKind::span || key.kind == KeyKind::text ||
+                             key.kind == KeyKind::file || key.kind == KeyKind::folder;
         if (key.range.or_auto && value == auto_word) {
             return "";
         }
@@ -155,8 +148,7 @@ std::string wanted_text(const Key& key) {
         case KeyKind::number:
             return auto_text(key) + "a number, " + WithUnit{key}(range_numbers(key));
         case KeyKind::vector:
-            return auto_text(key) + "three numbers, " +
-                   WithUnit{key}("[x, y, z], each " + range_numbers(key));
+            return auto_text(key) + "three numbers, " + WithUnit{key}("[x, y, z], each " + range_numbers(key));
         case KeyKind::span:
             return "one of " + joined(key.choices) + ", or two numbers, " +
                    WithUnit{key}("[low, high], each " + range_numbers(key));

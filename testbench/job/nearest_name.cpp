@@ -39,8 +39,7 @@ std::string nearest_name(std::string_view mistyped, const std::vector<std::strin
     for (const std::string& name : names) {
         // A right last part under a wrong table costs one edit.
         const std::size_t by_last_part = edit_distance(last_part(mistyped), last_part(name)) + 1;
-        const bool comparable =
-            last_part(mistyped).size() > 2 && by_last_part <= 1 + last_part(name).size() / 4;
+        const bool comparable = last_part(mistyped).size() > 2 && by_last_part <= 1 + last_part(name).size() / 4;
         const std::size_t whole = edit_distance(mistyped, name);
         const std::size_t distance = comparable ? std::min(whole, by_last_part) : whole;
         if (distance < best_distance && distance < name.size()) {

@@ -63,9 +63,8 @@ std::string suggestion(std::string_view unknown_name) {
     const KeyTable* group = find_table(near);
     const bool within_another = unknown_name.find('.') != std::string_view::npos;
     return group != nullptr && within_another
-               ? fmt::format(
-                     "; did you mean the group `{0}`? It stands alone: write [{0}], then its keys ({1})",
-                     near, keys_text(*group))
+               ? fmt::format("; did you mean the group `{0}`? It stands alone: write [{0}], then its keys ({1})", near,
+                             keys_text(*group))
                : fmt::format("; did you mean `{}`?", near);
 }
 
@@ -133,8 +132,7 @@ std::string set_from_node(Job& job, const Key& key, const toml::node& node) {
 /// A key as it would be written: quoted if necessary, so that "mesh.rows" as one key shows.
 std::string written_key(std::string_view key) {
     const bool bare = !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-               c == '-';
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
     });
     return bare ? printable(key) : printable(toml_string(key));
 }
@@ -163,10 +161,9 @@ class TableReader {
                     choose_source(job_, inner->name);
                 }
             } else {
-                faults_.push_back(
-                    fault_at(name.source(), fmt::format("`{0}` is {1}; `{0}` is a table of keys: "
-                                                        "write [{0}], then its keys",
-                                                        inner->name, found_text(node))));
+                faults_.push_back(fault_at(name.source(), fmt::format("`{0}` is {1}; `{0}` is a table of keys: "
+                                                                      "write [{0}], then its keys",
+                                                                      inner->name, found_text(node))));
             }
         }
     }
@@ -181,9 +178,8 @@ class TableReader {
         std::string message;
         for (std::size_t i = 0; i < std::min(faults_.size(), most_faults); ++i) {
             const Fault& fault = faults_[i];
-            message +=
-                fmt::format("{}{}:{}:{}: {}{}", i == 0 ? "" : "\n", file, fault.line, fault.column,
-                            fault.text, fault.unknown_name.empty() ? "" : suggestion(fault.unknown_name));
+            message += fmt::format("{}{}:{}:{}: {}{}", i == 0 ? "" : "\n", file, fault.line, fault.column, fault.text,
+                                   fault.unknown_name.empty() ? "" : suggestion(fault.unknown_name));
         }
         if (faults_.size() > most_faults) {
             message += fmt::format("\n{}: and {} more", file, faults_.size() - most_faults);
@@ -198,10 +194,10 @@ class TableReader {
         const std::string full_name = prefix + std::string(name.str());
         const Key* key = quoted_dots ? nullptr : find_key(full_name);
         if (key == nullptr) {
-            faults_.push_back(fault_at(name.source(),
-                                       fmt::format("unknown {} `{}{}`", node.is_table() ? "table" : "key",
-                                                   prefix, written_key(name.str())),
-                                       full_name));
+            faults_.push_back(fault_at(
+                name.source(),
+                fmt::format("unknown {} `{}{}`", node.is_table() ? "table" : "key", prefix, written_key(name.str())),
+                full_name));
         } else if (std::string fault = set_from_node(job_, *key, node); !fault.empty()) {
             faults_.push_back(fault_at(name.source(), std::move(fault)));
         }
@@ -248,8 +244,7 @@ void set_from_text(Job& job, const Key& key, std::string_view text) {
     try {
         table = toml::parse(fmt::format("value = {}", text));
     } catch (const toml::parse_error&) {
-        throw InputError(
-            fmt::format("`{}` cannot be {}; expected {}", key.name, printable(text), wanted_text(key)));
+        throw InputError(fmt::format("`{}` cannot be {}; expected {}", key.name, printable(text), wanted_text(key)));
     }
     const toml::node* value = table.get("value");
     if (table.size() != 1 || value == nullptr) {

@@ -37,9 +37,8 @@ void refuse_deep_keys(std::string_view text, const std::string& name) {
         const bool comment = first != std::string_view::npos && row[first] == '#';
         const std::ptrdiff_t dots = dots_of_a_key(row);
         if (!comment && dots > most_dots) {
-            throw InputError(
-                fmt::format("{}:{}:1: {} dots in one line; the limit is {}, a key has at most one", name,
-                            line, dots, most_dots));
+            throw InputError(fmt::format("{}:{}:1: {} dots in one line; the limit is {}, a key has at most one", name,
+                                         line, dots, most_dots));
         }
     }
 }
@@ -69,8 +68,7 @@ std::string read_toml_text(const std::filesystem::path& path, std::string_view k
 
 toml::table parse_toml(std::string_view text, const std::string& name, std::string_view kind) {
     if (text.size() > largest_toml_file) {
-        throw InputError(
-            fmt::format("{}: over {} bytes; {} has at most that many", name, largest_toml_file, kind));
+        throw InputError(fmt::format("{}: over {} bytes; {} has at most that many", name, largest_toml_file, kind));
     }
     refuse_deep_keys(text, name);
     try {

@@ -86,25 +86,22 @@ void check_fingerprint(const std::string& table, const std::string& fingerprint,
                        Faults& faults) {
     const bool is_one =
         fingerprint.size() == 16 && fingerprint.find_first_not_of("0123456789abcdef") == std::string::npos;
-    faults.unless(
-        fingerprint.empty() || is_one,
-        "`{}.fingerprint` = {}: expected 16 hexadecimal digits (0-9, a-f), as a run writes them into "
-        "its job.toml, or \"\"",
-        table, printable(toml_string(fingerprint)));
-    faults.unless(
-        fingerprint.empty() || !file.empty(),
-        "`{0}.fingerprint` = {1}, but `{0}.file` is empty: name the file, or set {0}.fingerprint = \"\"",
-        table, printable(toml_string(fingerprint)));
+    faults.unless(fingerprint.empty() || is_one,
+                  "`{}.fingerprint` = {}: expected 16 hexadecimal digits (0-9, a-f), as a run writes them into "
+                  "its job.toml, or \"\"",
+                  table, printable(toml_string(fingerprint)));
+    faults.unless(fingerprint.empty() || !file.empty(),
+                  "`{0}.fingerprint` = {1}, but `{0}.file` is empty: name the file, or set {0}.fingerprint = \"\"",
+                  table, printable(toml_string(fingerprint)));
 }
 
 void check_mesh(const Job::Mesh& mesh, Faults& faults) {
     check_file("mesh", reads_file(mesh.source), mesh.file, name_of(mesh.source), faults);
     check_fingerprint("mesh", mesh.fingerprint, mesh.file, faults);
     const bool round = mesh.source == MeshSource::cylinder || mesh.source == MeshSource::sphere;
-    faults.unless(
-        !round || mesh.columns == 0 || mesh.columns >= 3,
-        "`mesh.columns` = {}, but a {} closes around itself only with 3 or more: raise mesh.columns",
-        mesh.columns, name_of(mesh.source));
+    faults.unless(!round || mesh.columns == 0 || mesh.columns >= 3,
+                  "`mesh.columns` = {}, but a {} closes around itself only with 3 or more: raise mesh.columns",
+                  mesh.columns, name_of(mesh.source));
     faults.unless(mesh.source != MeshSource::sphere || mesh.rows != 1,
                   "`mesh.rows` = {}, but a sphere has 2 or more: raise mesh.rows", mesh.rows);
 }
@@ -117,11 +114,10 @@ void check_map(const Job& job, Faults& faults) {
                   "`map.text` is empty, but `map.source` = \"text\": give it a text");
     if (map.source != MapSource::file) {
         const std::int64_t most = std::int64_t{1} << job.formats.texture_integer;
-        faults.unless(
-            map.width <= most && map.height <= most,
-            "`map.width` = {} by `map.height` = {}, but `formats.texture_integer` = {} addresses at most {} "
-            "texels a side: make the map smaller or texture_integer larger",
-            map.width, map.height, job.formats.texture_integer, most);
+        faults.unless(map.width <= most && map.height <= most,
+                      "`map.width` = {} by `map.height` = {}, but `formats.texture_integer` = {} addresses at most {} "
+                      "texels a side: make the map smaller or texture_integer larger",
+                      map.width, map.height, job.formats.texture_integer, most);
     }
 }
 
@@ -134,70 +130,59 @@ void check_camera(const Job& job, Faults& faults) {
     faults.unless(apart, "`camera.eye` = {} and `camera.target` = {} are the same point: move one of them",
                   text_of(camera.eye), text_of(camera.target));
     const double up = is_automatic(camera.up) ? 1 : length(camera.up);
-    faults.unless(up > 0, "`camera.up` = {} has no direction: give it one, such as [0, 0, 1]",
-                  text_of(camera.up));
+    faults.unless(up > 0, "`camera.up` = {} has no direction: give it one, such as [0, 0, 1]", text_of(camera.up));
     // Below a sine of 1e-6 the picture's roll would be rounding error.
-    const auto sine = [](const Vector& a, const Vector& b) {
-        return length(cross(a, b)) / (length(a) * length(b));
-    };
-    const bool parallel = known && !is_automatic(camera.up) && apart && up > 0 &&
-                          sine(direction(view), direction(camera.up)) <= 1e-6;
-    faults.unless(
-        !parallel,
-        "`camera.up` = {} is parallel to the view direction {} (camera.target - camera.eye): turn up by "
-        "a right angle",
-        text_of(camera.up), text_of(view));
+    const auto sine = [](const Vector& a, const Vector& b) { return length(cross(a, b)) / (length(a) * length(b)); };
+    const bool parallel =
+        known && !is_automatic(camera.up) && apart && up > 0 && sine(direction(view), direction(camera.up)) <= 1e-6;
+    faults.unless(!parallel,
+                  "`camera.up` = {} is parallel to the view direction {} (camera.target - camera.eye): turn up by "
+                  "a right angle",
+                  text_of(camera.up), text_of(view));
     const Job::Formats& formats = job.formats;
     const std::int64_t integer_bits = formats.screen_bits - formats.screen_fraction - 1;
     if (integer_bits >= 0) {
         const std::int64_t most = std::int64_t{1} << integer_bits;
-        faults.unless(
-            camera.viewport_width <= most && camera.viewport_height <= most,
-            "`camera.viewport_width` = {} by `camera.viewport_height` = {}, but `formats.screen_bits` = {} "
-            "with "
-            "`formats.screen_fraction` = {} reaches only {} pixels: make the viewport smaller, or the format "
-            "wider",
-            camera.viewport_width, camera.viewport_height, formats.screen_bits, formats.screen_fraction,
-            most);
+        faults.unless(camera.viewport_width <= most && camera.viewport_height <= most,
+                      "`camera.viewport_width` = {} by `camera.viewport_height` = {}, but `formats.screen_bits` = {} "
+                      "with "
+                      "`formats.screen_fraction` = {} reaches only {} pixels: make the viewport smaller, or the format "
+                      "wider",
+                      camera.viewport_width, camera.viewport_height, formats.screen_bits, formats.screen_fraction,
+                      most);
     }
 }
 
 void check_formats(const Job& job, Faults& faults) {
     const Job::Formats& formats = job.formats;
-    faults.unless(
-        formats.position_fraction < formats.position_bits,
-        "`formats.position_fraction` = {} must be less than `formats.position_bits` = {}: lower it, or raise "
-        "position_bits",
-        formats.position_fraction, formats.position_bits);
-    faults.unless(
-        formats.screen_fraction < formats.screen_bits,
-        "`formats.screen_fraction` = {} must be less than `formats.screen_bits` = {}: lower it, or raise "
-        "screen_bits",
-        formats.screen_fraction, formats.screen_bits);
+    faults.unless(formats.position_fraction < formats.position_bits,
+                  "`formats.position_fraction` = {} must be less than `formats.position_bits` = {}: lower it, or raise "
+                  "position_bits",
+                  formats.position_fraction, formats.position_bits);
+    faults.unless(formats.screen_fraction < formats.screen_bits,
+                  "`formats.screen_fraction` = {} must be less than `formats.screen_bits` = {}: lower it, or raise "
+                  "screen_bits",
+                  formats.screen_fraction, formats.screen_bits);
     faults.unless(formats.normal_bits - formats.normal_fraction >= 2,
                   "`formats.normal_fraction` = {} leaves {} of `formats.normal_bits` = {} for sign and "
                   "integer, and 1.0 "
                   "needs 2: lower it, or raise normal_bits",
-                  formats.normal_fraction, formats.normal_bits - formats.normal_fraction,
-                  formats.normal_bits);
+                  formats.normal_fraction, formats.normal_bits - formats.normal_fraction, formats.normal_bits);
     const std::int64_t generations = std::int64_t{1} << formats.generation_bits;
-    faults.unless(
-        job.tests.generation_limit < generations,
-        "`tests.generation_limit` = {}, but `formats.generation_bits` = {} counts to {}: lower the limit, or "
-        "raise generation_bits",
-        job.tests.generation_limit, formats.generation_bits, generations - 1);
+    faults.unless(job.tests.generation_limit < generations,
+                  "`tests.generation_limit` = {}, but `formats.generation_bits` = {} counts to {}: lower the limit, or "
+                  "raise generation_bits",
+                  job.tests.generation_limit, formats.generation_bits, generations - 1);
 }
 
 void check_light(const Job::Hardware& hardware, Faults& faults) {
-    faults.unless(length(hardware.light) > 0,
-                  "`hardware.light` = {} has no direction: give it one, such as [0, 0, 1]",
+    faults.unless(length(hardware.light) > 0, "`hardware.light` = {} has no direction: give it one, such as [0, 0, 1]",
                   text_of(hardware.light));
 }
 
 void check_hardware(const Job::Hardware& hardware, Faults& faults) {
-    faults.unless(
-        hardware.tests_units != 2,
-        "`hardware.tests_units` = 2: a design has 1 Tessellation Tests unit, or 3, one for each edge");
+    faults.unless(hardware.tests_units != 2,
+                  "`hardware.tests_units` = 2: a design has 1 Tessellation Tests unit, or 3, one for each edge");
 }
 
 void check_traces(const Job& job, Faults& faults) {

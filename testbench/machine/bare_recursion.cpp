@@ -23,8 +23,8 @@ TableLayout as_indices(const TableLayout& layout) {
 /// Apart from evaluate_edge and not inline, as in the unit (normal_test.h): a design without it pays for no register.
 [[gnu::noinline]] void test_for_highlight(TrianglePass& pass, int k, const TestParameters& tests) {
     EdgeTests& edge = pass.edges[static_cast<std::size_t>(k)];
-    if (highlight_test(pass.edge_begin(k).displaced_normal, pass.edge_end(k).displaced_normal,
-                       edge.displaced_normal, tests))
+    if (highlight_test(pass.edge_begin(k).displaced_normal, pass.edge_end(k).displaced_normal, edge.displaced_normal,
+                       tests))
         edge.tests |= highlight_bit;
 }
 
@@ -62,14 +62,12 @@ std::uint64_t BareRecursion::sum_around(const TexCoord& t, const RectangleSize& 
     if (!sums_.empty())
         return rectangle_sum(rectangle, r.map, table, r.formats,
                              [&](std::uint64_t index) { return std::uint64_t{sums_[index]}; });
-    return rectangle_sum(rectangle, r.map, table, r.formats,
-                         [&](std::uint64_t index) { return wide_sums_[index]; });
+    return rectangle_sum(rectangle, r.map, table, r.formats, [&](std::uint64_t index) { return wide_sums_[index]; });
 }
 
 Direction BareRecursion::map_normal_at(const TexCoord& t) const {
     const Registers& r = setup_.registers;
-    return unpack_normal(normals_[texel_address(t, as_indices(r.normal_map), r.map, r.formats)],
-                         r.formats.normal.bits);
+    return unpack_normal(normals_[texel_address(t, as_indices(r.normal_map), r.map, r.formats)], r.formats.normal.bits);
 }
 
 std::uint32_t BareRecursion::code_at(const TexCoord& t) const {
@@ -80,11 +78,9 @@ std::uint32_t BareRecursion::code_at(const TexCoord& t) const {
 void BareRecursion::complete_base(Triangle& triangle) {
     const Registers& r = setup_.registers;
     for (Vertex& v : triangle.vertices) {
-        v.displaced =
-            displace(v.position, v.normal, code_at(v.texture), r.displacement, r.formats, saturations_);
+        v.displaced = displace(v.position, v.normal, code_at(v.texture), r.displacement, r.formats, saturations_);
         v.screen = transform(v.displaced, r.transform, r.formats, saturations_);
-        v.displaced_normal =
-            bump(v.normal, v.tangent, v.handedness, map_normal_at(v.texture), r.formats, saturations_);
+        v.displaced_normal = bump(v.normal, v.tangent, v.handedness, map_normal_at(v.texture), r.formats, saturations_);
         v.displaced_known = true;
     }
 }
@@ -107,13 +103,12 @@ void BareRecursion::evaluate_edge(TrianglePass& pass, int k) {
                                  map_normal_at(made.texture), r.formats, saturations_);
 
     unsigned tests = 0;
-    if (r.tests.normal_test &&
-        normal_test(i.displaced_normal, j.displaced_normal, edge.displaced_normal, r.tests))
+    if (r.tests.normal_test && normal_test(i.displaced_normal, j.displaced_normal, edge.displaced_normal, r.tests))
         tests |= normal_bit;
     if (r.tests.summed_height_test) {
         const RectangleSize size = rectangle_size(i.texture, j.texture, r.map, r.formats);
-        if (summed_height_test(sum_around(i.texture, size), sum_around(j.texture, size),
-                               sum_around(made.texture, size), size, r.tests))
+        if (summed_height_test(sum_around(i.texture, size), sum_around(j.texture, size), sum_around(made.texture, size),
+                               size, r.tests))
             tests |= summed_height_bit;
     }
     if (!r.tests.view_test || view_test(i.screen, j.screen, r.tests))
@@ -146,15 +141,14 @@ ChildIndices BareRecursion::children_of(const TrianglePass& pass) const {
     const auto displaced = [&](std::uint8_t index) -> const Position& {
         return index < 3 ? pass.triangle.vertices[index].displaced : pass.new_vertex[index - 3u].displaced;
     };
-    return triangulate(pass.split,
-                       choose_second_diagonal(pass.split, setup_.registers.triangulation, displaced));
+    return triangulate(pass.split, choose_second_diagonal(pass.split, setup_.registers.triangulation, displaced));
 }
 
 void BareRecursion::transform_normals(Triangle& triangle) {
     for (Vertex& v : triangle.vertices)
         if (!v.screen_normal_known)
-            v.screen_normal = transform_normal(v.displaced_normal, setup_.registers.transform,
-                                               setup_.registers.formats, saturations_);
+            v.screen_normal = transform_normal(v.displaced_normal, setup_.registers.transform, setup_.registers.formats,
+                                               saturations_);
 }
 
 namespace {

@@ -84,16 +84,16 @@ std::uint64_t BareRecursion::walk(Visitor& visitor, std::uint64_t most_edges) {
             pass.new_vertices = 0;
             if (pass.split != 0) {
                 std::size_t number = 0;
-                datapath::tessellate(
-                    pass, r.triangulation, r.formats, saturations_, [&](const datapath::Triangle& child) {
-                        waiting.push_back({child, visitor.child(children.children[number++])});
-                    });
+                datapath::tessellate(pass, r.triangulation, r.formats, saturations_,
+                                     [&](const datapath::Triangle& child) {
+                                         waiting.push_back({child, visitor.child(children.children[number++])});
+                                     });
                 continue;
             }
             transform_normals(pass.triangle);
             const auto& v = pass.triangle.vertices;
-            visitor.finished(pass.triangle, r.back_face_culling &&
-                                                datapath::faces_away(v[0].screen, v[1].screen, v[2].screen));
+            visitor.finished(pass.triangle,
+                             r.back_face_culling && datapath::faces_away(v[0].screen, v[1].screen, v[2].screen));
         }
     }
     return edges;

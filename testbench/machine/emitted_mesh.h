@@ -18,9 +18,8 @@ struct EmittedTriangle {
         datapath::TexCoord texture;            ///< t
         std::uint8_t generation = 0;
         friend bool operator==(const Corner& a, const Corner& b) {
-            return a.position == b.position && a.displaced == b.displaced &&
-                   a.displaced_normal == b.displaced_normal && a.texture == b.texture &&
-                   a.generation == b.generation;
+            return a.position == b.position && a.displaced == b.displaced && a.displaced_normal == b.displaced_normal &&
+                   a.texture == b.texture && a.generation == b.generation;
         }
     };
     std::array<Corner, 3> corners;
@@ -42,8 +41,8 @@ struct EmittedTriangle {
         return result;
     }
     friend bool operator==(const EmittedTriangle& a, const EmittedTriangle& b) {
-        return a.corners == b.corners && a.base == b.base && a.split_by == b.split_by &&
-               a.stopped_by == b.stopped_by && a.culled == b.culled;
+        return a.corners == b.corners && a.base == b.base && a.split_by == b.split_by && a.stopped_by == b.stopped_by &&
+               a.culled == b.culled;
     }
 };
 
@@ -64,9 +63,9 @@ struct EmittedMesh {
         const auto key = [](const EmittedTriangle& t) {
             const auto& c = t.corners;
             return std::make_tuple(t.base, c[0].texture.u, c[0].texture.v, c[1].texture.u, c[1].texture.v,
-                                   c[2].texture.u, c[2].texture.v, c[0].displaced.x, c[0].displaced.y,
-                                   c[0].displaced.z, c[1].displaced.x, c[1].displaced.y, c[1].displaced.z,
-                                   c[2].displaced.x, c[2].displaced.y, c[2].displaced.z);
+                                   c[2].texture.u, c[2].texture.v, c[0].displaced.x, c[0].displaced.y, c[0].displaced.z,
+                                   c[1].displaced.x, c[1].displaced.y, c[1].displaced.z, c[2].displaced.x,
+                                   c[2].displaced.y, c[2].displaced.z);
         };
         std::sort(triangles.begin(), triangles.end(),
                   [&](const EmittedTriangle& a, const EmittedTriangle& b) { return key(a) < key(b); });

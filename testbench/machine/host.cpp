@@ -18,8 +18,7 @@ class TableRow {
 
     void set(std::uint32_t column, std::uint64_t entry) {
         for (std::uint32_t k = 0; k < layout_.entry_bytes; ++k)
-            bytes_[std::size_t{column} * layout_.entry_bytes + k] =
-                static_cast<unsigned char>(entry >> (8 * k));
+            bytes_[std::size_t{column} * layout_.entry_bytes + k] = static_cast<unsigned char>(entry >> (8 * k));
     }
 
     void write(Socket& socket, std::uint32_t row) {
@@ -73,9 +72,9 @@ void Host::fill_normal_map() {
     TableRow row(layout);
     for (std::uint32_t y = 0; y < layout.rows; ++y) {
         for (std::uint32_t x = 0; x < layout.columns; ++x)
-            row.set(x, datapath::pack_normal(
-                           map_normal(setup_.map, x, y, setup_.height_per_code, setup_.texel_size, format),
-                           format.bits));
+            row.set(x,
+                    datapath::pack_normal(
+                        map_normal(setup_.map, x, y, setup_.height_per_code, setup_.texel_size, format), format.bits));
         row.write(normal_map, y);
     }
 }

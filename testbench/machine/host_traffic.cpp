@@ -31,8 +31,8 @@ std::vector<std::uint32_t> register_words(const datapath::Registers& registers) 
 
 HostTraffic first_frame_traffic(const MachineSetup& setup) {
     const datapath::Registers& r = setup.registers;
-    return {base_mesh_bytes(setup), r.displacement_map.bytes(), r.normal_map.bytes(),
-            r.summed_height_table.bytes(), register_words(r).size() * sizeof(std::uint32_t)};
+    return {base_mesh_bytes(setup), r.displacement_map.bytes(), r.normal_map.bytes(), r.summed_height_table.bytes(),
+            register_words(r).size() * sizeof(std::uint32_t)};
 }
 
 HostTraffic next_frame_traffic(const MachineSetup& before, const MachineSetup& now) {

@@ -15,9 +15,7 @@ struct HostTraffic {
     std::uint64_t summed_height_table = 0;
     std::uint64_t registers = 0;
 
-    std::uint64_t total() const {
-        return base_mesh + displacement_map + normal_map + summed_height_table + registers;
-    }
+    std::uint64_t total() const { return base_mesh + displacement_map + normal_map + summed_height_table + registers; }
 };
 
 /// Size of a run's base mesh as sent to Get Triangle: three vertices of P, N, T, handedness, t per triangle.

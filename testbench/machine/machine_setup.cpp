@@ -34,8 +34,7 @@ Design make_design(const Job& job) {
     Design design;
     design.transport = job.mode == Mode::timed ? Transport::non_blocking : Transport::blocking;
     design.timing = job.timing;
-    design.queue.order =
-        job.hardware.queue_order == QueueOrder::lifo ? TriangleOrder::lifo : TriangleOrder::fifo;
+    design.queue.order = job.hardware.queue_order == QueueOrder::lifo ? TriangleOrder::lifo : TriangleOrder::fifo;
     design.queue.watermark = static_cast<std::size_t>(job.hardware.queue_watermark);
     design.queue.capacity = static_cast<std::size_t>(job.hardware.queue_capacity);
     design.queue.off_chip_triangles = static_cast<std::uint64_t>(job.hardware.off_chip_triangles);
@@ -86,22 +85,22 @@ MachineSetup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& m
     datapath::Formats& formats = registers.formats;
     std::uint64_t& saturated = setup.input_saturations.registers;
     formats = make_formats(job.formats);
-    setup.map = quantise_map(map, formats.displacement.bits, address_mode(job.map.address_u),
-                             address_mode(job.map.address_v));
+    setup.map =
+        quantise_map(map, formats.displacement.bits, address_mode(job.map.address_u), address_mode(job.map.address_v));
     registers.map = setup.map.geometry;
 
     const DisplacementRange displacement = displacement_range(job.displacement, map);
     if (std::string remark = unused_range_remark(job.map.range, map); !remark.empty())
         setup.remarks.push_back(std::move(remark));
-    setup.model_scale = fit_model(mesh, displacement, formats.position,
-                                  job.map.source == MapSource::file ? job.map.file : "map");
-    registers.displacement = make_displacement(displacement, setup.model_scale, setup.map.highest_code(),
-                                               formats.position, saturated);
-    setup.height_per_code = std::ldexp(static_cast<double>(registers.displacement.scale),
-                                       -formats.position.fraction - setup.map.bits);
-    setup.texel_size = glm::dvec2(mesh.texture_scale.mean_u / registers.map.width,
-                                  mesh.texture_scale.mean_v / registers.map.height) *
-                       setup.model_scale.scale;
+    setup.model_scale =
+        fit_model(mesh, displacement, formats.position, job.map.source == MapSource::file ? job.map.file : "map");
+    registers.displacement =
+        make_displacement(displacement, setup.model_scale, setup.map.highest_code(), formats.position, saturated);
+    setup.height_per_code =
+        std::ldexp(static_cast<double>(registers.displacement.scale), -formats.position.fraction - setup.map.bits);
+    setup.texel_size =
+        glm::dvec2(mesh.texture_scale.mean_u / registers.map.width, mesh.texture_scale.mean_v / registers.map.height) *
+        setup.model_scale.scale;
 
     take_base_triangles(round_base_triangles(mesh, setup.model_scale, formats, registers.map), setup);
     setup.largest_rectangle_sum =
@@ -114,8 +113,8 @@ MachineSetup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& m
     const View view = make_view(job.camera);
     registers.tests = make_tests(job.tests, formats);
     formats.highlight_tag = job.tests.highlight;
-    if (job.tests.highlight && !set_highlight_test(job.tests, towards_light(job.hardware), view.backward,
-                                                   formats, registers.tests, saturated))
+    if (job.tests.highlight &&
+        !set_highlight_test(job.tests, towards_light(job.hardware), view.backward, formats, registers.tests, saturated))
         setup.remarks.emplace_back(
             "hardware.light shines straight towards the viewer: there is no highlight, and the Highlight "
             "Test never asks for a split");

@@ -8,8 +8,8 @@ namespace tessera {
 QuantisedMap quantise_map(const HeightMap& map, int bits, datapath::AddressMode address_u,
                           datapath::AddressMode address_v) {
     QuantisedMap result;
-    result.geometry = {static_cast<std::uint32_t>(map.width), static_cast<std::uint32_t>(map.height),
-                       address_u, address_v};
+    result.geometry = {static_cast<std::uint32_t>(map.width), static_cast<std::uint32_t>(map.height), address_u,
+                       address_v};
     result.bits = bits;
     result.codes.reserve(map.values.size());
     const double range = map.range_high - map.range_low;
@@ -40,9 +40,8 @@ Neighbours neighbours(std::uint32_t index, std::uint32_t size, datapath::Address
 
 }  // namespace
 
-datapath::Direction map_normal(const QuantisedMap& map, std::uint32_t x, std::uint32_t y,
-                               double height_per_code, const glm::dvec2& texel_size,
-                               const datapath::Format& format) {
+datapath::Direction map_normal(const QuantisedMap& map, std::uint32_t x, std::uint32_t y, double height_per_code,
+                               const glm::dvec2& texel_size, const datapath::Format& format) {
     const Neighbours u = neighbours(x, map.geometry.width, map.geometry.address_u);
     const Neighbours v = neighbours(y, map.geometry.height, map.geometry.address_v);
     const auto slope = [&](int difference, double distance, double size) {

@@ -17,9 +17,7 @@ struct QuantisedMap {
     int bits = 16;
     std::vector<std::uint16_t> codes;
 
-    std::uint16_t code(std::uint32_t x, std::uint32_t y) const {
-        return codes[std::size_t{y} * geometry.width + x];
-    }
+    std::uint16_t code(std::uint32_t x, std::uint32_t y) const { return codes[std::size_t{y} * geometry.width + x]; }
     std::uint32_t highest_code() const { return (std::uint32_t{1} << bits) - 1; }
 };
 
@@ -30,8 +28,7 @@ QuantisedMap quantise_map(const HeightMap& map, int bits, datapath::AddressMode 
 /// N_d at a texel (golden/ALGORITHM.md 2): normalise(-dh/du, -dh/dv, 1) by central differences of the heights,
 /// one-sided at a clamped border, periodic where the map repeats; rounded to the normal's format.
 /// height_per_code and texel_size are in the same world unit.
-datapath::Direction map_normal(const QuantisedMap& map, std::uint32_t x, std::uint32_t y,
-                               double height_per_code, const glm::dvec2& texel_size,
-                               const datapath::Format& format);
+datapath::Direction map_normal(const QuantisedMap& map, std::uint32_t x, std::uint32_t y, double height_per_code,
+                               const glm::dvec2& texel_size, const datapath::Format& format);
 
 }  // namespace tessera

@@ -40,8 +40,7 @@ double rounded(double value, double reference) {
         return value;
     const int digits = 5 - static_cast<int>(std::floor(std::log10(std::abs(reference))));
     const double power = std::pow(10.0, std::abs(digits));
-    const double result =
-        digits < 0 ? std::nearbyint(value / power) * power : std::nearbyint(value * power) / power;
+    const double result = digits < 0 ? std::nearbyint(value / power) * power : std::nearbyint(value * power) / power;
     return result == 0 ? 0 : result;  // not -0
 }
 glm::dvec3 rounded(const glm::dvec3& v, double reference) {
@@ -110,22 +109,20 @@ glm::dvec3 front_of(const glm::dvec3& up) {
 
 glm::dvec3 direction_to_eye(const glm::dvec3& up) {
     const glm::dvec3 front = front_of(up), right = glm::cross(up, front);
-    return std::cos(elevation) * (std::cos(azimuth) * front + std::sin(azimuth) * right) +
-           std::sin(elevation) * up;
+    return std::cos(elevation) * (std::cos(azimuth) * front + std::sin(azimuth) * right) + std::sin(elevation) * up;
 }
 
 /// The smallest distance from the target at which the box projects within the filled part of the picture. A corner at
 /// (x, y) across the view and z towards the eye lies at focal * x / (distance - z) from the picture's middle.
-double framing_distance(const Box& box, const glm::dvec3& target, const glm::dvec3& backward,
-                        const glm::dvec3& up, const Job::Camera& camera) {
+double framing_distance(const Box& box, const glm::dvec3& target, const glm::dvec3& backward, const glm::dvec3& up,
+                        const Job::Camera& camera) {
     const glm::dvec3 right = unit_vector(glm::cross(up, backward)), above = glm::cross(backward, right);
     const double half_height = std::tan(camera.field_of_view * pi / 360);  // of the picture, at distance 1
-    const double half_width = half_height * static_cast<double>(camera.viewport_width) /
-                              static_cast<double>(camera.viewport_height);
+    const double half_width =
+        half_height * static_cast<double>(camera.viewport_width) / static_cast<double>(camera.viewport_height);
     double distance = 0;
     for (unsigned corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 point{(corner & 1u) != 0 ? box.high.x : box.low.x,
-                               (corner & 2u) != 0 ? box.high.y : box.low.y,
+        const glm::dvec3 point{(corner & 1u) != 0 ? box.high.x : box.low.x, (corner & 2u) != 0 ? box.high.y : box.low.y,
                                (corner & 4u) != 0 ? box.high.z : box.low.z};
         const glm::dvec3 q = point - target;
         const double across =
@@ -165,10 +162,9 @@ class Resolver {
         if (reach > span)
             scale *= span / reach;
         scale = rounded(scale, scale);
-        found("displacement.scale",
-              fmt::format("{} of the base mesh's largest extent, {:.6g}{}",
-                          flat_ >= 0 ? "flat: an eighth" : "a fortieth", base_.largest(),
-                          reach > span ? ", less because values go beyond map.range" : ""));
+        found("displacement.scale", fmt::format("{} of the base mesh's largest extent, {:.6g}{}",
+                                                flat_ >= 0 ? "flat: an eighth" : "a fortieth", base_.largest(),
+                                                reach > span ? ", less because values go beyond map.range" : ""));
     }
 
     /// Lowest and highest displacement of the first and of the last frame: those between displace by no more.
@@ -212,8 +208,7 @@ class Resolver {
         if (no_up)
             camera.up = array(up);
         if (no_eye)
-            found("camera.eye",
-                  "the displaced model's bounding box fits into 90 % of the picture's width and height");
+            found("camera.eye", "the displaced model's bounding box fits into 90 % of the picture's width and height");
         if (no_target)
             found("camera.target", "the centre of the displaced model's bounding box");
         if (no_up)
@@ -243,8 +238,8 @@ class Resolver {
         const glm::dvec3 centre = base_.centre(), away = glm::abs(centre);
         if (std::max({away.x, away.y, away.z}) <= base_.largest())
             return "; scale the mesh";
-        return fmt::format(" around ({:.6g}, {:.6g}, {:.6g}); move the mesh to the origin", centre.x,
-                           centre.y, centre.z);
+        return fmt::format(" around ({:.6g}, {:.6g}, {:.6g}); move the mesh to the origin", centre.x, centre.y,
+                           centre.z);
     }
 
     const BaseMesh& mesh_;

@@ -51,25 +51,24 @@ std::string Simulation::run() {
         pipeline.triangle_queue.history().finish(cycles_);
     }
     if (monitor.limit_reached())
-        throw ResourceError(
-            fmt::format("limits.triangles = {}: the mesh has more triangles than that; raise the thresholds "
-                        "under [tests], "
-                        "{}, or raise the limit",
-                        monitor.mesh.triangles.size(),
-                        setup.registers.tests.generation_test ? "lower tests.generation_limit"
-                                                              : "set tests.generation = true"));
-    if (pipeline.clock.out_of_time())
         throw ResourceError(fmt::format(
-            "timing.clock_period = {} ps: after cycle {} simulated time ends, at 2^64 - 1 ps; lower the "
-            "period, which changes no figure but those in seconds, or the latencies under [timing]",
-            setup.design.timing.cycle_picoseconds, pipeline.clock.last_cycle()));
+            "limits.triangles = {}: the mesh has more triangles than that; raise the thresholds "
+            "under [tests], "
+            "{}, or raise the limit",
+            monitor.mesh.triangles.size(),
+            setup.registers.tests.generation_test ? "lower tests.generation_limit" : "set tests.generation = true"));
+    if (pipeline.clock.out_of_time())
+        throw ResourceError(
+            fmt::format("timing.clock_period = {} ps: after cycle {} simulated time ends, at 2^64 - 1 ps; lower the "
+                        "period, which changes no figure but those in seconds, or the latencies under [timing]",
+                        setup.design.timing.cycle_picoseconds, pipeline.clock.last_cycle()));
     const bool fifo = setup.design.queue.order == TriangleOrder::fifo;
     if (pipeline.triangle_queue.overflowed())
-        throw ResourceError(fmt::format(
-            "hardware.queue_capacity = {}: in cycle {} a triangle found the Triangle Queue full; raise the "
-            "capacity, or set {}hardware.queue_overflow = \"spill\"",
-            setup.design.queue.capacity, pipeline.clock.last_cycle(),
-            fifo ? "hardware.queue_order = \"lifo\" or " : ""));
+        throw ResourceError(
+            fmt::format("hardware.queue_capacity = {}: in cycle {} a triangle found the Triangle Queue full; raise the "
+                        "capacity, or set {}hardware.queue_overflow = \"spill\"",
+                        setup.design.queue.capacity, pipeline.clock.last_cycle(),
+                        fifo ? "hardware.queue_order = \"lifo\" or " : ""));
     if (pipeline.triangle_queue.off_chip_memory_full())
         throw ResourceError(fmt::format(
             "hardware.off_chip_triangles = {}: in cycle {} a full Triangle Queue (hardware.queue_capacity = "
@@ -87,13 +86,12 @@ std::string Simulation::stuck() const {
     const bool timed = setup.design.transport == Transport::non_blocking;
     const CycleScheduler& clock = pipeline.clock;
     std::string text =
-        clock.stalled()
-            ? fmt::format(
-                  "livelock: for more than limits.cycles_without_progress = {} cycles of work, up to cycle "
-                  "{}, no triangle has been decided or lit; if the design is just slow, raise the limit\n",
-                  clock.most_without_progress(), clock.last_cycle())
-            : fmt::format("deadlock: the simulation has nothing left to do{}, yet work is left\n",
-                          timed ? fmt::format(" after cycle {}", clock.last_cycle()) : std::string{});
+        clock.stalled() ? fmt::format(
+                              "livelock: for more than limits.cycles_without_progress = {} cycles of work, up to cycle "
+                              "{}, no triangle has been decided or lit; if the design is just slow, raise the limit\n",
+                              clock.most_without_progress(), clock.last_cycle())
+                        : fmt::format("deadlock: the simulation has nothing left to do{}, yet work is left\n",
+                                      timed ? fmt::format(" after cycle {}", clock.last_cycle()) : std::string{});
     const auto& counts = pipeline.pass_or_tessellate.counts();
     text += fmt::format("  host: {} of {} base triangles sent{}\n", host.sent(), host.total(),
                         host.idle() ? "" : ", waits for get_triangle");
@@ -103,10 +101,10 @@ std::string Simulation::stuck() const {
         const Activity& activity = unit->activity();
         const sc_core::sc_object* by = activity.by();
         if (by != nullptr)
-            line = listed(line,
-                          fmt::format("waits for {}{}", by->basename(),
-                                      activity.state() == State::blocked ? " to take it" : ""),
-                          "; ");
+            line = listed(
+                line,
+                fmt::format("waits for {}{}", by->basename(), activity.state() == State::blocked ? " to take it" : ""),
+                "; ");
         if (!line.empty())
             text += fmt::format("  {}: {}\n", unit->name(), line);
     }

@@ -13,8 +13,8 @@ struct Simulation {
     /// `setup` must outlive the simulation. triangle_limit: see MeshMonitor. cycles_without_progress: in timed mode,
     /// the limit on cycles without a decided triangle; 0: none.
     /// units: see Pipeline; null: the machine's own.
-    Simulation(const MachineSetup& setup, std::uint64_t triangle_limit,
-               std::uint64_t cycles_without_progress = 0, UnitFactory* units = nullptr);
+    Simulation(const MachineSetup& setup, std::uint64_t triangle_limit, std::uint64_t cycles_without_progress = 0,
+               UnitFactory* units = nullptr);
 
     /// Runs until no work is left. Returns an empty string if all units drained, else a description of the deadlock or
     /// livelock with one line per unit: its contents and what it waits for. Throws ResourceError if the mesh reaches

@@ -16,8 +16,7 @@ namespace tessera {
 namespace {
 
 constexpr std::uint64_t vertex_bytes = 52, face_bytes = 20;
-constexpr double largest_number =
-    1e40;  // base meshes reach to 3.4e38 (mesh_limits.h), displaced ones not much beyond
+constexpr double largest_number = 1e40;  // base meshes reach to 3.4e38 (mesh_limits.h), displaced ones not much beyond
 constexpr std::size_t longest_line = 256, most_lines = 64;
 constexpr std::uint64_t most_elements = std::numeric_limits<std::int32_t>::max();  // indices are signed
 
@@ -37,9 +36,8 @@ class PlyFile {
     }
 
     [[noreturn]] void refuse(const std::string& why) const {
-        throw InputError(
-            fmt::format("{}: {}; run the job again (`tessera run`) to get a mesh.ply that can be read",
-                        path_.string(), why));
+        throw InputError(fmt::format("{}: {}; run the job again (`tessera run`) to get a mesh.ply that can be read",
+                                     path_.string(), why));
     }
 
     /// A header's line without its end.
@@ -55,35 +53,31 @@ class PlyFile {
             if (next == '\n')
                 return text;
             if (text.size() == longest_line)
-                refuse(
-                    fmt::format("line {} of the header is longer than {} characters", lines_, longest_line));
+                refuse(fmt::format("line {} of the header is longer than {} characters", lines_, longest_line));
             text += static_cast<char>(next);
         }
     }
 
     void expect(const std::string& text, std::string_view wanted) const {
         if (text != wanted)
-            refuse(fmt::format("line {} of the header is \"{}\", tessera writes \"{}\"", lines_,
-                               printable(text), wanted));
+            refuse(
+                fmt::format("line {} of the header is \"{}\", tessera writes \"{}\"", lines_, printable(text), wanted));
     }
 
     std::uint64_t expect_count(const std::string& text, std::string_view words) const {
         const std::string digits = text.substr(0, words.size()) == words ? text.substr(words.size()) : "";
-        if (digits.empty() || digits.size() > 10 ||
-            digits.find_first_not_of("0123456789") != std::string::npos)
+        if (digits.empty() || digits.size() > 10 || digits.find_first_not_of("0123456789") != std::string::npos)
             refuse(fmt::format("line {} of the header is \"{}\", tessera writes \"{}\" and a number", lines_,
                                printable(text), words));
         const std::uint64_t count = std::stoull(digits);
         if (count > most_elements)
-            refuse(
-                fmt::format("line {} of the header, \"{}\": {} are the most", lines_, text, most_elements));
+            refuse(fmt::format("line {} of the header, \"{}\": {} are the most", lines_, text, most_elements));
         return count;
     }
 
     void expect_body(std::uint64_t bytes) const {
         if (size_ - taken_ != bytes)
-            refuse(fmt::format("the file has {} bytes after its header, which announces {}", size_ - taken_,
-                               bytes));
+            refuse(fmt::format("the file has {} bytes after its header, which announces {}", size_ - taken_, bytes));
     }
 
     /// The next record; its numbers are taken from it with take().
@@ -150,8 +144,8 @@ Counts read_header(PlyFile& file) {
          {"double x", "double y", "double z", "float nx", "float ny", "float nz", "double s", "double t"})
         file.expect(file.line(), fmt::format("property {}", property));
     counts.faces = file.expect_count(file.line(), "element face ");
-    for (const char* const property : {"list uchar int vertex_indices", "uchar generation", "uchar split_by",
-                                       "uchar stopped_by", "int base"})
+    for (const char* const property :
+         {"list uchar int vertex_indices", "uchar generation", "uchar split_by", "uchar stopped_by", "int base"})
         file.expect(file.line(), fmt::format("property {}", property));
     file.expect(file.line(), "end_header");
     return counts;
@@ -193,8 +187,7 @@ RecordedMesh read_ply(const std::filesystem::path& path) {
         t.stopped_by = file.take<std::uint8_t>();
         t.base = file.take<std::uint32_t>();
         if ((t.split_by & ~(3 | 32)) != 0)
-            file.refuse(
-                fmt::format("face {}: split_by is {}, neither 0 to 3 nor that plus 32", f, t.split_by));
+            file.refuse(fmt::format("face {}: split_by is {}, neither 0 to 3 nor that plus 32", f, t.split_by));
         if ((t.stopped_by & ~(4 | 8 | 16)) != 0)
             file.refuse(fmt::format("face {}: stopped_by is {}, not a sum of 4, 8 and 16", f, t.stopped_by));
         if (t.base > most_elements)

@@ -27,26 +27,24 @@ void find_input(const char* key, const std::string& text, const fs::path& file, 
     throw InputError(fmt::format(
         "{}: {} = \"{}\": {} is not there; {}", (fs::path(job.folder) / "job.toml").string(), key, text,
         file.lexically_normal().string(),
-        in_data
-            ? "name the data folder with --data FOLDER"
-            : "put it back where it was when the job ran, or run the job again with the file's new place"));
+        in_data ? "name the data folder with --data FOLDER"
+                : "put it back where it was when the job ran, or run the job again with the file's new place"));
 }
 
 Job read_run_job(const fs::path& folder) {
     std::error_code failed;
     const fs::file_status status = fs::status(folder, failed);
     if (fs::is_regular_file(status))
-        throw InputError(
-            fmt::format("{}: is a file; name the folder of a run that it lies in", folder.string()));
+        throw InputError(fmt::format("{}: is a file; name the folder of a run that it lies in", folder.string()));
     if (!fs::is_directory(status))
-        throw InputError(fmt::format(
-            "{}: no such folder; name the folder of a run, as `tessera run` prints it", folder.string()));
+        throw InputError(
+            fmt::format("{}: no such folder; name the folder of a run, as `tessera run` prints it", folder.string()));
     const fs::path job_file = folder / "job.toml";
     if (!is_there(job_file))
-        throw InputError(fmt::format(
-            "{}: there is no job.toml, so this is no run's folder, or the run was interrupted; name one as "
-            "`tessera run` prints it",
-            folder.string()));
+        throw InputError(
+            fmt::format("{}: there is no job.toml, so this is no run's folder, or the run was interrupted; name one as "
+                        "`tessera run` prints it",
+                        folder.string()));
     Job job = read_job(job_file);
     validate(job);
     if (job.frames.count > 1)
@@ -57,9 +55,8 @@ Job read_run_job(const fs::path& folder) {
 
 void require_numbers(const fs::path& folder, const Job& job) {
     if (const std::string key = automatic_key(job); !key.empty())
-        throw InputError(
-            fmt::format("{}: {} = \"auto\", which no run writes into its folder: run the job again",
-                        (folder / "job.toml").string(), key));
+        throw InputError(fmt::format("{}: {} = \"auto\", which no run writes into its folder: run the job again",
+                                     (folder / "job.toml").string(), key));
 }
 
 RecordedMesh read_mesh(const fs::path& folder, const Job& job) {

@@ -106,8 +106,7 @@ std::string CollectTests::describe_contents() const {
         return input.empty() ? std::string{} : std::to_string(input.size()) + " from " + test + ", ";
     };
     std::string text = count(from_normal_test, "normal_test") + count(from_tex_coord_test, "tex_coord_test") +
-                       count(from_summed_height_test, "summed_height_test") +
-                       count(from_view_test, "view_test");
+                       count(from_summed_height_test, "summed_height_test") + count(from_view_test, "view_test");
     if (leaves_)
         text += "1 edge that Pass or Tessellate does not take, ";
     return text.empty() ? text : text.substr(0, text.size() - 2);

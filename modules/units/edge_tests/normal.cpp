@@ -54,10 +54,10 @@ NormalResult NormalTest::process(const NormalOperands& part, const Entries& entr
     return {part.tag};
 }
 
-datapath::Direction NormalTest::bumped(const datapath::Direction& n, const datapath::Direction& t,
-                                       int handedness, std::uint64_t entry) {
-    return bump(n, t, handedness, datapath::unpack_normal(entry, registers_.formats.normal.bits),
-                registers_.formats, saturations_);
+datapath::Direction NormalTest::bumped(const datapath::Direction& n, const datapath::Direction& t, int handedness,
+                                       std::uint64_t entry) {
+    return bump(n, t, handedness, datapath::unpack_normal(entry, registers_.formats.normal.bits), registers_.formats,
+                saturations_);
 }
 
 /// The N' of an edge's ends that this unit has found itself.
@@ -81,8 +81,8 @@ NormalResult NormalTest::test_edge(const NormalOperands& edge, std::uint64_t ent
     NormalResult result{edge.tag};
     result.n = normalise(midpoint(edge.n_i, edge.n_j), registers_.formats, saturations_);
     result.tangent = normalise(midpoint(edge.tangent_i, edge.tangent_j), registers_.formats, saturations_);
-    result.displaced_n = bumped(result.n, result.tangent,
-                                datapath::inserted_handedness(edge.handedness_i, edge.handedness_j), entry);
+    result.displaced_n =
+        bumped(result.n, result.tangent, datapath::inserted_handedness(edge.handedness_i, edge.handedness_j), entry);
     result.displaced_n_i = compared_[0];
     compared_[2] = result.displaced_n;
     const auto& [i, j, ij] = compared_;

@@ -31,8 +31,7 @@ class NormalTest : public Stage<NormalOperands, NormalResult> {
     MemoryPort normal_map;
 
     /// takes: the vertices and edges of a triangle that come to the unit (parts_for_tests).
-    NormalTest(const sc_core::sc_module_name& name, const UnitContext& context,
-               Parts takes = parts_for_tests(0, 1));
+    NormalTest(const sc_core::sc_module_name& name, const UnitContext& context, Parts takes = parts_for_tests(0, 1));
 
     const datapath::Saturations& saturations() const { return saturations_; }
 
@@ -48,8 +47,7 @@ class NormalTest : public Stage<NormalOperands, NormalResult> {
     bool may_start(const NormalOperands& part) const override;
     void reads(const NormalOperands& part, Reads& reads) const override;
     NormalResult process(const NormalOperands& part, const Entries& entries) override;
-    void trace_processed(Signals& signals, const NormalOperands& part,
-                         const NormalResult& result) const override;
+    void trace_processed(Signals& signals, const NormalOperands& part, const NormalResult& result) const override;
 
     datapath::Direction bumped(const datapath::Direction& n, const datapath::Direction& t, int handedness,
                                std::uint64_t entry);

@@ -6,8 +6,7 @@
 namespace tessera {
 
 SummedHeightTest::SummedHeightTest(const sc_core::sc_module_name& name, const UnitContext& context)
-    : Stage(name, context, context.timing().summed_height_test, 1,
-            context.timing().summed_height_table.latency),
+    : Stage(name, context, context.timing().summed_height_test, 1, context.timing().summed_height_table.latency),
       summed_height_table("summed_height_table", context.registers.summed_height_table.entry_bytes,
                           context.design.direct_memory),
       registers_(context.registers) {
@@ -27,8 +26,8 @@ void SummedHeightTest::reads(const HeightOperands& edge, Reads& reads) const {
     const datapath::RectangleSize its_size = size(edge);
     for (const datapath::TexCoord& centre : {edge.t_i, edge.t_j, edge.t_ij}) {
         reads.add_request();
-        rectangle_entries(centred_rectangle(centre, its_size, registers_.map, registers_.formats),
-                          registers_.map, registers_.summed_height_table,
+        rectangle_entries(centred_rectangle(centre, its_size, registers_.map, registers_.formats), registers_.map,
+                          registers_.summed_height_table,
                           [&](std::uint64_t address, bool) { reads.add_entry(address); });
     }
 }
@@ -57,8 +56,7 @@ void SummedHeightTest::trace_started(Signals& signals, const HeightOperands& edg
     signals.value("height", 16, its_size.height);
 }
 
-void SummedHeightTest::trace_processed(Signals& signals, const HeightOperands& edge,
-                                       const HeightResult&) const {
+void SummedHeightTest::trace_processed(Signals& signals, const HeightOperands& edge, const HeightResult&) const {
     signals.value("sum_i", 48, sums_[0]);
     signals.value("sum_j", 48, sums_[1]);
     signals.value("sum_ij", 48, sums_[2]);

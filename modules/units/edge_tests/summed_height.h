@@ -34,8 +34,7 @@ class SummedHeightTest : public Stage<HeightOperands, HeightResult> {
     void reads(const HeightOperands& edge, Reads& reads) const override;
     HeightResult process(const HeightOperands& edge, const Entries& entries) override;
     void trace_started(Signals& signals, const HeightOperands& edge) const override;
-    void trace_processed(Signals& signals, const HeightOperands& edge,
-                         const HeightResult& result) const override;
+    void trace_processed(Signals& signals, const HeightOperands& edge, const HeightResult& result) const override;
 
     datapath::RectangleSize size(const HeightOperands& edge) const;
 

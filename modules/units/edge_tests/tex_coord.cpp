@@ -23,8 +23,7 @@ void TexCoordTest::trace_signals(Signals& signals) const {
     signals.value("generation_limit", 32, registers_.tests.generation_limit);
 }
 
-void TexCoordTest::trace_processed(Signals& signals, const TexCoordOperands& edge,
-                                   const TexCoordResult&) const {
+void TexCoordTest::trace_processed(Signals& signals, const TexCoordOperands& edge, const TexCoordResult&) const {
     signals.value("generation_ij", 8, datapath::inserted_generation(edge.generation_i, edge.generation_j));
 }
 

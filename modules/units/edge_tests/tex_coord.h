@@ -24,8 +24,7 @@ class TexCoordTest : public Stage<TexCoordOperands, TexCoordResult> {
 
   protected:
     TexCoordResult process(const TexCoordOperands& edge, const Entries& entries) override;
-    void trace_processed(Signals& signals, const TexCoordOperands& edge,
-                         const TexCoordResult& result) const override;
+    void trace_processed(Signals& signals, const TexCoordOperands& edge, const TexCoordResult& result) const override;
 
     const datapath::Registers& registers_;
 };

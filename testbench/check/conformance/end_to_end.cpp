@@ -33,8 +33,7 @@ EndToEndResult compare(const MachineSetup& setup, const BaseTriangles& base, con
     const golden::Tessellation run =
         golden::tessellate(base, map, parameters, result.bound, [&](const golden::Triangle& t) {
             const auto& v = t.vertices;
-            golden_soup.push_back(
-                {v[0].displaced_position, v[1].displaced_position, v[2].displaced_position});
+            golden_soup.push_back({v[0].displaced_position, v[1].displaced_position, v[2].displaced_position});
             if (golden_soup.size() % triangles_between_progress == 0)
                 tell(0.5 * std::min(1.0, static_cast<double>(golden_soup.size()) /
                                              static_cast<double>(result.hardware_triangles)));
@@ -103,9 +102,8 @@ EndToEndResult::Allowed allowed_after(int generations, const MachineSetup& setup
     const double largest = std::max(std::abs(scene.lowest), std::abs(scene.highest));
     const double position =
         (generations / 2.0 + 2) * std::ldexp(1.0, -formats.position.fraction) / scene.placement.scale;
-    const double normal = normals_are_exact(base)
-                              ? 0
-                              : 2.0 * (generations + 1) * std::ldexp(1.0, -formats.normal.fraction) * largest;
+    const double normal =
+        normals_are_exact(base) ? 0 : 2.0 * (generations + 1) * std::ldexp(1.0, -formats.normal.fraction) * largest;
     return {allowed_triangles, std::sqrt(3.0) * (position + normal),
             std::abs(scene.highest - scene.lowest) + largest * largest_turn(base)};
 }
@@ -123,9 +121,8 @@ bool EndToEndResult::passed() const {
 }
 
 EndToEndResult compare_end_to_end(const MachineSetup& setup, const GoldenJob& golden,
-                                  const std::vector<std::uint32_t>& base_triangles,
-                                  const EmittedMesh& hardware, double allowed_triangles,
-                                  const std::function<void(double)>& progress) {
+                                  const std::vector<std::uint32_t>& base_triangles, const EmittedMesh& hardware,
+                                  double allowed_triangles, const std::function<void(double)>& progress) {
     const double step = std::ldexp(1.0, -setup.registers.formats.texture.fraction);
     BaseTriangles base;
     base.reserve(base_triangles.size());
@@ -138,14 +135,11 @@ EndToEndResult compare_end_to_end(const MachineSetup& setup, const GoldenJob& go
     }
     return compare(
         setup, base, golden.map(), golden.parameters(), hardware,
-        [&](int generations) {
-            return allowed_after(generations, setup, golden.scene(), base, allowed_triangles);
-        },
+        [&](int generations) { return allowed_after(generations, setup, golden.scene(), base, allowed_triangles); },
         progress);
 }
 
-EndToEndResult compare_end_to_end(const MachineSetup& setup, const GoldenInputs& inputs,
-                                  const EmittedMesh& hardware) {
+EndToEndResult compare_end_to_end(const MachineSetup& setup, const GoldenInputs& inputs, const EmittedMesh& hardware) {
     return compare(
         setup, golden_base_triangles(setup), inputs.map, inputs.parameters, hardware,
         [](int) { return EndToEndResult::Allowed{}; }, nullptr);

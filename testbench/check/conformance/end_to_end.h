@@ -23,8 +23,8 @@ struct EndToEndResult {
         std::uint64_t measured = 0;
         /// With the confidence below, at most this fraction of the points is farther away than the maximum.
         double unseen = 0;
-        double farther = 0;  ///< percent of the measured points farther away than Allowed::rounding
-        double max_world = 0, rms_world = 0;                ///< the machine's world units
+        double farther = 0;                   ///< percent of the measured points farther away than Allowed::rounding
+        double max_world = 0, rms_world = 0;  ///< the machine's world units
         double max_position_lsb = 0, rms_position_lsb = 0;  ///< LSB of the position's format
         double max_model = 0, rms_model = 0;                ///< the model's units
     };
@@ -58,9 +58,7 @@ struct EndToEndResult {
     /// affects its own vertex and the centroids of at most four triangles per side: 9 of the 1.5 N points.
     double allowed_farther() const { return 3 * allowed.triangles; }
     /// From the points within `rounding` and the points farther away, which are within `displacement`.
-    double allowed_rms_model() const {
-        return allowed.rounding + std::sqrt(farther() / 100) * allowed.displacement;
-    }
+    double allowed_rms_model() const { return allowed.rounding + std::sqrt(farther() / 100) * allowed.displacement; }
     bool passed() const;
 };
 
@@ -78,13 +76,11 @@ struct EndToEndResult {
 /// displacement; the second term is 0 for a plane perpendicular to an axis, whose normals are exact. h: at a point of a
 /// base triangle, |a n - b m| <= |a - b| + |b| |n - m| for displacements a, b along normals n, m of the triangle.
 EndToEndResult compare_end_to_end(const MachineSetup& setup, const GoldenJob& golden,
-                                  const std::vector<std::uint32_t>& base_triangles,
-                                  const EmittedMesh& hardware, double allowed_triangles,
-                                  const std::function<void(double)>& progress = nullptr);
+                                  const std::vector<std::uint32_t>& base_triangles, const EmittedMesh& hardware,
+                                  double allowed_triangles, const std::function<void(double)>& progress = nullptr);
 
 /// Runs golden from the machine's own registers, tables and base triangles, dequantised. Not judged. Both functions are
 /// deterministic, multi-threaded, and take about 300 bytes per triangle of both meshes together.
-EndToEndResult compare_end_to_end(const MachineSetup& setup, const GoldenInputs& inputs,
-                                  const EmittedMesh& hardware);
+EndToEndResult compare_end_to_end(const MachineSetup& setup, const GoldenInputs& inputs, const EmittedMesh& hardware);
 
 }  // namespace tessera

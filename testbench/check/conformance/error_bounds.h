@@ -48,17 +48,16 @@ class ErrorBounds {
     /// N' = bump(N, T, N_d); `n_error`, `t_error` bound the errors of N and T (zero for a base vertex).
     /// `bumped`, `length`: golden's result and its length before normalisation.
     glm::dvec3 displaced_normal(const glm::dvec3& n, const glm::dvec3& n_error, const glm::dvec3& t,
-                                const glm::dvec3& t_error, const glm::dvec3& map_normal,
-                                const glm::dvec3& bumped, double length) const {
+                                const glm::dvec3& t_error, const glm::dvec3& map_normal, const glm::dvec3& bumped,
+                                double length) const {
         // B = N x T, rounded: with N + e, T + f the error before rounding is N x f + e x T + e x f.
-        const glm::dvec3 b_error =
-            after_rounding(glm::cross(n, t),
-                           cross_bound(glm::abs(n), t_error) + cross_bound(n_error, glm::abs(t)) +
-                               cross_bound(n_error, t_error),
-                           normal_lsb_);
+        const glm::dvec3 b_error = after_rounding(
+            glm::cross(n, t),
+            cross_bound(glm::abs(n), t_error) + cross_bound(n_error, glm::abs(t)) + cross_bound(n_error, t_error),
+            normal_lsb_);
         // The sum is linear in T, B and N; N_d is the same on both sides.
-        const glm::dvec3 sum_error = std::abs(map_normal.x) * t_error + std::abs(map_normal.y) * b_error +
-                                     std::abs(map_normal.z) * n_error;
+        const glm::dvec3 sum_error =
+            std::abs(map_normal.x) * t_error + std::abs(map_normal.y) * b_error + std::abs(map_normal.z) * n_error;
         // A zero sum without error is zero on both sides.
         if (length == 0 && sum_error == glm::dvec3(0))
             return glm::dvec3(0);
@@ -69,8 +68,8 @@ class ErrorBounds {
     /// P' = P + h N, h = S d + bias; `p`, `height`: golden's P and h. displace.h: P was rounded down (a base
     /// vertex's is exact), h to nearest, the product to nearest. The error before the last rounding:
     ///     P + a + (h + b)(N + f) - (P + h N) = a + h f + b (N + f).
-    glm::dvec3 displaced_position(const glm::dvec3& p, double height, const glm::dvec3& n,
-                                  const glm::dvec3& n_error, const glm::dvec3& displaced) const {
+    glm::dvec3 displaced_position(const glm::dvec3& p, double height, const glm::dvec3& n, const glm::dvec3& n_error,
+                                  const glm::dvec3& displaced) const {
         const double height_error = after_rounding(height, 0, position_lsb_);
         const glm::dvec3 before = left_by_rounding_down(p, position_lsb_) + std::abs(height) * n_error +
                                   height_error * (glm::abs(n) + n_error) +
@@ -81,8 +80,7 @@ class ErrorBounds {
     /// P's: pixels and w.
     struct Screen {
         double x = 0, y = 0, w = 0;
-        double near_plane =
-            0;  ///< error of w in the near plane's compare, before rounding to the position's format
+        double near_plane = 0;  ///< error of w in the near plane's compare, before rounding to the position's format
     };
 
     /// Transform of P' with error up to `p_error`. `w`, `pixels`: golden's.
@@ -91,8 +89,8 @@ class ErrorBounds {
     ///     error at most sum |row_x - x row_w| p_error / W_min, W_min the least W of a vertex in front.
     ///     transform.h: the division adds |x| 2^-28, then x is rounded to nearest.
     /// x and y are valid only if golden's vertex is in front.
-    Screen screen(const golden::Parameters& parameters, const glm::dvec3& p, const glm::dvec3& p_error,
-                  double w, const glm::dvec2& pixels) const {
+    Screen screen(const golden::Parameters& parameters, const glm::dvec3& p, const glm::dvec3& p_error, double w,
+                  const glm::dvec2& pixels) const {
         const auto sum = [](const glm::dvec4& row, const glm::dvec3& v) {
             return std::abs(row.x) * v.x + std::abs(row.y) * v.y + std::abs(row.z) * v.z;
         };
@@ -108,8 +106,7 @@ class ErrorBounds {
             if (!(least_w > 0))
                 return std::numeric_limits<double>::infinity();
             const double input =
-                (sum(row - x * parameters.row_w, p_error) + row_rounding(row) + std::abs(x) * w_rounding) /
-                least_w;
+                (sum(row - x * parameters.row_w, p_error) + row_rounding(row) + std::abs(x) * w_rounding) / least_w;
             return after_rounding(x, input + (std::abs(x) + input) * 0x1p-28, screen_lsb_);
         };
         result.x = divided(parameters.row_x, pixels.x);

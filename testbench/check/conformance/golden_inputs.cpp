@@ -32,8 +32,8 @@ golden::Map golden_map(const MachineSetup& setup) {
     normals.reserve(setup.map.codes.size());
     for (std::uint32_t y = 0; y < geometry.height; ++y)
         for (std::uint32_t x = 0; x < geometry.width; ++x)
-            normals.push_back(dequantise.direction(map_normal(
-                setup.map, x, y, setup.height_per_code, setup.texel_size, setup.registers.formats.normal)));
+            normals.push_back(dequantise.direction(
+                map_normal(setup.map, x, y, setup.height_per_code, setup.texel_size, setup.registers.formats.normal)));
     map.set_normals(std::move(normals));
     return map;
 }
@@ -44,9 +44,7 @@ golden::Parameters golden_parameters(const datapath::Registers& registers) {
     const datapath::Formats& formats = registers.formats;
     const datapath::TestParameters& tests = registers.tests;
     const datapath::TransformParameters& transform = registers.transform;
-    const auto real = [](auto value, int fraction) {
-        return std::ldexp(static_cast<double>(value), -fraction);
-    };
+    const auto real = [](auto value, int fraction) { return std::ldexp(static_cast<double>(value), -fraction); };
     const int position = formats.position.fraction;
 
     golden::Parameters result;
@@ -70,8 +68,8 @@ golden::Parameters golden_parameters(const datapath::Registers& registers) {
 
     const int matrix = datapath::TransformParameters::matrix_fraction;
     const auto row = [&](const std::array<std::int64_t, 4>& r, int exponent) {
-        return glm::dvec4(real(r[0], matrix - exponent), real(r[1], matrix - exponent),
-                          real(r[2], matrix - exponent), real(r[3], matrix + position - exponent));
+        return glm::dvec4(real(r[0], matrix - exponent), real(r[1], matrix - exponent), real(r[2], matrix - exponent),
+                          real(r[3], matrix + position - exponent));
     };
     result.row_x = row(transform.row_x, transform.exponent);
     result.row_y = row(transform.row_y, transform.exponent);

@@ -21,12 +21,8 @@ class Dequantise {
           screen_lsb_(std::ldexp(1.0, -formats.screen.fraction)),
           view_distance_lsb_(std::ldexp(1.0, -formats.view_distance.fraction)) {}
 
-    glm::dvec3 position(const datapath::Position& p) const {
-        return glm::dvec3(p.x, p.y, p.z) * position_lsb_;
-    }
-    glm::dvec3 direction(const datapath::Direction& d) const {
-        return glm::dvec3(d.x, d.y, d.z) * normal_lsb_;
-    }
+    glm::dvec3 position(const datapath::Position& p) const { return glm::dvec3(p.x, p.y, p.z) * position_lsb_; }
+    glm::dvec3 direction(const datapath::Direction& d) const { return glm::dvec3(d.x, d.y, d.z) * normal_lsb_; }
     glm::dvec2 texture(const datapath::TexCoord& t) const { return glm::dvec2(t.u, t.v) * texture_lsb_; }
 
     /// All fields except N's, which the golden model lacks. P', N' and P's are valid only if the hardware has

@@ -35,9 +35,8 @@ double displacement_of(double value, const Job& job, const HeightMap& map) {
 golden::Scene make_scene(const Job& job, const HeightMap& map, const ModelScale& model_scale) {
     golden::Scene scene;
     const Job::Camera& camera = job.camera;
-    scene.camera = {vector(camera.eye), vector(camera.target),
-                    vector(camera.up),  camera.field_of_view,
-                    camera.near_plane,  {camera.viewport_width, camera.viewport_height}};
+    scene.camera = {vector(camera.eye),   vector(camera.target), vector(camera.up),
+                    camera.field_of_view, camera.near_plane,     {camera.viewport_width, camera.viewport_height}};
     scene.placement = {model_scale.centre, model_scale.scale};
     scene.lowest = displacement_of(map.range_low, job, map);
     scene.highest = displacement_of(map.range_high, job, map);
@@ -51,8 +50,7 @@ golden::Scene make_scene(const Job& job, const HeightMap& map, const ModelScale&
     scene.generation_limit = static_cast<int>(tests.generation_limit);
     scene.highlight_angle = tests.highlight_angle;
     scene.highlight_normal_threshold = tests.highlight_normal_threshold;
-    scene.enabled = {tests.normal,    tests.summed_height, tests.view,
-                     tests.tex_coord, tests.generation,    tests.highlight};
+    scene.enabled = {tests.normal, tests.summed_height, tests.view, tests.tex_coord, tests.generation, tests.highlight};
     scene.diagonal = job.hardware.triangulation == Triangulation::first    ? golden::Diagonal::first
                      : job.hardware.triangulation == Triangulation::second ? golden::Diagonal::second
                                                                            : golden::Diagonal::shorter;
@@ -68,8 +66,8 @@ double code_at(std::size_t texel, const HeightMap& map, const golden::Scene& sce
     return golden::code_of(map.values[texel], map.range_low, map.range_high, scene.highest_code);
 }
 
-golden::Map make_map(const Job& job, const HeightMap& height_map, const BaseMesh& mesh,
-                     const golden::Scene& scene, double scale_per_code) {
+golden::Map make_map(const Job& job, const HeightMap& height_map, const BaseMesh& mesh, const golden::Scene& scene,
+                     double scale_per_code) {
     std::vector<double> codes;
     codes.reserve(height_map.values.size());
     for (std::size_t texel = 0; texel < height_map.values.size(); ++texel)
@@ -89,8 +87,7 @@ const Job& resolved(const Job& job) {
 
 }  // namespace
 
-GoldenJob::GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& height_map,
-                     const ModelScale& model_scale)
+GoldenJob::GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& height_map, const ModelScale& model_scale)
     : job_(resolved(job)),
       mesh_(mesh),
       height_map_(height_map),

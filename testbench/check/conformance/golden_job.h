@@ -19,8 +19,7 @@ namespace tessera {
 class GoldenJob {
   public:
     /// `job` must be resolved (resolve_job.h), `mesh` and `height_map` must outlive this.
-    GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& height_map,
-              const ModelScale& model_scale);
+    GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& height_map, const ModelScale& model_scale);
 
     const Job& job() const { return job_; }
     const BaseMesh& mesh() const { return mesh_; }

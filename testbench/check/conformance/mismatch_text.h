@@ -13,7 +13,6 @@ namespace tessera {
 /// with fractions.
 std::string mismatch_text(const std::string& what, const datapath::Registers& registers,
                           const golden::Parameters& parameters, const datapath::TrianglePass& pass, int edge,
-                          int vertex, const golden::EdgeEvaluation* evaluation,
-                          const golden::Vertex* completed);
+                          int vertex, const golden::EdgeEvaluation* evaluation, const golden::Vertex* completed);
 
 }  // namespace tessera

@@ -78,8 +78,7 @@ void Scoreboard::write(const datapath::TrianglePass& pass) {
         if ((pass.new_vertices >> k & 1) != 0)
             compare_base_vertex(pass, k, given[static_cast<std::size_t>(k)]);
     for (int k = 0; k < 3; ++k)
-        compare_edge(pass, k, given[static_cast<std::size_t>(k)],
-                     given[static_cast<std::size_t>((k + 1) % 3)]);
+        compare_edge(pass, k, given[static_cast<std::size_t>(k)], given[static_cast<std::size_t>((k + 1) % 3)]);
     if (pass.split == 3 || pass.split == 5 || pass.split == 6)
         compare_diagonal(pass, given);
 }
@@ -95,15 +94,14 @@ void Scoreboard::compare_base_vertex(const datapath::TrianglePass& pass, int k, 
     const golden::Normalised bumped = golden::bump(given.normal, given.tangent, given.handedness, map_normal);
     const glm::dvec3 exact(0);
     compare_vector(base_displaced_normal, hardware.displaced_normal, golden.displaced_normal,
-                   bounds_.displaced_normal(given.normal, exact, given.tangent, exact, map_normal,
-                                            bumped.direction, bumped.length),
+                   bounds_.displaced_normal(given.normal, exact, given.tangent, exact, map_normal, bumped.direction,
+                                            bumped.length),
                    context);
 
     const double height = inputs_.parameters.scale * inputs_.map.code(texel) + inputs_.parameters.bias;
     const glm::dvec3 bound =
         bounds_.displaced_position(given.position, height, given.normal, exact, golden.displaced_position);
-    compare_displaced(base_displaced, base_screen, base_w, hardware.displaced, hardware.screen, golden, bound,
-                      context);
+    compare_displaced(base_displaced, base_screen, base_w, hardware.displaced, hardware.screen, golden, bound, context);
 }
 
 void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const golden::Vertex& i,
@@ -118,25 +116,25 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
     const datapath::Formats& formats = registers_.formats;
 
     const auto midpoint = [&](std::int64_t hardware, double value, char component) {
-        compare(inserted_position, hardware, value, bounds_.position_midpoint(), formats.position,
-                per_position_, component, context);
+        compare(inserted_position, hardware, value, bounds_.position_midpoint(), formats.position, per_position_,
+                component, context);
     };
     midpoint(made.position.x, m.position.x, 'x');
     midpoint(made.position.y, m.position.y, 'y');
     midpoint(made.position.z, m.position.z, 'z');
     const glm::dvec3 mean_normal = (i.normal + j.normal) / 2.0;
     const auto mean = [&](std::int64_t hardware, double value, char component) {
-        compare(inserted_mean_normal, hardware, value, bounds_.direction_midpoint(), formats.normal,
-                per_normal_, component, context);
+        compare(inserted_mean_normal, hardware, value, bounds_.direction_midpoint(), formats.normal, per_normal_,
+                component, context);
     };
     mean(made.mean_normal.x, mean_normal.x, 'x');
     mean(made.mean_normal.y, mean_normal.y, 'y');
     mean(made.mean_normal.z, mean_normal.z, 'z');
     const auto texture = [&](const datapath::TexCoord& t) {
-        compare(inserted_texture, t.u, m.texture.x, bounds_.texture_midpoint(), formats.texture, per_texture_,
-                'u', context);
-        compare(inserted_texture, t.v, m.texture.y, bounds_.texture_midpoint(), formats.texture, per_texture_,
-                'v', context);
+        compare(inserted_texture, t.u, m.texture.x, bounds_.texture_midpoint(), formats.texture, per_texture_, 'u',
+                context);
+        compare(inserted_texture, t.v, m.texture.y, bounds_.texture_midpoint(), formats.texture, per_texture_, 'v',
+                context);
     };
     // Both branches calculate it.
     texture(made.texture);
@@ -146,26 +144,23 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
     const glm::dvec3 t_bound =
         bounds_.inserted_direction((i.tangent + j.tangent) / 2.0, m.tangent, inserted.mean_tangent_length);
     const std::size_t texel = inputs_.map.texel(m.texture);
-    const glm::dvec3 bumped_bound =
-        bounds_.displaced_normal(m.normal, n_bound, m.tangent, t_bound, inputs_.map.normal(texel),
-                                 m.displaced_normal, inserted.bump_length);
+    const glm::dvec3 bumped_bound = bounds_.displaced_normal(
+        m.normal, n_bound, m.tangent, t_bound, inputs_.map.normal(texel), m.displaced_normal, inserted.bump_length);
     compare_vector(inserted_normal, tested.normal, m.normal, n_bound, context);
     compare_vector(inserted_tangent, tested.tangent, m.tangent, t_bound, context);
-    compare_vector(inserted_displaced_normal, tested.displaced_normal, m.displaced_normal, bumped_bound,
-                   context);
+    compare_vector(inserted_displaced_normal, tested.displaced_normal, m.displaced_normal, bumped_bound, context);
 
     const double height = inputs_.parameters.scale * inputs_.map.code(texel) + inputs_.parameters.bias;
     const glm::dvec3 displaced_bound =
         bounds_.displaced_position(m.position, height, m.normal, n_bound, m.displaced_position);
-    bool flipped = compare_displaced(inserted_displaced, inserted_screen, inserted_w, made.displaced,
-                                     made.screen, m, displaced_bound, context);
+    bool flipped = compare_displaced(inserted_displaced, inserted_screen, inserted_w, made.displaced, made.screen, m,
+                                     displaced_bound, context);
 
     const auto says = [&](datapath::TestBits bit) { return (tested.tests & bit) != 0; };
     // Each of the six differences has N'_ij's error, plus the rounding of the subtraction in double precision.
     const double leeway = std::max({bumped_bound.x, bumped_bound.y, bumped_bound.z}) + 0x1p-50;
-    const bool near_threshold =
-        inputs_.parameters.enabled.normal &&
-        std::abs(golden.normal_difference - inputs_.parameters.normal_threshold) <= leeway;
+    const bool near_threshold = inputs_.parameters.enabled.normal &&
+                                std::abs(golden.normal_difference - inputs_.parameters.normal_threshold) <= leeway;
     const bool normal_flipped =
         decide(normal_decision, says(datapath::normal_bit), golden.normal_test, near_threshold, context);
     const bool highlight_flipped =
@@ -173,27 +168,24 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
             ? compare_highlight(says(datapath::highlight_bit), golden, bumped_bound, leeway, context)
             : false;
     flipped = flipped || normal_flipped || highlight_flipped;
-    decide(summed_height_decision, says(datapath::summed_height_bit), golden.summed_height_test, false,
-           context);
+    decide(summed_height_decision, says(datapath::summed_height_bit), golden.summed_height_test, false, context);
     decide(view_decision, says(datapath::view_bit), golden.view_test, false, context);
     decide(tex_coord_decision, says(datapath::tex_coord_bit), golden.tex_coord_test, false, context);
     decide(generation_decision, says(datapath::generation_bit), golden.generation_test, false, context);
 
     const bool split = (pass.split >> k & 1) != 0;
     // If NT or HT flipped, the decision that follows from the hardware's result; it may equal golden's.
-    const bool asked = golden.normal_test != normal_flipped || golden.summed_height_test ||
-                       golden.highlight_test != highlight_flipped;
+    const bool asked =
+        golden.normal_test != normal_flipped || golden.summed_height_test || golden.highlight_test != highlight_flipped;
     const bool follows = asked && golden.view_test && golden.tex_coord_test && golden.generation_test;
     decide(split_decision, split, split == follows ? golden.split : follows, split == follows, context);
     flipped_edges_ += flipped ? 1 : 0;
 }
 
-bool Scoreboard::compare_highlight(bool hardware, const golden::EdgeEvaluation& golden,
-                                   const glm::dvec3& normal_bound, double difference_leeway,
-                                   const Context& context) {
+bool Scoreboard::compare_highlight(bool hardware, const golden::EdgeEvaluation& golden, const glm::dvec3& normal_bound,
+                                   double difference_leeway, const Context& context) {
     const golden::Parameters& parameters = inputs_.parameters;
-    const double leeway =
-        bounds_.cosine(golden.inserted.vertex.displaced_normal, normal_bound, parameters.half_vector);
+    const double leeway = bounds_.cosine(golden.inserted.vertex.displaced_normal, normal_bound, parameters.half_vector);
     // `must`: true even for the least values within the error bounds; `may`: true for the greatest.
     const auto in_highlight = [&](double midpoint_cosine) {
         return std::max(golden.end_cosine, midpoint_cosine) > parameters.highlight_cosine;
@@ -206,13 +198,11 @@ bool Scoreboard::compare_highlight(bool hardware, const golden::EdgeEvaluation& 
     return decide(highlight_decision, hardware, golden.highlight_test, may && !must, context);
 }
 
-void Scoreboard::compare_diagonal(const datapath::TrianglePass& pass,
-                                  const std::array<golden::Vertex, 3>& given) {
+void Scoreboard::compare_diagonal(const datapath::TrianglePass& pass, const std::array<golden::Vertex, 3>& given) {
     const auto hardware_corner = [&](std::uint8_t index) -> const datapath::Position& {
         return index < 3 ? pass.triangle.vertices[index].displaced : pass.new_vertex[index - 3u].displaced;
     };
-    const bool second =
-        datapath::choose_second_diagonal(pass.split, registers_.triangulation, hardware_corner);
+    const bool second = datapath::choose_second_diagonal(pass.split, registers_.triangulation, hardware_corner);
     const datapath::ChildIndices hardware = datapath::triangulate(pass.split, second);
 
     std::array<golden::Vertex, 6> corners;
@@ -234,8 +224,7 @@ void Scoreboard::compare_diagonal(const datapath::TrianglePass& pass,
     bool same = hardware.count == golden.count;
     for (std::size_t k = 0; same && k < static_cast<std::size_t>(golden.count); ++k)
         same = same_triangle(hardware.children[k], golden.children[k]);
-    decide(diagonal_decision, second, same ? second : !second, false,
-           Context{&pass, -1, -1, nullptr, nullptr});
+    decide(diagonal_decision, second, same ? second : !second, false, Context{&pass, -1, -1, nullptr, nullptr});
 }
 
 bool Scoreboard::compare_displaced(Value position, Value screen, Value w, const datapath::Position& displaced,
@@ -243,8 +232,8 @@ bool Scoreboard::compare_displaced(Value position, Value screen, Value w, const 
                                    const glm::dvec3& position_bound, const Context& context) {
     const datapath::Formats& formats = registers_.formats;
     const auto compare_position = [&](std::int64_t hardware, double value, double bound, char component) {
-        compare(position, hardware, value, Interval::within(bound), formats.position, per_position_,
-                component, context);
+        compare(position, hardware, value, Interval::within(bound), formats.position, per_position_, component,
+                context);
     };
     compare_position(displaced.x, golden.displaced_position.x, position_bound.x, 'x');
     compare_position(displaced.y, golden.displaced_position.y, position_bound.y, 'y');
@@ -264,21 +253,20 @@ bool Scoreboard::compare_displaced(Value position, Value screen, Value w, const 
 
     const ErrorBounds::Screen bound =
         bounds_.screen(inputs_.parameters, seen->displaced_position, position_bound, seen->w, seen->screen);
-    compare(w, on_screen.w, seen->w, Interval::within(bound.w), formats.view_distance, per_view_distance_,
-            'w', context);
+    compare(w, on_screen.w, seen->w, Interval::within(bound.w), formats.view_distance, per_view_distance_, 'w',
+            context);
     const bool near_plane_in_reach = std::abs(seen->w - inputs_.parameters.near_plane) <= bound.near_plane;
-    const bool flipped =
-        decide(in_front_decision, on_screen.in_front, seen->in_front, near_plane_in_reach, context);
+    const bool flipped = decide(in_front_decision, on_screen.in_front, seen->in_front, near_plane_in_reach, context);
     if (!on_screen.in_front) {
         if (on_screen.x != 0 || on_screen.y != 0)
             mismatch(fmt::format("{}: a vertex not in front of the near plane has the screen position {}, {}",
                                  value_names[screen].name, on_screen.x, on_screen.y),
                      context);
     } else if (seen->in_front) {
-        compare(screen, on_screen.x, seen->screen.x, Interval::within(bound.x), formats.screen, per_screen_,
-                'x', context);
-        compare(screen, on_screen.y, seen->screen.y, Interval::within(bound.y), formats.screen, per_screen_,
-                'y', context);
+        compare(screen, on_screen.x, seen->screen.x, Interval::within(bound.x), formats.screen, per_screen_, 'x',
+                context);
+        compare(screen, on_screen.y, seen->screen.y, Interval::within(bound.y), formats.screen, per_screen_, 'y',
+                context);
     }
     return flipped;
 }
@@ -292,8 +280,7 @@ void Scoreboard::compare_vector(Value value, const datapath::Direction& hardware
 }
 
 void Scoreboard::compare(Value value, std::int64_t hardware, double golden, const Interval& bound,
-                         const datapath::Format& format, double per_unit, char component,
-                         const Context& context) {
+                         const datapath::Format& format, double per_unit, char component, const Context& context) {
     const auto lowest = static_cast<double>(format.lowest), highest = static_cast<double>(format.highest);
     const double fitting = std::clamp(golden * per_unit, lowest, highest);
     const double error = static_cast<double>(hardware) - fitting;
@@ -316,16 +303,14 @@ void Scoreboard::compare(Value value, std::int64_t hardware, double golden, cons
     }
     statistics.worst_ratio = std::max(statistics.worst_ratio, limit > 0 ? size / limit : size);
     ++statistics.outside;
-    mismatch(
-        fmt::format("{}.{}: hardware {}, golden {:.6f} (saturated {:.6f}), difference {:.6f}, allowed {:.6f} "
-                    "to {:.6f} {}",
-                    value_names[value].name, component, hardware, golden * per_unit, fitting, error, low,
-                    high, value_names[value].unit),
-        context);
+    mismatch(fmt::format("{}.{}: hardware {}, golden {:.6f} (saturated {:.6f}), difference {:.6f}, allowed {:.6f} "
+                         "to {:.6f} {}",
+                         value_names[value].name, component, hardware, golden * per_unit, fitting, error, low, high,
+                         value_names[value].unit),
+             context);
 }
 
-bool Scoreboard::decide(Decision decision, bool hardware, bool golden, bool flip_allowed,
-                        const Context& context) {
+bool Scoreboard::decide(Decision decision, bool hardware, bool golden, bool flip_allowed, const Context& context) {
     DecisionStatistics& statistics = decisions_[decision];
     ++statistics.compared;
     if (hardware == golden) {
@@ -355,8 +340,8 @@ ConformanceResult Scoreboard::result() const {
     for (std::size_t k = 0; k < value_count; ++k) {
         const ValueStatistics& s = values_[k];
         const double rms = s.count == 0 ? 0 : std::sqrt(s.squares / static_cast<double>(s.count));
-        result.quantities.push_back({value_names[k].name, value_names[k].unit, value_names[k].description,
-                                     s.count, s.outside, s.max_error, rms, s.max_bound, s.worst_ratio});
+        result.quantities.push_back({value_names[k].name, value_names[k].unit, value_names[k].description, s.count,
+                                     s.outside, s.max_error, rms, s.max_bound, s.worst_ratio});
     }
     for (std::size_t k = 0; k < decision_count; ++k) {
         if (k == highlight_decision && !inputs_.parameters.enabled.highlight)

@@ -88,11 +88,10 @@ class Scoreboard : public tlm::tlm_analysis_if<datapath::TrianglePass> {
     };
 
     void compare_base_vertex(const datapath::TrianglePass& pass, int k, const golden::Vertex& given);
-    void compare_edge(const datapath::TrianglePass& pass, int k, const golden::Vertex& i,
-                      const golden::Vertex& j);
+    void compare_edge(const datapath::TrianglePass& pass, int k, const golden::Vertex& i, const golden::Vertex& j);
     /// Returns whether HT flipped as allowed. `difference_leeway`: error bound of golden's normal_difference.
-    bool compare_highlight(bool hardware, const golden::EdgeEvaluation& golden,
-                           const glm::dvec3& normal_bound, double difference_leeway, const Context& context);
+    bool compare_highlight(bool hardware, const golden::EdgeEvaluation& golden, const glm::dvec3& normal_bound,
+                           double difference_leeway, const Context& context);
     void compare_diagonal(const datapath::TrianglePass& pass, const std::array<golden::Vertex, 3>& given);
     /// Returns whether in_front flipped as allowed.
     bool compare_displaced(Value position, Value screen, Value w, const datapath::Position& displaced,

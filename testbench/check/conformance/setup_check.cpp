@@ -44,21 +44,17 @@ class RegisterCheck {
                  job_.hardware.triangulation == Triangulation::first    ? datapath::Triangulation::first
                  : job_.hardware.triangulation == Triangulation::second ? datapath::Triangulation::second
                                                                         : datapath::Triangulation::shorter)));
-        flag("back_face_culling", number(registers_.back_face_culling),
-             number(job_.hardware.culling == Culling::back));
+        flag("back_face_culling", number(registers_.back_face_culling), number(job_.hardware.culling == Culling::back));
     }
 
   private:
-    void flag(const char* name, double hardware, double golden) {
-        judge_.judge(name, hardware, golden, exact);
-    }
+    void flag(const char* name, double hardware, double golden) { judge_.judge(name, hardware, golden, exact); }
 
     template <std::size_t Size, typename Integer>
-    void row(const char* name, const std::array<Integer, Size>& hardware,
-             const std::array<double, Size>& golden, const std::array<double, Size>& leeway) {
+    void row(const char* name, const std::array<Integer, Size>& hardware, const std::array<double, Size>& golden,
+             const std::array<double, Size>& leeway) {
         for (std::size_t k = 0; k < Size; ++k)
-            judge_.judge([&] { return indexed(name, k); }, number(hardware[k]), golden[k], to_nearest,
-                         leeway[k]);
+            judge_.judge([&] { return indexed(name, k); }, number(hardware[k]), golden[k], to_nearest, leeway[k]);
     }
     void direction(const char* name, const std::array<std::int32_t, 3>& hardware, const glm::dvec3& golden,
                    double leeway) {
@@ -69,8 +65,8 @@ class RegisterCheck {
 
     void format(const char* name, const Format& hardware, const Format& golden) {
         judge_.judge([&] { return fmt::format("formats.{}.bits", name); }, hardware.bits, golden.bits, exact);
-        judge_.judge([&] { return fmt::format("formats.{}.fraction", name); }, hardware.fraction,
-                     golden.fraction, exact);
+        judge_.judge([&] { return fmt::format("formats.{}.fraction", name); }, hardware.fraction, golden.fraction,
+                     exact);
         judge_.judge([&] { return fmt::format("formats.{}.lowest", name); }, number(hardware.lowest),
                      number(golden.lowest), exact);
         judge_.judge([&] { return fmt::format("formats.{}.highest", name); }, number(hardware.highest),
@@ -82,15 +78,12 @@ class RegisterCheck {
         const auto bits = [](std::int64_t value) { return static_cast<int>(value); };
         format("position", formats_.position,
                Format::make_signed(bits(job.position_bits), bits(job.position_fraction)));
-        format("normal", formats_.normal,
-               Format::make_signed(bits(job.normal_bits), bits(job.normal_fraction)));
+        format("normal", formats_.normal, Format::make_signed(bits(job.normal_bits), bits(job.normal_fraction)));
         format("texture", formats_.texture,
-               Format::make_unsigned(bits(job.texture_integer + job.texture_fraction) + 1,
-                                     bits(job.texture_fraction)));
+               Format::make_unsigned(bits(job.texture_integer + job.texture_fraction) + 1, bits(job.texture_fraction)));
         format("displacement", formats_.displacement,
                Format::make_unsigned(bits(job.displacement_bits), bits(job.displacement_bits)));
-        format("screen", formats_.screen,
-               Format::make_signed(bits(job.screen_bits), bits(job.screen_fraction)));
+        format("screen", formats_.screen, Format::make_signed(bits(job.screen_bits), bits(job.screen_fraction)));
         flag("formats.generation_bits", formats_.generation_bits, number(job.generation_bits));
         flag("formats.highlight_tag", number(formats_.highlight_tag), number(job_.tests.highlight));
         check_view_distance();
@@ -109,15 +102,14 @@ class RegisterCheck {
         };
         // The rows in the registers are rounded, so a distance at the limit may or may not fit.
         constexpr double about = 1e-5;
-        judge_.require(
-            hardware.fraction <= formats_.position.fraction && fits(hardware.fraction, 1 - about) &&
-                (hardware.fraction == formats_.position.fraction || !fits(hardware.fraction + 1, 1 + about)),
-            [&] {
-                return fmt::format(
-                    "formats.view_distance.fraction = {} is not the most with which the distance of the "
-                    "farthest position, {:.6g} world units, fits {} bits",
-                    hardware.fraction, farthest, hardware.bits);
-            });
+        judge_.require(hardware.fraction <= formats_.position.fraction && fits(hardware.fraction, 1 - about) &&
+                           (hardware.fraction == formats_.position.fraction || !fits(hardware.fraction + 1, 1 + about)),
+                       [&] {
+                           return fmt::format(
+                               "formats.view_distance.fraction = {} is not the most with which the distance of the "
+                               "farthest position, {:.6g} world units, fits {} bits",
+                               hardware.fraction, farthest, hardware.bits);
+                       });
     }
 
     void check_summed_height() {
@@ -145,8 +137,7 @@ class RegisterCheck {
             golden::Rectangle both;
             for (std::size_t k = 0; k < 3; ++k) {
                 const auto texture = [&](std::size_t corner) {
-                    return golden::on_grid(golden_.vertex(corners[corner]).texture,
-                                           1 / lsb_per_unit(formats_.texture));
+                    return golden::on_grid(golden_.vertex(corners[corner]).texture, 1 / lsb_per_unit(formats_.texture));
                 };
                 const golden::Rectangle size = golden_.map().rectangle_size(texture(k), texture((k + 1) % 3));
                 both.width = std::max(both.width, size.width);
@@ -161,9 +152,8 @@ class RegisterCheck {
         const golden::Scene& scene = golden_.scene();
         const double scale = scene.placement.scale;
         int exponent = 0;
-        judge_.require(scale > 0 && std::isfinite(scale) && std::frexp(scale, &exponent) == 0.5, [&] {
-            return fmt::format("the model's scale, {:.17g}, is not a power of two", scale);
-        });
+        judge_.require(scale > 0 && std::isfinite(scale) && std::frexp(scale, &exponent) == 0.5,
+                       [&] { return fmt::format("the model's scale, {:.17g}, is not a power of two", scale); });
         const double height = std::max(std::abs(scene.lowest), std::abs(scene.highest));
         double reach = 0;
         for (const BaseVertex& vertex : golden_.mesh().vertices) {
@@ -177,21 +167,17 @@ class RegisterCheck {
         });
         // The largest scale that leaves half of the range free: S's register holds at most twice the range of heights.
         const Job::Formats& asked = job_.formats;
-        const double quarter =
-            std::ldexp(1.0, static_cast<int>(asked.position_bits - asked.position_fraction) - 3);
+        const double quarter = std::ldexp(1.0, static_cast<int>(asked.position_bits - asked.position_fraction) - 3);
         const double used = (reach + 2 * height) * scale;
         judge_.require(used == 0 || used > quarter * (1 - 0x1p-20), [&] {
-            return fmt::format(
-                "the displaced mesh reaches only {:.6g} world units of {:.6g}: its scale is too small",
-                (reach + height) * scale, limit);
+            return fmt::format("the displaced mesh reaches only {:.6g} world units of {:.6g}: its scale is too small",
+                               (reach + height) * scale, limit);
         });
     }
 
     void check_map() {
         const golden::Map& map = golden_.map();
-        const auto repeats = [](golden::AddressMode mode) {
-            return number(mode == golden::AddressMode::repeat);
-        };
+        const auto repeats = [](golden::AddressMode mode) { return number(mode == golden::AddressMode::repeat); };
         const auto repeats_here = [](datapath::AddressMode mode) {
             return number(mode == datapath::AddressMode::repeat);
         };
@@ -202,11 +188,10 @@ class RegisterCheck {
         const auto layout = [&](const char* name, const TableLayout& table, int columns, int rows, int bits) {
             judge_.judge([&] { return fmt::format("{}.columns", name); }, table.columns, columns, exact);
             judge_.judge([&] { return fmt::format("{}.rows", name); }, table.rows, rows, exact);
-            judge_.judge([&] { return fmt::format("{}.entry_bytes", name); }, table.entry_bytes,
-                         number((bits + 7) / 8), exact);
+            judge_.judge([&] { return fmt::format("{}.entry_bytes", name); }, table.entry_bytes, number((bits + 7) / 8),
+                         exact);
         };
-        layout("displacement_map", registers_.displacement_map, map.width(), map.height(),
-               formats_.displacement.bits);
+        layout("displacement_map", registers_.displacement_map, map.width(), map.height(), formats_.displacement.bits);
         layout("normal_map", registers_.normal_map, map.width(), map.height(), 3 * formats_.normal.bits);
         layout("summed_height_table", registers_.summed_height_table, map.width() + 1, map.height() + 1,
                formats_.summed_height.bits);
@@ -216,8 +201,7 @@ class RegisterCheck {
                   [](const TableLayout* a, const TableLayout* b) { return a->base < b->base; });
         for (std::size_t k = 0; k < 2; ++k)
             judge_.require(tables[k]->base + tables[k]->bytes() <= tables[k + 1]->base, [&] {
-                return fmt::format("the tables at {:#x} and {:#x} overlap", tables[k]->base,
-                                   tables[k + 1]->base);
+                return fmt::format("the tables at {:#x} and {:#x} overlap", tables[k]->base, tables[k + 1]->base);
             });
     }
 
@@ -226,14 +210,12 @@ class RegisterCheck {
         const golden::Parameters& golden = golden_.parameters();
         const double normal = lsb_per_unit(formats_.normal);
         flag("tests.normal_test", number(tests.normal_test), number(golden.enabled.normal));
-        flag("tests.summed_height_test", number(tests.summed_height_test),
-             number(golden.enabled.summed_height));
+        flag("tests.summed_height_test", number(tests.summed_height_test), number(golden.enabled.summed_height));
         flag("tests.view_test", number(tests.view_test), number(golden.enabled.view));
         flag("tests.tex_coord_test", number(tests.tex_coord_test), number(golden.enabled.tex_coord));
         flag("tests.generation_test", number(tests.generation_test), number(golden.enabled.generation));
         flag("tests.highlight_test", number(tests.highlight_test), number(golden.enabled.highlight));
-        judge_.judge("tests.normal_threshold", tests.normal_threshold, golden.normal_threshold * normal,
-                     rounded_down);
+        judge_.judge("tests.normal_threshold", tests.normal_threshold, golden.normal_threshold * normal, rounded_down);
         flag("tests.summed_height_unit", number(tests.summed_height_unit == datapath::SummedHeightUnit::area),
              number(golden.area));
         judge_.judge("tests.summed_height_threshold", number(tests.summed_height_threshold),
@@ -279,10 +261,8 @@ class RegisterCheck {
                                     const glm::dvec4& golden) {
             const double size = largest(golden) * view_.rounding;
             const glm::dvec3 eye = glm::abs(view_.eye);
-            row(name, hardware,
-                {golden.x * matrix, golden.y * matrix, golden.z * matrix, golden.w * matrix * position},
-                {size * matrix, size * matrix, size * matrix,
-                 size * (eye.x + eye.y + eye.z) * matrix * position});
+            row(name, hardware, {golden.x * matrix, golden.y * matrix, golden.z * matrix, golden.w * matrix * position},
+                {size * matrix, size * matrix, size * matrix, size * (eye.x + eye.y + eye.z) * matrix * position});
         };
         const double shrink = std::ldexp(1.0, -transform.exponent);
         matrix_row("transform.row_x", transform.row_x, view_.row_x * shrink);
@@ -291,11 +271,9 @@ class RegisterCheck {
         const double reach = std::max(largest(view_.row_x), largest(view_.row_y)) * shrink;
         constexpr double about = 1e-9;
         judge_.require(
-            transform.exponent >= 0 && reach <= 1 + about && (transform.exponent == 0 || reach > 0.5 - about),
-            [&] {
-                return fmt::format(
-                    "transform.exponent = {}, with which the rows reach {:.6g}: not in 1/2 .. 1",
-                    transform.exponent, reach);
+            transform.exponent >= 0 && reach <= 1 + about && (transform.exponent == 0 || reach > 0.5 - about), [&] {
+                return fmt::format("transform.exponent = {}, with which the rows reach {:.6g}: not in 1/2 .. 1",
+                                   transform.exponent, reach);
             });
         // Beyond every w, all the same.
         judge_.judge("transform.near_plane", number(transform.near_plane),
@@ -338,8 +316,7 @@ class BaseCheck {
             if (may_collapse(corners) && (next == setup_.base_triangles.size() || !is(next, corners)))
                 continue;
             if (next == setup_.base_triangles.size()) {
-                judge_.require(false,
-                               [&] { return fmt::format("triangle {} of the mesh is missing", triangle); });
+                judge_.require(false, [&] { return fmt::format("triangle {} of the mesh is missing", triangle); });
                 return;
             }
             check(next, corners);
@@ -347,8 +324,7 @@ class BaseCheck {
             ++next;
         }
         judge_.require(next == setup_.base_triangles.size(), [&] {
-            return fmt::format("{} base triangles, of which the mesh has {}", setup_.base_triangles.size(),
-                               next);
+            return fmt::format("{} base triangles, of which the mesh has {}", setup_.base_triangles.size(), next);
         });
     }
 
@@ -389,8 +365,7 @@ class BaseCheck {
             const datapath::Vertex& hardware = triangle.vertices[k];
             const golden::Vertex& golden = corners[k];
             const auto name = [&](const char* field) {
-                return
-                    [index, k, field] { return fmt::format("triangle {}, vertex {}, {}", index, k, field); };
+                return [index, k, field] { return fmt::format("triangle {}, vertex {}, {}", index, k, field); };
             };
             const double position = lsb_per_unit(formats_.position);
             const auto nearest = [&](const char* field, double value, double expected) {
@@ -411,17 +386,17 @@ class BaseCheck {
             judge_.judge(name("displaced_known"), number(hardware.displaced_known), 0, exact);
             judge_.judge(name("screen_normal_known"), number(hardware.screen_normal_known), 0, exact);
             const golden::Map& map = golden_.map();
-            check_texture(name("texture.u"), hardware.texture.u, golden.texture.x, map.width(),
-                          map.address_u(), k == 0, periods.x);
-            check_texture(name("texture.v"), hardware.texture.v, golden.texture.y, map.height(),
-                          map.address_v(), k == 0, periods.y);
+            check_texture(name("texture.u"), hardware.texture.u, golden.texture.x, map.width(), map.address_u(), k == 0,
+                          periods.x);
+            check_texture(name("texture.v"), hardware.texture.v, golden.texture.y, map.height(), map.address_v(),
+                          k == 0, periods.y);
         }
     }
 
     /// `periods`: set by the triangle's first corner.
     template <typename Name>
-    void check_texture(Name name, std::uint32_t hardware, double golden, int size, golden::AddressMode mode,
-                       bool first, double& periods) {
+    void check_texture(Name name, std::uint32_t hardware, double golden, int size, golden::AddressMode mode, bool first,
+                       double& periods) {
         const double lsb = lsb_per_unit(formats_.texture);
         if (first && mode == golden::AddressMode::repeat)
             periods = std::round((hardware / lsb - golden) / size);

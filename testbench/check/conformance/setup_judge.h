@@ -43,10 +43,9 @@ class Judge {
             return;
         ++part.wrong;
         if (result_.first_wrong.empty())
-            result_.first_wrong =
-                fmt::format("{}: {} = {:.17g}, golden has {:.17g}, allowed is {}{:.17g} to {:.17g}",
-                            part.name, name(), hardware, golden, bound.low_allowed ? "" : "above ",
-                            golden + bound.low - leeway, golden + bound.high + leeway);
+            result_.first_wrong = fmt::format("{}: {} = {:.17g}, golden has {:.17g}, allowed is {}{:.17g} to {:.17g}",
+                                              part.name, name(), hardware, golden, bound.low_allowed ? "" : "above ",
+                                              golden + bound.low - leeway, golden + bound.high + leeway);
     }
     void judge(const char* name, double hardware, double golden, const Bound& bound, double leeway = 0) {
         judge([&] { return name; }, hardware, golden, bound, leeway);

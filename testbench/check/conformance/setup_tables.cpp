@@ -55,8 +55,7 @@ class TableCheck {
 
   private:
     template <typename Check>
-    void each_entry(Judge& judge, Socket& socket, const TableLayout& layout, int columns, int rows,
-                    Check check) {
+    void each_entry(Judge& judge, Socket& socket, const TableLayout& layout, int columns, int rows, Check check) {
         // A wrong layout has already been reported with the registers.
         if (layout.columns != number(columns) || layout.rows != number(rows) || layout.entry_bytes > 8)
             return;
@@ -82,14 +81,13 @@ class TableCheck {
         each_entry(judge, host_.displacement_map, registers_.displacement_map, map.width(), map.height(),
                    [&](std::uint32_t x, std::uint32_t y, std::uint64_t code) {
                        const double golden = golden_.unrounded_code(texel_of(x, y));
-                       judge.judge([&] { return fmt::format("({}, {})", x, y); }, number(code), golden,
-                                   to_nearest, double_rounding * golden);
+                       judge.judge([&] { return fmt::format("({}, {})", x, y); }, number(code), golden, to_nearest,
+                                   double_rounding * golden);
                    });
     }
 
     void check_normal_map() {
-        Judge judge(result_, "normal map",
-                    "every component; slopes within the rounding of S, then to nearest");
+        Judge judge(result_, "normal map", "every component; slopes within the rounding of S, then to nearest");
         const golden::Map& map = golden_.map();
         const Format& format = registers_.formats.normal;
         const double lsb = lsb_per_unit(format);
@@ -101,11 +99,10 @@ class TableCheck {
                        const glm::dvec2 slope = map.slope(texel_of(x, y));
                        const datapath::Direction n = datapath::unpack_normal(entry, format.bits);
                        const NormalRange range(slope, slope_error);
-                       const auto component = [&](const char* name, double hardware, double low,
-                                                  double high) {
+                       const auto component = [&](const char* name, double hardware, double low, double high) {
                            const double middle = (low + high) / 2 * lsb, half = (high - low) / 2 * lsb;
-                           judge.judge([&] { return fmt::format("({}, {}).{}", x, y, name); }, hardware,
-                                       middle, {-0.5 - half, 0.5 + half}, double_rounding * lsb);
+                           judge.judge([&] { return fmt::format("({}, {}).{}", x, y, name); }, hardware, middle,
+                                       {-0.5 - half, 0.5 + half}, double_rounding * lsb);
                        };
                        component("x", n.x, range.low.x, range.high.x);
                        component("y", n.y, range.low.y, range.high.y);
@@ -121,8 +118,8 @@ class TableCheck {
             const auto part = [](double along, double across) {
                 return along / std::sqrt(1 + along * along + across * across);
             };
-            const auto signed_range = [&](double s, double least_along, double most_along,
-                                          double least_across, double most_across, double& from, double& to) {
+            const auto signed_range = [&](double s, double least_along, double most_along, double least_across,
+                                          double most_across, double& from, double& to) {
                 const double small = part(std::max(least_along, 0.0), most_across);
                 const double large = part(most_along, std::max(least_across, 0.0));
                 from = s > 0 ? -large : small;
@@ -140,8 +137,8 @@ class TableCheck {
         Judge judge(result_, "summed height table", "every sum of codes, exact modulo 2^bits");
         const golden::Map& map = golden_.map();
         const auto mask = static_cast<std::uint64_t>(registers_.formats.summed_height.highest);
-        each_entry(judge, host_.summed_height_table, registers_.summed_height_table, map.width() + 1,
-                   map.height() + 1, [&](std::uint32_t x, std::uint32_t y, std::uint64_t sum) {
+        each_entry(judge, host_.summed_height_table, registers_.summed_height_table, map.width() + 1, map.height() + 1,
+                   [&](std::uint32_t x, std::uint32_t y, std::uint64_t sum) {
                        judge.judge([&] { return fmt::format("({}, {})", x, y); }, number(sum),
                                    number(map.sum({0, 0, x, y}) & mask), exact);
                    });

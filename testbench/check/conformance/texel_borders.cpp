@@ -84,9 +84,8 @@ std::string texel_borders_warning(const TexelBorderCount& count, const Job& job,
             remedy += "; ";
         remedy += other;
     } else if (share > least_share_of_a_file) {
-        remedy =
-            fmt::format("texture coordinates of the mesh that are whole texels, multiples of 1/{} and 1/{}",
-                        width, height);
+        remedy = fmt::format("texture coordinates of the mesh that are whole texels, multiples of 1/{} and 1/{}", width,
+                             height);
     }
     if (remedy.empty())
         return {};

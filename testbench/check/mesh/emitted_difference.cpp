@@ -49,9 +49,9 @@ EmittedDifference::EmittedDifference(const EmittedMesh& mesh, std::size_t base_t
                                      const datapath::Formats& formats)
     : mesh_(mesh), formats_(formats), offsets_(base_triangles + 2, 0) {
     if (mesh.triangles.size() >= UINT32_MAX)
-        throw ResourceError(fmt::format(
-            "check.invariants: cannot check more than {} triangles; set it to false for a run of this size",
-            UINT32_MAX - 1));
+        throw ResourceError(
+            fmt::format("check.invariants: cannot check more than {} triangles; set it to false for a run of this size",
+                        UINT32_MAX - 1));
     for (const EmittedTriangle& triangle : mesh.triangles) {
         if (triangle.base < base_triangles)
             ++offsets_[triangle.base + 2];
@@ -116,9 +116,8 @@ void EmittedDifference::end() {
             note("a triangle too many", **there++);
         } else {
             if (first_.empty())
-                first_ =
-                    fmt::format("base triangle {}: a triangle differs: {}; it should be {}", (*there)->base,
-                                triangle_text(**there, formats_), triangle_text(**wanted, formats_));
+                first_ = fmt::format("base triangle {}: a triangle differs: {}; it should be {}", (*there)->base,
+                                     triangle_text(**there, formats_), triangle_text(**wanted, formats_));
             ++differing_;
             ++wanted;
             ++there;
@@ -128,8 +127,7 @@ void EmittedDifference::end() {
 
 void EmittedDifference::note(const char* what, const EmittedTriangle& triangle) {
     if (first_.empty())
-        first_ =
-            fmt::format("base triangle {}: {}: {}", triangle.base, what, triangle_text(triangle, formats_));
+        first_ = fmt::format("base triangle {}: {}: {}", triangle.base, what, triangle_text(triangle, formats_));
 }
 
 }  // namespace tessera

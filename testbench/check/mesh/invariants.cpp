@@ -37,17 +37,16 @@ void judge_triangles(const EmittedMesh& mesh, const MachineSetup& setup, Invaria
             ++result.collapsed;
         else if (triangle.base < base_sides.size() && side * base_sides[triangle.base] < 0)
             ++result.turned_over;
-        if (c[0].displaced == c[1].displaced || c[1].displaced == c[2].displaced ||
-            c[2].displaced == c[0].displaced)
+        if (c[0].displaced == c[1].displaced || c[1].displaced == c[2].displaced || c[2].displaced == c[0].displaced)
             ++result.displaced_collapsed;
-        const auto oldest = std::max_element(
-            c.begin(), c.end(), [](const auto& a, const auto& b) { return a.generation < b.generation; });
+        const auto oldest = std::max_element(c.begin(), c.end(),
+                                             [](const auto& a, const auto& b) { return a.generation < b.generation; });
         if (tests.generation_test && oldest->generation > tests.generation_limit) {
             ++result.generation_violations;
             if (result.first_violation.empty())
-                result.first_violation = fmt::format(
-                    "base triangle {}: a vertex is beyond the generation limit of {}: {}", triangle.base,
-                    tests.generation_limit, corner_text(*oldest, setup.registers.formats));
+                result.first_violation =
+                    fmt::format("base triangle {}: a vertex is beyond the generation limit of {}: {}", triangle.base,
+                                tests.generation_limit, corner_text(*oldest, setup.registers.formats));
         }
     }
 }
@@ -69,8 +68,7 @@ struct Walk {
         difference.begin(base.base);
         return lineage.begin(base);
     }
-    void decided(const datapath::TrianglePass& pass, const datapath::ChildIndices& children,
-                 const Note& note) {
+    void decided(const datapath::TrianglePass& pass, const datapath::ChildIndices& children, const Note& note) {
         lineage.decided(pass, children, note);
     }
     Note child(const std::array<std::uint8_t, 3>& corners) { return lineage.child(corners); }
@@ -96,12 +94,9 @@ std::vector<InvariantFigure> invariant_figures(const InvariantResult& r) {
         {"non_manifold_base_edges", Kind::fact, r.non_manifold_base_edges, "edge", "with more than two"},
         {"texture_seams", Kind::fact, r.texture_seams, "edge",
          "base edges whose two sides differ in texture coordinates by other than whole periods"},
-        {"creases", Kind::fact, r.creases, "edge",
-         "base edges whose two sides differ in normal or tangent only"},
-        {"t_vertices", Kind::violation, r.t_vertices, "vertex",
-         "on an edge that another of its triangles has whole"},
-        {"cracks", Kind::violation, r.cracks, "edge",
-         "without the triangles they should have on either side"},
+        {"creases", Kind::fact, r.creases, "edge", "base edges whose two sides differ in normal or tangent only"},
+        {"t_vertices", Kind::violation, r.t_vertices, "vertex", "on an edge that another of its triangles has whole"},
+        {"cracks", Kind::violation, r.cracks, "edge", "without the triangles they should have on either side"},
         {"inconsistent_vertices", Kind::violation, r.inconsistent_vertices, "vertex",
          "that differ from one triangle to another"},
         {"missing_triangles", Kind::violation, r.missing_triangles, "triangle",
@@ -125,8 +120,7 @@ std::vector<InvariantFigure> invariant_figures(const InvariantResult& r) {
 
 InvariantResult check_invariants(const EmittedMesh& mesh, const MachineSetup& setup) {
     BareRecursion bare(setup);
-    Walk walk{Lineage(setup, bare),
-              EmittedDifference(mesh, setup.base_triangles.size(), setup.registers.formats)};
+    Walk walk{Lineage(setup, bare), EmittedDifference(mesh, setup.base_triangles.size(), setup.registers.formats)};
     InvariantResult result;
     result.edges = bare.walk(walk);
     walk.end();

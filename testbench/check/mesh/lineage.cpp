@@ -29,9 +29,8 @@ std::uint64_t hash_of(const datapath::Position& p) {
 Lineage::Lineage(const MachineSetup& setup, BareRecursion& bare) : setup_(setup) {
     const datapath::MapGeometry& map = setup.registers.map;
     const auto period = [&](std::uint32_t size, datapath::AddressMode mode) {
-        return mode == datapath::AddressMode::repeat
-                   ? std::uint64_t{size} << setup.registers.formats.texture.fraction
-                   : 0;
+        return mode == datapath::AddressMode::repeat ? std::uint64_t{size} << setup.registers.formats.texture.fraction
+                                                     : 0;
     };
     period_u_ = period(map.width, map.address_u);
     period_v_ = period(map.height, map.address_v);
@@ -51,8 +50,8 @@ template <class Text>
 void Lineage::fault(std::uint64_t& count, Text&& text) {
     ++count;
     if (result_.first_fault.empty())
-        result_.first_fault = fmt::format(
-            "{}: {}", base_ == none ? "base mesh" : fmt::format("base triangle {}", base_), text());
+        result_.first_fault =
+            fmt::format("{}: {}", base_ == none ? "base mesh" : fmt::format("base triangle {}", base_), text());
 }
 
 std::string Lineage::vertex_text(const Vertex& v) const {
@@ -75,9 +74,8 @@ void Lineage::name_base_mesh(BareRecursion& bare) {
             vertex_hash(v),
             [&](Number known) {
                 const Vertex& other = vertices_[known].vertex;
-                return v.position == other.position && v.normal == other.normal &&
-                       v.tangent == other.tangent && v.handedness == other.handedness &&
-                       same_texture(v.texture, other.texture);
+                return v.position == other.position && v.normal == other.normal && v.tangent == other.tangent &&
+                       v.handedness == other.handedness && same_texture(v.texture, other.texture);
             },
             [&](Number known) { return vertex_hash(vertices_[known].vertex); });
         if (number == vertices_.kept().size())
@@ -85,14 +83,13 @@ void Lineage::name_base_mesh(BareRecursion& bare) {
         return number;
     };
     const auto edge_hash = [&](const Edge& edge, const Way& way) {
-        return mix_hash(mix_hash(mix_hash(0, std::uint64_t{edge.from} << 32 | edge.to),
-                                 static_cast<std::uint64_t>(way.u)),
-                        static_cast<std::uint64_t>(way.v));
+        return mix_hash(
+            mix_hash(mix_hash(0, std::uint64_t{edge.from} << 32 | edge.to), static_cast<std::uint64_t>(way.u)),
+            static_cast<std::uint64_t>(way.v));
     };
     const auto number_edge = [&](Edge edge, Way way) {
         // Of two ends with one number, periods apart, the way in t decides which comes first.
-        const bool along =
-            std::make_tuple(edge.from, -way.u, -way.v) < std::make_tuple(edge.to, way.u, way.v);
+        const bool along = std::make_tuple(edge.from, -way.u, -way.v) < std::make_tuple(edge.to, way.u, way.v);
         if (!along) {
             std::swap(edge.from, edge.to);
             way = way.turned();
@@ -119,9 +116,8 @@ void Lineage::name_base_mesh(BareRecursion& bare) {
         for (std::size_t k = 0; k < 3; ++k) {
             const std::size_t next = (k + 1) % 3;
             const datapath::TexCoord &a = base.vertices[k].texture, &b = base.vertices[next].texture;
-            note.edges[k] =
-                number_edge({note.vertices[k], note.vertices[next], none, none, {}, {}},
-                            {std::int64_t{b.u} - std::int64_t{a.u}, std::int64_t{b.v} - std::int64_t{a.v}});
+            note.edges[k] = number_edge({note.vertices[k], note.vertices[next], none, none, {}, {}},
+                                        {std::int64_t{b.u} - std::int64_t{a.u}, std::int64_t{b.v} - std::int64_t{a.v}});
         }
         base_notes_.push_back(note);
     }
@@ -138,14 +134,12 @@ void Lineage::meet(Number vertex, const Vertex& seen) {
     const Vertex& v = known.vertex;
     if (known.unlike ||
         (seen.position == v.position && seen.normal == v.normal && seen.tangent == v.tangent &&
-         same_texture(seen.texture, v.texture) && seen.handedness == v.handedness &&
-         seen.generation == v.generation && seen.displaced == v.displaced &&
-         seen.displaced_normal == v.displaced_normal && seen.screen == v.screen))
+         same_texture(seen.texture, v.texture) && seen.handedness == v.handedness && seen.generation == v.generation &&
+         seen.displaced == v.displaced && seen.displaced_normal == v.displaced_normal && seen.screen == v.screen))
         return;
     known.unlike = true;
     fault(result_.unlike_vertices, [&] {
-        return fmt::format("a vertex differs from one triangle to another: {}; {}", vertex_text(v),
-                           vertex_text(seen));
+        return fmt::format("a vertex differs from one triangle to another: {}; {}", vertex_text(v), vertex_text(seen));
     });
 }
 
@@ -184,8 +178,7 @@ void Lineage::decided(const TrianglePass& pass, const datapath::ChildIndices&, c
             continue;
         Vertex inserted = datapath::inserted_vertex(pass, static_cast<int>(k));
         datapath::Saturations ignored;  // the recursion counts them
-        inserted.generation =
-            datapath::kept_generation(inserted.generation, setup_.registers.formats, ignored);
+        inserted.generation = datapath::kept_generation(inserted.generation, setup_.registers.formats, ignored);
         split(side, inserted);
         const Edge& whole = edges_[side.edge];
         corners_[middle] = whole.middle;
@@ -217,14 +210,13 @@ void Lineage::judge(const std::vector<Edge>& edges) {
         if (edge.middle != none) {
             if (!(edge.found == Sides{}))
                 fault(result_.t_vertices, [&] {
-                    return "T-vertex: an edge is split by one of its triangles and whole in another: " +
-                           ends();
+                    return "T-vertex: an edge is split by one of its triangles and whole in another: " + ends();
                 });
         } else if (!(edge.found == edge.wanted)) {
             fault(result_.cracks, [&] {
-                return fmt::format(
-                    "an edge has {} and {} triangles on its sides, and should have {} and {}: {}",
-                    edge.found.along, edge.found.against, edge.wanted.along, edge.wanted.against, ends());
+                return fmt::format("an edge has {} and {} triangles on its sides, and should have {} and {}: {}",
+                                   edge.found.along, edge.found.against, edge.wanted.along, edge.wanted.against,
+                                   ends());
             });
         }
     }
@@ -271,9 +263,7 @@ void Lineage::compare_base_edges() {
     std::vector<Number> first_there;
     DistinctTable places;
     const auto place_of = [&](Number vertex) {
-        const auto position = [&](Number v) -> const datapath::Position& {
-            return vertices_[v].vertex.position;
-        };
+        const auto position = [&](Number v) -> const datapath::Position& { return vertices_[v].vertex.position; };
         const std::uint32_t place = places.number_of(
             hash_of(position(vertex)),
             [&](std::uint32_t known) { return position(first_there[known]) == position(vertex); },
@@ -289,8 +279,7 @@ void Lineage::compare_base_edges() {
             placed.push_back({std::min(from, to), std::max(from, to), {number, from < to}});
     }
     const auto key = [](const Placed& p) { return std::make_tuple(p.low, p.high, p.side.edge); };
-    std::sort(placed.begin(), placed.end(),
-              [&](const Placed& a, const Placed& b) { return key(a) < key(b); });
+    std::sort(placed.begin(), placed.end(), [&](const Placed& a, const Placed& b) { return key(a) < key(b); });
     for (auto begin = placed.begin(); begin != placed.end();) {
         std::uint64_t triangles = 0;
         bool seam = false, crease = false;
@@ -303,9 +292,7 @@ void Lineage::compare_base_edges() {
             if ((wanted.along + wanted.against) % 2 == 0)
                 continue;
             if (lone) {
-                const auto way = [&](const Side& s) {
-                    return s.along ? ways_[s.edge] : ways_[s.edge].turned();
-                };
+                const auto way = [&](const Side& s) { return s.along ? ways_[s.edge] : ways_[s.edge].turned(); };
                 const bool textures_agree =
                     same_texture(begin_of(*lone).texture, begin_of(side).texture) && way(*lone) == way(side);
                 (textures_agree ? crease : seam) = true;

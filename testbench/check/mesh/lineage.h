@@ -17,7 +17,7 @@ struct LineageResult {
     std::uint64_t border_base_edges = 0;        ///< of one base triangle
     std::uint64_t non_manifold_base_edges = 0;  ///< of more than two
     std::uint64_t texture_seams = 0;            ///< base edges whose sides differ in t: not joined
-    std::uint64_t creases = 0;  ///< base edges whose sides agree in t, not in N, T: not joined
+    std::uint64_t creases = 0;                  ///< base edges whose sides agree in t, not in N, T: not joined
     std::uint64_t open_texture_seam_edges = 0;  ///< pieces of them that do not meet, on the finer side
     std::uint64_t open_crease_edges = 0;        ///< likewise
     std::uint64_t cracks = 0;                   ///< edges without the triangles they should have
@@ -59,8 +59,7 @@ class Lineage {
         std::array<Side, 3> edges;
     };
     Note begin(const datapath::Triangle& base);
-    void decided(const datapath::TrianglePass& pass, const datapath::ChildIndices& children,
-                 const Note& note);
+    void decided(const datapath::TrianglePass& pass, const datapath::ChildIndices& children, const Note& note);
     Note child(const std::array<std::uint8_t, 3>& corners);
     void finished(const datapath::Triangle&, bool) {}
 
@@ -76,9 +75,7 @@ class Lineage {
             items.push_back(item);
             return static_cast<Number>(items.size() - 1) | (inside ? inside_bit : 0);
         }
-        Item& operator[](Number number) {
-            return is_inside(number) ? inside_[number & ~inside_bit] : kept_[number];
-        }
+        Item& operator[](Number number) { return is_inside(number) ? inside_[number & ~inside_bit] : kept_[number]; }
         const Item& operator[](Number number) const {
             return is_inside(number) ? inside_[number & ~inside_bit] : kept_[number];
         }
@@ -100,9 +97,7 @@ class Lineage {
     struct Sides {
         std::uint32_t along = 0, against = 0;
         std::uint32_t& of(bool is_along) { return is_along ? along : against; }
-        friend bool operator==(const Sides& a, const Sides& b) {
-            return a.along == b.along && a.against == b.against;
-        }
+        friend bool operator==(const Sides& a, const Sides& b) { return a.along == b.along && a.against == b.against; }
     };
     struct Edge {
         Number from, to;

@@ -25,18 +25,16 @@ struct Band {
     GridRange columns, rows;
 
     std::size_t index(std::int64_t x, std::int64_t y) const {
-        return static_cast<std::size_t>((y - rows.first) * (columns.last - columns.first + 1) +
-                                        (x - columns.first));
+        return static_cast<std::size_t>((y - rows.first) * (columns.last - columns.first + 1) + (x - columns.first));
     }
 };
 
 /// Calls at(x, y, height) for the band's grid points under a triangle, including its border.
 template <class At>
 void cover(const Facet& facet, const Band& band, At&& at) {
-    for_texel_centres(facet.texel, band.columns, band.rows,
-                      [&](std::int64_t x, std::int64_t y, const glm::dvec3& b) {
-                          at(x, y, b.x * facet.height[0] + b.y * facet.height[1] + b.z * facet.height[2]);
-                      });
+    for_texel_centres(facet.texel, band.columns, band.rows, [&](std::int64_t x, std::int64_t y, const glm::dvec3& b) {
+        at(x, y, b.x * facet.height[0] + b.y * facet.height[1] + b.z * facet.height[2]);
+    });
 }
 
 Facet facet_of(const HeightField& field, const std::array<glm::dvec3, 3>& corners) {
@@ -78,8 +76,7 @@ std::optional<HeightField> find_height_field(const BaseMesh& base, const HeightM
         return std::nullopt;
     HeightField field;
     field.origin = corner(largest, 0).position;
-    const glm::dvec3 p = corner(largest, 1).position - field.origin,
-                     q = corner(largest, 2).position - field.origin;
+    const glm::dvec3 p = corner(largest, 1).position - field.origin, q = corner(largest, 2).position - field.origin;
     const glm::dvec3 across = glm::cross(p, q);
     const double area = glm::length(across);
     why = "its base triangle that is largest in texture space has no area that can be computed with";
@@ -152,10 +149,9 @@ VerticalError measure_vertical_error(const HeightField& field, const BaseMesh& b
         const Band band{columns, {first, std::min(rows.last, first + band_rows - 1)}};
         errors.assign(static_cast<std::size_t>(width * (band.rows.last - band.rows.first + 1)), outside);
         for (const auto& t : base.triangles)
-            cover(facet_of(field, {base.vertices[t[0]].position, base.vertices[t[1]].position,
-                                   base.vertices[t[2]].position}),
-                  band,
-                  [&](std::int64_t x, std::int64_t y, double) { errors[band.index(x, y)] = uncovered; });
+            cover(facet_of(field,
+                           {base.vertices[t[0]].position, base.vertices[t[1]].position, base.vertices[t[2]].position}),
+                  band, [&](std::int64_t x, std::int64_t y, double) { errors[band.index(x, y)] = uncovered; });
         for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {
             cover(facet_of(field, mesh.corners(mesh.triangles[k])), band,
                   [&](std::int64_t x, std::int64_t y, double at) {
@@ -177,8 +173,7 @@ VerticalError measure_vertical_error(const HeightField& field, const BaseMesh& b
                           const double area = glm::dot(across, across);
                           result.worst_position =
                               field.origin +
-                              (away.x * glm::cross(field.v, across) + away.y * glm::cross(across, field.u)) /
-                                  area +
+                              (away.x * glm::cross(field.v, across) + away.y * glm::cross(across, field.u)) / area +
                               wanted * field.normal;
                       }
                   });

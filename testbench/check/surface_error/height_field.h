@@ -16,7 +16,7 @@ namespace tessera {
 /// texel).
 struct HeightField {
     glm::dvec3 origin{0}, normal{0};  ///< the plane's, model units
-    glm::dvec3 u{0}, v{0};  ///< texel coordinate = texel_origin + (dot(u, p - origin), dot(v, p - origin))
+    glm::dvec3 u{0}, v{0};            ///< texel coordinate = texel_origin + (dot(u, p - origin), dot(v, p - origin))
     glm::dvec2 texel_origin{0};
 
     glm::dvec2 texel(const glm::dvec3& p) const {

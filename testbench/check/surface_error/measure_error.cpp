@@ -66,8 +66,7 @@ class Measurement {
         soup_.reserve(mesh.triangles.size());
         for (const RecordedMesh::Triangle& t : mesh.triangles) {
             const auto corners = mesh.corners(t);
-            soup_.push_back(
-                {frame_.to_local(corners[0]), frame_.to_local(corners[1]), frame_.to_local(corners[2])});
+            soup_.push_back({frame_.to_local(corners[0]), frame_.to_local(corners[1]), frame_.to_local(corners[2])});
         }
         if (!soup_.empty())
             nearest_.emplace(soup_);
@@ -131,8 +130,8 @@ class Measurement {
                         squares += sample.weight * sample.squared;
                         weights += sample.weight;
                         float& of_triangle = largest[sample.triangle];
-                        of_triangle = std::max(of_triangle,
-                                               static_cast<float>(std::sqrt(sample.squared) / frame_.scale));
+                        of_triangle =
+                            std::max(of_triangle, static_cast<float>(std::sqrt(sample.squared) / frame_.scale));
                         part.worst.take(sample.squared, sample.position, sample.texture, sample.triangle);
                     });
                     part.squares.push_back(squares);
@@ -194,8 +193,7 @@ class Measurement {
         }
         for (std::size_t k = 0; k < soup_.size(); ++k)
             for (const std::uint32_t vertex : mesh_.triangles[k].vertices)
-                error.triangles[k].max =
-                    std::max(error.triangles[k].max, static_cast<float>(error.vertices[vertex]));
+                error.triangles[k].max = std::max(error.triangles[k].max, static_cast<float>(error.vertices[vertex]));
         if (worst.squared >= 0) {
             result.max = std::sqrt(worst.squared) / frame_.scale;
             // a mesh without area has no weights: its maximum
@@ -205,9 +203,8 @@ class Measurement {
     }
 
     /// Measures the vertices that triangle k is the first to use, its centroid and its parts.
-    void measure_triangle(std::size_t k, ReferenceNearest& nearest,
-                          const std::vector<std::size_t>& first_user, MeshPart& part,
-                          SurfaceError& error) const {
+    void measure_triangle(std::size_t k, ReferenceNearest& nearest, const std::vector<std::size_t>& first_user,
+                          MeshPart& part, SurfaceError& error) const {
         const RecordedMesh::Triangle& t = mesh_.triangles[k];
         const auto& corners = soup_[k];
         const auto measure = [&](const glm::dvec3& local, const glm::dvec2& texture) {
@@ -221,15 +218,13 @@ class Measurement {
             const bool earlier = std::find(t.vertices.begin(), t.vertices.begin() + c, vertex) !=
                                  t.vertices.begin() + c;  // a degenerate triangle may have a vertex twice
             if (first_user[vertex] == k && !earlier)
-                error.vertices[vertex] =
-                    std::sqrt(measure(corners[c], mesh_.textures[vertex])) / frame_.scale;
+                error.vertices[vertex] = std::sqrt(measure(corners[c], mesh_.textures[vertex])) / frame_.scale;
         }
         double largest_squared = 0, squares = 0;
         const auto take = [&](const glm::dvec3& b) {
-            const double squared =
-                measure(b.x * corners[0] + b.y * corners[1] + b.z * corners[2],
-                        b.x * mesh_.textures[t.vertices[0]] + b.y * mesh_.textures[t.vertices[1]] +
-                            b.z * mesh_.textures[t.vertices[2]]);
+            const double squared = measure(b.x * corners[0] + b.y * corners[1] + b.z * corners[2],
+                                           b.x * mesh_.textures[t.vertices[0]] + b.y * mesh_.textures[t.vertices[1]] +
+                                               b.z * mesh_.textures[t.vertices[2]]);
             largest_squared = std::max(largest_squared, squared);
             return squared;
         };
@@ -265,9 +260,8 @@ class Measurement {
 
 }  // namespace
 
-SurfaceError measure_surface_error(const BaseMesh& base, const HeightMap& map,
-                                   const DisplacementOf& displacement, const RecordedMesh& mesh,
-                                   Sampling sampling, const MeasureLimits& limits) {
+SurfaceError measure_surface_error(const BaseMesh& base, const HeightMap& map, const DisplacementOf& displacement,
+                                   const RecordedMesh& mesh, Sampling sampling, const MeasureLimits& limits) {
     check_base_numbers(base, mesh);
     return Measurement(base, map, displacement, mesh, limits).measure(sampling);
 }

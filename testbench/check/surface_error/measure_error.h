@@ -39,11 +39,10 @@ struct MeasureLimits {
 
 /// The place of a maximum and the hardware's decisions there.
 struct WorstSpot {
-    glm::dvec3 position{0};  ///< of the sample, model units
-    glm::dvec2 texture{0};   ///< of the sample, 0..1 spans the map
-    std::uint64_t triangle =
-        0;  ///< index in the file of the emitted triangle nearest to the sample, or containing it
-    std::uint32_t base = 0;                                     ///< that triangle's base triangle
+    glm::dvec3 position{0};      ///< of the sample, model units
+    glm::dvec2 texture{0};       ///< of the sample, 0..1 spans the map
+    std::uint64_t triangle = 0;  ///< index in the file of the emitted triangle nearest to the sample, or containing it
+    std::uint32_t base = 0;      ///< that triangle's base triangle
     std::uint8_t generation = 0, split_by = 0, stopped_by = 0;  ///< that triangle's (recorded_mesh.h)
 };
 
@@ -63,7 +62,7 @@ struct TriangleError {
 
 struct SurfaceError {
     DirectedError reference_to_mesh, mesh_to_reference;
-    std::vector<double> vertices;  ///< per vertex of the mesh: its distance to the reference, model units
+    std::vector<double> vertices;          ///< per vertex of the mesh: its distance to the reference, model units
     std::vector<TriangleError> triangles;  ///< per triangle of the mesh
 
     double hausdorff() const { return std::max(reference_to_mesh.max, mesh_to_reference.max); }
@@ -85,8 +84,7 @@ MeshError measure_error(const BaseMesh& base, const HeightMap& map, const Displa
                         const RecordedMesh& mesh, const MeasureLimits& limits = {});
 
 /// Measures with one sampling method only.
-SurfaceError measure_surface_error(const BaseMesh& base, const HeightMap& map,
-                                   const DisplacementOf& displacement, const RecordedMesh& mesh,
-                                   Sampling sampling, const MeasureLimits& limits = {});
+SurfaceError measure_surface_error(const BaseMesh& base, const HeightMap& map, const DisplacementOf& displacement,
+                                   const RecordedMesh& mesh, Sampling sampling, const MeasureLimits& limits = {});
 
 }  // namespace tessera

@@ -27,8 +27,7 @@ std::uint64_t lattice_points(std::uint64_t n) {
 
 }  // namespace
 
-ReferenceLattice::ReferenceLattice(const DisplacedSurface& surface, std::uint64_t most_samples)
-    : surface_(surface) {
+ReferenceLattice::ReferenceLattice(const DisplacedSurface& surface, std::uint64_t most_samples) : surface_(surface) {
     std::vector<float> extents(surface.triangles());
     for (std::size_t k = 0; k < extents.size(); ++k)
         extents[k] = static_cast<float>(extent(surface.corners(k)));

@@ -18,8 +18,7 @@ constexpr std::size_t box_number(std::size_t level, std::size_t x, std::size_t y
 
 }  // namespace
 
-ReferenceNearest::ReferenceNearest(const ReferenceLattice& lattice, Sampling sampling,
-                                   const std::vector<Box>& boxes)
+ReferenceNearest::ReferenceNearest(const ReferenceLattice& lattice, Sampling sampling, const std::vector<Box>& boxes)
     : lattice_(lattice),
       sampling_(sampling),
       boxes_(boxes),
@@ -81,11 +80,9 @@ void ReferenceNearest::look_at_boxes(const Kept& kept, std::size_t level, std::s
     std::array<Child, 4> children;
     for (std::size_t k = 0; k < 4; ++k) {
         const std::size_t child_x = 2 * x + k % 2, child_y = 2 * y + k / 2;
-        children[k] = {kept.boxes[box_number(level - 1, child_x, child_y)].squared_distance(point_), child_x,
-                       child_y};
+        children[k] = {kept.boxes[box_number(level - 1, child_x, child_y)].squared_distance(point_), child_x, child_y};
     }
-    std::sort(children.begin(), children.end(),
-              [](const Child& l, const Child& r) { return l.squared < r.squared; });
+    std::sort(children.begin(), children.end(), [](const Child& l, const Child& r) { return l.squared < r.squared; });
     for (const Child& child : children)
         if (child.squared <= nearest_squared_ * rounding_slack)
             look_at_boxes(kept, level - 1, child.x, child.y);

@@ -14,8 +14,7 @@ namespace tessera {
 class ReferenceNearest {
   public:
     /// `boxes`: the boxes of the lattice's tiles, in order. Both must outlive this.
-    ReferenceNearest(const ReferenceLattice& lattice, Sampling sampling,
-                     const std::vector<BoxHierarchy::Box>& boxes);
+    ReferenceNearest(const ReferenceLattice& lattice, Sampling sampling, const std::vector<BoxHierarchy::Box>& boxes);
 
     /// In local units.
     double squared_distance(const glm::dvec3& p);

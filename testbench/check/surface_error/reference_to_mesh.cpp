@@ -38,8 +38,7 @@ BoxHierarchy::Box ReferenceToMesh::start(std::size_t tile) {
 }
 
 void ReferenceToMesh::measure_block(std::size_t first_a, std::size_t first_b, std::size_t size) {
-    const std::size_t end_a = std::min(first_a + size, Points::side),
-                      end_b = std::min(first_b + size, Points::side);
+    const std::size_t end_a = std::min(first_a + size, Points::side), end_b = std::min(first_b + size, Points::side);
     BoxHierarchy::Box box;
     std::size_t count = 0;
     for (std::size_t b = first_b; b < end_b; ++b)

@@ -64,8 +64,7 @@ class ReferenceToMesh {
     DisplacedSurface::Corners corners_;
     double facet_area_ = 0;  // on the base surface
     std::array<std::uint8_t, ReferenceLattice::Points::side * ReferenceLattice::Points::side> facets_{};
-    std::array<NearestTriangle::Found, ReferenceLattice::Points::side * ReferenceLattice::Points::side>
-        found_;
+    std::array<NearestTriangle::Found, ReferenceLattice::Points::side * ReferenceLattice::Points::side> found_;
     std::size_t block_ = ReferenceLattice::Points::side;  // initial samples along a block's side
     std::size_t blocks_cut_ = 0, blocks_whole_ = 0, tiles_ = 0;
     std::vector<NearestTriangle::Found> within_;

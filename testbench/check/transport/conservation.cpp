@@ -39,10 +39,9 @@ void add_triangles(Equations& list, const Simulation& simulation) {
     const std::uint64_t cut = made[1] + made[2] + made[3] + made[4];
     list.add("triangles taken by get_triangle = decided",
              p.get_triangle.host_triangles() + p.get_triangle.queue_triangles(), rounds);
-    list.add("triangles taken by get_triangle from the host = base triangles",
-             p.get_triangle.host_triangles(), simulation.host.sent());
-    list.add("children of tessellation = taken by triangle_queue", p.tessellation.children(),
-             p.triangle_queue.taken());
+    list.add("triangles taken by get_triangle from the host = base triangles", p.get_triangle.host_triangles(),
+             simulation.host.sent());
+    list.add("children of tessellation = taken by triangle_queue", p.tessellation.children(), p.triangle_queue.taken());
     list.add("taken by triangle_queue = by get_triangle from it", p.triangle_queue.taken(),
              p.get_triangle.queue_triangles());
     list.add("triangles cut by tessellation + finished = decided", cut + counts.finished, rounds);
@@ -79,21 +78,18 @@ void add_timed(Equations& list, const Simulation& simulation, std::uint64_t vert
     list.add("parts in calculate_new_p = sent by get_triangle", items(p.calculate_new_p), parts);
     list.add("parts in displace_vertex = sent by get_triangle", items(p.displace_vertex), parts);
     list.add("parts in transform = sent by get_triangle", items(p.transform), parts);
-    list.add("parts taken from transform = sent by get_triangle", p.pass_or_tessellate.from_transform.taken(),
-             parts);
-    list.add("positions and normals of transform = parts", p.transform.positions() + p.transform.normals(),
-             parts);
+    list.add("parts taken from transform = sent by get_triangle", p.pass_or_tessellate.from_transform.taken(), parts);
+    list.add("positions and normals of transform = parts", p.transform.positions() + p.transform.normals(), parts);
 
     // tests: vertices end in the Normal Test
     const auto tests = [&](auto figure) { return sum_over_tests(p, figure); };
     list.add("parts in calculate_new_u = vertices and edges",
              tests([](const auto& t) { return items(t.calculate_new_u); }), bumps(p, vertices) + edges);
-    list.add("parts in normal_test = vertices and edges",
-             tests([](const auto& t) { return items(t.normal_test); }), bumps(p, vertices) + edges);
-    list.add("edges in tex_coord_test = edges", tests([](const auto& t) { return items(t.tex_coord_test); }),
+    list.add("parts in normal_test = vertices and edges", tests([](const auto& t) { return items(t.normal_test); }),
+             bumps(p, vertices) + edges);
+    list.add("edges in tex_coord_test = edges", tests([](const auto& t) { return items(t.tex_coord_test); }), edges);
+    list.add("edges in summed_height_test = edges", tests([](const auto& t) { return items(t.summed_height_test); }),
              edges);
-    list.add("edges in summed_height_test = edges",
-             tests([](const auto& t) { return items(t.summed_height_test); }), edges);
     list.add("edges in view_test = edges", tests([](const auto& t) { return items(t.view_test); }), edges);
     list.add("vertices taken by view_test = vertices, once a unit",
              tests([](const auto& t) { return t.view_test.from_transform.taken(); }),
@@ -102,24 +98,20 @@ void add_timed(Equations& list, const Simulation& simulation, std::uint64_t vert
     for (const StreamInput<TestedEdge>& input : p.pass_or_tessellate.from_tessellation_tests)
         joined += input.taken();
     list.add("edges taken from collect_tests = edges", joined, edges);
-    list.add("edges in collect_tests = edges", tests([](const auto& t) { return items(t.collect_tests); }),
-             edges);
+    list.add("edges in collect_tests = edges", tests([](const auto& t) { return items(t.collect_tests); }), edges);
 
     list.add("entries of displacement_map = read by displace_vertex", p.displacement_map.transactions(),
              p.displacement_map_reads());
-    list.add("entries of normal_map = read by normal_test", p.normal_map.transactions(),
-             p.normal_map_reads());
-    list.add("entries of summed_height_table = read by summed_height_test",
-             p.summed_height_table.transactions(), p.summed_height_table_reads());
-    list.add("requests to displacement_map = vertices and edges", items(p.displacement_map),
-             vertices + edges);
+    list.add("entries of normal_map = read by normal_test", p.normal_map.transactions(), p.normal_map_reads());
+    list.add("entries of summed_height_table = read by summed_height_test", p.summed_height_table.transactions(),
+             p.summed_height_table_reads());
+    list.add("requests to displacement_map = vertices and edges", items(p.displacement_map), vertices + edges);
     list.add("requests to normal_map = vertices and edges", items(p.normal_map), bumps(p, vertices) + edges);
     list.add("requests to summed_height_table = three an edge, if it tests", items(p.summed_height_table),
              simulation.setup.registers.tests.summed_height_test ? 3 * edges : 0);
 
     list.add("triangles spilled = come back", p.triangle_queue.spilled(), p.triangle_queue.refilled());
-    list.add("requests to off_chip_memory = out and back", items(p.off_chip_memory),
-             2 * p.triangle_queue.spilled());
+    list.add("requests to off_chip_memory = out and back", items(p.off_chip_memory), 2 * p.triangle_queue.spilled());
     list.add("bytes read from off_chip_memory = written", p.off_chip_memory.bytes_read(),
              p.off_chip_memory.bytes_written());
 }
@@ -143,8 +135,8 @@ WorkResult work_result(const TransportCheck& check, const Simulation& simulation
     for (const Conservation& equation : conservation(simulation)) {
         ++result.equations;
         if (!equation.holds() && result.violations++ == 0)
-            result.first_violation = equation.name + ": " + std::to_string(equation.left) + " and " +
-                                     std::to_string(equation.right);
+            result.first_violation =
+                equation.name + ": " + std::to_string(equation.left) + " and " + std::to_string(equation.right);
     }
     return result;
 }

@@ -9,8 +9,7 @@
 
 namespace tessera {
 
-ReadCheck::ReadCheck(const sc_core::sc_module_name& name, std::string port)
-    : sc_module(name), port_(std::move(port)) {
+ReadCheck::ReadCheck(const sc_core::sc_module_name& name, std::string port) : sc_module(name), port_(std::move(port)) {
     socket.register_b_transport(this, &ReadCheck::b_transport);
     socket.register_nb_transport_fw(this, &ReadCheck::nb_transport_fw);
     socket.register_transport_dbg(this, &ReadCheck::transport_dbg);
@@ -38,8 +37,8 @@ void ReadCheck::compare(const MemoryRequest& asked, const MemoryRequest& answer)
         std::uint64_t found = 0;
         std::memcpy(&expected, held.data(), bytes);
         std::memcpy(&found, brought, bytes);
-        result_.first_wrong = fmt::format("{}: a read at address {:#x} brought {:#x}; the memory holds {:#x}",
-                                          port_, asked.address[k], found, expected);
+        result_.first_wrong = fmt::format("{}: a read at address {:#x} brought {:#x}; the memory holds {:#x}", port_,
+                                          asked.address[k], found, expected);
     }
 }
 
@@ -50,14 +49,12 @@ void ReadCheck::b_transport(MemoryRequest& request, sc_core::sc_time& delay) {
     compare(asked, request);
 }
 
-tlm::tlm_sync_enum ReadCheck::nb_transport_fw(MemoryRequest& request, tlm::tlm_phase& phase,
-                                              sc_core::sc_time& delay) {
+tlm::tlm_sync_enum ReadCheck::nb_transport_fw(MemoryRequest& request, tlm::tlm_phase& phase, sc_core::sc_time& delay) {
     under_way_.push_back({&request, request});
     return to_memory->nb_transport_fw(request, phase, delay);
 }
 
-tlm::tlm_sync_enum ReadCheck::nb_transport_bw(MemoryRequest& request, tlm::tlm_phase& phase,
-                                              sc_core::sc_time& delay) {
+tlm::tlm_sync_enum ReadCheck::nb_transport_bw(MemoryRequest& request, tlm::tlm_phase& phase, sc_core::sc_time& delay) {
     if (phase == tlm::BEGIN_RESP) {
         const auto asked = std::find_if(under_way_.begin(), under_way_.end(),
                                         [&](const Asked& one) { return one.request == &request; });

@@ -42,10 +42,8 @@ class ReadCheck : public sc_core::sc_module {
     };
 
     void b_transport(MemoryRequest& request, sc_core::sc_time& delay);
-    tlm::tlm_sync_enum nb_transport_fw(MemoryRequest& request, tlm::tlm_phase& phase,
-                                       sc_core::sc_time& delay);
-    tlm::tlm_sync_enum nb_transport_bw(MemoryRequest& request, tlm::tlm_phase& phase,
-                                       sc_core::sc_time& delay);
+    tlm::tlm_sync_enum nb_transport_fw(MemoryRequest& request, tlm::tlm_phase& phase, sc_core::sc_time& delay);
+    tlm::tlm_sync_enum nb_transport_bw(MemoryRequest& request, tlm::tlm_phase& phase, sc_core::sc_time& delay);
     unsigned transport_dbg(MemoryRequest& request);
     void compare(const MemoryRequest& asked, const MemoryRequest& answer);
 

@@ -3,8 +3,7 @@
 namespace tessera {
 
 ReadCheck& ReadCheckedUnits::check(MemoryPort& port, TableMemory& memory) {
-    checks_.push_back(
-        std::make_unique<ReadCheck>(sc_core::sc_gen_unique_name("read_check"), port.socket.name()));
+    checks_.push_back(std::make_unique<ReadCheck>(sc_core::sc_gen_unique_name("read_check"), port.socket.name()));
     port.bind(*checks_.back(), memory);
     return *checks_.back();
 }

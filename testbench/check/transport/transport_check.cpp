@@ -119,17 +119,16 @@ void TransportCheck::write(const datapath::Triangle& finished) {
     for (unsigned k = 0; k < 3; ++k) {
         const datapath::Vertex& vertex = finished.vertices[k];
         datapath::Saturations saturations;
-        const datapath::Direction normal = datapath::transform_normal(
-            vertex.displaced_normal, registers_.transform, registers_.formats, saturations);
+        const datapath::Direction normal =
+            datapath::transform_normal(vertex.displaced_normal, registers_.transform, registers_.formats, saturations);
         if (!(normal == vertex.screen_normal))
             finding(
                 fmt::format("base triangle {}: a finished triangle's vertex {} has N's ({}, {}, {}); its N' "
                             "transforms to ({}, {}, {})",
-                            finished.base, k, vertex.screen_normal.x, vertex.screen_normal.y,
-                            vertex.screen_normal.z, normal.x, normal.y, normal.z));
-        lit.corners[k] = {
-            vertex.screen, vertex.texture,
-            datapath::light(normal, registers_.light, registers_.formats, counted_by_the_unit_)};
+                            finished.base, k, vertex.screen_normal.x, vertex.screen_normal.y, vertex.screen_normal.z,
+                            normal.x, normal.y, normal.z));
+        lit.corners[k] = {vertex.screen, vertex.texture,
+                          datapath::light(normal, registers_.light, registers_.formats, counted_by_the_unit_)};
     }
     const auto& v = finished.vertices;
     if (!registers_.back_face_culling || !datapath::faces_away(v[0].screen, v[1].screen, v[2].screen))

@@ -37,8 +37,7 @@ class TransportCheck : public tlm::tlm_analysis_if<datapath::TrianglePass>,
                        public tlm::tlm_analysis_if<datapath::Triangle>,
                        public tlm::tlm_analysis_if<LitTriangle> {
   public:
-    TransportCheck(const datapath::Registers& registers,
-                   const std::vector<datapath::Triangle>& base_triangles);
+    TransportCheck(const datapath::Registers& registers, const std::vector<datapath::Triangle>& base_triangles);
 
     void write(const datapath::TrianglePass& pass) override;
     void write(const datapath::Triangle& finished) override;

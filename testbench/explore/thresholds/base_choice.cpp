@@ -33,8 +33,7 @@ std::vector<double> lattice_lines(std::int64_t texels, std::int64_t spacing) {
     return lines;
 }
 
-BaseChoice lattice_choice(std::int64_t spacing, bool alternate, std::int64_t map_width,
-                          std::int64_t map_height) {
+BaseChoice lattice_choice(std::int64_t spacing, bool alternate, std::int64_t map_width, std::int64_t map_height) {
     BaseChoice choice;
     choice.kind = BaseChoice::Kind::lattice;
     choice.spacing = spacing;
@@ -56,8 +55,8 @@ std::string lattice_obj(const BaseChoice& choice, const Job::Mesh& mesh, std::in
     for (const double y : v)
         for (const double x : u) {
             const double s = x / static_cast<double>(map_width), t = y / static_cast<double>(map_height);
-            text += fmt::format("v {} {} 0\n", toml_number(mesh.width * (s - 0.5)),
-                                toml_number(mesh.depth * (t - 0.5)));
+            text +=
+                fmt::format("v {} {} 0\n", toml_number(mesh.width * (s - 0.5)), toml_number(mesh.depth * (t - 0.5)));
             textures += fmt::format("vt {} {}\n", toml_number(s), toml_number(t));
         }
     text += textures + "vn 0 0 1\n";
@@ -84,8 +83,8 @@ std::vector<BaseChoice> usual_bases(const Job::Mesh& mesh, std::int64_t map_widt
     std::vector<BaseChoice> choices;
     const auto take = [&](const BaseChoice& choice) {
         const bool known = std::any_of(choices.begin(), choices.end(), [&](const BaseChoice& other) {
-            return other.kind == choice.kind && other.columns == choice.columns &&
-                   other.rows == choice.rows && other.alternate == choice.alternate;
+            return other.kind == choice.kind && other.columns == choice.columns && other.rows == choice.rows &&
+                   other.alternate == choice.alternate;
         });
         if (!known && choice.triangles() <= most_triangles)
             choices.push_back(choice);

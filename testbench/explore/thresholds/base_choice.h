@@ -17,15 +17,14 @@ struct BaseChoice {
     enum class Kind { job, plane, lattice } kind = Kind::job;
     std::int64_t columns = 0, rows = 0;  ///< quads
     std::int64_t spacing = 0;            ///< lattice: texels
-    bool alternate = false;  ///< lattice: the quads' diagonals alternate, like a chessboard's colours
+    bool alternate = false;              ///< lattice: the quads' diagonals alternate, like a chessboard's colours
 
     std::uint64_t triangles() const { return 2 * static_cast<std::uint64_t>(columns * rows); }
     std::string name() const;  ///< "16 x 22", "lattice of 32 texels, 11 x 15"
 };
 
 /// Kind::lattice of that spacing for a map of these texels.
-BaseChoice lattice_choice(std::int64_t spacing, bool alternate, std::int64_t map_width,
-                          std::int64_t map_height);
+BaseChoice lattice_choice(std::int64_t spacing, bool alternate, std::int64_t map_width, std::int64_t map_height);
 
 /// Grid lines across `texels`: 0, texel centres `spacing` apart, `texels`.
 std::vector<double> lattice_lines(std::int64_t texels, std::int64_t spacing);

@@ -16,8 +16,8 @@ namespace {
 using datapath::Vertex;
 
 bool same(const Vertex& a, const Vertex& b) {
-    return a.position == b.position && a.normal == b.normal && a.tangent == b.tangent &&
-           a.texture == b.texture && a.handedness == b.handedness;
+    return a.position == b.position && a.normal == b.normal && a.tangent == b.tangent && a.texture == b.texture &&
+           a.handedness == b.handedness;
 }
 
 std::uint64_t hash_of(const Vertex& v) {
@@ -39,9 +39,9 @@ std::uint32_t largest_difference(const datapath::Direction& a, const datapath::D
 
 std::uint32_t pixels(const datapath::ScreenPosition& i, const datapath::ScreenPosition& j) {
     if (i.in_front && j.in_front)
-        return static_cast<std::uint32_t>(std::min<std::uint64_t>(
-            datapath::absolute_difference(i.x, j.x) + datapath::absolute_difference(i.y, j.y),
-            std::numeric_limits<std::uint32_t>::max()));
+        return static_cast<std::uint32_t>(
+            std::min<std::uint64_t>(datapath::absolute_difference(i.x, j.x) + datapath::absolute_difference(i.y, j.y),
+                                    std::numeric_limits<std::uint32_t>::max()));
     return i.in_front || j.in_front ? std::numeric_limits<std::uint32_t>::max() : 0;
 }
 
@@ -61,8 +61,8 @@ RefinementForest::RefinementForest(const MachineSetup& setup, const TexelError* 
     std::vector<std::array<std::uint32_t, 3>> corners;
     for (datapath::Triangle triangle : setup.base_triangles) {
         datapath_.complete_base(triangle);
-        corners.push_back({number_of(triangle.vertices[0]), number_of(triangle.vertices[1]),
-                           number_of(triangle.vertices[2])});
+        corners.push_back(
+            {number_of(triangle.vertices[0]), number_of(triangle.vertices[1]), number_of(triangle.vertices[2])});
     }
     roots_ = corners.size();
     for (std::size_t k = 0; k < roots_; ++k)
@@ -80,10 +80,9 @@ RefinementForest::Edge RefinementForest::make_edge(const Vertex& i, const Vertex
                            largest_difference(tests.displaced_normal, j.displaced_normal));
     const datapath::TexCoord& middle = pass.new_vertex[0].texture;
     const datapath::RectangleSize size = datapath::rectangle_size(i.texture, j.texture, r.map, r.formats);
-    edge.summed =
-        datapath::absolute_difference(static_cast<std::int64_t>(2 * datapath_.sum_around(middle, size)),
-                                      static_cast<std::int64_t>(datapath_.sum_around(i.texture, size) +
-                                                                datapath_.sum_around(j.texture, size)));
+    edge.summed = datapath::absolute_difference(
+        static_cast<std::int64_t>(2 * datapath_.sum_around(middle, size)),
+        static_cast<std::int64_t>(datapath_.sum_around(i.texture, size) + datapath_.sum_around(j.texture, size)));
     edge.area = size.width * size.height;
     edge.view = pixels(i.screen, j.screen);
     edge.open = datapath::tex_coord_test(i.texture, j.texture, middle, r.formats);
@@ -138,8 +137,7 @@ std::uint32_t RefinementForest::children_of(std::uint32_t number, unsigned split
 }
 
 bool RefinementForest::splits(const Edge& edge, const datapath::TestParameters& tests) const {
-    if ((tests.tex_coord_test && !edge.open) ||
-        (tests.generation_test && edge.generation > tests.generation_limit) ||
+    if ((tests.tex_coord_test && !edge.open) || (tests.generation_test && edge.generation > tests.generation_limit) ||
         (tests.view_test && edge.view <= tests.view_threshold))
         return false;
     if (tests.normal_test && edge.normal > tests.normal_threshold)
@@ -188,15 +186,14 @@ Outcome RefinementForest::count(const datapath::TestParameters& tests, datapath:
     return walk(tests, triangulation, limit, [](Node&) {});
 }
 
-Outcome RefinementForest::measure(const datapath::TestParameters& tests,
-                                  datapath::Triangulation triangulation, std::uint64_t limit) {
+Outcome RefinementForest::measure(const datapath::TestParameters& tests, datapath::Triangulation triangulation,
+                                  std::uint64_t limit) {
     TexelError::Sum sum;
     std::uint8_t inserted = 1;  // the generation its edges would insert, were they split
     Outcome outcome = walk(tests, triangulation, limit, [&](Node& node) {
         if (!node.measured) {
             node.error = errors_->of(
-                {&vertices_[node.vertices[0]], &vertices_[node.vertices[1]], &vertices_[node.vertices[2]]},
-                node.base);
+                {&vertices_[node.vertices[0]], &vertices_[node.vertices[1]], &vertices_[node.vertices[2]]}, node.base);
             node.measured = true;
         }
         sum.add(node.error);
@@ -213,8 +210,7 @@ std::vector<std::array<Vertex, 3>> RefinementForest::mesh(const datapath::TestPa
                                                           datapath::Triangulation triangulation) {
     std::vector<std::array<Vertex, 3>> result;
     walk(tests, triangulation, std::numeric_limits<std::uint64_t>::max(), [&](Node& node) {
-        result.push_back(
-            {vertices_[node.vertices[0]], vertices_[node.vertices[1]], vertices_[node.vertices[2]]});
+        result.push_back({vertices_[node.vertices[0]], vertices_[node.vertices[1]], vertices_[node.vertices[2]]});
     });
     return result;
 }

@@ -34,11 +34,9 @@ class RefinementForest {
     RefinementForest(const MachineSetup& setup, const TexelError* errors);
 
     /// Counts the triangles; stops at `limit`.
-    Outcome count(const datapath::TestParameters& tests, datapath::Triangulation triangulation,
-                  std::uint64_t limit);
+    Outcome count(const datapath::TestParameters& tests, datapath::Triangulation triangulation, std::uint64_t limit);
     /// Counts and measures them.
-    Outcome measure(const datapath::TestParameters& tests, datapath::Triangulation triangulation,
-                    std::uint64_t limit);
+    Outcome measure(const datapath::TestParameters& tests, datapath::Triangulation triangulation, std::uint64_t limit);
 
     /// The finished triangles' corners, as the datapath has them.
     std::vector<std::array<datapath::Vertex, 3>> mesh(const datapath::TestParameters& tests,
@@ -46,11 +44,10 @@ class RefinementForest {
 
   private:
     struct Edge {
-        std::uint64_t summed = 0;  ///< |2 S_ij - S_i - S_j|
-        std::uint32_t normal = 0;  ///< the largest of the six differences
-        std::uint32_t area = 1;    ///< of the rectangle
-        std::uint32_t view =
-            0;  ///< Manhattan length; both ends behind the near plane: 0, one: the largest number
+        std::uint64_t summed = 0;     ///< |2 S_ij - S_i - S_j|
+        std::uint32_t normal = 0;     ///< the largest of the six differences
+        std::uint32_t area = 1;       ///< of the rectangle
+        std::uint32_t view = 0;       ///< Manhattan length; both ends behind the near plane: 0, one: the largest number
         std::uint32_t middle = 0;     ///< vertex
         bool open = false;            ///< Tex Coord Test
         std::uint8_t generation = 0;  ///< of the vertex inserted
@@ -66,8 +63,8 @@ class RefinementForest {
     };
 
     template <class Leaf>
-    Outcome walk(const datapath::TestParameters& tests, datapath::Triangulation triangulation,
-                 std::uint64_t limit, Leaf&& leaf);
+    Outcome walk(const datapath::TestParameters& tests, datapath::Triangulation triangulation, std::uint64_t limit,
+                 Leaf&& leaf);
     bool splits(const Edge& edge, const datapath::TestParameters& tests) const;
     std::uint32_t make_node(const std::array<std::uint32_t, 3>& vertices, std::uint32_t base);
     std::uint32_t children_of(std::uint32_t node, unsigned split, bool second);

@@ -29,8 +29,7 @@ TexelError::TexelError(const MachineSetup& setup, const HeightMap& map, const Di
     : setup_(setup),
       map_(map),
       displacement_(displacement),
-      units_{setup.registers.formats, setup.registers.map, setup.model_scale.scale,
-             setup.model_scale.centre} {
+      units_{setup.registers.formats, setup.registers.map, setup.model_scale.scale, setup.model_scale.centre} {
     bases_.reserve(setup.base_triangles.size());
     for (const datapath::Triangle& triangle : setup.base_triangles)
         bases_.push_back(make_base(triangle));
@@ -69,8 +68,7 @@ TexelError::Base TexelError::make_base(const datapath::Triangle& triangle) const
     return base;
 }
 
-TexelError::Sum TexelError::of(const std::array<const datapath::Vertex*, 3>& corners,
-                               std::uint32_t base_number) const {
+TexelError::Sum TexelError::of(const std::array<const datapath::Vertex*, 3>& corners, std::uint32_t base_number) const {
     Sum sum;
     const Base& base = bases_[base_number];
     if (base.weight == 0)
@@ -108,9 +106,9 @@ TexelError::Sum TexelError::of(const std::array<const datapath::Vertex*, 3>& cor
         for (std::int64_t x = first_u; x <= last_u; ++x, w0 += step_0, w1 += step_1, w2 += step_2) {
             if (w0 < least_0 || w1 < least_1 || w2 < least_2)
                 continue;
-            const glm::dvec3 mesh = (static_cast<double>(w0) * p[0] + static_cast<double>(w1) * p[1] +
-                                     static_cast<double>(w2) * p[2]) *
-                                    scale;
+            const glm::dvec3 mesh =
+                (static_cast<double>(w0) * p[0] + static_cast<double>(w1) * p[1] + static_cast<double>(w2) * p[2]) *
+                scale;
             const double u = static_cast<double>(x) + 0.5, v = static_cast<double>(y) + 0.5;
             glm::dvec3 normal = base.normal;
             if (!base.flat) {

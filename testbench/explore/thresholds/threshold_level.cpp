@@ -8,8 +8,7 @@
 namespace tessera {
 
 double threshold_at(int level) {
-    const int octave =
-        level >= 0 ? level / levels_per_octave : -((levels_per_octave - 1 - level) / levels_per_octave);
+    const int octave = level >= 0 ? level / levels_per_octave : -((levels_per_octave - 1 - level) / levels_per_octave);
     int rest = level - octave * levels_per_octave;
     double value = 1, root = std::sqrt(2.0);
     for (int bit = levels_per_octave / 2; bit > 0; bit /= 2, root = std::sqrt(root))

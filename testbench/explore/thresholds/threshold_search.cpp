@@ -31,19 +31,12 @@ bool better(const TunedPoint& a, const TunedPoint& b, const TuneGoal& goal) {
     const double error_a = goal.error_of(a.outcome), error_b = goal.error_of(b.outcome);
     if (goal.triangles > 0)
         return error_a != error_b ? error_a < error_b : a.outcome.triangles < b.outcome.triangles;
-    return a.outcome.triangles != b.outcome.triangles ? a.outcome.triangles < b.outcome.triangles
-                                                      : error_a < error_b;
+    return a.outcome.triangles != b.outcome.triangles ? a.outcome.triangles < b.outcome.triangles : error_a < error_b;
 }
 
 ThresholdSearch::ThresholdSearch(RefinementForest& forest, const MachineSetup& setup, const Job& job,
-                                 const TuneGoal& goal, const TuneSpace& space,
-                                 std::function<void(double)> on_progress)
-    : forest_(forest),
-      setup_(setup),
-      job_(job),
-      goal_(goal),
-      space_(space),
-      on_progress_(std::move(on_progress)) {}
+                                 const TuneGoal& goal, const TuneSpace& space, std::function<void(double)> on_progress)
+    : forest_(forest), setup_(setup), job_(job), goal_(goal), space_(space), on_progress_(std::move(on_progress)) {}
 
 // A threshold below its register's first step is 0; one above all that can be compared with it lets nothing pass.
 
@@ -116,9 +109,7 @@ bool ThresholdSearch::too_fine(const Shape& shape, const Place& place) {
     if (goal_.triangles == 0)
         return goal_.met(measured(shape, place).point.outcome);
     ++found_.evaluations;
-    return !forest_
-                .count(registers_of(tests_at(shape, place)), machine_name(shape.triangulation),
-                       goal_.triangles)
+    return !forest_.count(registers_of(tests_at(shape, place)), machine_name(shape.triangulation), goal_.triangles)
                 .complete;
 }
 
@@ -147,8 +138,7 @@ std::optional<int> ThresholdSearch::bisect(const Levels& levels, int low, int hi
 }
 
 /// The coarsest level within the error's bound, but for islands narrower than a quarter of an octave.
-std::optional<int> ThresholdSearch::descend(const Levels& levels, int high, const Shape& shape,
-                                            const PlaceAt& at) {
+std::optional<int> ThresholdSearch::descend(const Levels& levels, int high, const Shape& shape, const PlaceAt& at) {
     high = std::clamp(high, levels.finest, levels.coarsest);
     while (high < levels.coarsest && too_fine(shape, at(high)))
         high = std::min(levels.coarsest, high + octave);
@@ -180,10 +170,9 @@ std::optional<int> ThresholdSearch::alone(const Shape& shape, int which) {
         return known->second;
     const bool normal = which == normal_alone;
     const Levels levels = normal ? normal_levels() : summed_height_levels(shape.unit);
-    const std::optional<int> level =
-        just_met(levels, levels.coarsest, levels.coarsest, one, [&](int candidate) {
-            return Place{candidate, candidate, shape.view};
-        });
+    const std::optional<int> level = just_met(levels, levels.coarsest, levels.coarsest, one, [&](int candidate) {
+        return Place{candidate, candidate, shape.view};
+    });
     alone_.emplace(key_of(one), level);
     return level;
 }
@@ -204,9 +193,8 @@ std::optional<ThresholdSearch::Place> ThresholdSearch::solve(const Shape& shape)
     const int normal_level = alone(shape, normal_alone).value_or(normal.finest);
     const int summed_level = alone(shape, summed_height_alone).value_or(summed.finest);
     const int half = shape.ratio / 2;
-    const Levels levels{
-        std::min(normal.finest - normal_level - half, summed.finest - summed_level + half),
-        std::max(normal.coarsest - normal_level - half, summed.coarsest - summed_level + half)};
+    const Levels levels{std::min(normal.finest - normal_level - half, summed.finest - summed_level + half),
+                        std::max(normal.coarsest - normal_level - half, summed.coarsest - summed_level + half)};
     const PlaceAt at = [&](int level) {
         return Place{normal_level + level + half, summed_level + level - half, shape.view};
     };
@@ -217,8 +205,7 @@ ThresholdSearch::Candidate ThresholdSearch::measured(const Shape& shape, const P
     ++found_.evaluations;
     Candidate candidate{{tests_at(shape, place), shape.triangulation, {}}, shape, place};
     Outcome& outcome = candidate.point.outcome;
-    outcome = forest_.measure(registers_of(candidate.point.tests), machine_name(shape.triangulation),
-                              goal_.limit());
+    outcome = forest_.measure(registers_of(candidate.point.tests), machine_name(shape.triangulation), goal_.limit());
     if (goal_.triangles == 0 && outcome.complete &&
         (!found_.least_error || goal_.error_of(outcome) < goal_.error_of(*found_.least_error)))
         found_.least_error = outcome;
@@ -227,8 +214,7 @@ ThresholdSearch::Candidate ThresholdSearch::measured(const Shape& shape, const P
 
 /// Whether it is the best so far.
 bool ThresholdSearch::take(const Candidate& candidate) {
-    if (!goal_.met(candidate.point.outcome) ||
-        (found_.best && !better(candidate.point, found_.best->point, goal_)))
+    if (!goal_.met(candidate.point.outcome) || (found_.best && !better(candidate.point, found_.best->point, goal_)))
         return false;
     found_.best = candidate;
     return true;
@@ -352,14 +338,12 @@ void ThresholdSearch::sweep(SummedHeightUnit unit) {
     };
     const Levels normal = normal_levels(), summed = summed_height_levels(shape.unit);
     const int normal_low = lowest(normal_alone, normal), summed_low = lowest(summed_height_alone, summed);
-    const double meshes =
-        std::clamp(swept_triangles / static_cast<double>(std::max<std::uint64_t>(
-                                         goal_.triangles, found_.best->point.outcome.triangles)),
-                   fewest_swept, most_swept);
+    const double meshes = std::clamp(swept_triangles / static_cast<double>(std::max<std::uint64_t>(
+                                                           goal_.triangles, found_.best->point.outcome.triangles)),
+                                     fewest_swept, most_swept);
     const auto steps = static_cast<int>(std::sqrt(meshes));
     const auto step = [&](int low, int high) { return std::max(octave / 16, (high - low) / steps); };
-    const int normal_step = step(normal_low, normal.coarsest),
-              summed_step = step(summed_low, summed.coarsest);
+    const int normal_step = step(normal_low, normal.coarsest), summed_step = step(summed_low, summed.coarsest);
     shape.ratio = 0;
     for (int n = normal_low; n < normal.coarsest + normal_step; n += normal_step)
         for (int s = summed_low; s < summed.coarsest + summed_step; s += summed_step) {
@@ -388,8 +372,7 @@ void ThresholdSearch::polish(Candidate from) {
     const std::vector<int Place::*> moving = axes(from.shape);
     // A threshold far below its first step is 0, and a step from there still is.
     from.place.normal = std::max(from.place.normal, normal_levels().finest);
-    from.place.summed_height =
-        std::max(from.place.summed_height, summed_height_levels(from.shape.unit).finest);
+    from.place.summed_height = std::max(from.place.summed_height, summed_height_levels(from.shape.unit).finest);
     from.place.view = std::max(from.place.view, view_levels().finest);
     const int ways = moving.size() == 1 ? 3 : (moving.size() == 2 ? 9 : 27);
     for (int step = octave; step >= octave / 64; step /= 2)

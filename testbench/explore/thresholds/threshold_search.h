@@ -15,16 +15,14 @@ namespace tessera {
 
 /// The goal of a search: `triangles` or `error` is set.
 struct TuneGoal {
-    std::uint64_t triangles = 0;  ///< at most this many, with the least error; 0: as few as the error allows
-    double error = 0;             ///< model units, at most; with the fewest triangles
-    bool largest = false;         ///< the error is the largest one, not the root mean square
+    std::uint64_t triangles = 0;       ///< at most this many, with the least error; 0: as few as the error allows
+    double error = 0;                  ///< model units, at most; with the fewest triangles
+    bool largest = false;              ///< the error is the largest one, not the root mean square
     std::uint64_t most_triangles = 0;  ///< larger meshes are not searched
 
     double error_of(const Outcome& outcome) const { return largest ? outcome.max : outcome.rms; }
     std::uint64_t limit() const { return triangles > 0 ? triangles : most_triangles; }
-    bool met(const Outcome& outcome) const {
-        return outcome.complete && (triangles > 0 || error_of(outcome) <= error);
-    }
+    bool met(const Outcome& outcome) const { return outcome.complete && (triangles > 0 || error_of(outcome) <= error); }
 };
 
 /// What the search may change. The rest stays as in the job.
@@ -122,8 +120,7 @@ class ThresholdSearch {
     bool too_fine(const Shape& shape, const Place& place);
     std::optional<int> bisect(const Levels& levels, int low, int high, const Shape& shape, const PlaceAt& at);
     std::optional<int> descend(const Levels& levels, int high, const Shape& shape, const PlaceAt& at);
-    std::optional<int> just_met(const Levels& levels, int low, int high, const Shape& shape,
-                                const PlaceAt& at);
+    std::optional<int> just_met(const Levels& levels, int low, int high, const Shape& shape, const PlaceAt& at);
     std::optional<int> alone(const Shape& shape, int which);
     std::optional<Place> solve(const Shape& shape);
     Candidate measured(const Shape& shape, const Place& place);

@@ -40,7 +40,7 @@ struct Ground {
 struct Explored {
     ThresholdSearch::Found found;
     std::size_t base_triangles = 0;
-    Outcome finest;  // all thresholds searched at 0; incomplete if it has more triangles than the budget
+    Outcome finest;          // all thresholds searched at 0; incomplete if it has more triangles than the budget
     bool too_large = false;  // the base mesh alone
 };
 
@@ -88,12 +88,12 @@ void refuse_beyond_finest(const TuneRequest& request, const std::vector<Explored
             return;
         most = std::max(most, e.finest.triangles);
     }
-    throw InputError(fmt::format(
-        "--triangles {}: with every threshold at 0 there are {}, the most possible: the Tex Coord Test "
-        "(the map's resolution), tests.generation_limit = {} or a test that is not searched stops every "
-        "edge; "
-        "ask for at most {}",
-        request.goal.triangles, most, request.job.tests.generation_limit, most));
+    throw InputError(
+        fmt::format("--triangles {}: with every threshold at 0 there are {}, the most possible: the Tex Coord Test "
+                    "(the map's resolution), tests.generation_limit = {} or a test that is not searched stops every "
+                    "edge; "
+                    "ask for at most {}",
+                    request.goal.triangles, most, request.job.tests.generation_limit, most));
 }
 
 [[noreturn]] void refuse_error(const TuneRequest& request, const std::vector<Explored>& explored, double unit,
@@ -104,10 +104,10 @@ void refuse_beyond_finest(const TuneRequest& request, const std::vector<Explored
             (least == nullptr || request.goal.error_of(*e.found.least_error) < request.goal.error_of(*least)))
             least = &*e.found.least_error;
     if (least == nullptr)
-        throw InputError(fmt::format(
-            "--error {:.6g}: no mesh has at most {} triangles, and larger ones are not searched: take a "
-            "coarser base mesh, or raise limits.triangles",
-            request.goal.error / unit, request.goal.most_triangles));
+        throw InputError(
+            fmt::format("--error {:.6g}: no mesh has at most {} triangles, and larger ones are not searched: take a "
+                        "coarser base mesh, or raise limits.triangles",
+                        request.goal.error / unit, request.goal.most_triangles));
     throw InputError(
         fmt::format("--error {:.6g}: the least {} error that was found is {:.6g} {}, with {} triangles: ask "
                     "for at least that, "
@@ -151,10 +151,9 @@ TuneResult tune(const TuneRequest& request, const HeightMap& map,
         e.too_large = goal.triangles > 0 && e.base_triangles > goal.triangles;
         if (e.too_large)
             return;
-        ThresholdSearch search(
-            ground.forest, ground.setup, ground.job, goal, request.space, [&](double done) {
-                exploring.set(k, done, fmt::format("exploring {} base meshes", bases), 0, 0.5);
-            });
+        ThresholdSearch search(ground.forest, ground.setup, ground.job, goal, request.space, [&](double done) {
+            exploring.set(k, done, fmt::format("exploring {} base meshes", bases), 0, 0.5);
+        });
         const datapath::Triangulation triangulation = ground.setup.registers.triangulation;
         if (goal.triangles > 0)
             e.finest = ground.forest.count(search.finest(), triangulation, goal.triangles);
@@ -183,10 +182,9 @@ TuneResult tune(const TuneRequest& request, const HeightMap& map,
     std::vector<ThresholdSearch::Found> refined(order.size());
     parallel_for(order.size(), request.threads, [&](std::size_t k) {
         Ground ground(request, request.bases[order[k]], map);
-        ThresholdSearch search(
-            ground.forest, ground.setup, ground.job, goal, request.space, [&](double done) {
-                refining.set(k, done, fmt::format("refining the best {}", order.size()), 0.5, 1);
-            });
+        ThresholdSearch search(ground.forest, ground.setup, ground.job, goal, request.space, [&](double done) {
+            refining.set(k, done, fmt::format("refining the best {}", order.size()), 0.5, 1);
+        });
         search.start_from(explored[order[k]].found);
         search.refine();
         refined[k] = search.found();

@@ -44,7 +44,7 @@ BaseMesh base_mesh_of(const Job& job, const BaseChoice& base, const HeightMap& m
 /// Finds the best thresholds over all base meshes: explore() on each, refine() on the best three. The result does not
 /// depend on the number of threads. on_progress(what, 0..1) is called from one thread at a time. Throws InputError if
 /// the goal cannot be met, naming the nearest that can, and what make_setup() throws.
-TuneResult tune(const TuneRequest& request, const HeightMap& map, 
+TuneResult tune(const TuneRequest& request, const HeightMap& map,
                 const std::function<void(const std::string&, double)>& on_progress);
 
 }  // namespace tessera

@@ -24,8 +24,8 @@ std::string goal_text(const TuneRequest& request, const ErrorUnit& unit) {
 }
 
 std::string figures_text(const TunedFigures& figures) {
-    return fmt::format("{} triangles; {}: RMS {:.4g}, largest {:.4g} {}s", figures.triangles, figures.what,
-                       figures.rms, figures.max, figures.unit);
+    return fmt::format("{} triangles; {}: RMS {:.4g}, largest {:.4g} {}s", figures.triangles, figures.what, figures.rms,
+                       figures.max, figures.unit);
 }
 
 /// "off" or the threshold.
@@ -76,8 +76,8 @@ std::string tune_text(const TuneRequest& request, const TuneResult& result, cons
 
 std::string tune_comment(const TuneRequest& request, const TuneResult& result, const TunedFigures& figures,
                          const ErrorUnit& unit) {
-    return fmt::format("# Tuned by `tessera tune` for {}.\n# {}.\n# Base mesh: {}.\n",
-                       goal_text(request, unit), figures_text(figures), base_text(request, result));
+    return fmt::format("# Tuned by `tessera tune` for {}.\n# {}.\n# Base mesh: {}.\n", goal_text(request, unit),
+                       figures_text(figures), base_text(request, result));
 }
 
 std::string tune_json(const TuneRequest& request, const TuneResult& result, const TunedFigures& figures,
@@ -92,8 +92,7 @@ std::string tune_json(const TuneRequest& request, const TuneResult& result, cons
         json["goal"]["error"] = goal.error / unit.model_units;
     json["goal"]["metric"] = goal.largest ? "max" : "rms";
     json["triangles"] = figures.triangles;
-    json["error"] = {
-        {"what", figures.what}, {"unit", figures.unit}, {"rms", figures.rms}, {"max", figures.max}};
+    json["error"] = {{"what", figures.what}, {"unit", figures.unit}, {"rms", figures.rms}, {"max", figures.max}};
     json["tests"] = {{"normal", tests.normal},
                      {"normal_threshold", tests.normal_threshold},
                      {"summed_height", tests.summed_height},
@@ -125,13 +124,12 @@ std::string tried_csv(const TuneRequest& request, const TuneResult& result, cons
     for (const TriedPoint& tried : result.tried) {
         const Job::Tests& tests = tried.point.tests;
         const Outcome& outcome = tried.point.outcome;
-        text +=
-            fmt::format("\"{}\",{},{},{},{},{},{},{},{:.6g},{:.6g}\n", request.bases[tried.base].name(),
-                        threshold_text(tests.normal, tests.normal_threshold),
-                        threshold_text(tests.summed_height, tests.summed_height_threshold),
-                        name_of(tests.summed_height_unit), threshold_text(tests.view, tests.view_threshold),
-                        tests.generation_limit, name_of(tried.point.triangulation), outcome.triangles,
-                        outcome.rms / unit.model_units, outcome.max / unit.model_units);
+        text += fmt::format("\"{}\",{},{},{},{},{},{},{},{:.6g},{:.6g}\n", request.bases[tried.base].name(),
+                            threshold_text(tests.normal, tests.normal_threshold),
+                            threshold_text(tests.summed_height, tests.summed_height_threshold),
+                            name_of(tests.summed_height_unit), threshold_text(tests.view, tests.view_threshold),
+                            tests.generation_limit, name_of(tried.point.triangulation), outcome.triangles,
+                            outcome.rms / unit.model_units, outcome.max / unit.model_units);
     }
     return text;
 }

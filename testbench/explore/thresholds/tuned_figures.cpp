@@ -33,14 +33,14 @@ RecordedMesh recorded_mesh(const EmittedMesh& mesh, const MachineSetup& setup) {
     }
     for (const IndexedMesh::Triangle& t : indexed.triangles) {
         const EmittedTriangle& triangle = mesh.triangles[t.triangle];
-        result.triangles.push_back({t.vertices, triangle_generation(triangle), triangle.split_by,
-                                    triangle.stopped_by, triangle.base});
+        result.triangles.push_back(
+            {t.vertices, triangle_generation(triangle), triangle.split_by, triangle.stopped_by, triangle.base});
     }
     return result;
 }
 
-TunedFigures measure_tuned(const Job& job, const BaseMesh& base, const HeightMap& map,
-                           const MachineSetup& setup, const EmittedMesh& mesh) {
+TunedFigures measure_tuned(const Job& job, const BaseMesh& base, const HeightMap& map, const MachineSetup& setup,
+                           const EmittedMesh& mesh) {
     const DisplacementOf displacement = DisplacementOf::from(job, map);
     const RecordedMesh recorded = recorded_mesh(mesh, setup);
     TunedFigures figures;
@@ -61,8 +61,7 @@ TunedFigures measure_tuned(const Job& job, const BaseMesh& base, const HeightMap
     }
     const DirectedError error =
         measure_surface_error(base, map, displacement, recorded, Sampling::interpolated).reference_to_mesh;
-    figures.what =
-        "distance from the surface to the mesh (searched: at equal texture coordinates, an upper bound)";
+    figures.what = "distance from the surface to the mesh (searched: at equal texture coordinates, an upper bound)";
     figures.rms = figures.rms_model = error.rms;
     figures.max = figures.max_model = error.max;
     return figures;

@@ -33,7 +33,7 @@ ErrorUnit error_unit(const Job& job, const BaseMesh& base, const HeightMap& map)
 RecordedMesh recorded_mesh(const EmittedMesh& mesh, const MachineSetup& setup);
 
 /// `mesh` must be sorted as a run sorts it. Throws what measuring throws.
-TunedFigures measure_tuned(const Job& job, const BaseMesh& base, const HeightMap& map,
-                           const MachineSetup& setup, const EmittedMesh& mesh);
+TunedFigures measure_tuned(const Job& job, const BaseMesh& base, const HeightMap& map, const MachineSetup& setup,
+                           const EmittedMesh& mesh);
 
 }  // namespace tessera

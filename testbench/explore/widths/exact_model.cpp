@@ -67,8 +67,7 @@ bool within_half_lsb(const golden::Vertex& exact, const datapath::Vertex& rounde
 
 }  // namespace
 
-ExactModel::ExactModel(const Job& job, const BaseMesh& original, const HeightMap& map)
-    : map_(exact_map(job, map)) {
+ExactModel::ExactModel(const Job& job, const BaseMesh& original, const HeightMap& map) : map_(exact_map(job, map)) {
     const MachineSetup setup = make_setup(with_widest_normals(job), original, map);
     model_scale_ = setup.model_scale;
     parameters_ = golden_parameters(setup.registers);  // transform, tests that are on, diagonal
@@ -85,9 +84,9 @@ ExactModel::ExactModel(const Job& job, const BaseMesh& original, const HeightMap
     map_.derive_normals(parameters_.scale, setup.texel_size);
 
     const double texels = std::ldexp(1.0, static_cast<int>(job.formats.texture_integer));
-    const BaseMesh mesh = bring_down_texture(
-        original, {job.map.address_u == Addressing::repeat, job.map.address_v == Addressing::repeat},
-        {texels / map.width, texels / map.height});
+    const BaseMesh mesh =
+        bring_down_texture(original, {job.map.address_u == Addressing::repeat, job.map.address_v == Addressing::repeat},
+                           {texels / map.width, texels / map.height});
     base_.reserve(mesh.triangles.size());
     for (const auto& corners : mesh.triangles)
         base_.push_back({base_vertex(mesh.vertices[corners[0]]), base_vertex(mesh.vertices[corners[1]]),

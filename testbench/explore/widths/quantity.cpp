@@ -20,15 +20,11 @@ std::string keep_integer(std::int64_t& bits, std::int64_t& fraction, std::int64_
 std::vector<Quantity> declare() {
     return {
         {"position", "P, P', scale, bias; the host scales the model to the range, so all bits are precision",
-         "formats.position_bits, formats.position_fraction", 8, 32,
-         [](const Formats& f) { return f.position_bits; },
+         "formats.position_bits, formats.position_fraction", 8, 32, [](const Formats& f) { return f.position_bits; },
          [](const Formats& f) { return f.position_fraction; },
-         [](Formats& f, std::int64_t bits) {
-             return keep_integer(f.position_bits, f.position_fraction, bits);
-         }},
-        {"normal", "N, T, N', N's, normal map; integer bits kept",
-         "formats.normal_bits, formats.normal_fraction", 6, 18,
-         [](const Formats& f) { return f.normal_bits; }, [](const Formats& f) { return f.normal_fraction; },
+         [](Formats& f, std::int64_t bits) { return keep_integer(f.position_bits, f.position_fraction, bits); }},
+        {"normal", "N, T, N', N's, normal map; integer bits kept", "formats.normal_bits, formats.normal_fraction", 6,
+         18, [](const Formats& f) { return f.normal_bits; }, [](const Formats& f) { return f.normal_fraction; },
          [](Formats& f, std::int64_t bits) { return keep_integer(f.normal_bits, f.normal_fraction, bits); }},
         {"texture", "t in texels; integer bits kept", "formats.texture_fraction", 1, 24,
          [](const Formats& f) { return f.texture_integer + f.texture_fraction; },
@@ -38,22 +34,19 @@ std::vector<Quantity> declare() {
              return std::string(f.texture_fraction >= 0 && f.texture_fraction <= 12 ? "" : by_the_job);
          }},
         {"displacement", "d, the map's codes", "formats.displacement_bits", 1, 16,
-         [](const Formats& f) { return f.displacement_bits; },
-         [](const Formats& f) { return f.displacement_bits; },
+         [](const Formats& f) { return f.displacement_bits; }, [](const Formats& f) { return f.displacement_bits; },
          [](Formats& f, std::int64_t bits) {
              f.displacement_bits = bits;
              return std::string{};
          }},
-        {"summed_height",
-         "entry of the Summed Height Table, modulo 2^bits: holds a rectangle's sum or is refused",
+        {"summed_height", "entry of the Summed Height Table, modulo 2^bits: holds a rectangle's sum or is refused",
          "formats.summed_height_bits", 8, 48, [](const Formats& f) { return f.summed_height_bits; },
          [](const Formats&) { return std::int64_t{0}; },
          [](Formats& f, std::int64_t bits) {
              f.summed_height_bits = bits;
              return std::string{};
          }},
-        {"screen", "P's in pixels: precision, integer bits kept",
-         "formats.screen_bits, formats.screen_fraction", 8, 31,
+        {"screen", "P's in pixels: precision, integer bits kept", "formats.screen_bits, formats.screen_fraction", 8, 31,
          [](const Formats& f) { return f.screen_bits; }, [](const Formats& f) { return f.screen_fraction; },
          [](Formats& f, std::int64_t bits) {
              const Formats job = f;

@@ -48,8 +48,7 @@ class Walk {
         return exact;
     }
 
-    void decided(const datapath::TrianglePass& pass, const datapath::ChildIndices& children,
-                 const Corners& exact) {
+    void decided(const datapath::TrianglePass& pass, const datapath::ChildIndices& children, const Corners& exact) {
         scoreboard_.write(pass);
         borders_.write(pass);
         std::copy(exact.begin(), exact.end(), vertices_.begin());
@@ -72,8 +71,7 @@ class Walk {
                 fmt::format("limits.triangles = {}: the mesh has more triangles than that", most_triangles_));
         if (!culled)
             for (const datapath::Vertex& vertex : triangle.vertices)
-                datapath::light(vertex.screen_normal, setup_.registers.light, setup_.registers.formats,
-                                others_);
+                datapath::light(vertex.screen_normal, setup_.registers.light, setup_.registers.formats, others_);
         mesh_.triangles.push_back(EmittedTriangle::from(triangle, culled));
     }
 
@@ -101,8 +99,8 @@ class Walk {
     }
 
     void compare_diagonal(unsigned split, const datapath::ChildIndices& machine) {
-        const golden::Subdivision cut = golden::subdivide(
-            {(split & 1) != 0, (split & 2) != 0, (split & 4) != 0}, vertices_, exact_.parameters().diagonal);
+        const golden::Subdivision cut = golden::subdivide({(split & 1) != 0, (split & 2) != 0, (split & 4) != 0},
+                                                          vertices_, exact_.parameters().diagonal);
         // Both list the quadrilateral's halves in the same order.
         const auto& a = machine.children[1];
         const auto& b = cut.children[1];
@@ -129,8 +127,7 @@ class Walk {
         result_.saturations += others_;
         result_.position_rms =
             result_.positions == 0 ? 0 : std::sqrt(squares_ / static_cast<double>(result_.positions));
-        result_.position_lsb =
-            std::ldexp(1.0, -setup_.registers.formats.position.fraction) / setup_.model_scale.scale;
+        result_.position_lsb = std::ldexp(1.0, -setup_.registers.formats.position.fraction) / setup_.model_scale.scale;
         return std::move(result_);
     }
 
@@ -144,8 +141,7 @@ class Walk {
     Dequantise dequantise_;
     std::vector<Corners> base_corners_;
     std::size_t next_base_ = 0;
-    std::array<golden::Vertex, 6>
-        vertices_;  // of the pass decided last, as datapath::ChildIndices numbers them
+    std::array<golden::Vertex, 6> vertices_;  // of the pass decided last, as datapath::ChildIndices numbers them
     EmittedMesh mesh_;
     datapath::Saturations others_;  // of what is not the bare recursion's
     double squares_ = 0;

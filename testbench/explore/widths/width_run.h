@@ -41,9 +41,7 @@ struct WidthRun {
 
     std::uint64_t flips_of(Decided decided) const { return flips[static_cast<std::size_t>(decided)]; }
     double split_flips_percent() const {
-        return edges == 0
-                   ? 0
-                   : 100.0 * static_cast<double>(flips_of(Decided::split)) / static_cast<double>(edges);
+        return edges == 0 ? 0 : 100.0 * static_cast<double>(flips_of(Decided::split)) / static_cast<double>(edges);
     }
 };
 

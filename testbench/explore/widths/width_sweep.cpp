@@ -24,8 +24,7 @@ std::string one_line(std::string text) {
     return text;
 }
 
-void measure(const Job& job, const BaseMesh& mesh, const HeightMap& map, const ExactModel& exact,
-             WidthRow& row) {
+void measure(const Job& job, const BaseMesh& mesh, const HeightMap& map, const ExactModel& exact, WidthRow& row) {
     validate(job);
     const MachineSetup setup = make_setup(job, mesh, map);
     row.run = run_widths(setup, exact, static_cast<std::uint64_t>(job.limits.triangles));
@@ -70,8 +69,7 @@ WidthKnee find_knee(const WidthRequest& request, const std::vector<WidthRow>& ro
     WidthKnee knee;
     knee.flips_given = request.most_flips.has_value();
     knee.error_given = request.most_error.has_value();
-    const auto widest =
-        std::find_if(rows.begin(), rows.end(), [](const WidthRow& row) { return row.refused.empty(); });
+    const auto widest = std::find_if(rows.begin(), rows.end(), [](const WidthRow& row) { return row.refused.empty(); });
     if (widest == rows.end())
         return knee;
     knee.most_flips = request.most_flips.value_or(widest->run.split_flips_percent() + flips_above_widest);
@@ -124,8 +122,7 @@ WidthSweep sweep_widths(const WidthRequest& request, const BaseMesh& mesh, const
     for (WidthTable& table : result.tables)
         table.knee = find_knee(request, table.rows);
     if (const WidthRow* const first = first_made(result))
-        result.texel_borders =
-            texel_borders_warning(first->run.texel_borders, request.job, map.width, map.height);
+        result.texel_borders = texel_borders_warning(first->run.texel_borders, request.job, map.width, map.height);
     return result;
 }
 

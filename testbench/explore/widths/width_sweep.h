@@ -25,8 +25,7 @@ struct WidthRequest {
     std::vector<SweptQuantity> swept;
     unsigned threads = 1;
     /// Limits for the knee; by default a little above what the widest width costs.
-    std::optional<double>
-        most_flips;  ///< percent of the edges whose split decision differs from exact arithmetic's
+    std::optional<double> most_flips;  ///< percent of the edges whose split decision differs from exact arithmetic's
     std::optional<double> most_error;  ///< RMS of positions, model units
 };
 
@@ -58,8 +57,7 @@ struct WidthTable {
 };
 
 struct WidthSweep {
-    std::uint64_t exact_triangles =
-        0;  ///< of the exact model's own mesh; 0: more than four times limits.triangles
+    std::uint64_t exact_triangles = 0;  ///< of the exact model's own mesh; 0: more than four times limits.triangles
     std::vector<WidthTable> tables;
     std::string texel_borders;  ///< the warning of texel_borders.h for the first valid design; empty: none
 };

@@ -29,8 +29,7 @@ std::string storage_text(const Quantity& quantity, const WidthRow& row) {
     if (name == "summed_height")
         return grouped_digits(row.summed_height_table_bytes) + " B table";
     const std::string entry = fmt::format("{} b", row.queue_entry_bits);
-    return name == "normal" ? fmt::format("{}, {} B map", entry, grouped_digits(row.normal_map_bytes))
-                            : entry;
+    return name == "normal" ? fmt::format("{}, {} B map", entry, grouped_digits(row.normal_map_bytes)) : entry;
 }
 
 std::string row_text(const Quantity& quantity, const WidthRow& row) {
@@ -46,8 +45,8 @@ std::string row_text(const Quantity& quantity, const WidthRow& row) {
         grouped_digits(run.edges), flips(Decided::split), run.split_flips_percent(), flips(Decided::normal),
         flips(Decided::summed_height), flips(Decided::view), flips(Decided::tex_coord), run.position_max,
         run.position_rms, run.position_rms / run.position_lsb,
-        grouped_digits(run.conformance.flipped_edges + run.conformance.mismatches),
-        open_places(run.invariants), grouped_digits(row.saturated), storage_text(quantity, row));
+        grouped_digits(run.conformance.flipped_edges + run.conformance.mismatches), open_places(run.invariants),
+        grouped_digits(row.saturated), storage_text(quantity, row));
 }
 
 std::string limit_text(bool given, const std::string& limit, const char* relative) {
@@ -60,18 +59,17 @@ std::string knee_text(const WidthTable& table) {
         "at most {} of the edges with another split decision than exact arithmetic, an RMS position error of "
         "at most {}, and no invariant violated",
         limit_text(knee.flips_given, fmt::format("{:.3f} %", knee.most_flips), "0.5 above the widest's"),
-        limit_text(knee.error_given, fmt::format("{:.3e} model units", knee.most_error),
-                   "1.25 times the widest's"));
+        limit_text(knee.error_given, fmt::format("{:.3e} model units", knee.most_error), "1.25 times the widest's"));
     if (!knee.row) {
-        const bool any = std::any_of(table.rows.begin(), table.rows.end(),
-                                     [](const WidthRow& row) { return row.refused.empty(); });
+        const bool any =
+            std::any_of(table.rows.begin(), table.rows.end(), [](const WidthRow& row) { return row.refused.empty(); });
         return any ? fmt::format("  knee: none; not even the widest has {}\n", limits)
                    : "  knee: none; every width was refused\n";
     }
     const WidthRow& row = table.rows[*knee.row];
     const bool last = *knee.row + 1 == table.rows.size();
-    return fmt::format("  knee: {} bits, {} of them fraction{}: with it and every wider one tried, {}\n",
-                       row.bits, row.fraction, last ? " (the narrowest tried)" : "", limits);
+    return fmt::format("  knee: {} bits, {} of them fraction{}: with it and every wider one tried, {}\n", row.bits,
+                       row.fraction, last ? " (the narrowest tried)" : "", limits);
 }
 
 std::string table_text(const WidthTable& table) {
@@ -80,8 +78,8 @@ std::string table_text(const WidthTable& table) {
     text += fmt::format(
         "  {:<5}{:>5}{:>10}{:>10}{:>10}{:>9}{:>8}{:>8}{:>8}{:>8}{:>8}{:>11}{:>11}{:>11}{:>8}{:>7}{:>10}  "
         "{}\n",
-        " bits", "frac", "triangles", "golden", "edges", "flipped", "%", "NT", "SHT", "VT", "TCT",
-        "error max", "RMS", "RMS LSB", "local", "open", "saturated", "storage");
+        " bits", "frac", "triangles", "golden", "edges", "flipped", "%", "NT", "SHT", "VT", "TCT", "error max", "RMS",
+        "RMS LSB", "local", "open", "saturated", "storage");
     for (const WidthRow& row : table.rows)
         text += row_text(quantity, row);
     return text + knee_text(table);
@@ -182,17 +180,17 @@ std::string widths_csv(const WidthSweep& sweep) {
                 continue;
             }
             const WidthRun& run = row.run;
-            text += fmt::format(",{},{},{},{}", run.triangles, run.end_to_end.golden_triangles, run.edges,
-                                run.edges_split);
+            text +=
+                fmt::format(",{},{},{},{}", run.triangles, run.end_to_end.golden_triangles, run.edges, run.edges_split);
             for (const std::uint64_t flips : run.flips)
                 text += fmt::format(",{},{:.6g}", flips, percent(flips, run.edges));
-            text += fmt::format(",{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{},{},{},{},{},{},{},{},{}\n",
-                                run.conformance.flipped_edges, run.conformance.mismatches, run.positions,
-                                run.position_max, run.position_rms, run.position_max / run.position_lsb,
-                                run.position_rms / run.position_lsb, run.position_lsb, run.invariants.cracks,
-                                run.invariants.t_vertices, run.invariants.violations(), row.saturated,
-                                row.base_vertex_bits, row.queue_entry_bits, row.displacement_map_bytes,
-                                row.normal_map_bytes, row.summed_height_table_bytes);
+            text +=
+                fmt::format(",{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{},{},{},{},{},{},{},{},{}\n",
+                            run.conformance.flipped_edges, run.conformance.mismatches, run.positions, run.position_max,
+                            run.position_rms, run.position_max / run.position_lsb, run.position_rms / run.position_lsb,
+                            run.position_lsb, run.invariants.cracks, run.invariants.t_vertices,
+                            run.invariants.violations(), row.saturated, row.base_vertex_bits, row.queue_entry_bits,
+                            row.displacement_map_bytes, row.normal_map_bytes, row.summed_height_table_bytes);
         }
     }
     return text;
@@ -203,8 +201,7 @@ std::string widths_json(const WidthRequest& request, const WidthSweep& sweep) {
     json["exact_triangles"] = sweep.exact_triangles;
     if (!sweep.texel_borders.empty())
         json["warning"] = sweep.texel_borders;
-    json["decisions"] =
-        request.job.tests.highlight ? "with the Highlight Test" : "without the Highlight Test";
+    json["decisions"] = request.job.tests.highlight ? "with the Highlight Test" : "without the Highlight Test";
     for (const WidthTable& table : sweep.tables) {
         const Quantity& quantity = *table.swept.quantity;
         Json& entry = json["quantities"][quantity.name];

@@ -58,8 +58,7 @@ HeightMap text_map(std::int64_t width, std::int64_t height, std::string_view tex
     check_sides(width, height);
     const StrokeText letters(text);
     if (letters.blank()) {
-        throw InputError(
-            "map.text: the text is empty, so the map would be flat. Give it at least one letter.");
+        throw InputError("map.text: the text is empty, so the map would be flat. Give it at least one letter.");
     }
     // A margin of one gap around the text keeps the strokes' edges inside the map.
     constexpr int margin = StrokeText::glyph_advance - StrokeText::glyph_width;
@@ -67,16 +66,14 @@ HeightMap text_map(std::int64_t width, std::int64_t height, std::string_view tex
     const double units_per_texel = std::max((letters.width() + 2 * margin) / static_cast<double>(width),
                                             (letter_height + 2.0 * margin) / static_cast<double>(height));
     if (units_per_texel * 7 > letter_height) {
-        throw InputError(fmt::format(
-            "map.text: the letters of \"{}\" would be {:.1f} texels high on a map of {} x {}; they need "
-            "7. Shorten the text or enlarge the map.",
-            printable_ascii(text), letter_height / units_per_texel, width, height));
+        throw InputError(
+            fmt::format("map.text: the letters of \"{}\" would be {:.1f} texels high on a map of {} x {}; they need "
+                        "7. Shorten the text or enlarge the map.",
+                        printable_ascii(text), letter_height / units_per_texel, width, height));
     }
     return map_of(width, height, [&](int column, int row) {
-        const double x =
-            (column + 0.5 - 0.5 * static_cast<double>(width)) * units_per_texel + 0.5 * letters.width();
-        const double y =
-            (row + 0.5 - 0.5 * static_cast<double>(height)) * units_per_texel + 0.5 * letter_height;
+        const double x = (column + 0.5 - 0.5 * static_cast<double>(width)) * units_per_texel + 0.5 * letters.width();
+        const double y = (row + 0.5 - 0.5 * static_cast<double>(height)) * units_per_texel + 0.5 * letter_height;
         return stroke_profile(std::sqrt(letters.squared_distance(x, y)));
     });
 }

@@ -40,10 +40,8 @@ std::string pgm_file(int width, int height, const std::vector<std::uint16_t>& sa
 EncodedMap encode_height_map(int width, int height, const std::vector<double>& heights, MapFormat format) {
     EncodedMap map;
     if (format == MapFormat::exr) {
-        const auto samples =
-            top_down<float>(width, heights, [](double value) { return static_cast<float>(value); });
-        const Imf::Header header(width, height, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y,
-                                 Imf::ZIP_COMPRESSION);
+        const auto samples = top_down<float>(width, heights, [](double value) { return static_cast<float>(value); });
+        const Imf::Header header(width, height, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
         map.bytes = encode_exr_samples(header, {"Y"}, Imf::FLOAT, samples.data());
         return map;
     }
@@ -61,8 +59,7 @@ EncodedMap encode_height_map(int width, int height, const std::vector<double>& h
         map.bytes = pgm_file(width, height, samples);
     } else {
         // libpng's name for 16-bit grey; no conversion takes place.
-        const std::vector<std::uint8_t> file =
-            encode_png_samples(width, height, PNG_FORMAT_LINEAR_Y, samples.data());
+        const std::vector<std::uint8_t> file = encode_png_samples(width, height, PNG_FORMAT_LINEAR_Y, samples.data());
         map.bytes.assign(file.begin(), file.end());
     }
     return map;

@@ -36,9 +36,7 @@ class ExrFile {
     void check_chunks() const;
 
   private:
-    [[noreturn]] void refuse(std::string_view why) const {
-        throw InputError(fmt::format("{}: {}", name_, why));
-    }
+    [[noreturn]] void refuse(std::string_view why) const { throw InputError(fmt::format("{}: {}", name_, why)); }
 
     // Keeps the first message: later ones report where the library stopped, not why.
     static void on_error(exr_const_context_t file, exr_result_t, const char* message) {
@@ -49,9 +47,9 @@ class ExrFile {
 
     void check(exr_result_t result) const {
         if (result != EXR_ERR_SUCCESS)
-            refuse(fmt::format(
-                "OpenEXR cannot read the file: {}. It is damaged or was cut off: save or download it anew.",
-                printable_ascii(message_.empty() ? exr_get_default_error_message(result) : message_)));
+            refuse(
+                fmt::format("OpenEXR cannot read the file: {}. It is damaged or was cut off: save or download it anew.",
+                            printable_ascii(message_.empty() ? exr_get_default_error_message(result) : message_)));
     }
 
     std::string name_;
@@ -111,25 +109,23 @@ void ExrFile::check_header() {
          {std::tuple{"one chunk", chunk_width_ * chunk_height_ * texel, largest_chunk},
           std::tuple{"the image", width_ * height_ * texel, largest_image}})
         if (bytes > limit)
-            refuse(fmt::format(
-                "{} of the EXR file has {} bytes when decoded, in {} channels; the limit is {}. Save the "
-                "channel with the heights alone, as scan lines.",
-                what, bytes, channels->num_channels, limit));
+            refuse(
+                fmt::format("{} of the EXR file has {} bytes when decoded, in {} channels; the limit is {}. Save the "
+                            "channel with the heights alone, as scan lines.",
+                            what, bytes, channels->num_channels, limit));
 }
 
 void ExrFile::check_chunks() const {
     exr_chunk_info_t chunk{};
     for (std::int64_t y = 0; y * chunk_height_ < height_; ++y)
         for (std::int64_t x = 0; x * chunk_width_ < width_; ++x) {
-            check(tiled_ ? exr_read_tile_chunk_info(file_, 0, static_cast<int>(x), static_cast<int>(y), 0, 0,
-                                                    &chunk)
-                         : exr_read_scanline_chunk_info(file_, 0, top_ + static_cast<int>(y * chunk_height_),
-                                                        &chunk));
+            check(tiled_ ? exr_read_tile_chunk_info(file_, 0, static_cast<int>(x), static_cast<int>(y), 0, 0, &chunk)
+                         : exr_read_scanline_chunk_info(file_, 0, top_ + static_cast<int>(y * chunk_height_), &chunk));
             if (chunk.compression == EXR_COMPRESSION_NONE && chunk.packed_size != chunk.unpacked_size)
-                refuse(fmt::format(
-                    "a chunk of the EXR file holds {} bytes of pixels of {}. It is damaged: save or "
-                    "download it anew.",
-                    chunk.packed_size, chunk.unpacked_size));
+                refuse(
+                    fmt::format("a chunk of the EXR file holds {} bytes of pixels of {}. It is damaged: save or "
+                                "download it anew.",
+                                chunk.packed_size, chunk.unpacked_size));
             if (chunk.compression == EXR_COMPRESSION_RLE || chunk.compression == EXR_COMPRESSION_ZIPS ||
                 chunk.compression == EXR_COMPRESSION_ZIP) {
                 DecodePipeline pipeline;
@@ -155,21 +151,18 @@ std::vector<std::string> check_exr(const std::filesystem::path& path) {
     } catch (const InputError& error) {
         problem = error.what();
     }
-    const auto says = [&problem](const std::string& words) {
-        return problem.find(words) != std::string::npos;
-    };
+    const auto says = [&problem](const std::string& words) { return problem.find(words) != std::string::npos; };
     if (says("recorded at file offset 0.")) {
         check(EXR_CONTEXT_FLAG_STRICT_HEADER);  // also checks the chunks
         return {
             "The EXR file's offset table is incomplete (its writer did not finish); the pixels were all "
             "found."};
     }
-    for (const char* const name :
-         {"displayWindow", "pixelAspectRatio", "screenWindowCenter", "screenWindowWidth"})
+    for (const char* const name : {"displayWindow", "pixelAspectRatio", "screenWindowCenter", "screenWindowWidth"})
         if (says(fmt::format("'{}' attribute not found", name))) {
             check(EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION);
-            return {fmt::format(
-                "The EXR header lacks the required attribute {}; the map does not depend on it.", name)};
+            return {
+                fmt::format("The EXR header lacks the required attribute {}; the map does not depend on it.", name)};
         }
     throw InputError(problem);
 }

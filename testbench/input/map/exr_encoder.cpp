@@ -10,8 +10,8 @@
 
 namespace tessera {
 
-std::string encode_exr_samples(Imf::Header header, const std::vector<const char*>& channels,
-                               Imf::PixelType type, const void* samples) {
+std::string encode_exr_samples(Imf::Header header, const std::vector<const char*>& channels, Imf::PixelType type,
+                               const void* samples) {
     const Imath::Box2i window = header.dataWindow();
     const auto width = static_cast<std::size_t>(window.max.x - window.min.x + 1);
     const std::size_t sample = type == Imf::HALF ? 2 : 4, pixel = channels.size() * sample;

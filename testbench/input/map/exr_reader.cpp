@@ -34,10 +34,8 @@ std::string choose_channel(const std::filesystem::path& path, const Imf::Channel
     const std::string list = printable_ascii(fmt::format("{}", fmt::join(names, ", ")));
     if (!wanted.empty()) {
         if (channels.findChannel(wanted) == nullptr)
-            refuse(path,
-                   fmt::format(
-                       "the EXR file has no channel \"{}\"; it has: {}. Set map.channel to one of these.",
-                       printable_ascii(wanted), list));
+            refuse(path, fmt::format("the EXR file has no channel \"{}\"; it has: {}. Set map.channel to one of these.",
+                                     printable_ascii(wanted), list));
         return wanted;
     }
     for (const char* const usual : {"Y", "R"})
@@ -45,10 +43,9 @@ std::string choose_channel(const std::filesystem::path& path, const Imf::Channel
             return usual;
     if (names.size() != 1)
         refuse(path,
-               fmt::format(
-                   "the EXR file has neither a channel Y nor R, and more than one: {}. Set map.channel to "
-                   "the one with the heights.",
-                   list));
+               fmt::format("the EXR file has neither a channel Y nor R, and more than one: {}. Set map.channel to "
+                           "the one with the heights.",
+                           list));
     return names.front();
 }
 
@@ -68,13 +65,13 @@ void add_remarks(const std::string& name, Imf::PixelType type, HeightMap& map) {
         return;
     }
     const float smallest_normal = type == Imf::HALF ? 0x1p-14F : 0x1p-126F;
-    const auto subnormal = std::count_if(
-        map.values.begin(), map.values.end(),
-        [smallest_normal](float value) { return value != 0 && std::fabs(value) < smallest_normal; });
+    const auto subnormal = std::count_if(map.values.begin(), map.values.end(), [smallest_normal](float value) {
+        return value != 0 && std::fabs(value) < smallest_normal;
+    });
     if (subnormal > 0)
-        map.repairs.push_back(
-            fmt::format("{} texel{} hold{} subnormal numbers (below {:.3g}); kept as they are.", subnormal,
-                        subnormal == 1 ? "" : "s", subnormal == 1 ? "s" : "", smallest_normal));
+        map.repairs.push_back(fmt::format("{} texel{} hold{} subnormal numbers (below {:.3g}); kept as they are.",
+                                          subnormal, subnormal == 1 ? "" : "s", subnormal == 1 ? "s" : "",
+                                          smallest_normal));
 }
 
 HeightMap read_checked(const std::filesystem::path& path, const std::string& wanted) {
@@ -83,12 +80,10 @@ HeightMap read_checked(const std::filesystem::path& path, const std::string& wan
     const std::string name = choose_channel(path, file.header().channels(), wanted);
     const Imf::Channel channel = file.header().channels()[name];
     if (channel.xSampling != 1 || channel.ySampling != 1)
-        refuse(
-            path,
-            fmt::format(
-                "the EXR file's channel {} holds only every {} x {} pixel; a map needs one value per texel. "
-                "Save it without subsampling.",
-                printable_ascii(name), channel.xSampling, channel.ySampling));
+        refuse(path,
+               fmt::format("the EXR file's channel {} holds only every {} x {} pixel; a map needs one value per texel. "
+                           "Save it without subsampling.",
+                           printable_ascii(name), channel.xSampling, channel.ySampling));
     const Imath::Box2i window = file.header().dataWindow();
     HeightMap map;
     map.width = window.max.x - window.min.x + 1;
@@ -101,11 +96,9 @@ HeightMap read_checked(const std::filesystem::path& path, const std::string& wan
     file.readPixels(window.min.y, window.max.y);
     turn_bottom_up(map);
     if (!repair_non_finite(map))
-        refuse(
-            path,
-            fmt::format(
-                "all {} texels of the EXR file's channel {} are NaN or infinite; a map needs finite heights.",
-                map.values.size(), printable_ascii(name)));
+        refuse(path, fmt::format(
+                         "all {} texels of the EXR file's channel {} are NaN or infinite; a map needs finite heights.",
+                         map.values.size(), printable_ascii(name)));
     add_remarks(name, channel.type, map);
     return map;
 }
@@ -124,9 +117,8 @@ HeightMap read_exr(const std::filesystem::path& path, const std::string& channel
         throw;
     } catch (const std::exception& error) {
         refuse(path,
-               fmt::format(
-                   "OpenEXR cannot read the file: {} It is damaged or was cut off: save or download it anew.",
-                   printable_ascii(error.what())));
+               fmt::format("OpenEXR cannot read the file: {} It is damaged or was cut off: save or download it anew.",
+                           printable_ascii(error.what())));
     }
 }
 

@@ -37,8 +37,7 @@ std::uint64_t map_file_size(const std::filesystem::path& path) {
     }
     const std::uintmax_t size = std::filesystem::file_size(path, error);
     if (error) {
-        throw InputError(
-            fmt::format("{}: the map file cannot be examined: {}.", path.string(), error.message()));
+        throw InputError(fmt::format("{}: the map file cannot be examined: {}.", path.string(), error.message()));
     }
     return size;
 }
@@ -61,18 +60,17 @@ std::string map_file_bytes(const std::filesystem::path& path) {
     }
     std::string bytes = map_file_start(path, static_cast<std::size_t>(size));
     if (bytes.size() != size) {
-        throw InputError(fmt::format("{}: only {} of the map file's {} bytes could be read.", path.string(),
-                                     bytes.size(), size));
+        throw InputError(
+            fmt::format("{}: only {} of the map file's {} bytes could be read.", path.string(), bytes.size(), size));
     }
     return bytes;
 }
 
 void check_map_sides(std::string_view what, std::int64_t width, std::int64_t height) {
     if (width < 1 || height < 1 || width > largest_map_side || height > largest_map_side) {
-        throw InputError(fmt::format("{}: the map is {} x {} texels; each side must be 1 to {}. {}", what,
-                                     width, height, largest_map_side,
-                                     width < 1 || height < 1 ? "Correct the size, or name another file."
-                                                             : "Scale it down or cut it."));
+        throw InputError(fmt::format(
+            "{}: the map is {} x {} texels; each side must be 1 to {}. {}", what, width, height, largest_map_side,
+            width < 1 || height < 1 ? "Correct the size, or name another file." : "Scale it down or cut it."));
     }
 }
 

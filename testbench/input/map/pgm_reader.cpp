@@ -22,9 +22,7 @@ struct PgmFile {
     const char* next = bytes.data() + 2;  // after the magic number
     const char* end = bytes.data() + bytes.size();
 
-    [[noreturn]] void refuse(std::string_view why) const {
-        throw InputError(fmt::format("{}: {}", name, why));
-    }
+    [[noreturn]] void refuse(std::string_view why) const { throw InputError(fmt::format("{}: {}", name, why)); }
 
     void skip_comment() {
         next = std::find_if(next, end, [](char c) { return c == '\n' || c == '\r'; });
@@ -47,10 +45,9 @@ struct PgmFile {
         const auto [stop, error] = std::from_chars(next, end, value);
         const bool whole = stop == end || is_space(*stop) || *stop == '#';
         if (error != std::errc() || !whole || value < least || value > most)
-            refuse(fmt::format("{} at byte {} of the PGM file is \"{}\"; it must be a number from {} to {}.",
-                               what, next - bytes.data(),
-                               printable_ascii(std::string(next, std::find_if(next, end, is_space))), least,
-                               most));
+            refuse(fmt::format("{} at byte {} of the PGM file is \"{}\"; it must be a number from {} to {}.", what,
+                               next - bytes.data(),
+                               printable_ascii(std::string(next, std::find_if(next, end, is_space))), least, most));
         next = stop;
         return value;
     }
@@ -63,10 +60,10 @@ struct PgmFile {
         if (next != end)
             next += *next == '\r' && end - next == size + 2 && next[1] == '\n' ? 2 : 1;
         if (end - next < size)
-            refuse(fmt::format(
-                "the PGM file holds {} of the {} bytes that its samples need. It was cut off, or its "
-                "header is wrong.",
-                end - next, size));
+            refuse(
+                fmt::format("the PGM file holds {} of the {} bytes that its samples need. It was cut off, or its "
+                            "header is wrong.",
+                            end - next, size));
     }
 
     HeightMap read() {
@@ -82,9 +79,8 @@ struct PgmFile {
         map.source_units = most;
         map.values.resize(static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height));
         if (next - bytes.data() > long_header)
-            map.repairs.push_back(
-                fmt::format("The PGM header has {} bytes, nearly all of them comments; they were skipped.",
-                            next - bytes.data()));
+            map.repairs.push_back(fmt::format(
+                "The PGM header has {} bytes, nearly all of them comments; they were skipped.", next - bytes.data()));
         if (binary)
             skip_to_samples(std::ptrdiff_t{map.width} * map.height * sample_bytes);
         for (int y = map.height - 1; y >= 0; --y)
@@ -93,9 +89,9 @@ struct PgmFile {
                 for (int k = 0; binary && k < sample_bytes; ++k)
                     sample = sample << 8 | static_cast<unsigned char>(*next++);
                 if (sample > most)
-                    refuse(fmt::format(
-                        "the sample before byte {} of the PGM file is {}, more than its maximum value {}.",
-                        next - bytes.data(), sample, most));
+                    refuse(
+                        fmt::format("the sample before byte {} of the PGM file is {}, more than its maximum value {}.",
+                                    next - bytes.data(), sample, most));
                 map.at(x, y) = static_cast<float>(static_cast<double>(sample) / static_cast<double>(most));
             }
         if (!binary && next == end)
@@ -106,8 +102,7 @@ struct PgmFile {
             skip_space_and_comments();
         if (next != end)
             map.repairs.push_back(fmt::format(
-                "{} bytes after the PGM file's last sample were ignored; only its first image is read.",
-                end - next));
+                "{} bytes after the PGM file's last sample were ignored; only its first image is read.", end - next));
         return map;
     }
 };

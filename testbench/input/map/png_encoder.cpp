@@ -7,8 +7,7 @@
 
 namespace tessera {
 
-std::vector<std::uint8_t> encode_png_samples(int width, int height, std::uint32_t format,
-                                             const void* samples) {
+std::vector<std::uint8_t> encode_png_samples(int width, int height, std::uint32_t format, const void* samples) {
     png_image header{};
     header.version = PNG_IMAGE_VERSION;
     header.width = static_cast<png_uint_32>(width);

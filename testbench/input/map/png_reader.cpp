@@ -82,11 +82,9 @@ void convert(const Decoder& decoder, HeightMap& map) {
     }
     if (coloured > 0)
         map.repairs.push_back(fmt::format(
-            "{} texels of the PNG file are coloured; their height is 0.2126 R + 0.7152 G + 0.0722 B.",
-            coloured));
+            "{} texels of the PNG file are coloured; their height is 0.2126 R + 0.7152 G + 0.0722 B.", coloured));
     if (not_opaque > 0)
-        map.repairs.push_back(
-            fmt::format("{} texels of the PNG file are not opaque; alpha was ignored.", not_opaque));
+        map.repairs.push_back(fmt::format("{} texels of the PNG file are not opaque; alpha was ignored.", not_opaque));
 }
 
 }  // namespace
@@ -109,8 +107,8 @@ HeightMap read_png(const std::filesystem::path& path) {
         throw std::bad_alloc();
     if (!decode(decoder.png, decoder.info, file.get()))
         throw InputError(
-            fmt::format("{}: libpng cannot read the PNG file: {}. It is damaged: save or download it anew.",
-                        name, printable_ascii(messages.error)));
+            fmt::format("{}: libpng cannot read the PNG file: {}. It is damaged: save or download it anew.", name,
+                        printable_ascii(messages.error)));
     HeightMap map;
     map.width = static_cast<int>(png_get_image_width(decoder.png, decoder.info));
     map.height = static_cast<int>(png_get_image_height(decoder.png, decoder.info));

@@ -59,11 +59,9 @@ Format format_of_content(const std::filesystem::path& path, std::string_view sta
         if (start[1] == '2' || start[1] == '5') {
             return Format::pgm;
         }
-        refuse(
-            path,
-            fmt::format("the map is a PNM file of kind {}; only greymaps P2 and P5 are read. Convert it, for "
-                        "example with pnmtopnm, pamtopnm or ppmtopgm.",
-                        start.substr(0, 2)));
+        refuse(path, fmt::format("the map is a PNM file of kind {}; only greymaps P2 and P5 are read. Convert it, for "
+                                 "example with pnmtopnm, pamtopnm or ppmtopgm.",
+                                 start.substr(0, 2)));
     }
     if (starts_with(start, "version https://git-lfs")) {
         refuse(path, "this is a Git LFS pointer, not the map itself. Fetch it with git lfs pull.");
@@ -95,24 +93,23 @@ HeightMap read_height_map(const std::filesystem::path& path, const std::string& 
     map_file_size(path);  // refuses anything but a regular file before opening it
     const Format format = format_of_content(path, map_file_start(path, 64));
     if (format != Format::exr && !channel.empty()) {
-        refuse(path,
-               fmt::format("channel \"{}\" is asked for, but this is a {} file; only EXR files have named "
-                           "channels. Leave map.channel empty.",
-                           printable_ascii(channel), format_name(format)));
+        refuse(path, fmt::format("channel \"{}\" is asked for, but this is a {} file; only EXR files have named "
+                                 "channels. Leave map.channel empty.",
+                                 printable_ascii(channel), format_name(format)));
     }
     HeightMap map;
     try {
         map = read_format(format, path, channel);
     } catch (const std::bad_alloc&) {
-        throw ResourceError(fmt::format(
-            "{}: there is not enough memory to read the map. Give the process more.", path.string()));
+        throw ResourceError(
+            fmt::format("{}: there is not enough memory to read the map. Give the process more.", path.string()));
     }
     const std::string extension = lower_case_extension(path);
     for (const auto& [claimed, claimed_extension] :
          {std::pair{Format::exr, ".exr"}, {Format::png, ".png"}, {Format::pgm, ".pgm"}}) {
         if (claimed != format && extension == claimed_extension) {
-            map.repairs.push_back(fmt::format("The file is named {} but is a {} file; it was read as such.",
-                                              extension, format_name(format)));
+            map.repairs.push_back(fmt::format("The file is named {} but is a {} file; it was read as such.", extension,
+                                              format_name(format)));
         }
     }
     return map;

@@ -125,11 +125,11 @@ StrokeText::Glyph StrokeText::glyph_of(char character) {
     const auto* const drawing = std::find_if(std::begin(drawings), std::end(drawings),
                                              [&](const Drawing& each) { return each.character == wanted; });
     if (drawing == std::end(drawings))
-        throw InputError(fmt::format(
-            "map.text: the built-in font has no character \"{}\" (code {}); it has \"{}\", and shows "
-            "lower-case letters as capitals.",
-            printable_ascii(std::string_view(&character, 1)), static_cast<unsigned char>(character),
-            stroke_font_characters()));
+        throw InputError(
+            fmt::format("map.text: the built-in font has no character \"{}\" (code {}); it has \"{}\", and shows "
+                        "lower-case letters as capitals.",
+                        printable_ascii(std::string_view(&character, 1)), static_cast<unsigned char>(character),
+                        stroke_font_characters()));
     Glyph glyph;
     bool pen_down = false;
     int x = 0;

@@ -30,11 +30,9 @@ struct BaseMesh {
 
     std::optional<glm::dvec3> up;  ///< the model's up, any length, if the source defines it
 
-    std::size_t dropped_degenerate =
-        0;  ///< triangles of zero area or with the same vertex twice, dropped at loading
-    std::size_t dropped_duplicate = 0;  ///< triangles at the three positions of an earlier triangle, dropped
-    std::vector<std::string>
-        repairs;  ///< one sentence each, for the report: repairs, and anomalies left unchanged
+    std::size_t dropped_degenerate = 0;  ///< triangles of zero area or with the same vertex twice, dropped at loading
+    std::size_t dropped_duplicate = 0;   ///< triangles at the three positions of an earlier triangle, dropped
+    std::vector<std::string> repairs;    ///< one sentence each, for the report: repairs, and anomalies left unchanged
 };
 
 }  // namespace tessera

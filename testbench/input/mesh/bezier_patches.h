@@ -24,10 +24,10 @@ struct BezierPatches {
 /// Errors: InputError with file and line for a file that cannot be read, is truncated or continues after its last
 /// point, for text that is not a number, an index without a point, a coordinate beyond largest_coordinate;
 /// ResourceError beyond the limits of mesh_limits.h.
-BezierPatches read_bezier_patches(std::string const& path);
+BezierPatches read_bezier_patches(const std::string& path);
 
 /// The same from memory; messages show `name` as the file.
-BezierPatches parse_bezier_patches(std::string_view text, std::string const& name);
+BezierPatches parse_bezier_patches(std::string_view text, const std::string& name);
 
 /// Makes a complete base mesh of the patches: `columns` by `rows` quads each, split from (0,0) to (1,1); texture
 /// coordinates 0..1 on every patch; normals cross(dP/du, dP/dv), on the front side of the triangles.
@@ -42,7 +42,7 @@ BezierPatches parse_bezier_patches(std::string_view text, std::string const& nam
 /// Messages show `name` as the file. Errors: InputError for columns or rows not in 1..largest_grid, with the job's key,
 /// if no triangle remains, and for a mesh smaller than smallest_size; ResourceError for more triangles than
 /// largest_base_triangles.
-BaseMesh make_patch_mesh(BezierPatches const& patches, std::int64_t columns, std::int64_t rows,
-                         std::string const& name);
+BaseMesh make_patch_mesh(const BezierPatches& patches, std::int64_t columns, std::int64_t rows,
+                         const std::string& name);
 
 }  // namespace tessera

@@ -15,17 +15,16 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-void check_count(char const* key, std::int64_t value, std::int64_t smallest) {
+void check_count(const char* key, std::int64_t value, std::int64_t smallest) {
     if (value < smallest || value > largest_grid) {
-        throw InputError(
-            fmt::format("{} = {}: must be {} to {} for this mesh", key, value, smallest, largest_grid));
+        throw InputError(fmt::format("{} = {}: must be {} to {} for this mesh", key, value, smallest, largest_grid));
     }
 }
 
-void check_size(char const* key, double value) {
+void check_size(const char* key, double value) {
     if (!(value >= smallest_size && value <= largest_size)) {
-        throw InputError(fmt::format("{} = {}: must be a length above 0, {:g} to {:g} model units", key,
-                                     value, smallest_size, largest_size));
+        throw InputError(fmt::format("{} = {}: must be a length above 0, {:g} to {:g} model units", key, value,
+                                     smallest_size, largest_size));
     }
 }
 
@@ -47,7 +46,7 @@ BaseMesh finished(BaseMesh mesh) {
 
 /// Vertices of the grid lines first_row..last_row, all columns, row by row.
 void add_rows(BaseMesh& mesh, std::int64_t columns, std::int64_t first_row, std::int64_t last_row,
-              std::function<BaseVertex(std::int64_t, std::int64_t)> const& vertex) {
+              const std::function<BaseVertex(std::int64_t, std::int64_t)>& vertex) {
     for (std::int64_t j = first_row; j <= last_row; ++j) {
         for (std::int64_t i = 0; i <= columns; ++i) {
             mesh.vertices.push_back(vertex(i, j));
@@ -91,8 +90,7 @@ BaseMesh make_plane(std::int64_t columns, std::int64_t rows, double width, doubl
         BaseVertex vertex;
         vertex.texture = {part(i, columns), part(j, rows)};
         // from integers, so that the plane is symmetric to the last bit
-        vertex.position = {width * part(2 * i - columns, 2 * columns), depth * part(2 * j - rows, 2 * rows),
-                           0};
+        vertex.position = {width * part(2 * i - columns, 2 * columns), depth * part(2 * j - rows, 2 * rows), 0};
         vertex.normal = {0, 0, 1};
         return vertex;
     });

@@ -10,14 +10,14 @@
 namespace tessera {
 
 using PositionKey = std::array<std::uint64_t, 3>;
-inline PositionKey position_key(glm::dvec3 const& p) {
+inline PositionKey position_key(const glm::dvec3& p) {
     return {alike_bits(p.x), alike_bits(p.y), alike_bits(p.z)};
 }
 
 /// For every key, the index of the first key equal to it. Linear time; the result depends on the keys only.
 /// Takes fewer than 2^31 keys.
 template <std::size_t N>
-std::vector<std::uint32_t> first_equal(std::vector<std::array<std::uint64_t, N>> const& keys) {
+std::vector<std::uint32_t> first_equal(const std::vector<std::array<std::uint64_t, N>>& keys) {
     const auto hash_of = [&](std::size_t i) {
         std::uint64_t hash = 0;
         for (const std::uint64_t word : keys[i])

@@ -28,7 +28,7 @@ std::array<std::int64_t, 2> quads_of(const Job::Mesh& mesh) {
     return {quads(mesh.columns, mesh.source), quads(mesh.rows, mesh.source)};
 }
 
-BaseMesh make_base_mesh(Job::Mesh const& job, std::string const& file) {
+BaseMesh make_base_mesh(const Job::Mesh& job, const std::string& file) {
     const std::int64_t columns = quads(job.columns, job.source);
     const std::int64_t rows = quads(job.rows, job.source);
     switch (job.source) {
@@ -52,8 +52,7 @@ BaseMesh make_base_mesh(Job::Mesh const& job, std::string const& file) {
             return make_patch_mesh(read_bezier_patches(file), columns, rows, file);
         case MeshSource::run:
             if (file.empty()) {
-                throw InputError(
-                    "mesh.file is empty: with mesh.source = \"run\" it must name a run's folder");
+                throw InputError("mesh.file is empty: with mesh.source = \"run\" it must name a run's folder");
             }
             return read_run_mesh(file);
     }

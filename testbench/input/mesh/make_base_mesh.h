@@ -13,6 +13,6 @@ std::array<std::int64_t, 2> quads_of(const Job::Mesh& mesh);
 
 /// The complete base mesh of a job. `file` is the resolved path of job.file, used if reads_file(source). Errors as in
 /// built_in.h, obj_reader.h, bezier_patches.h and run_mesh.h.
-BaseMesh make_base_mesh(Job::Mesh const& job, std::string const& file);
+BaseMesh make_base_mesh(const Job::Mesh& job, const std::string& file);
 
 }  // namespace tessera

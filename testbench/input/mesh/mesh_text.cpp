@@ -104,7 +104,7 @@ std::optional<double> to_number(std::string_view token) {
         }
     }
     double value = 0;
-    char const* end = token.data() + token.size();
+    const char* end = token.data() + token.size();
     const auto [stop, error] = std::from_chars(token.data(), end, value);
     if (stop != end || (error != std::errc() && error != std::errc::result_out_of_range)) {
         return std::nullopt;
@@ -115,7 +115,7 @@ std::optional<double> to_number(std::string_view token) {
     return value;
 }
 
-std::string read_mesh_text(std::string const& path, std::string_view kind) {
+std::string read_mesh_text(const std::string& path, std::string_view kind) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(path, error);
     if (!std::filesystem::exists(status)) {
@@ -126,8 +126,7 @@ std::string read_mesh_text(std::string const& path, std::string_view kind) {
     }
     std::ifstream in(path, std::ios::binary);
     if (!in) {
-        throw InputError(
-            fmt::format("{}: cannot be opened ({}): check its permissions", path, std::strerror(errno)));
+        throw InputError(fmt::format("{}: cannot be opened ({}): check its permissions", path, std::strerror(errno)));
     }
     std::string text;
     std::vector<char> piece(std::size_t{1} << 20);
@@ -135,8 +134,8 @@ std::string read_mesh_text(std::string const& path, std::string_view kind) {
         in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
         text.append(piece.data(), static_cast<std::size_t>(in.gcount()));
         if (text.size() > largest_mesh_file) {
-            throw ResourceError(fmt::format("{}: more than {} bytes, the limit of {}: simplify the mesh",
-                                            path, largest_mesh_file, kind));
+            throw ResourceError(fmt::format("{}: more than {} bytes, the limit of {}: simplify the mesh", path,
+                                            largest_mesh_file, kind));
         }
     }
     if (in.bad()) {

@@ -19,6 +19,6 @@ std::optional<double> to_number(std::string_view token);
 
 /// The contents of mesh.file. `kind`: the expected kind, such as "an OBJ file". Throws InputError if it cannot be read
 /// or is not a regular file, ResourceError beyond largest_mesh_file.
-std::string read_mesh_text(std::string const& path, std::string_view kind);
+std::string read_mesh_text(const std::string& path, std::string_view kind);
 
 }  // namespace tessera

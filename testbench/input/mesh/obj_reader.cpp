@@ -36,11 +36,11 @@ struct Tally {
 
 class Assembler {
   public:
-    Assembler(ObjText text, std::string const& name) : text_(std::move(text)), name_(name) {
+    Assembler(ObjText text, const std::string& name) : text_(std::move(text)), name_(name) {
         mesh_.repairs = std::move(text_.repairs);
         std::vector<PositionKey> keys;
         keys.reserve(text_.positions.size());
-        for (glm::dvec3 const& p : text_.positions) {
+        for (const glm::dvec3& p : text_.positions) {
             keys.push_back(position_key(p));
         }
         same_position_ = first_equal(keys);
@@ -68,19 +68,15 @@ class Assembler {
     }
 
   private:
-    std::uint32_t position_of(std::uint32_t corner) const {
-        return same_position_[text_.corners[corner].position];
-    }
-    glm::dvec3 const& point(std::uint32_t corner) const {
-        return text_.positions[text_.corners[corner].position];
-    }
+    std::uint32_t position_of(std::uint32_t corner) const { return same_position_[text_.corners[corner].position]; }
+    const glm::dvec3& point(std::uint32_t corner) const { return text_.positions[text_.corners[corner].position]; }
 
     void cut_faces() {
         std::uint64_t work_left = largest_cutting_work;
         Tally crossing, nonplanar, repeated, degenerate;
         std::vector<std::uint32_t> corners;
         std::vector<glm::dvec3> points;
-        for (ObjText::Face const& face : text_.faces) {
+        for (const ObjText::Face& face : text_.faces) {
             corners.clear();
             for (std::uint32_t i = 0; i < face.count; ++i) {
                 const auto corner = static_cast<std::uint32_t>(face.first + i);
@@ -115,10 +111,9 @@ class Assembler {
             if (cut->nonplanar) {
                 nonplanar.add(face.line);
             }
-            for (Triangle const& t : cut->triangles) {
+            for (const Triangle& t : cut->triangles) {
                 const Triangle triangle{corners[t[0]], corners[t[1]], corners[t[2]]};
-                if (triangle_normal(point(triangle[0]), point(triangle[1]), point(triangle[2])) ==
-                    glm::dvec3(0)) {
+                if (triangle_normal(point(triangle[0]), point(triangle[1]), point(triangle[2])) == glm::dvec3(0)) {
                     degenerate.add(face.line);
                 } else {
                     triangles_.push_back(triangle);
@@ -127,14 +122,12 @@ class Assembler {
             }
         }
         mesh_.dropped_degenerate = degenerate.count;
-        repair(degenerate,
-               "{} triangle(s) of zero area or with one vertex twice were dropped, the first in line {}.");
+        repair(degenerate, "{} triangle(s) of zero area or with one vertex twice were dropped, the first in line {}.");
         repair(repeated, "{} face(s) name one point twice in a row, the first in line {}: taken once.");
         repair(crossing,
                "The outline of {} face(s) crosses itself, the first in line {}: cut into triangles that "
                "overlap.");
-        repair(nonplanar,
-               "{} face(s) are not plane, the first in line {}: cut into triangles, with an edge across.");
+        repair(nonplanar, "{} face(s) are not plane, the first in line {}: cut into triangles, with an edge across.");
     }
 
     /// Drops and counts triangles at the same three positions as an earlier one.
@@ -142,30 +135,29 @@ class Assembler {
         Tally same, turned;
         // same winding: rotated so that the lowest position comes first
         drop_repeated(
-            [this](Triangle const& t) {
+            [this](const Triangle& t) {
                 std::array<std::uint64_t, 3> key{position_of(t[0]), position_of(t[1]), position_of(t[2])};
                 std::rotate(key.begin(), std::min_element(key.begin(), key.end()), key.end());
                 return key;
             },
-            [](Triangle const&, Triangle const&) { return true; }, same);
+            [](const Triangle&, const Triangle&) { return true; }, same);
         drop_repeated(
-            [this](Triangle const& t) {
+            [this](const Triangle& t) {
                 std::array<std::uint64_t, 3> key{position_of(t[0]), position_of(t[1]), position_of(t[2])};
                 std::sort(key.begin(), key.end());
                 return key;
             },
-            [this](Triangle const& a, Triangle const& b) { return !own_normals(a, b); }, turned);
+            [this](const Triangle& a, const Triangle& b) { return !own_normals(a, b); }, turned);
         mesh_.dropped_duplicate = same.count + turned.count;
         repair(same, "{} triangle(s) repeat an earlier one and were dropped, the first in line {}.");
-        repair(turned,
-               "{} triangle(s) are an earlier one turned over and were dropped, the first in line {}.");
+        repair(turned, "{} triangle(s) are an earlier one turned over and were dropped, the first in line {}.");
     }
 
     template <typename Key, typename Drop>
     void drop_repeated(Key key, Drop drop, Tally& dropped) {
         std::vector<std::array<std::uint64_t, 3>> keys;
         keys.reserve(triangles_.size());
-        for (Triangle const& t : triangles_) {
+        for (const Triangle& t : triangles_) {
             keys.push_back(key(t));
         }
         const std::vector<std::uint32_t> first = first_equal(keys);
@@ -188,7 +180,7 @@ class Assembler {
     }
 
     /// Whether two triangles on the same positions have given normals that differ at every position.
-    bool own_normals(Triangle const& a, Triangle const& b) const {
+    bool own_normals(const Triangle& a, const Triangle& b) const {
         for (std::uint32_t i : a) {
             for (std::uint32_t j : b) {
                 const std::uint32_t m = text_.corners[i].normal, n = text_.corners[j].normal;
@@ -205,9 +197,9 @@ class Assembler {
     void make_vertices() {
         std::vector<std::array<std::uint64_t, 3>> keys;
         keys.reserve(triangles_.size() * 3);
-        for (Triangle const& t : triangles_) {
+        for (const Triangle& t : triangles_) {
             for (std::uint32_t corner : t) {
-                ObjText::Corner const& c = text_.corners[corner];
+                const ObjText::Corner& c = text_.corners[corner];
                 keys.push_back({c.position, c.texture, c.normal});
             }
         }
@@ -218,13 +210,13 @@ class Assembler {
         std::vector<std::uint32_t> without_texture;
         for (std::size_t i = 0; i < keys.size(); ++i) {
             if (first[i] == i) {
-                ObjText::Corner const& corner = text_.corners[triangles_[i / 3][i % 3]];
+                const ObjText::Corner& corner = text_.corners[triangles_[i / 3][i % 3]];
                 const auto index = static_cast<std::uint32_t>(mesh_.vertices.size());
                 vertex_of[i] = index;
                 BaseVertex vertex;
                 vertex.position = text_.positions[corner.position];
                 if (corner.normal != ObjText::none) {
-                    glm::dvec3 const& given = text_.normals[corner.normal];
+                    const glm::dvec3& given = text_.normals[corner.normal];
                     vertex.normal = unit_or_zero(given);
                     if (vertex.normal == glm::dvec3(0)) {
                         zero_normals.add(lines_[i / 3]);
@@ -245,11 +237,10 @@ class Assembler {
         repair(zero_normals,
                "{} vertex normal(s) have no length, first used in line {}: smooth normals took their place.");
         repair(odd_normals, "{} vertex normal(s) are not of unit length, first used in line {}: made so.");
-        std::string why = fmt::format("{} vertices have no texture coordinates, first used in line {}",
-                                      bare.count, bare.first_line);
-        const auto has_area = [this](Triangle const& t) { return texture_gradient(mesh_, t).has_value(); };
-        if (without_texture.empty() &&
-            std::none_of(mesh_.triangles.begin(), mesh_.triangles.end(), has_area)) {
+        std::string why =
+            fmt::format("{} vertices have no texture coordinates, first used in line {}", bare.count, bare.first_line);
+        const auto has_area = [this](const Triangle& t) { return texture_gradient(mesh_, t).has_value(); };
+        if (without_texture.empty() && std::none_of(mesh_.triangles.begin(), mesh_.triangles.end(), has_area)) {
             without_texture.resize(mesh_.vertices.size());
             std::iota(without_texture.begin(), without_texture.end(), 0u);
             why = "No triangle has an area in texture space";
@@ -257,16 +248,16 @@ class Assembler {
         project_texture(without_texture, why);
     }
 
-    void project_texture(std::vector<std::uint32_t> const& vertices, std::string const& why) {
+    void project_texture(const std::vector<std::uint32_t>& vertices, const std::string& why) {
         glm::dvec3 low = mesh_.vertices.front().position, high = low;
-        for (BaseVertex const& vertex : mesh_.vertices) {
+        for (const BaseVertex& vertex : mesh_.vertices) {
             low = glm::min(low, vertex.position);
             high = glm::max(high, vertex.position);
         }
         const glm::dvec3 size = high - low;
         if (!(std::max({size.x, size.y, size.z}) >= smallest_size)) {
-            throw InputError(fmt::format("{}: the whole mesh is smaller than {:g} model units: scale it up",
-                                         name_, smallest_size));
+            throw InputError(
+                fmt::format("{}: the whole mesh is smaller than {:g} model units: scale it up", name_, smallest_size));
         }
         if (vertices.empty()) {
             return;
@@ -288,14 +279,14 @@ class Assembler {
             fmt::format("{}: the map was laid over the mesh's bounding box along {}.", why, "xyz"[thinnest]));
     }
 
-    void repair(Tally const& tally, char const* sentence) {
+    void repair(const Tally& tally, const char* sentence) {
         if (tally.count > 0) {
             mesh_.repairs.push_back(fmt::format(fmt::runtime(sentence), tally.count, tally.first_line));
         }
     }
 
     ObjText text_;
-    std::string const& name_;
+    const std::string& name_;
     std::vector<std::uint32_t> same_position_;  // per `v` line: the first with that position
     std::vector<Triangle> triangles_;           // indices of corners
     std::vector<std::size_t> lines_;            // per triangle
@@ -304,11 +295,11 @@ class Assembler {
 
 }  // namespace
 
-BaseMesh parse_obj(std::string_view text, std::string const& name) {
+BaseMesh parse_obj(std::string_view text, const std::string& name) {
     return Assembler(read_obj_text(text, name), name).assemble();
 }
 
-BaseMesh read_obj(std::string const& path) {
+BaseMesh read_obj(const std::string& path) {
     return parse_obj(read_mesh_text(path, "an OBJ file"), path);
 }
 

@@ -22,9 +22,9 @@ namespace tessera {
 /// Errors: as read_obj_text (obj_text.h); InputError also for a file that cannot be read or is not a regular
 /// file, if no triangle remains, and for a mesh smaller than smallest_size; ResourceError beyond the limits of
 /// mesh_limits.h.
-BaseMesh read_obj(std::string const& path);
+BaseMesh read_obj(const std::string& path);
 
 /// The same from memory; messages show `name` as the file.
-BaseMesh parse_obj(std::string_view text, std::string const& name);
+BaseMesh parse_obj(std::string_view text, const std::string& name);
 
 }  // namespace tessera

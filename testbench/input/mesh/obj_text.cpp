@@ -29,9 +29,8 @@ std::string_view next_word(std::string_view& text) {
 /// Statements of an OBJ file that are irrelevant to polygons.
 bool is_skipped(std::string_view keyword) {
     constexpr std::array<std::string_view, 21> skipped{
-        "g",        "o",        "s",   "mg",         "usemtl",    "mtllib", "usemap",
-        "maplib",   "l",        "p",   "vp",         "curv",      "curv2",  "bevel",
-        "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "ctech",  "stech"};
+        "g",    "o",     "s",     "mg",       "usemtl",   "mtllib", "usemap",     "maplib",    "l",     "p",    "vp",
+        "curv", "curv2", "bevel", "c_interp", "d_interp", "lod",    "shadow_obj", "trace_obj", "ctech", "stech"};
     return std::find(skipped.begin(), skipped.end(), keyword) != skipped.end();
 }
 
@@ -63,16 +62,15 @@ class Reader {
     };
 
     [[noreturn]] void fail(std::size_t line, const std::string& what) const {
-        throw InputError(
-            fmt::format("{}:{}: {}; correct the line or export the file again", name_, line, what));
+        throw InputError(fmt::format("{}:{}: {}; correct the line or export the file again", name_, line, what));
     }
     [[noreturn]] void fail(const std::string& what) const { fail(line_, what); }
 
     void limit(std::size_t count, std::size_t largest, const char* of_what) const {
         if (count > largest) {
-            throw ResourceError(fmt::format(
-                "{}:{}: more than {} {}, the limit: simplify the mesh, the tessellator refines it", name_,
-                line_, largest, of_what));
+            throw ResourceError(
+                fmt::format("{}:{}: more than {} {}, the limit: simplify the mesh, the tessellator refines it", name_,
+                            line_, largest, of_what));
         }
     }
 
@@ -138,9 +136,8 @@ class Reader {
         for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
             const double value = to_number(word).value_or(HUGE_VAL);
             if (!(std::abs(value) <= largest_coordinate)) {
-                fail(
-                    fmt::format("{} in `{}` is no number up to {:g}, written with a point and between blanks",
-                                quoted(word), list.keyword, largest_coordinate));
+                fail(fmt::format("{} in `{}` is no number up to {:g}, written with a point and between blanks",
+                                 quoted(word), list.keyword, largest_coordinate));
             }
             if (count < 3) {
                 first[count] = value;
@@ -148,8 +145,7 @@ class Reader {
             ++count;
         }
         if (count < list.fewest || count > list.most) {
-            fail(fmt::format("`{}` with {} number(s): it takes {} to {}", list.keyword, count, list.fewest,
-                             list.most));
+            fail(fmt::format("`{}` with {} number(s): it takes {} to {}", list.keyword, count, list.fewest, list.most));
         }
         limit(++list.count, largest_obj_records, "lines of vertices");
         return first;
@@ -161,10 +157,10 @@ class Reader {
             limit(++face.count, largest_face_corners, "corners of a face");
             const std::optional<ObjText::Corner> corner = this->corner(word);
             if (!corner) {
-                fail(fmt::format(
-                    "face corner {}: it must be v, v/vt, v//vn or v/vt/vn, whole numbers from 1, or "
-                    "from -1 backwards to the first defined",
-                    quoted(word)));
+                fail(
+                    fmt::format("face corner {}: it must be v, v/vt, v//vn or v/vt/vn, whole numbers from 1, or "
+                                "from -1 backwards to the first defined",
+                                quoted(word)));
             }
             out_.corners.push_back(*corner);
         }
@@ -200,12 +196,12 @@ class Reader {
 
     void check_indices() const {
         if (out_.faces.empty()) {
-            throw InputError(fmt::format(
-                "{}: no face (`f` line) in {} line(s){}: is it a Wavefront OBJ file with polygons?", name_,
-                next_line_ - 1,
-                unknown_ > 0 ? fmt::format(", but {} of other words ({} in line {} first)", unknown_,
-                                           unknown_keyword_, unknown_line_)
-                             : ""));
+            throw InputError(
+                fmt::format("{}: no face (`f` line) in {} line(s){}: is it a Wavefront OBJ file with polygons?", name_,
+                            next_line_ - 1,
+                            unknown_ > 0 ? fmt::format(", but {} of other words ({} in line {} first)", unknown_,
+                                                       unknown_keyword_, unknown_line_)
+                                         : ""));
         }
         for (const ObjText::Face& face : out_.faces) {
             for (std::size_t i = face.first; i < face.first + face.count; ++i) {
@@ -213,8 +209,8 @@ class Reader {
                 const std::array<std::uint32_t, 3> indices{corner.position, corner.texture, corner.normal};
                 for (std::size_t k = 0; k < lists_.size(); ++k) {
                     if (indices[k] != ObjText::none && indices[k] >= lists_[k].count) {
-                        fail(face.line, fmt::format("a face names `{}` number {}, the file has {}",
-                                                    lists_[k].keyword, indices[k] + 1, lists_[k].count));
+                        fail(face.line, fmt::format("a face names `{}` number {}, the file has {}", lists_[k].keyword,
+                                                    indices[k] + 1, lists_[k].count));
                     }
                 }
             }

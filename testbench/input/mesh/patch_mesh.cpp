@@ -29,21 +29,20 @@ struct Place {
 
 /// Interpolates between a and b. Exactly a or b at the ends and if both are equal, and bit-identical in either
 /// direction, so that both patches of a border get the same points.
-glm::dvec3 between(glm::dvec3 const& a, glm::dvec3 const& b, Place const& place) {
+glm::dvec3 between(const glm::dvec3& a, const glm::dvec3& b, const Place& place) {
     if (place.step == 0 || a == b) {
         return a;
     }
     if (place.step == place.steps) {
         return b;
     }
-    const double from_middle =
-        static_cast<double>(2 * place.step - place.steps) / static_cast<double>(2 * place.steps);
+    const double from_middle = static_cast<double>(2 * place.step - place.steps) / static_cast<double>(2 * place.steps);
     return (a + b) / 2.0 + from_middle * (b - a);
 }
 
 /// The two points of De Casteljau's next-to-last step: the curve's point lies between them, and its derivative is three
 /// times their difference.
-std::array<glm::dvec3, 2> last_two(Curve curve, Place const& place) {
+std::array<glm::dvec3, 2> last_two(Curve curve, const Place& place) {
     for (std::size_t left = 3; left > 1; --left) {
         for (std::size_t i = 0; i < left; ++i) {
             curve[i] = between(curve[i], curve[i + 1], place);
@@ -52,22 +51,22 @@ std::array<glm::dvec3, 2> last_two(Curve curve, Place const& place) {
     return {curve[0], curve[1]};
 }
 
-glm::dvec3 point_on(Curve const& curve, Place const& place) {
+glm::dvec3 point_on(const Curve& curve, const Place& place) {
     const auto [a, b] = last_two(curve, place);
     return between(a, b, place);
 }
 
-glm::dvec3 derivative(Curve const& curve, Place const& place) {
+glm::dvec3 derivative(const Curve& curve, const Place& place) {
     const auto [a, b] = last_two(curve, place);
     return 3.0 * (b - a);
 }
 
 class Patch {
   public:
-    Patch(BezierPatches const& patches, std::size_t number) {
+    Patch(const BezierPatches& patches, std::size_t number) {
         glm::dvec3 low(0), high(0);
         for (std::size_t k = 0; k < 16; ++k) {
-            glm::dvec3 const& p = patches.points[patches.patches[number][k]];
+            const glm::dvec3& p = patches.points[patches.patches[number][k]];
             along_u_[k / 4][k % 4] = p;
             along_v_[k % 4][k / 4] = p;
             low = k == 0 ? p : glm::min(low, p);
@@ -76,7 +75,7 @@ class Patch {
         size_ = safe_length(high - low);
     }
 
-    BaseVertex vertex(Place const& u, Place const& v) const {
+    BaseVertex vertex(const Place& u, const Place& v) const {
         Curve across_u, across_v, slopes;
         for (std::size_t k = 0; k < 4; ++k) {
             across_u[k] = point_on(along_v_[k], v);
@@ -93,13 +92,11 @@ class Patch {
   private:
     /// At a collapsed border dP/du is zero; to first order it is the mixed derivative times the distance from the
     /// border. Zero if that gives no normal.
-    glm::dvec3 normal(glm::dvec3 du, glm::dvec3 dv, glm::dvec3 const& mixed, Place const& u,
-                      Place const& v) const {
-        const auto into = [](Place const& place) {
+    glm::dvec3 normal(glm::dvec3 du, glm::dvec3 dv, const glm::dvec3& mixed, const Place& u, const Place& v) const {
+        const auto into = [](const Place& place) {
             return place.step == 0 ? 1.0 : place.step == place.steps ? -1.0 : 0.0;
         };
-        const bool flat_u = safe_length(du) <= vanishing * size_,
-                   flat_v = safe_length(dv) <= vanishing * size_;
+        const bool flat_u = safe_length(du) <= vanishing * size_, flat_v = safe_length(dv) <= vanishing * size_;
         if (flat_u && !flat_v) {
             du = into(v) * mixed;
         } else if (flat_v && !flat_u) {
@@ -113,24 +110,23 @@ class Patch {
     double size_ = 0;
 };
 
-void check(BezierPatches const& patches, std::int64_t columns, std::int64_t rows, std::string const& name) {
+void check(const BezierPatches& patches, std::int64_t columns, std::int64_t rows, const std::string& name) {
     for (const auto& [key, value] : {std::pair{"mesh.columns", columns}, {"mesh.rows", rows}}) {
         if (value < 1 || value > largest_grid) {
-            throw InputError(
-                fmt::format("{} = {}: must be 1 to {} for a patch mesh", key, value, largest_grid));
+            throw InputError(fmt::format("{} = {}: must be 1 to {} for a patch mesh", key, value, largest_grid));
         }
     }
     const std::size_t triangles = 2 * static_cast<std::size_t>(columns * rows) * patches.patches.size();
     if (triangles > largest_base_triangles) {
-        throw ResourceError(fmt::format(
-            "{}: mesh.columns = {} and mesh.rows = {} give {} base triangles on {} patches, the limit is "
-            "{}: take fewer, the tessellator refines them",
-            name, columns, rows, triangles, patches.patches.size(), largest_base_triangles));
+        throw ResourceError(
+            fmt::format("{}: mesh.columns = {} and mesh.rows = {} give {} base triangles on {} patches, the limit is "
+                        "{}: take fewer, the tessellator refines them",
+                        name, columns, rows, triangles, patches.patches.size(), largest_base_triangles));
     }
 }
 
 /// All vertices of all patches, patch by patch, row by row.
-std::vector<BaseVertex> all_vertices(BezierPatches const& patches, std::int64_t columns, std::int64_t rows) {
+std::vector<BaseVertex> all_vertices(const BezierPatches& patches, std::int64_t columns, std::int64_t rows) {
     std::vector<BaseVertex> vertices;
     for (std::size_t k = 0; k < patches.patches.size(); ++k) {
         const Patch patch(patches, k);
@@ -147,7 +143,7 @@ std::vector<BaseVertex> all_vertices(BezierPatches const& patches, std::int64_t 
 void share_normals(std::vector<BaseVertex>& vertices) {
     std::vector<PositionKey> keys;
     keys.reserve(vertices.size());
-    for (BaseVertex const& vertex : vertices) {
+    for (const BaseVertex& vertex : vertices) {
         keys.push_back(position_key(vertex.position));
     }
     const std::vector<std::uint32_t> first = first_equal(keys);
@@ -171,8 +167,8 @@ void share_normals(std::vector<BaseVertex>& vertices) {
 
 }  // namespace
 
-BaseMesh make_patch_mesh(BezierPatches const& patches, std::int64_t columns, std::int64_t rows,
-                         std::string const& name) {
+BaseMesh make_patch_mesh(const BezierPatches& patches, std::int64_t columns, std::int64_t rows,
+                         const std::string& name) {
     check(patches, columns, rows, name);
     std::vector<BaseVertex> vertices = all_vertices(patches, columns, rows);
     share_normals(vertices);
@@ -212,21 +208,20 @@ BaseMesh make_patch_mesh(BezierPatches const& patches, std::int64_t columns, std
                         name, patches.patches.size()));
     }
     if (mesh.dropped_degenerate > 0) {
-        mesh.repairs.push_back(
-            fmt::format("{} triangle(s) of zero area were dropped, as at collapsed borders of patches.",
-                        mesh.dropped_degenerate));
+        mesh.repairs.push_back(fmt::format(
+            "{} triangle(s) of zero area were dropped, as at collapsed borders of patches.", mesh.dropped_degenerate));
     }
     glm::dvec3 low = mesh.vertices.front().position, high = low;
     std::size_t without_normal = 0;
-    for (BaseVertex const& vertex : mesh.vertices) {
+    for (const BaseVertex& vertex : mesh.vertices) {
         low = glm::min(low, vertex.position);
         high = glm::max(high, vertex.position);
         without_normal += vertex.normal == glm::dvec3(0);
     }
     const glm::dvec3 size = high - low;
     if (!(std::max({size.x, size.y, size.z}) >= smallest_size)) {
-        throw InputError(fmt::format("{}: the whole mesh is smaller than {:g} model units: scale it up", name,
-                                     smallest_size));
+        throw InputError(
+            fmt::format("{}: the whole mesh is smaller than {:g} model units: scale it up", name, smallest_size));
     }
     if (without_normal > 0) {
         mesh.repairs.push_back(

@@ -11,7 +11,7 @@
 namespace tessera {
 namespace {
 
-constexpr char const* blanks = " \t\r";
+constexpr const char* blanks = " \t\r";
 
 std::string_view trimmed(std::string_view text) {
     const std::size_t first = text.find_first_not_of(blanks);
@@ -21,7 +21,7 @@ std::string_view trimmed(std::string_view text) {
 
 class Reader {
   public:
-    Reader(std::string_view text, std::string const& name) : rest_(text), name_(name) {}
+    Reader(std::string_view text, const std::string& name) : rest_(text), name_(name) {}
 
     BezierPatches read() {
         const std::size_t patches = count("patches", largest_base_triangles);
@@ -43,16 +43,15 @@ class Reader {
             result_.points.push_back(point);
         }
         if (next_line()) {
-            fail(fmt::format(
-                "{} behind the last of {} points: correct the number of points, or delete the rest",
-                quoted(words_), points));
+            fail(fmt::format("{} behind the last of {} points: correct the number of points, or delete the rest",
+                             quoted(words_), points));
         }
         check_indices();
         return std::move(result_);
     }
 
   private:
-    [[noreturn]] void fail(std::string const& what) const {
+    [[noreturn]] void fail(const std::string& what) const {
         throw InputError(fmt::format("{}:{}: {}", name_, line_, what));
     }
 
@@ -71,7 +70,7 @@ class Reader {
     }
 
     /// Reads the next line's numbers into numbers_. `what`: their meaning, for messages.
-    void read_numbers(std::size_t wanted, std::string const& what) {
+    void read_numbers(std::size_t wanted, const std::string& what) {
         if (!next_line()) {
             fail(fmt::format("the file ends before {}: it is cut off, or its count is wrong", what));
         }
@@ -84,24 +83,24 @@ class Reader {
             row.remove_prefix(more ? comma + 1 : row.size());
         }
         if (numbers_.size() != wanted) {
-            fail(fmt::format("{} is {} with {} number(s): wanted are {}, separated by commas", what,
-                             quoted(words_), numbers_.size(), wanted));
+            fail(fmt::format("{} is {} with {} number(s): wanted are {}, separated by commas", what, quoted(words_),
+                             numbers_.size(), wanted));
         }
     }
 
-    std::size_t whole_number(std::string_view word, char const* what, std::size_t most) {
+    std::size_t whole_number(std::string_view word, const char* what, std::size_t most) {
         const std::optional<double> number = to_number(word);
         if (!number || !(*number >= 1) || std::floor(*number) != *number) {
             fail(fmt::format("{} is no number of {}: wanted is a whole number from 1", quoted(word), what));
         }
         if (*number > static_cast<double>(most)) {
-            throw ResourceError(fmt::format("{}:{}: {} {}, the limit is {}: take a part of the model", name_,
-                                            line_, quoted(word), what, most));
+            throw ResourceError(fmt::format("{}:{}: {} {}, the limit is {}: take a part of the model", name_, line_,
+                                            quoted(word), what, most));
         }
         return static_cast<std::size_t>(*number);
     }
 
-    std::size_t count(char const* what, std::size_t most) {
+    std::size_t count(const char* what, std::size_t most) {
         read_numbers(1, fmt::format("the number of {}", what));
         return whole_number(numbers_.front(), what, most);
     }
@@ -130,15 +129,15 @@ class Reader {
             for (const std::uint32_t i : result_.patches[k]) {
                 if (i >= result_.points.size()) {
                     line_ = lines_[k];
-                    fail(fmt::format("patch {} names point {}, but there are {}: correct the number", k + 1,
-                                     i + 1, result_.points.size()));
+                    fail(fmt::format("patch {} names point {}, but there are {}: correct the number", k + 1, i + 1,
+                                     result_.points.size()));
                 }
             }
         }
     }
 
     std::string_view rest_;
-    std::string const& name_;
+    const std::string& name_;
     std::size_t line_ = 0;
     std::string_view words_;
     std::vector<std::string_view> numbers_;
@@ -149,11 +148,11 @@ class Reader {
 
 }  // namespace
 
-BezierPatches parse_bezier_patches(std::string_view text, std::string const& name) {
+BezierPatches parse_bezier_patches(std::string_view text, const std::string& name) {
     return Reader(text, name).read();
 }
 
-BezierPatches read_bezier_patches(std::string const& path) {
+BezierPatches read_bezier_patches(const std::string& path) {
     return parse_bezier_patches(read_mesh_text(path, "a file of Bezier patches"), path);
 }
 

@@ -28,8 +28,7 @@ int turn(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
 }
 
 bool in_or_on(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
-    return cross(b - a, p - a) >= -on_line && cross(c - b, p - b) >= -on_line &&
-           cross(a - c, p - c) >= -on_line;
+    return cross(b - a, p - a) >= -on_line && cross(c - b, p - b) >= -on_line && cross(a - c, p - c) >= -on_line;
 }
 
 /// Whether the outline has left turns only and winds once: a pentagram has left turns only, but winds twice.
@@ -88,8 +87,7 @@ bool outline_crosses_itself(const std::vector<glm::dvec2>& points) {
     const std::size_t n = points.size();
     for (std::size_t i = 0; i < n; ++i) {
         for (std::size_t j = i + 2; j < n && (i > 0 || j + 1 < n); ++j) {
-            const glm::dvec2 &a = points[i], &b = points[(i + 1) % n], &c = points[j],
-                             &d = points[(j + 1) % n];
+            const glm::dvec2 &a = points[i], &b = points[(i + 1) % n], &c = points[j], &d = points[(j + 1) % n];
             if (turn(a, b, c) * turn(a, b, d) < 0 && turn(c, d, a) * turn(c, d, b) < 0) {
                 return true;
             }
@@ -122,8 +120,7 @@ bool clip_ears(const std::vector<glm::dvec2>& points, std::vector<std::uint32_t>
         return !blocks[t[1]] && std::none_of(outline.begin(), outline.end(), [&](std::uint32_t i) {
             const glm::dvec2& p = points[i];
             work += blocks[i];
-            return blocks[i] && p.x >= left && p.x <= right && p != a && p != b && p != c &&
-                   in_or_on(p, a, b, c);
+            return blocks[i] && p.x >= left && p.x <= right && p != a && p != b && p != c && in_or_on(p, a, b, c);
         });
     };
     std::size_t at = 0;
@@ -146,8 +143,7 @@ bool clip_ears(const std::vector<glm::dvec2>& points, std::vector<std::uint32_t>
     }
     work_left -= std::min(work, work_left);
     std::rotate(outline.begin(), outline.begin() + static_cast<std::ptrdiff_t>(at), outline.end());
-    result.crosses_itself |=
-        outline.size() > 3 || turn(points[outline[0]], points[outline[1]], points[outline[2]]) < 0;
+    result.crosses_itself |= outline.size() > 3 || turn(points[outline[0]], points[outline[1]], points[outline[2]]) < 0;
     fan(outline, result);
     return true;
 }
@@ -178,8 +174,7 @@ std::optional<PolygonCut> cut_polygon(const std::vector<glm::dvec3>& corners, st
     if (!(safe_length(area) > flattest_triangle)) {  // a bow tie whose halves cancel, or collinear points
         fan(outline, result);
         for (const auto& t : result.triangles) {
-            result.crosses_itself |=
-                triangle_normal(corners[t[0]], corners[t[1]], corners[t[2]]) != glm::dvec3(0);
+            result.crosses_itself |= triangle_normal(corners[t[0]], corners[t[1]], corners[t[2]]) != glm::dvec3(0);
         }
         return result;
     }
@@ -194,8 +189,7 @@ std::optional<PolygonCut> cut_polygon(const std::vector<glm::dvec3>& corners, st
     std::vector<glm::dvec2> points;
     for (const glm::dvec3& p : local) {
         result.nonplanar |= std::abs(glm::dot(normal, p - centre)) > nonplanar_part;
-        points.push_back(normal[axis] > 0 ? glm::dvec2(p[first], p[second])
-                                          : glm::dvec2(p[second], p[first]));
+        points.push_back(normal[axis] > 0 ? glm::dvec2(p[first], p[second]) : glm::dvec2(p[second], p[first]));
     }
     if (strictly_convex(points)) {
         cut_convex(outline, result);

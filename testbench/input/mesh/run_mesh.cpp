@@ -23,8 +23,8 @@ std::vector<std::uint32_t> alike_vertices(const RecordedMesh& mesh) {
     keys.reserve(mesh.positions.size());
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
         const PositionKey p = position_key(mesh.positions[v]), n = position_key(mesh.normals[v]);
-        keys.push_back({p[0], p[1], p[2], n[0], n[1], n[2], alike_bits(mesh.textures[v].x),
-                        alike_bits(mesh.textures[v].y)});
+        keys.push_back(
+            {p[0], p[1], p[2], n[0], n[1], n[2], alike_bits(mesh.textures[v].x), alike_bits(mesh.textures[v].y)});
     }
     return first_equal(keys);
 }
@@ -36,8 +36,7 @@ void take_triangles(const RecordedMesh& recorded, BaseMesh& mesh) {
     std::vector<std::uint32_t> vertex_of(recorded.positions.size(), none);
     mesh.triangles.reserve(recorded.triangles.size());
     for (const RecordedMesh::Triangle& t : recorded.triangles) {
-        std::array<std::uint32_t, 3> corners{alike[t.vertices[0]], alike[t.vertices[1]],
-                                             alike[t.vertices[2]]};
+        std::array<std::uint32_t, 3> corners{alike[t.vertices[0]], alike[t.vertices[1]], alike[t.vertices[2]]};
         if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) {
             ++mesh.dropped_degenerate;
             continue;
@@ -81,8 +80,8 @@ void require_size(const BaseMesh& mesh, const std::string& name) {
     }
     const glm::dvec3 size = high - low;
     if (!(std::max({size.x, size.y, size.z}) >= smallest_size))
-        throw InputError(fmt::format("{}: the whole mesh is smaller than {:g} model units: scale it up", name,
-                                     smallest_size));
+        throw InputError(
+            fmt::format("{}: the whole mesh is smaller than {:g} model units: scale it up", name, smallest_size));
 }
 
 /// Built-in meshes and patches have up = z, whatever the run's camera; for files and runs, the camera's up is used.
@@ -120,8 +119,8 @@ BaseMesh read_run_mesh(const std::filesystem::path& folder) {
                 "here.");
     }
     if (mesh.triangles.empty())
-        throw InputError(fmt::format(
-            "{}: no triangle is left; run a job that leaves some (hardware.culling, camera)", name));
+        throw InputError(
+            fmt::format("{}: no triangle is left; run a job that leaves some (hardware.culling, camera)", name));
     require_size(mesh, name);
     complete_normals(mesh);
     for (std::string& flaw : surface_flaws(mesh))

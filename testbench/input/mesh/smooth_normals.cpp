@@ -11,7 +11,7 @@ void complete_smooth_normals(BaseMesh& mesh) {
     constexpr double cancelled = 1e-9;  // relative to the sum of angles; below it, rounding
     std::vector<PositionKey> keys;
     keys.reserve(mesh.vertices.size());
-    for (BaseVertex const& vertex : mesh.vertices) {
+    for (const BaseVertex& vertex : mesh.vertices) {
         keys.push_back(position_key(vertex.position));
     }
     const std::vector<std::uint32_t> group = first_equal(keys);
@@ -21,7 +21,7 @@ void complete_smooth_normals(BaseMesh& mesh) {
         double angle = 0;
     };
     std::vector<Sum> sums(mesh.vertices.size());
-    for (auto const& t : mesh.triangles) {
+    for (const auto& t : mesh.triangles) {
         const std::array<glm::dvec3, 3> p{mesh.vertices[t[0]].position, mesh.vertices[t[1]].position,
                                           mesh.vertices[t[2]].position};
         const glm::dvec3 normal = triangle_normal(p[0], p[1], p[2]);
@@ -43,7 +43,7 @@ void complete_smooth_normals(BaseMesh& mesh) {
         if (mesh.vertices[i].normal != glm::dvec3(0)) {
             continue;
         }
-        Sum const& sum = sums[group[i]];
+        const Sum& sum = sums[group[i]];
         const bool cancels = !(safe_length(sum.direction) > cancelled * sum.angle);
         mesh.vertices[i].normal = cancels ? sum.first : unit_or_zero(sum.direction);
         cancelling += cancels && counted[group[i]] == 0;

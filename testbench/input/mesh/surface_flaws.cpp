@@ -25,7 +25,7 @@ class PointsOnSegments {
     }
 
     /// Whether a point other than a and b lies on the segment between them.
-    bool any_between(BorderPoint const& a, BorderPoint const& b) {
+    bool any_between(const BorderPoint& a, const BorderPoint& b) {
         const Segment segment{a, b, b.position - a.position, safe_length(b.position - a.position)};
         return segment.length > 0 && any(segment, 0, points_.size(), 0, 0, 1);
     }
@@ -34,7 +34,7 @@ class PointsOnSegments {
 
   private:
     struct Segment {
-        BorderPoint const &a, &b;
+        const BorderPoint &a, &b;
         glm::dvec3 along;
         double length;
     };
@@ -45,14 +45,14 @@ class PointsOnSegments {
         }
         const std::size_t middle = low + (high - low) / 2;
         const auto at = [&](std::size_t i) { return points_.begin() + static_cast<std::ptrdiff_t>(i); };
-        std::nth_element(at(low), at(middle), at(high), [axis](BorderPoint const& a, BorderPoint const& b) {
+        std::nth_element(at(low), at(middle), at(high), [axis](const BorderPoint& a, const BorderPoint& b) {
             return a.position[axis] < b.position[axis];
         });
         build(low, middle, (axis + 1) % 3);
         build(middle + 1, high, (axis + 1) % 3);
     }
 
-    static bool is_on(Segment const& segment, BorderPoint const& point) {
+    static bool is_on(const Segment& segment, const BorderPoint& point) {
         if (point.index == segment.a.index || point.index == segment.b.index) {
             return false;
         }
@@ -63,7 +63,7 @@ class PointsOnSegments {
     }
 
     /// Searches a cell that the segment crosses between parameters t0 and t1.
-    bool any(Segment const& segment, std::size_t low, std::size_t high, int axis, double t0, double t1) {
+    bool any(const Segment& segment, std::size_t low, std::size_t high, int axis, double t0, double t1) {
         if (low >= high || t0 > t1) {
             return false;
         }
@@ -97,10 +97,10 @@ class PointsOnSegments {
     std::uint64_t steps_ = 0;
 };
 
-void find_t_junctions(BaseMesh const& mesh, std::vector<std::array<std::uint32_t, 2>> const& border,
+void find_t_junctions(const BaseMesh& mesh, const std::vector<std::array<std::uint32_t, 2>>& border,
                       std::uint64_t most_steps, std::vector<std::string>& flaws) {
     std::vector<std::uint32_t> indices;
-    for (auto const& edge : border) {
+    for (const auto& edge : border) {
         indices.insert(indices.end(), edge.begin(), edge.end());
     }
     std::sort(indices.begin(), indices.end());
@@ -113,7 +113,7 @@ void find_t_junctions(BaseMesh const& mesh, std::vector<std::array<std::uint32_t
     PointsOnSegments tree(std::move(points));
     std::size_t found = 0, searched = 0;
     while (searched < border.size() && tree.steps() < most_steps) {
-        auto const& [a, b] = border[searched++];
+        const auto& [a, b] = border[searched++];
         found += tree.any_between({mesh.vertices[a].position, a}, {mesh.vertices[b].position, b});
     }
     if (found > 0) {
@@ -123,18 +123,18 @@ void find_t_junctions(BaseMesh const& mesh, std::vector<std::array<std::uint32_t
                         found));
     }
     if (searched < border.size()) {
-        flaws.push_back(fmt::format("The search for T-junctions was given up after {} of {} border edges.",
-                                    searched, border.size()));
+        flaws.push_back(fmt::format("The search for T-junctions was given up after {} of {} border edges.", searched,
+                                    border.size()));
     }
 }
 
-void edge_flaws(BaseMesh const& mesh, std::vector<std::uint32_t> const& same_position,
-                std::uint64_t most_steps, std::vector<std::string>& flaws) {
+void edge_flaws(const BaseMesh& mesh, const std::vector<std::uint32_t>& same_position, std::uint64_t most_steps,
+                std::vector<std::string>& flaws) {
     // one number per edge and triangle: the lower vertex, the higher, the direction; sorting brings them
     // together
     std::vector<std::uint64_t> uses;
     uses.reserve(mesh.triangles.size() * 3);
-    for (auto const& t : mesh.triangles) {
+    for (const auto& t : mesh.triangles) {
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint64_t a = same_position[t[k]], b = same_position[t[(k + 1) % 3]];
             uses.push_back(std::min(a, b) << 33 | std::max(a, b) << 1 | (a < b ? 0u : 1u));
@@ -149,8 +149,8 @@ void edge_flaws(BaseMesh const& mesh, std::vector<std::uint32_t> const& same_pos
             ++end;
         }
         if (end - i == 1) {
-            border.push_back({static_cast<std::uint32_t>(uses[i] >> 33),
-                              static_cast<std::uint32_t>(uses[i] >> 1 & UINT32_MAX)});
+            border.push_back(
+                {static_cast<std::uint32_t>(uses[i] >> 33), static_cast<std::uint32_t>(uses[i] >> 1 & UINT32_MAX)});
         } else if (end - i > 2) {
             ++crowded;
         } else {
@@ -162,13 +162,12 @@ void edge_flaws(BaseMesh const& mesh, std::vector<std::uint32_t> const& same_pos
         flaws.push_back(fmt::format("{} edge(s) belong to more than two triangles.", crowded));
     }
     if (opposed > 0) {
-        flaws.push_back(
-            fmt::format("Across {} edge(s) the winding changes: neighbours face opposite ways.", opposed));
+        flaws.push_back(fmt::format("Across {} edge(s) the winding changes: neighbours face opposite ways.", opposed));
     }
     find_t_junctions(mesh, border, most_steps, flaws);
 }
 
-void normal_flaws(BaseMesh const& mesh, std::vector<std::uint32_t> const& same_position,
+void normal_flaws(const BaseMesh& mesh, const std::vector<std::uint32_t>& same_position,
                   std::vector<std::string>& flaws) {
     std::vector<char> several(mesh.vertices.size(), 0);
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
@@ -181,25 +180,23 @@ void normal_flaws(BaseMesh const& mesh, std::vector<std::uint32_t> const& same_p
             fmt::format("{} point(s) have more than one normal: the displaced surface opens there.", count));
     }
     std::size_t against = 0;
-    for (auto const& t : mesh.triangles) {
-        const glm::dvec3 facing = triangle_normal(mesh.vertices[t[0]].position, mesh.vertices[t[1]].position,
-                                                  mesh.vertices[t[2]].position);
-        against += std::any_of(t.begin(), t.end(), [&](std::uint32_t i) {
-            return glm::dot(facing, mesh.vertices[i].normal) < 0;
-        });
+    for (const auto& t : mesh.triangles) {
+        const glm::dvec3 facing =
+            triangle_normal(mesh.vertices[t[0]].position, mesh.vertices[t[1]].position, mesh.vertices[t[2]].position);
+        against += std::any_of(t.begin(), t.end(),
+                               [&](std::uint32_t i) { return glm::dot(facing, mesh.vertices[i].normal) < 0; });
     }
     if (against > 0) {
-        flaws.push_back(
-            fmt::format("{} triangle(s) have a normal that points against their winding.", against));
+        flaws.push_back(fmt::format("{} triangle(s) have a normal that points against their winding.", against));
     }
 }
 
 }  // namespace
 
-std::vector<std::string> surface_flaws(BaseMesh const& mesh, std::uint64_t most_steps) {
+std::vector<std::string> surface_flaws(const BaseMesh& mesh, std::uint64_t most_steps) {
     std::vector<PositionKey> keys;
     keys.reserve(mesh.vertices.size());
-    for (BaseVertex const& vertex : mesh.vertices) {
+    for (const BaseVertex& vertex : mesh.vertices) {
         keys.push_back(position_key(vertex.position));
     }
     const std::vector<std::uint32_t> same_position = first_equal(keys);

@@ -16,6 +16,6 @@ namespace tessera {
 /// - several normals at one position: a hard edge
 /// - normals that point against the triangle's winding
 /// Vertices are identified by their positions. Needs positions and unit normals.
-std::vector<std::string> surface_flaws(BaseMesh const& mesh, std::uint64_t most_steps = largest_search);
+std::vector<std::string> surface_flaws(const BaseMesh& mesh, std::uint64_t most_steps = largest_search);
 
 }  // namespace tessera

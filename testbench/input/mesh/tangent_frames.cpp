@@ -17,10 +17,10 @@ struct FrameSum {
     std::uint32_t straight = 0, mirrored = 0;  // triangles
 };
 
-std::vector<std::uint32_t> frame_groups(BaseMesh const& mesh) {
+std::vector<std::uint32_t> frame_groups(const BaseMesh& mesh) {
     std::vector<std::array<std::uint64_t, 6>> keys;
     keys.reserve(mesh.vertices.size());
-    for (BaseVertex const& vertex : mesh.vertices) {
+    for (const BaseVertex& vertex : mesh.vertices) {
         const PositionKey p = position_key(vertex.position), n = position_key(vertex.normal);
         keys.push_back({p[0], p[1], p[2], n[0], n[1], n[2]});
     }
@@ -28,7 +28,7 @@ std::vector<std::uint32_t> frame_groups(BaseMesh const& mesh) {
 }
 
 /// A unit vector perpendicular to n, from the axis least aligned with n.
-glm::dvec3 perpendicular(glm::dvec3 const& n) {
+glm::dvec3 perpendicular(const glm::dvec3& n) {
     int axis = 0;
     for (int k = 1; k < 3; ++k) {
         if (std::abs(n[k]) < std::abs(n[axis])) {
@@ -47,13 +47,12 @@ void complete_tangent_frames(BaseMesh& mesh) {
     std::vector<FrameSum> sums(mesh.vertices.size());
 
     double largest_area = 0;
-    for (auto const& t : mesh.triangles) {
-        largest_area =
-            std::max(largest_area, triangle_area(mesh.vertices[t[0]].position, mesh.vertices[t[1]].position,
-                                                 mesh.vertices[t[2]].position));
+    for (const auto& t : mesh.triangles) {
+        largest_area = std::max(largest_area, triangle_area(mesh.vertices[t[0]].position, mesh.vertices[t[1]].position,
+                                                            mesh.vertices[t[2]].position));
     }
     std::size_t flat_texture = 0;
-    for (auto const& t : mesh.triangles) {
+    for (const auto& t : mesh.triangles) {
         const auto gradient = texture_gradient(mesh, t);
         if (!gradient) {
             ++flat_texture;
@@ -61,8 +60,8 @@ void complete_tangent_frames(BaseMesh& mesh) {
         }
         const double weight = largest_area > 0 ? gradient->area / largest_area : 1;
         const glm::dvec3 direction = unit_or_zero(gradient->dp_du);
-        const glm::dvec3 facing = triangle_normal(mesh.vertices[t[0]].position, mesh.vertices[t[1]].position,
-                                                  mesh.vertices[t[2]].position);
+        const glm::dvec3 facing =
+            triangle_normal(mesh.vertices[t[0]].position, mesh.vertices[t[1]].position, mesh.vertices[t[2]].position);
         for (std::uint32_t corner : t) {
             FrameSum& sum = sums[group[corner]];
             sum.direction += weight * direction;
@@ -80,7 +79,7 @@ void complete_tangent_frames(BaseMesh& mesh) {
             vertex.handedness = mesh.vertices[group[i]].handedness;
             continue;
         }
-        FrameSum const& sum = sums[i];
+        const FrameSum& sum = sums[i];
         const glm::dvec3 in_plane = sum.direction - vertex.normal * glm::dot(vertex.normal, sum.direction);
         if (safe_length(in_plane) > cancelled * sum.weight) {
             const glm::dvec3 rough = unit_or_zero(in_plane);

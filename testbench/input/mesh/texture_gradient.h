@@ -16,11 +16,11 @@ struct TextureGradient {
 };
 
 /// Nothing if the triangle has no area in texture space (or so little that a gradient is not finite).
-inline std::optional<TextureGradient> texture_gradient(BaseMesh const& mesh,
-                                                       std::array<std::uint32_t, 3> const& triangle) {
-    BaseVertex const& a = mesh.vertices[triangle[0]];
-    BaseVertex const& b = mesh.vertices[triangle[1]];
-    BaseVertex const& c = mesh.vertices[triangle[2]];
+inline std::optional<TextureGradient> texture_gradient(const BaseMesh& mesh,
+                                                       const std::array<std::uint32_t, 3>& triangle) {
+    const BaseVertex& a = mesh.vertices[triangle[0]];
+    const BaseVertex& b = mesh.vertices[triangle[1]];
+    const BaseVertex& c = mesh.vertices[triangle[2]];
     const glm::dvec2 ab = b.texture - a.texture, ac = c.texture - a.texture;
     // same criterion of "no area" as for a triangle in space
     const glm::dvec3 facing =

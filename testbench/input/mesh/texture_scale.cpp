@@ -9,7 +9,7 @@ namespace tessera {
 
 void measure_texture_scale(BaseMesh& mesh) {
     double largest_area = 0;
-    for (auto const& triangle : mesh.triangles) {
+    for (const auto& triangle : mesh.triangles) {
         if (const auto gradient = texture_gradient(mesh, triangle)) {
             largest_area = std::max(largest_area, gradient->area);
         }
@@ -24,13 +24,12 @@ void measure_texture_scale(BaseMesh& mesh) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     BaseMesh::TextureScale scale{0, 0, infinity, 0, infinity, 0};
     double total = 0;
-    for (auto const& triangle : mesh.triangles) {
+    for (const auto& triangle : mesh.triangles) {
         const auto gradient = texture_gradient(mesh, triangle);
         if (!gradient) {
             continue;
         }
-        const double weight =
-            gradient->area / largest_area;  // relative: sums of squares of huge models stay finite
+        const double weight = gradient->area / largest_area;  // relative: sums of squares of huge models stay finite
         const double u = safe_length(gradient->dp_du), v = safe_length(gradient->dp_dv);
         total += weight;
         scale.mean_u += weight * u;

@@ -8,12 +8,12 @@
 namespace tessera {
 
 /// |a|, without intermediate overflow or underflow.
-inline double safe_length(glm::dvec3 const& a) {
+inline double safe_length(const glm::dvec3& a) {
     return std::hypot(a.x, a.y, a.z);
 }
 
 /// a / |a|; zero for the zero vector.
-inline glm::dvec3 unit_or_zero(glm::dvec3 const& a) {
+inline glm::dvec3 unit_or_zero(const glm::dvec3& a) {
     const double largest = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)});
     if (!(largest > 0)) {
         return glm::dvec3(0);
@@ -23,7 +23,7 @@ inline glm::dvec3 unit_or_zero(glm::dvec3 const& a) {
 }
 
 /// Unit normal of the triangle a, b, c by its winding; zero if it has no area (flattest_triangle).
-inline glm::dvec3 triangle_normal(glm::dvec3 const& a, glm::dvec3 const& b, glm::dvec3 const& c) {
+inline glm::dvec3 triangle_normal(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
     const glm::dvec3 ab = b - a, ac = c - a, bc = c - b;
     double largest = 0;
     for (int k = 0; k < 3; ++k) {
@@ -40,7 +40,7 @@ inline glm::dvec3 triangle_normal(glm::dvec3 const& a, glm::dvec3 const& b, glm:
 }
 
 /// Area in square model units.
-inline double triangle_area(glm::dvec3 const& a, glm::dvec3 const& b, glm::dvec3 const& c) {
+inline double triangle_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
     return safe_length(glm::cross(b - a, c - a)) / 2;
 }
 

@@ -92,8 +92,8 @@ BaseMesh bring_down_texture(BaseMesh mesh, const glm::bvec2& repeats, const glm:
             extent.add(mesh.vertices[corner].texture);
         const glm::dvec2 shift = shift_of(extent, repeats);
         for (std::uint32_t& corner : triangle) {
-            const auto [place, made] = moved.try_emplace({corner, {shift.x, shift.y}},
-                                                         static_cast<std::uint32_t>(mesh.vertices.size()));
+            const auto [place, made] =
+                moved.try_emplace({corner, {shift.x, shift.y}}, static_cast<std::uint32_t>(mesh.vertices.size()));
             if (made) {
                 BaseVertex vertex = mesh.vertices[corner];
                 vertex.texture += shift;

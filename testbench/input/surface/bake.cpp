@@ -35,10 +35,10 @@ void lay_floor(const QuadricSurface& surface, BakedMap& map) {
             lowest = value;
     }
     if (map.absent == map.values.size())
-        throw InputError(fmt::format(
-            "{}: the quadric is nowhere: none of {} x {} lines meets it within {:g} model units; move it, "
-            "make it larger, or sample it elsewhere ([domain], --mesh)",
-            surface.where, map.width, map.height, largest_displacement));
+        throw InputError(
+            fmt::format("{}: the quadric is nowhere: none of {} x {} lines meets it within {:g} model units; move it, "
+                        "make it larger, or sample it elsewhere ([domain], --mesh)",
+                        surface.where, map.width, map.height, largest_displacement));
     map.floor = surface.floor.value_or(lowest);
     for (double& value : map.values) {
         map.raised += value < map.floor;
@@ -56,8 +56,7 @@ std::vector<BasisFunctions> at_centres(const std::vector<double>& knots, std::si
     std::vector<BasisFunctions> basis;
     basis.reserve(static_cast<std::size_t>(texels));
     for (int k = 0; k < texels; ++k)
-        basis.push_back(
-            basis_functions(knots, degree, parameter_at(knots, degree, centre_of(k, texels, 0, 1))));
+        basis.push_back(basis_functions(knots, degree, parameter_at(knots, degree, centre_of(k, texels, 0, 1))));
     return basis;
 }
 
@@ -75,8 +74,7 @@ BakedMap bake_patch(const NurbsPatch& patch, int width, int height) {
 /// Finds the texels that a mesh covers, and their displacement.
 class MeshSampler {
   public:
-    MeshSampler(const QuadricSurface& surface, const BaseMesh& mesh, const Job::Map& map, int width,
-                int height)
+    MeshSampler(const QuadricSurface& surface, const BaseMesh& mesh, const Job::Map& map, int width, int height)
         : surface_(surface),
           addressing_{1, 0, map.address_u, map.address_v},
           baked_(empty_map(width, height)),
@@ -134,28 +132,27 @@ class MeshSampler {
 
     void sample(const DisplacedSurface::Corners& corners, std::uint32_t triangle) {
         const auto [columns, rows] = grid_box(corners.texel);
-        for_texel_centres(
-            corners.texel, columns, rows, [&](std::int64_t x, std::int64_t y, const glm::dvec3& b) {
-                const std::size_t texel = texel_index(x, y);
-                // A centre on an edge lies in both its triangles, which agree on the value.
-                const bool inside = std::min({b.x, b.y, b.z}) > 1e-6;
-                if (owner_[texel] != nobody) {
-                    overlaps_[texel] = overlaps_[texel] || (inside && inside_[texel]);
-                    return;
-                }
-                owner_[texel] = triangle;
-                inside_[texel] = inside;
-                const auto mixed = [&b](const std::array<glm::dvec3, 3>& at) {
-                    return b.x * at[0] + b.y * at[1] + b.z * at[2];
-                };
-                const glm::dvec3 normal = unit_or_zero(mixed(corners.normal));
-                if (normal == glm::dvec3(0))
-                    return;
-                const std::optional<double> t = intersect(surface_.quadric, mixed(corners.position), normal,
-                                                          surface_.root.value_or(Root::nearest));
-                if (t)
-                    baked_.values[texel] = *t;
-            });
+        for_texel_centres(corners.texel, columns, rows, [&](std::int64_t x, std::int64_t y, const glm::dvec3& b) {
+            const std::size_t texel = texel_index(x, y);
+            // A centre on an edge lies in both its triangles, which agree on the value.
+            const bool inside = std::min({b.x, b.y, b.z}) > 1e-6;
+            if (owner_[texel] != nobody) {
+                overlaps_[texel] = overlaps_[texel] || (inside && inside_[texel]);
+                return;
+            }
+            owner_[texel] = triangle;
+            inside_[texel] = inside;
+            const auto mixed = [&b](const std::array<glm::dvec3, 3>& at) {
+                return b.x * at[0] + b.y * at[1] + b.z * at[2];
+            };
+            const glm::dvec3 normal = unit_or_zero(mixed(corners.normal));
+            if (normal == glm::dvec3(0))
+                return;
+            const std::optional<double> t =
+                intersect(surface_.quadric, mixed(corners.position), normal, surface_.root.value_or(Root::nearest));
+            if (t)
+                baked_.values[texel] = *t;
+        });
     }
 
     /// Spreads values ring by ring, from all covered texels at once.

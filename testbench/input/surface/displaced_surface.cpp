@@ -27,8 +27,8 @@ double texel_length(const BaseMesh& mesh, const HeightMap& map) {
     return (mesh.texture_scale.mean_u / map.width + mesh.texture_scale.mean_v / map.height) / 2;
 }
 
-DisplacedSurface::DisplacedSurface(const BaseMesh& mesh, const HeightMap& map,
-                                   const DisplacementOf& displacement, const LocalFrame& frame)
+DisplacedSurface::DisplacedSurface(const BaseMesh& mesh, const HeightMap& map, const DisplacementOf& displacement,
+                                   const LocalFrame& frame)
     : mesh_(mesh), map_(map), displacement_(displacement), frame_(frame) {}
 
 DisplacedSurface::Corners DisplacedSurface::corners(std::size_t triangle) const {
@@ -45,9 +45,8 @@ DisplacedSurface::Corners DisplacedSurface::corners(std::size_t triangle) const 
 
 double DisplacedSurface::value(const glm::dvec2& texel, Sampling sampling) const {
     const auto at = [&](std::int64_t x, std::int64_t y) {
-        return static_cast<double>(
-            map_.at(static_cast<int>(addressed(x, map_.width, displacement_.address_u)),
-                    static_cast<int>(addressed(y, map_.height, displacement_.address_v))));
+        return static_cast<double>(map_.at(static_cast<int>(addressed(x, map_.width, displacement_.address_u)),
+                                           static_cast<int>(addressed(y, map_.height, displacement_.address_v))));
     };
     if (sampling == Sampling::nearest_texel) {
         // On a texel's edge rounding must not select the side: the hardware's coordinates are exact there.

@@ -49,9 +49,9 @@ double parameter_at(const std::vector<double>& knots, std::size_t degree, double
 }
 
 double height_of(const NurbsPatch& patch, double u, double v) {
-    return height_of(
-        patch, basis_functions(patch.knots_u, patch.degree_u, parameter_at(patch.knots_u, patch.degree_u, u)),
-        basis_functions(patch.knots_v, patch.degree_v, parameter_at(patch.knots_v, patch.degree_v, v)));
+    return height_of(patch,
+                     basis_functions(patch.knots_u, patch.degree_u, parameter_at(patch.knots_u, patch.degree_u, u)),
+                     basis_functions(patch.knots_v, patch.degree_v, parameter_at(patch.knots_v, patch.degree_v, v)));
 }
 
 std::vector<double> bezier_knots(std::size_t degree) {

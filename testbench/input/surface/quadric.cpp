@@ -6,8 +6,7 @@
 
 namespace tessera {
 
-Quadric make_quadric(QuadricShape shape, const glm::dvec3& centre, const glm::dvec3& semi_axes, int axis,
-                     int sheets) {
+Quadric make_quadric(QuadricShape shape, const glm::dvec3& centre, const glm::dvec3& semi_axes, int axis, int sheets) {
     Quadric quadric;
     quadric.centre = centre;
     for (int k = 0; k < 3; ++k)

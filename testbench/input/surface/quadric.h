@@ -23,8 +23,7 @@ enum class QuadricShape { ellipsoid, paraboloid, cone, cylinder, hyperboloid };
 ///     cone         X^2 + Y^2 = Z^2              both halves; the apex is the centre
 ///     cylinder     X^2 + Y^2 = 1                infinite
 ///     hyperboloid  X^2 + Y^2 - Z^2 = 1 or, with two sheets, -1
-Quadric make_quadric(QuadricShape shape, const glm::dvec3& centre, const glm::dvec3& semi_axes, int axis,
-                     int sheets);
+Quadric make_quadric(QuadricShape shape, const glm::dvec3& centre, const glm::dvec3& semi_axes, int axis, int sheets);
 
 /// Which of a line's two intersections is used.
 enum class Root { highest, lowest, nearest };

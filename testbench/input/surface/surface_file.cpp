@@ -50,10 +50,10 @@ glm::dvec3 semi_axes(TomlFields& fields, bool round, int may_be_negative) {
     for (int k = 0; k < 3; ++k) {
         const double size = k == may_be_negative ? std::abs(given[k]) : given[k];
         if (!(size >= length.low))
-            fields.fail("semi_axes", static_cast<std::size_t>(k),
-                        fmt::format("{} in `semi_axes`; wanted is a length, {:g} .. {:g}{}",
-                                    toml_number(given[k]), length.low, length.high,
-                                    k == may_be_negative ? ", or negative, to open the other way" : ""));
+            fields.fail(
+                "semi_axes", static_cast<std::size_t>(k),
+                fmt::format("{} in `semi_axes`; wanted is a length, {:g} .. {:g}{}", toml_number(given[k]), length.low,
+                            length.high, k == may_be_negative ? ", or negative, to open the other way" : ""));
     }
     return given;
 }
@@ -63,8 +63,7 @@ Quadric named_quadric(TomlFields& fields, const std::string& name) {
     int axis = 2;
     if (has_axis && fields.has("axis"))
         axis = fields.choice("axis", {"x", "y", "z"})[0] - 'x';
-    const glm::dvec3 centre =
-        fields.has("centre") ? vector(fields.numbers("centre", 3, coordinate)) : glm::dvec3(0);
+    const glm::dvec3 centre = fields.has("centre") ? vector(fields.numbers("centre", 3, coordinate)) : glm::dvec3(0);
     const glm::dvec3 axes = semi_axes(fields, name == "sphere", name == "paraboloid" ? axis : -1);
     const auto sheets = name == "hyperboloid" ? static_cast<int>(fields.integer("sheets", 1, 2)) : 0;
     const QuadricShape shape = name == "paraboloid"    ? QuadricShape::paraboloid
@@ -78,8 +77,8 @@ Quadric named_quadric(TomlFields& fields, const std::string& name) {
 QuadricSurface read_quadric(TomlFields& fields) {
     QuadricSurface surface;
     surface.where = fields.where();
-    const std::string shape = fields.choice(
-        "shape", {"sphere", "ellipsoid", "paraboloid", "cone", "cylinder", "hyperboloid", "general"});
+    const std::string shape =
+        fields.choice("shape", {"sphere", "ellipsoid", "paraboloid", "cone", "cylinder", "hyperboloid", "general"});
     surface.quadric = shape == "general" ? general_quadric(fields) : named_quadric(fields, shape);
     if (fields.has("root")) {
         const std::string root = fields.choice("root", {"highest", "lowest", "nearest"});
@@ -93,16 +92,16 @@ QuadricSurface read_quadric(TomlFields& fields) {
 void check_knots(TomlFields& fields, const char* key, const std::vector<double>& knots, std::size_t degree,
                  std::size_t count, const char* of) {
     if (knots.size() != count + degree + 1)
-        fields.fail(key, fmt::format("`{}` has {} knot(s); wanted are {}: {} {} of heights, degree {}, and 1",
-                                     key, knots.size(), count + degree + 1, count, of, degree));
+        fields.fail(key, fmt::format("`{}` has {} knot(s); wanted are {}: {} {} of heights, degree {}, and 1", key,
+                                     knots.size(), count + degree + 1, count, of, degree));
     std::size_t alike = 1;
     const double range = knots.back() - knots.front();
     for (std::size_t k = 1; k < knots.size(); ++k) {
         const double span = knots[k] - knots[k - 1];
         if (span < 0)
             fields.fail(key, k,
-                        fmt::format("`{}` falls from {} to {}: knots must not decrease", key,
-                                    toml_number(knots[k - 1]), toml_number(knots[k])));
+                        fmt::format("`{}` falls from {} to {}: knots must not decrease", key, toml_number(knots[k - 1]),
+                                    toml_number(knots[k])));
         if (span > 0 && span < least_span * range)
             fields.fail(key, k,
                         fmt::format("`{}` rises from {} to {}, by less than {:g} of its range: make them the "
@@ -113,16 +112,14 @@ void check_knots(TomlFields& fields, const char* key, const std::vector<double>&
         const bool end = knots[k] <= knots[degree] || knots[k] >= knots[count];
         const std::size_t most = end ? degree + 1 : degree;
         if (alike > most)
-            fields.fail(
-                key, k,
-                fmt::format("`{}` has the knot {} more than {} times, {}", key, toml_number(knots[k]), most,
-                            end ? "degree + 1, the most at an end"
-                                : "the degree, and inside more would tear the surface"));
+            fields.fail(key, k,
+                        fmt::format("`{}` has the knot {} more than {} times, {}", key, toml_number(knots[k]), most,
+                                    end ? "degree + 1, the most at an end"
+                                        : "the degree, and inside more would tear the surface"));
     }
     if (!(knots[degree] < knots[count]))
-        fields.fail(
-            key, fmt::format("`{}` leaves no range: its knots {} and {}, {} and {}, must differ", key,
-                             degree + 1, count + 1, toml_number(knots[degree]), toml_number(knots[count])));
+        fields.fail(key, fmt::format("`{}` leaves no range: its knots {} and {}, {} and {}, must differ", key,
+                                     degree + 1, count + 1, toml_number(knots[degree]), toml_number(knots[count])));
 }
 
 void read_control_points(TomlFields& fields, NurbsPatch& patch) {
@@ -135,22 +132,21 @@ void read_control_points(TomlFields& fields, NurbsPatch& patch) {
         return;
     TomlFields::Rows weights = fields.rows("weights", weight);
     if (weights.columns != patch.columns || weights.rows != patch.rows)
-        fields.fail("weights",
-                    fmt::format("`weights` has {} row(s) of {} and `heights` {} of {}: every height has a "
-                                "weight",
-                                weights.rows, weights.columns, patch.rows, patch.columns));
+        fields.fail("weights", fmt::format("`weights` has {} row(s) of {} and `heights` {} of {}: every height has a "
+                                           "weight",
+                                           weights.rows, weights.columns, patch.rows, patch.columns));
     patch.weights = std::move(weights.values);
 }
 
 NurbsPatch read_nurbs(TomlFields& fields) {
     NurbsPatch patch;
     read_control_points(fields, patch);
-    const auto direction = [&](const char* degree_key, const char* knots_key, std::size_t count,
-                               const char* of, std::size_t& degree, std::vector<double>& knots) {
+    const auto direction = [&](const char* degree_key, const char* knots_key, std::size_t count, const char* of,
+                               std::size_t& degree, std::vector<double>& knots) {
         degree = static_cast<std::size_t>(fields.integer(degree_key, 1, largest_degree));
         if (count < degree + 1)
-            fields.fail("heights", fmt::format("`heights` has {} {} and `{}` = {} needs {} or more", count,
-                                               of, degree_key, degree, degree + 1));
+            fields.fail("heights", fmt::format("`heights` has {} {} and `{}` = {} needs {} or more", count, of,
+                                               degree_key, degree, degree + 1));
         knots = fields.numbers(knots_key, 0, knot);
         check_knots(fields, knots_key, knots, degree, count, of);
     };
@@ -165,8 +161,8 @@ NurbsPatch read_bezier(TomlFields& fields) {
     constexpr std::size_t most = largest_degree + 1;
     for (const auto& [count, of] : {std::pair{patch.columns, "columns"}, {patch.rows, "rows"}})
         if (count < 2 || count > most)
-            fields.fail("heights", fmt::format("`heights` of a Bezier patch has {} {}; wanted are 2 .. {}",
-                                               count, of, most));
+            fields.fail("heights",
+                        fmt::format("`heights` of a Bezier patch has {} {}; wanted are 2 .. {}", count, of, most));
     patch.degree_u = patch.columns - 1;
     patch.degree_v = patch.rows - 1;
     patch.knots_u = bezier_knots(patch.degree_u);
@@ -181,11 +177,9 @@ void read_domain(TomlFields& fields, Surface& surface) {
             continue;
         const std::vector<double> ends = fields.numbers(key, 2, coordinate);
         if (!(ends[1] - ends[0] >= length.low && ends[1] - ends[0] <= length.high))
-            fields.fail(
-                key,
-                fmt::format("`{}` goes from {} to {}; wanted are two ends, the lower first, {:g} .. {:g} "
-                            "apart",
-                            key, toml_number(ends[0]), toml_number(ends[1]), length.low, length.high));
+            fields.fail(key, fmt::format("`{}` goes from {} to {}; wanted are two ends, the lower first, {:g} .. {:g} "
+                                         "apart",
+                                         key, toml_number(ends[0]), toml_number(ends[1]), length.low, length.high));
         surface.low[k] = ends[0];
         surface.high[k] = ends[1];
     }
@@ -203,15 +197,14 @@ Surface parse_surface(std::string_view text, const std::string& name) {
             continue;
         const toml::table* const keys = document.get(table)->as_table();
         if (keys == nullptr)
-            top.fail(table, fmt::format("`{0}` is {1}; write [{0}], then its keys", table,
-                                        found_text(*document.get(table))));
+            top.fail(table,
+                     fmt::format("`{0}` is {1}; write [{0}], then its keys", table, found_text(*document.get(table))));
         const std::string label = table;
         TomlFields fields(*keys, label, name);
         if (label == "domain") {
             read_domain(fields, surface);
         } else if (!shape.empty()) {
-            top.fail(table,
-                     fmt::format("[{}] and [{}] are both there: a file describes one surface", shape, label));
+            top.fail(table, fmt::format("[{}] and [{}] are both there: a file describes one surface", shape, label));
         } else if (label == "quadric") {
             surface.shape = read_quadric(fields);
         } else if (label == "nurbs") {
@@ -225,8 +218,7 @@ Surface parse_surface(std::string_view text, const std::string& name) {
     }
     top.finish();
     if (shape.empty())
-        throw InputError(
-            fmt::format("{}: there is no surface: write a table [quadric], [nurbs] or [bezier]", name));
+        throw InputError(fmt::format("{}: there is no surface: write a table [quadric], [nurbs] or [bezier]", name));
     return surface;
 }
 

@@ -32,11 +32,9 @@ inline std::array<GridRange, 2> grid_box(const std::array<glm::dvec2, 3>& t) {
 /// included; t in texels, b the centre's barycentric coordinates. Row by row upwards. No texels for a triangle
 /// without area.
 template <class At>
-void for_texel_centres(const std::array<glm::dvec2, 3>& t, const GridRange& columns, const GridRange& rows,
-                       At&& at) {
+void for_texel_centres(const std::array<glm::dvec2, 3>& t, const GridRange& columns, const GridRange& rows, At&& at) {
     const auto [box_columns, box_rows] = grid_box(t);
-    const std::int64_t first_row = std::max(rows.first, box_rows.first),
-                       last_row = std::min(rows.last, box_rows.last);
+    const std::int64_t first_row = std::max(rows.first, box_rows.first), last_row = std::min(rows.last, box_rows.last);
     const std::int64_t first = std::max(columns.first, box_columns.first),
                        last = std::min(columns.last, box_columns.last);
     if (first_row > last_row || first > last)

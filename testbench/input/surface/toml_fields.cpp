@@ -39,8 +39,7 @@ std::int64_t TomlFields::integer(const char* key, std::int64_t low, std::int64_t
     const toml::node& node = wanted(key, "an integer");
     const auto* const value = node.as_integer();
     if (value == nullptr || value->get() < low || value->get() > high)
-        fail(key,
-             fmt::format("`{}` is {}; wanted is an integer, {} .. {}", key, found_text(node), low, high));
+        fail(key, fmt::format("`{}` is {}; wanted is an integer, {} .. {}", key, found_text(node), low, high));
     return value->get();
 }
 
@@ -71,19 +70,17 @@ TomlFields::Rows TomlFields::rows(const char* key, const Range& range) {
     const toml::node& node = wanted(key, "a list of rows");
     const toml::array* const array = node.as_array();
     if (array == nullptr || array->empty())
-        fail(key, fmt::format("`{}` is {}; wanted is a list of rows, each a list of numbers", key,
-                              found_text(node)));
+        fail(key, fmt::format("`{}` is {}; wanted is a list of rows, each a list of numbers", key, found_text(node)));
     Rows rows;
     for (const toml::node& element : *array) {
         const toml::array* const row = element.as_array();
         if (row == nullptr || row->empty())
-            fail_at(element.source(), fmt::format("row {} of `{}` is {}; wanted is a list of numbers",
-                                                  rows.rows + 1, key, found_text(element)));
+            fail_at(element.source(), fmt::format("row {} of `{}` is {}; wanted is a list of numbers", rows.rows + 1,
+                                                  key, found_text(element)));
         if (rows.rows > 0 && row->size() != rows.columns)
-            fail_at(element.source(),
-                    fmt::format("row {} of `{}` has {} number(s) and the first has {}: make them "
-                                "alike",
-                                rows.rows + 1, key, row->size(), rows.columns));
+            fail_at(element.source(), fmt::format("row {} of `{}` has {} number(s) and the first has {}: make them "
+                                                  "alike",
+                                                  rows.rows + 1, key, row->size(), rows.columns));
         rows.columns = row->size();
         ++rows.rows;
         for (const toml::node& value : *row)
@@ -111,11 +108,10 @@ void TomlFields::finish() const {
         if (asked_.count(name) > 0)
             continue;
         const std::string near = nearest_name(name, {asked_.begin(), asked_.end()});
-        fail_at(key.source(),
-                fmt::format("unknown {} `{}`{}; {}", node.is_table() ? "table" : "key", printable(name),
-                            name_.empty() ? "" : fmt::format(" of [{}]", name_),
-                            near.empty() ? fmt::format("it takes {}", listed(asked_))
-                                         : fmt::format("did you mean `{}`?", near)));
+        fail_at(key.source(), fmt::format("unknown {} `{}`{}; {}", node.is_table() ? "table" : "key", printable(name),
+                                          name_.empty() ? "" : fmt::format(" of [{}]", name_),
+                                          near.empty() ? fmt::format("it takes {}", listed(asked_))
+                                                       : fmt::format("did you mean `{}`?", near)));
     }
 }
 
@@ -134,8 +130,8 @@ void TomlFields::fail_at(const toml::source_region& place, const std::string& wh
 double TomlFields::number_of(const toml::node& node, const char* key, const Range& range) const {
     const std::optional<double> number = to_number(node);
     if (!number || !(*number >= range.low && *number <= range.high))
-        fail_at(node.source(), fmt::format("{} in `{}`; wanted is a number, {:g} .. {:g}", found_text(node),
-                                           key, range.low, range.high));
+        fail_at(node.source(), fmt::format("{} in `{}`; wanted is a number, {:g} .. {:g}", found_text(node), key,
+                                           range.low, range.high));
     return *number;
 }
 

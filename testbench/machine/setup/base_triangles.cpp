@@ -15,8 +15,8 @@ using datapath::Format;
 
 namespace {
 
-std::uint32_t to_texture(double coordinate, std::uint32_t size, datapath::AddressMode mode,
-                         const Format& format, bool& clamped) {
+std::uint32_t to_texture(double coordinate, std::uint32_t size, datapath::AddressMode mode, const Format& format,
+                         bool& clamped) {
     double texels = coordinate * size;
     if (mode == datapath::AddressMode::clamp && (texels < 0 || texels > size)) {
         clamped = true;
@@ -37,8 +37,7 @@ std::uint32_t to_texture(double coordinate, std::uint32_t size, datapath::Addres
 BaseMesh with_low_texture(const BaseMesh& mesh, const datapath::MapGeometry& map, const Format& format) {
     const double texels = std::ldexp(1.0, format.bits - 1 - format.fraction);
     return bring_down_texture(
-        mesh,
-        {map.address_u == datapath::AddressMode::repeat, map.address_v == datapath::AddressMode::repeat},
+        mesh, {map.address_u == datapath::AddressMode::repeat, map.address_v == datapath::AddressMode::repeat},
         {texels / map.width, texels / map.height});
 }
 
@@ -87,17 +86,16 @@ BaseTriangles round_base_triangles(const BaseMesh& original, const ModelScale& m
             "every base triangle collapses when rounded to the position's and texture coordinate's formats: "
             "use wider formats (formats.position_bits, formats.texture_fraction)");
     if (result.dropped > 0)
-        result.remarks.push_back(
-            fmt::format("{} base triangles collapsed when rounded to the hardware's formats and were dropped",
-                        result.dropped));
-    if (result.texture_clamped > 0)
         result.remarks.push_back(fmt::format(
-            "{} base vertices have texture coordinates outside 0..1, and were set to the map's border; if "
-            "they tile, {}",
-            result.texture_clamped,
-            !clamped_v   ? "set map.address_u = \"repeat\""
-            : !clamped_u ? "set map.address_v = \"repeat\""
-                         : "set map.address_u = \"repeat\" and map.address_v = \"repeat\""));
+            "{} base triangles collapsed when rounded to the hardware's formats and were dropped", result.dropped));
+    if (result.texture_clamped > 0)
+        result.remarks.push_back(
+            fmt::format("{} base vertices have texture coordinates outside 0..1, and were set to the map's border; if "
+                        "they tile, {}",
+                        result.texture_clamped,
+                        !clamped_v   ? "set map.address_u = \"repeat\""
+                        : !clamped_u ? "set map.address_v = \"repeat\""
+                                     : "set map.address_u = \"repeat\" and map.address_v = \"repeat\""));
     return result;
 }
 

@@ -30,11 +30,10 @@ datapath::Formats make_formats(const Job::Formats& job) {
     formats.position = Format::make_signed(bits(job.position_bits), bits(job.position_fraction));
     formats.view_distance = formats.position;
     formats.normal = Format::make_signed(bits(job.normal_bits), bits(job.normal_fraction));
-    formats.texture = Format::make_unsigned(bits(job.texture_integer + job.texture_fraction) + 1,
-                                            bits(job.texture_fraction));
+    formats.texture =
+        Format::make_unsigned(bits(job.texture_integer + job.texture_fraction) + 1, bits(job.texture_fraction));
     formats.displacement = Format::make_unsigned(bits(job.displacement_bits), bits(job.displacement_bits));
-    formats.summed_height =
-        Format::make_unsigned(bits(job.summed_height_bits == 0 ? 32 : job.summed_height_bits), 0);
+    formats.summed_height = Format::make_unsigned(bits(job.summed_height_bits == 0 ? 32 : job.summed_height_bits), 0);
     formats.screen = Format::make_signed(bits(job.screen_bits), bits(job.screen_fraction));
     formats.generation_bits = bits(job.generation_bits);
     check_intermediates(formats);

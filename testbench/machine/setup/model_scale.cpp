@@ -28,15 +28,13 @@ ModelScale fit_model(const BaseMesh& mesh, const DisplacementRange& displacement
     ModelScale result;
     result.centre = (low + high) / 2.0;
     const glm::dvec3 half = (high - low) / 2.0;
-    const double reach =
-        std::max({half.x, half.y, half.z}) +
-        std::max(std::abs(displacement.bias), std::abs(displacement.bias + displacement.range));
+    const double reach = std::max({half.x, half.y, half.z}) +
+                         std::max(std::abs(displacement.bias), std::abs(displacement.bias + displacement.range));
     // S and bias are registers of the same format; S is up to twice the range (bits = 1, see make_displacement)
     const double registers = std::max(2 * std::abs(displacement.range), std::abs(displacement.bias)) / 2;
     const double limit = std::ldexp(1.0, position.bits - position.fraction - 2);
     if (reach > 0)
-        result.scale =
-            std::ldexp(1.0, static_cast<int>(std::floor(std::log2(limit / std::max(reach, registers)))));
+        result.scale = std::ldexp(1.0, static_cast<int>(std::floor(std::log2(limit / std::max(reach, registers)))));
     // fewer steps than this across the whole mesh, and the surface is rounding
     constexpr double fewest_steps = 16;
     const double steps = std::ldexp(std::max({half.x, half.y, half.z}) * result.scale, position.fraction);
@@ -46,14 +44,14 @@ ModelScale fit_model(const BaseMesh& mesh, const DisplacementRange& displacement
             "is {:.3g}, that the mesh spans {:.3g} steps of its position format (at least {} are needed): "
             "lower displacement.scale or displacement.bias, check the map's values, or raise "
             "formats.position_bits",
-            map, displacement.bias, displacement.bias + displacement.range,
-            std::max({half.x, half.y, half.z}), steps, fewest_steps));
+            map, displacement.bias, displacement.bias + displacement.range, std::max({half.x, half.y, half.z}), steps,
+            fewest_steps));
     return result;
 }
 
-datapath::DisplacementParameters make_displacement(const DisplacementRange& displacement,
-                                                   const ModelScale& model_scale, std::uint32_t highest_code,
-                                                   const Format& position, std::uint64_t& saturated) {
+datapath::DisplacementParameters make_displacement(const DisplacementRange& displacement, const ModelScale& model_scale,
+                                                   std::uint32_t highest_code, const Format& position,
+                                                   std::uint64_t& saturated) {
     // d = code / 2^bits reaches 1 - 2^-bits only; S makes up for it
     const double codes = static_cast<double>(highest_code);
     const double full = displacement.range * (codes + 1) / codes * model_scale.scale;

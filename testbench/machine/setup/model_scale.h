@@ -31,13 +31,12 @@ DisplacementRange displacement_range(const Job::Displacement& job, const HeightM
 /// Centre and scale that put the displaced model into half of the position's range: nothing saturates, and the eye of a
 /// usual camera has room. `map` is the map's name in messages. Throws InputError if the displacement is so large that
 /// the mesh spans too few steps of the format.
-ModelScale fit_model(const BaseMesh& mesh, const DisplacementRange& displacement,
-                     const datapath::Format& position, const std::string& map);
+ModelScale fit_model(const BaseMesh& mesh, const DisplacementRange& displacement, const datapath::Format& position,
+                     const std::string& map);
 
 /// The registers S and bias of P' = P + (S * d + bias) * N, in the position's format. highest_code: of the map.
-datapath::DisplacementParameters make_displacement(const DisplacementRange& displacement,
-                                                   const ModelScale& model_scale, std::uint32_t highest_code,
-                                                   const datapath::Format& position,
+datapath::DisplacementParameters make_displacement(const DisplacementRange& displacement, const ModelScale& model_scale,
+                                                   std::uint32_t highest_code, const datapath::Format& position,
                                                    std::uint64_t& saturated);
 
 /// A sentence for the report if the map's values are so few of those that displacement.scale spans that the surface is

@@ -19,8 +19,7 @@ std::int32_t to_format(double value, const Format& format, std::uint64_t& satura
 }
 
 datapath::Direction to_direction(const glm::dvec3& v, const Format& format, std::uint64_t& saturated) {
-    return {to_format(v.x, format, saturated), to_format(v.y, format, saturated),
-            to_format(v.z, format, saturated)};
+    return {to_format(v.x, format, saturated), to_format(v.y, format, saturated), to_format(v.z, format, saturated)};
 }
 
 }  // namespace tessera

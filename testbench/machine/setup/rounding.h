@@ -14,7 +14,6 @@ std::int64_t to_fixed(double value, int fraction);
 std::int32_t to_format(double value, const datapath::Format& format, std::uint64_t& saturated);
 
 /// The same by component, without normalising.
-datapath::Direction to_direction(const glm::dvec3& v, const datapath::Format& format,
-                                 std::uint64_t& saturated);
+datapath::Direction to_direction(const glm::dvec3& v, const datapath::Format& format, std::uint64_t& saturated);
 
 }  // namespace tessera

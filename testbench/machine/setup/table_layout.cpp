@@ -34,10 +34,10 @@ int summed_height_bits(std::int64_t wanted, std::uint64_t largest_sum) {
     if (bits == 0)
         bits = holds(32) ? 32 : (holds(40) ? 40 : 48);
     if (!holds(bits))
-        throw InputError(fmt::format(
-            "formats.summed_height_bits = {}: this mesh's largest rectangle sums up to {}, which needs {} "
-            "bits; use that, or 0 to choose automatically",
-            bits, largest_sum, 64 - datapath::leading_zeros(largest_sum)));
+        throw InputError(
+            fmt::format("formats.summed_height_bits = {}: this mesh's largest rectangle sums up to {}, which needs {} "
+                        "bits; use that, or 0 to choose automatically",
+                        bits, largest_sum, 64 - datapath::leading_zeros(largest_sum)));
     return bits;
 }
 
@@ -51,8 +51,8 @@ void lay_out_tables(datapath::Registers& registers) {
                                   entry(registers.formats.displacement.bits)};
     registers.normal_map = {after(registers.displacement_map), registers.map.width, registers.map.height,
                             entry(3 * registers.formats.normal.bits)};
-    registers.summed_height_table = {after(registers.normal_map), registers.map.width + 1,
-                                     registers.map.height + 1, entry(registers.formats.summed_height.bits)};
+    registers.summed_height_table = {after(registers.normal_map), registers.map.width + 1, registers.map.height + 1,
+                                     entry(registers.formats.summed_height.bits)};
 }
 
 }  // namespace tessera

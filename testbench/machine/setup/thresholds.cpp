@@ -29,10 +29,10 @@ std::uint64_t to_register(const Threshold& threshold) {
         throw InputError(fmt::format("{} = {} does not fit its register; the largest is {}", threshold.key,
                                      threshold.value, threshold.limit / threshold.scale));
     if (threshold.used && threshold.value > 0 && fixed < 1)
-        throw InputError(fmt::format(
-            "{} = {} is less than one step of its register, {}, and would be 0 there: set it to 0, or at "
-            "least to that step, or raise {}",
-            threshold.key, threshold.value, 1 / threshold.scale, threshold.format_key));
+        throw InputError(
+            fmt::format("{} = {} is less than one step of its register, {}, and would be 0 there: set it to 0, or at "
+                        "least to that step, or raise {}",
+                        threshold.key, threshold.value, 1 / threshold.scale, threshold.format_key));
     return static_cast<std::uint64_t>(fixed);
 }
 
@@ -58,13 +58,12 @@ datapath::TestParameters make_tests(const Job::Tests& tests, const datapath::For
     const double highest_code = static_cast<double>(formats.displacement.highest);
     result.summed_height_unit = area ? datapath::SummedHeightUnit::area : datapath::SummedHeightUnit::sum;
     // sum: compared with |2 S_ij - S_i - S_j|, four times the paper's difference
-    result.summed_height_threshold =
-        to_register({"tests.summed_height_threshold", tests.summed_height_threshold, tests.summed_height,
-                     highest_code * (area ? 1 : 4), area ? std::ldexp(1.0, 18) : std::ldexp(1.0, 50),
-                     "formats.displacement_bits"});
-    result.view_threshold = static_cast<std::uint32_t>(to_register(
-        {"tests.view_threshold", tests.view_threshold, tests.view, std::ldexp(1.0, formats.screen.fraction),
-         std::ldexp(1.0, formats.screen.bits), "formats.screen_fraction"}));
+    result.summed_height_threshold = to_register(
+        {"tests.summed_height_threshold", tests.summed_height_threshold, tests.summed_height,
+         highest_code * (area ? 1 : 4), area ? std::ldexp(1.0, 18) : std::ldexp(1.0, 50), "formats.displacement_bits"});
+    result.view_threshold = static_cast<std::uint32_t>(
+        to_register({"tests.view_threshold", tests.view_threshold, tests.view, std::ldexp(1.0, formats.screen.fraction),
+                     std::ldexp(1.0, formats.screen.bits), "formats.screen_fraction"}));
     result.generation_limit = static_cast<std::uint32_t>(tests.generation_limit);
     return result;
 }
@@ -83,10 +82,9 @@ bool set_highlight_test(const Job::Tests& tests, const glm::dvec3& to_light, con
         registers.half_vector = {half.x, half.y, half.z};
     }
     // To nearest, so that the cosines of 0, 60 and 90 degrees are what they should be.
-    registers.highlight_cosine =
-        to_fixed(std::cos(tests.highlight_angle * pi / 180), 2 * formats.normal.fraction);
-    registers.highlight_normal_threshold = to_normal_register(
-        "tests.highlight_normal_threshold", tests.highlight_normal_threshold, true, formats);
+    registers.highlight_cosine = to_fixed(std::cos(tests.highlight_angle * pi / 180), 2 * formats.normal.fraction);
+    registers.highlight_normal_threshold =
+        to_normal_register("tests.highlight_normal_threshold", tests.highlight_normal_threshold, true, formats);
     return is_there;
 }
 

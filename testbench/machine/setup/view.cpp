@@ -34,9 +34,7 @@ datapath::TransformParameters make_transform(const Job::Camera& camera, const Mo
     const glm::dvec3 forward = -view.backward;
     const glm::dvec3 x = focal * view.right + width / 2 * forward;
     const glm::dvec3 y = focal * view.up + height / 2 * forward;
-    const auto largest = [](const glm::dvec3& v) {
-        return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-    };
+    const auto largest = [](const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
 
     datapath::TransformParameters result;
     constexpr int fraction = datapath::TransformParameters::matrix_fraction;
@@ -49,8 +47,7 @@ datapath::TransformParameters make_transform(const Job::Camera& camera, const Mo
                 "camera.eye is {:.3g} model units from the mesh's centre ({:.4g}, {:.4g}, {:.4g}); "
                 "Transform's sums hold eyes up to about {:.3g} away: set camera.eye and camera.target "
                 "nearer to the mesh, or lower formats.position_fraction",
-                glm::length(eye) / model_scale.scale, model_scale.centre.x, model_scale.centre.y,
-                model_scale.centre.z,
+                glm::length(eye) / model_scale.scale, model_scale.centre.x, model_scale.centre.y, model_scale.centre.z,
                 std::ldexp(1.0, 61 - fraction - position_fraction) / model_scale.scale));
         return std::array<std::int64_t, 4>{
             to_fixed(direction.x * scale, fraction), to_fixed(direction.y * scale, fraction),
@@ -61,8 +58,7 @@ datapath::TransformParameters make_transform(const Job::Camera& camera, const Mo
     result.row_w = row(forward, 1);
     // No w reaches 2^62: a near plane there has everything behind it, as one further away would.
     result.near_plane = static_cast<std::int64_t>(
-        std::min(std::ldexp(camera.near_plane * model_scale.scale, fraction + position_fraction),
-                 std::ldexp(1.0, 62)));
+        std::min(std::ldexp(camera.near_plane * model_scale.scale, fraction + position_fraction), std::ldexp(1.0, 62)));
     const auto rotation = [&](const glm::dvec3& axis) {
         const datapath::Direction d = to_direction(axis, formats.normal, saturated);
         return std::array<std::int32_t, 3>{d.x, d.y, d.z};
@@ -75,9 +71,8 @@ Format view_distance_format(const datapath::TransformParameters& transform, cons
     const auto size = [](std::int64_t entry) { return std::abs(static_cast<double>(entry)); };
     const auto& row = transform.row_w;
     const double half_range = -static_cast<double>(position.lowest);
-    const double farthest =
-        std::ldexp((size(row[0]) + size(row[1]) + size(row[2])) * half_range + size(row[3]),
-                   -datapath::TransformParameters::matrix_fraction);
+    const double farthest = std::ldexp((size(row[0]) + size(row[1]) + size(row[2])) * half_range + size(row[3]),
+                                       -datapath::TransformParameters::matrix_fraction);
     int shift = 0;
     while (std::ldexp(farthest, -shift) > static_cast<double>(position.highest))
         ++shift;

@@ -23,7 +23,6 @@ datapath::TransformParameters make_transform(const Job::Camera& camera, const Mo
 
 /// The format of distances along the view axis: as wide as a position; the point moved up until the distance of the
 /// farthest corner of the position's range fits.
-datapath::Format view_distance_format(const datapath::TransformParameters& transform,
-                                      const datapath::Format& position);
+datapath::Format view_distance_format(const datapath::TransformParameters& transform, const datapath::Format& position);
 
 }  // namespace tessera

@@ -21,8 +21,7 @@ double error_of_most(const RenderMesh& mesh, double share) {
     const std::vector<float>& errors = mesh.triangle_errors;
     std::vector<std::size_t> order(errors.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return errors[a] < errors[b]; });
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return errors[a] < errors[b]; });
     double area = 0;
     for (const std::size_t i : order)
         area += area_of(mesh, i);

@@ -10,8 +10,7 @@ namespace tessera {
 
 std::string encode_exr(const LinearImage& image, ExrSamples samples) {
     // Chromaticities' defaults are those of ITU-R BT.709, which are sRGB's.
-    Imf::Header header(image.width, image.height, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y,
-                       Imf::ZIP_COMPRESSION);
+    Imf::Header header(image.width, image.height, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
     Imf::addChromaticities(header, Imf::Chromaticities());
     const std::vector<const char*> channels{"R", "G", "B"};
     if (samples == ExrSamples::single)

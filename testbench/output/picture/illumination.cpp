@@ -57,16 +57,15 @@ Illumination::Illumination(const View& view, const Style& style, const RayScene&
     for (std::size_t i = 0; i < key_directions; ++i) {
         const double radius = key_radius * std::sqrt((static_cast<double>(i) + 0.5) / key_directions);
         const double angle = golden_angle * static_cast<double>(i);
-        const glm::dvec3 direction =
-            glm::normalize(key + radius * (std::cos(angle) * side + std::sin(angle) * other));
+        const glm::dvec3 direction = glm::normalize(key + radius * (std::cos(angle) * side + std::sin(angle) * other));
         lamps_[i % samples_per_pixel].push_back(
             {direction, key_strength * share, highlight_strength * share, glm::normalize(direction + eye_)});
     }
 }
 
 /// Appends to scratch.occluded.
-void Illumination::trace(const Lamp& lamp, const std::vector<ShadingPoint>& points, std::size_t first,
-                         std::size_t end, Scratch& scratch) const {
+void Illumination::trace(const Lamp& lamp, const std::vector<ShadingPoint>& points, std::size_t first, std::size_t end,
+                         Scratch& scratch) const {
     scratch.rays.clear();
     for (std::size_t f = first; f < end; ++f)
         scratch.rays.push_back({points[scratch.facing[f]].ray_origin, lamp.direction, 0});

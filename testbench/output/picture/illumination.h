@@ -46,8 +46,8 @@ class Illumination {
 
     void trace(const Lamp& lamp, const std::vector<ShadingPoint>& points, std::size_t first, std::size_t end,
                Scratch& scratch) const;
-    void add(const Lamp& lamp, const std::vector<ShadingPoint>& points, std::size_t probes,
-             std::vector<Light>& lights, Scratch& scratch) const;
+    void add(const Lamp& lamp, const std::vector<ShadingPoint>& points, std::size_t probes, std::vector<Light>& lights,
+             Scratch& scratch) const;
 
     const RayScene& scene_;
     glm::dvec3 eye_;  ///< direction towards the viewer, good enough for highlights

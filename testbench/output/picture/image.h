@@ -23,8 +23,7 @@ struct Image {
     }
 
     std::size_t offset(int x, int y) const {
-        return 3 *
-               (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
+        return 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
     }
     Colour at(int x, int y) const {
         const std::size_t i = offset(x, y);

@@ -23,8 +23,7 @@ constexpr double least_box_width = 22;
 constexpr double label_gap = 6;
 constexpr double label_size = 8;
 constexpr double label_spacing = 8;  // between neighbours
-constexpr double total_height =
-    margin + title_size + title_gap + bar_height + label_gap + label_size + margin;
+constexpr double total_height = margin + title_size + title_gap + bar_height + label_gap + label_size + margin;
 
 constexpr double pen_width = 0.13;  // of the letters' height
 constexpr double least_pen = 1.1;   // pixels
@@ -95,8 +94,7 @@ double widest_scale(const Legend& legend, int width) {
 
 /// Calls set(x, y) for the pixels of a rectangle that lie in the image.
 template <typename Set>
-void for_each_pixel(const Image& image, double left, double top, double right, double bottom,
-                    const Set& set) {
+void for_each_pixel(const Image& image, double left, double top, double right, double bottom, const Set& set) {
     const auto inside = [](double at, int size) {
         return static_cast<int>(std::lround(std::clamp(at, 0.0, static_cast<double>(size))));
     };
@@ -110,18 +108,16 @@ void draw_text(Image& image, double left, double base_line, double size, const s
     const StrokeText strokes(text);
     const double unit = size / StrokeText::glyph_height;
     const double half_pen = std::max(pen_width * size, least_pen) / 2;
-    for_each_pixel(image, left - 2, base_line - size - 2, left + strokes.width() * unit + 2, base_line + 2,
-                   [&](int x, int y) {
-                       const double distance =
-                           unit * std::sqrt(strokes.squared_distance((x + 0.5 - left) / unit,
-                                                                     (base_line - y - 0.5) / unit));
-                       const double coverage = std::clamp(half_pen + 0.5 - distance, 0.0, 1.0);
-                       Colour colour = image.at(x, y);
-                       for (std::size_t k = 0; k < 3; ++k)
-                           colour[k] = static_cast<std::uint8_t>(
-                               std::lround(colour[k] + (legend_ink[k] - colour[k]) * coverage));
-                       image.set(x, y, colour);
-                   });
+    for_each_pixel(
+        image, left - 2, base_line - size - 2, left + strokes.width() * unit + 2, base_line + 2, [&](int x, int y) {
+            const double distance =
+                unit * std::sqrt(strokes.squared_distance((x + 0.5 - left) / unit, (base_line - y - 0.5) / unit));
+            const double coverage = std::clamp(half_pen + 0.5 - distance, 0.0, 1.0);
+            Colour colour = image.at(x, y);
+            for (std::size_t k = 0; k < 3; ++k)
+                colour[k] = static_cast<std::uint8_t>(std::lround(colour[k] + (legend_ink[k] - colour[k]) * coverage));
+            image.set(x, y, colour);
+        });
 }
 
 }  // namespace
@@ -150,8 +146,7 @@ Legend make_legend(const RenderMesh& mesh, const Style& style) {
 int legend_height(const Legend& legend, int panel_width, int width, int most) {
     if (legend.entries.empty())
         return 0;
-    const double scale =
-        std::min(std::max(least_scale, panel_width / usual_width), widest_scale(legend, width));
+    const double scale = std::min(std::max(least_scale, panel_width / usual_width), widest_scale(legend, width));
     return std::min(most, static_cast<int>(std::ceil(scale * total_height)));
 }
 

@@ -12,8 +12,7 @@ struct LinearImage {
     std::vector<float> values;
 
     std::size_t offset(int x, int y) const {
-        return 3 *
-               (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
+        return 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
     }
 };
 

@@ -11,9 +11,8 @@ constexpr double last_generation = 12;
 constexpr Colour generation_scale[] = {{255, 244, 204}, {218, 236, 176}, {160, 215, 176}, {92, 189, 190},
                                        {44, 150, 192},  {38, 104, 174},  {44, 60, 140},   {36, 26, 88}};
 
-constexpr Colour error_scale[] = {{255, 255, 214}, {255, 237, 160}, {254, 217, 118},
-                                  {254, 178, 76},  {253, 141, 60},  {252, 78, 42},
-                                  {227, 26, 28},   {189, 0, 38},    {112, 0, 34}};
+constexpr Colour error_scale[] = {{255, 255, 214}, {255, 237, 160}, {254, 217, 118}, {254, 178, 76}, {253, 141, 60},
+                                  {252, 78, 42},   {227, 26, 28},   {189, 0, 38},    {112, 0, 34}};
 
 /// Between the colours of a scale; `fraction` from 0 to 1.
 template <class Scale>
@@ -25,8 +24,7 @@ Colour between(const Scale& scale, double fraction) {
     for (std::size_t k = 0; k < 3; ++k) {
         const double low = scale[i][k];
         const double high = scale[i + 1][k];
-        result[k] =
-            static_cast<std::uint8_t>(std::lround(low + (high - low) * (at - static_cast<double>(i))));
+        result[k] = static_cast<std::uint8_t>(std::lround(low + (high - low) * (at - static_cast<double>(i))));
     }
     return result;
 }

@@ -13,8 +13,7 @@ constexpr double usual_width = 800;
 
 double line_width(const PictureOptions& options, int width) {
     // Slower than the picture: a larger one is to show finer triangles, too.
-    return options.line_width > 0 ? options.line_width
-                                  : usual_line * std::sqrt(std::max(1.0, width / usual_width));
+    return options.line_width > 0 ? options.line_width : usual_line * std::sqrt(std::max(1.0, width / usual_width));
 }
 
 }  // namespace tessera

@@ -16,9 +16,9 @@ enum class PictureView {
     error,       ///< by the distance to a reference surface (RenderMesh::triangle_errors)
 };
 
-inline constexpr PictureView picture_views[] = {
-    PictureView::overview, PictureView::shaded,  PictureView::wireframe, PictureView::generation,
-    PictureView::test,     PictureView::stopped, PictureView::error};
+inline constexpr PictureView picture_views[] = {PictureView::overview,   PictureView::shaded, PictureView::wireframe,
+                                                PictureView::generation, PictureView::test,   PictureView::stopped,
+                                                PictureView::error};
 
 /// As on the command line, and in the names of files.
 std::string_view name_of(PictureView view);

@@ -84,15 +84,12 @@ RayScene::RayScene(const RenderMesh& mesh) : handles_(std::make_unique<Handles>(
     handles_->scene.reset(rtcNewScene(device));
     RTCScene scene = handles_->scene.get();
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
-    const std::unique_ptr<RTCGeometryTy, ReleaseGeometry> geometry(
-        rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
+    const std::unique_ptr<RTCGeometryTy, ReleaseGeometry> geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
     // Copies: Embree reads up to 16 bytes at a buffer's last element, beyond the end of a vector.
-    auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
-                                                                  RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                                                                  mesh.positions.size()));
-    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0,
-                                                                   RTC_FORMAT_UINT3, 3 * sizeof(unsigned),
-                                                                   mesh.triangles.size()));
+    auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
+        geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
+    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
+        geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), mesh.triangles.size()));
     check(device, mesh.triangles.size());
     if (!mesh.triangles.empty()) {
         for (const glm::vec3& p : mesh.positions)
@@ -116,8 +113,7 @@ void RayScene::first_hits(const std::vector<Ray>& rays, std::vector<std::uint32_
         RTCRayHit8 hits;
         for (std::size_t lane = 0; lane < count; ++lane) {
             put(rays[first + lane], lane, hits.ray);
-            hits.hit.primID[lane] = hits.hit.geomID[lane] = hits.hit.instID[0][lane] =
-                RTC_INVALID_GEOMETRY_ID;
+            hits.hit.primID[lane] = hits.hit.geomID[lane] = hits.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
         }
         rtcIntersect8(valid, handles_->scene.get(), &context, &hits);
         for (std::size_t lane = 0; lane < count; ++lane)

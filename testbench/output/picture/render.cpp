@@ -42,10 +42,7 @@ void for_each_pixel(int left, int top, int right, int bottom, const At& at) {
 class Paint {
   public:
     Paint(const Style& style, const RenderMesh& mesh)
-        : style_(style),
-          mesh_(mesh),
-          background_(to_linear(style.background)),
-          surface_(to_linear(style.surface)) {
+        : style_(style), mesh_(mesh), background_(to_linear(style.background)), surface_(to_linear(style.surface)) {
         for (unsigned g = 0; g < generations_.size(); ++g)
             generations_[g] = to_linear(generation_colour(g));
         for (unsigned t = 0; t < tests_.size(); ++t)
@@ -95,8 +92,7 @@ class Paint {
         const double error =
             mesh_.triangle_errors.empty() ? 0 : static_cast<double>(mesh_.triangle_errors[point.triangle]);
         const double fraction = style_.errors.largest > 0 ? error / style_.errors.largest : 0;
-        return errors_[static_cast<std::size_t>(
-            std::lround(std::clamp(fraction, 0.0, 1.0) * (error_steps - 1)))];
+        return errors_[static_cast<std::size_t>(std::lround(std::clamp(fraction, 0.0, 1.0) * (error_steps - 1)))];
     }
 
     const Style& style_;
@@ -202,8 +198,8 @@ class Renderer {
         for_each_pixel(left, top, right, bottom, [&](int x, int y) {
             tile.at.push_back({x + offset.x, y + offset.y});
             const glm::dvec3 direction = view_.ray(tile.at.back().x, tile.at.back().y);
-            tile.rays.push_back({view_.eye - mesh_.origin + start_ * direction, direction,
-                                 std::max(0.0, view_.near_plane - start_)});
+            tile.rays.push_back(
+                {view_.eye - mesh_.origin + start_ * direction, direction, std::max(0.0, view_.near_plane - start_)});
         });
         scene_.first_hits(rays, hits);
         points.clear();
@@ -227,8 +223,8 @@ class Renderer {
                 lines = &place.lines;
             }
             for (std::size_t s = 0; s < paints_.size(); ++s)
-                sums[s * rays.size() + i] += paints_[s].colour(
-                    points[point], lights[point], paints_[s].has_lines() ? lines : nullptr, at[i]);
+                sums[s * rays.size() + i] +=
+                    paints_[s].colour(points[point], lights[point], paints_[s].has_lines() ? lines : nullptr, at[i]);
             ++point;
         }
         return !points.empty();
@@ -292,8 +288,8 @@ class Renderer {
     Wireframe wireframe_of(std::uint32_t triangle) const {
         std::array<glm::dvec3, 3> corners;
         for (std::size_t k = 0; k < 3; ++k)
-            corners[k] = view_.project(mesh_.origin +
-                                       glm::dvec3(mesh_.positions[mesh_.triangles[triangle].vertices[k]]));
+            corners[k] =
+                view_.project(mesh_.origin + glm::dvec3(mesh_.positions[mesh_.triangles[triangle].vertices[k]]));
         return {corners, line_width_};
     }
 
@@ -304,16 +300,14 @@ class Renderer {
     std::vector<Paint> paints_;
     std::vector<Picture> pictures_;
     double line_width_ = 0;  // all wireframes'; 0: there are none
-    double start_ =
-        0;  // of the rays, along the view direction: single precision fails for an eye too far away
-    double clearance_ =
-        0;  // of the rays to the lights above the surface, against single precision's rounding
+    double start_ = 0;       // of the rays, along the view direction: single precision fails for an eye too far away
+    double clearance_ = 0;   // of the rays to the lights above the surface, against single precision's rounding
 };
 
 }  // namespace
 
-std::vector<Picture> render_pictures(const RenderMesh& mesh, const View& view,
-                                     const std::vector<Style>& styles, bool linear) {
+std::vector<Picture> render_pictures(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles,
+                                     bool linear) {
     if (styles.empty())
         return {};
     return Renderer(mesh, view, styles, linear).run();

@@ -19,7 +19,7 @@ Image render(const RenderMesh& mesh, const View& view, const Style& style);
 std::vector<Image> render_styles(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles);
 
 /// The same, in linear light too if wanted; 12 bytes a pixel more.
-std::vector<Picture> render_pictures(const RenderMesh& mesh, const View& view,
-                                     const std::vector<Style>& styles, bool linear);
+std::vector<Picture> render_pictures(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles,
+                                     bool linear);
 
 }  // namespace tessera

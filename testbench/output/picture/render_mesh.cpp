@@ -61,8 +61,7 @@ class MeshMaker {
              std::uint8_t stopped_by, std::uint32_t base) {
         RenderMesh::Triangle triangle;
         for (std::size_t k = 0; k < 3; ++k)
-            triangle.vertices[k] =
-                index_.index_of(glm::vec3(corners[k].position - mesh_.origin), corners[k].normal);
+            triangle.vertices[k] = index_.index_of(glm::vec3(corners[k].position - mesh_.origin), corners[k].normal);
         triangle.generation = generation;
         triangle.deciding_test = deciding_test_of(split_by);
         triangle.stopped_by = stopped_by;
@@ -72,8 +71,7 @@ class MeshMaker {
 
     RenderMesh finish() {
         std::sort(bases_.begin(), bases_.end());
-        mesh_.base_triangles =
-            static_cast<std::uint64_t>(std::unique(bases_.begin(), bases_.end()) - bases_.begin());
+        mesh_.base_triangles = static_cast<std::uint64_t>(std::unique(bases_.begin(), bases_.end()) - bases_.begin());
         return std::move(mesh_);
     }
 

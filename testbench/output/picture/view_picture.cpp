@@ -39,17 +39,15 @@ Layout lay_out(const RenderMesh& mesh, const View& camera, PictureView view, con
         layout.panel_height = options.height - layout.legend_height;
         return layout;
     }
-    const double wide = options.whole_viewport ? static_cast<double>(camera.width) / camera.height
-                                               : proportions(camera, mesh);
-    layout.panel_height = static_cast<int>(
-        std::clamp(layout.panel_width / wide, 0.3 * options.width, 1.1 * layout.panel_width));
+    const double wide =
+        options.whole_viewport ? static_cast<double>(camera.width) / camera.height : proportions(camera, mesh);
+    layout.panel_height =
+        static_cast<int>(std::clamp(layout.panel_width / wide, 0.3 * options.width, 1.1 * layout.panel_width));
     return layout;
 }
 
-View panel_view(const View& camera, const RenderMesh& mesh, const PictureOptions& options, int width,
-                int height) {
-    const View all =
-        options.whole_viewport ? resized(camera, width, height) : framed(camera, mesh, width, height);
+View panel_view(const View& camera, const RenderMesh& mesh, const PictureOptions& options, int width, int height) {
+    const View all = options.whole_viewport ? resized(camera, width, height) : framed(camera, mesh, width, height);
     return zoomed(all, options.zoom.across, options.zoom.down, options.zoom.factor);
 }
 
@@ -58,21 +56,19 @@ Picture start_picture(const Layout& layout, const PictureOptions& options) {
     const Colour background = layout.panels.front().background;
     Picture picture = to_picture(Image(options.width, layout.height(), background), options.linear);
     if (layout.legend_height > 0)
-        paste(to_picture(draw_legend(layout.legend, options.width, layout.legend_height, background),
-                         options.linear),
+        paste(to_picture(draw_legend(layout.legend, options.width, layout.legend_height, background), options.linear),
               0, layout.panel_height, picture);
     return picture;
 }
 
 }  // namespace
 
-int picture_height(const RenderMesh& mesh, const View& camera, PictureView view,
-                   const PictureOptions& options) {
+int picture_height(const RenderMesh& mesh, const View& camera, PictureView view, const PictureOptions& options) {
     return lay_out(mesh, camera, view, options).height();
 }
 
-std::vector<Picture> render_views(const RenderMesh& mesh, const View& camera,
-                                  const std::vector<PictureView>& views, const PictureOptions& options) {
+std::vector<Picture> render_views(const RenderMesh& mesh, const View& camera, const std::vector<PictureView>& views,
+                                  const PictureOptions& options) {
     struct Panel {
         std::size_t picture;
         int left;

@@ -14,11 +14,10 @@ namespace tessera {
 /// a picture does not depend on the other views.
 ///
 /// Throws ResourceError when memory runs out.
-std::vector<Picture> render_views(const RenderMesh& mesh, const View& camera,
-                                  const std::vector<PictureView>& views, const PictureOptions& options);
+std::vector<Picture> render_views(const RenderMesh& mesh, const View& camera, const std::vector<PictureView>& views,
+                                  const PictureOptions& options);
 
 /// The height of a picture whose options leave it open.
-int picture_height(const RenderMesh& mesh, const View& camera, PictureView view,
-                   const PictureOptions& options);
+int picture_height(const RenderMesh& mesh, const View& camera, PictureView view, const PictureOptions& options);
 
 }  // namespace tessera

@@ -38,13 +38,13 @@ std::string decisions_text(const ConformanceResult& result, double allowed_flips
         "most {} %\n"
         "of the edges.\n\n"
         "  {:<16}{:>12}{:>12}{:>14}{:>12}\n",
-        verdict(result.passed(allowed_flips)), allowed_flips, "decision", "compared", "agreed",
-        "allowed flips", "mismatches");
+        verdict(result.passed(allowed_flips)), allowed_flips, "decision", "compared", "agreed", "allowed flips",
+        "mismatches");
     for (const ConformanceResult::Test& test : result.tests)
         text += fmt::format("  {:<16}{:>12}{:>12}{:>14}{:>12}\n", test.name, test.compared, test.agreed,
                             test.allowed_flips, test.mismatches);
-    text += fmt::format("\n  edges {}, with an allowed flip {} ({:.4f} %), mismatches of any kind {}\n",
-                        result.edges, result.flipped_edges, result.flips_percent(), result.mismatches);
+    text += fmt::format("\n  edges {}, with an allowed flip {} ({:.4f} %), mismatches of any kind {}\n", result.edges,
+                        result.flipped_edges, result.flips_percent(), result.mismatches);
     if (!result.first_mismatch.empty())
         text += "\nFirst mismatch:\n" + result.first_mismatch + "\n";
     return text;
@@ -57,8 +57,8 @@ std::string values_text(const ConformanceResult& result) {
         "  {:<28}{:>12}{:>10}{:>12}{:>12}{:>15}{:>10}\n",
         "quantity", "compared", "outside", "maximum", "RMS", "largest bound", "of bound");
     for (const ConformanceResult::Quantity& q : result.quantities)
-        text += fmt::format("  {:<28}{:>12}{:>10}{:>12.4f}{:>12.4f}{:>15.4f}{:>9.0f}%\n", q.name, q.count,
-                            q.outside, q.max_error, q.rms_error, q.max_bound, 100 * q.worst_ratio);
+        text += fmt::format("  {:<28}{:>12}{:>10}{:>12.4f}{:>12.4f}{:>15.4f}{:>9.0f}%\n", q.name, q.count, q.outside,
+                            q.max_error, q.rms_error, q.max_bound, 100 * q.worst_ratio);
     return text;
 }
 
@@ -68,10 +68,9 @@ std::string distance_text(const char* name, const EndToEndResult::Distance& d) {
                "({:.2f}, {:.2f} position LSB)\n",
                name, d.points, d.farther, d.max_model, d.rms_model, d.max_position_lsb, d.rms_position_lsb) +
            (d.measured < d.points
-                ? fmt::format(
-                      "  {:<20} {:>10} of them measured: with {} % confidence at most {:.2g} % of all are "
-                      "farther away than the maximum\n",
-                      "", d.measured, 100 * EndToEndResult::confidence, 100 * d.unseen)
+                ? fmt::format("  {:<20} {:>10} of them measured: with {} % confidence at most {:.2g} % of all are "
+                              "farther away than the maximum\n",
+                              "", d.measured, 100 * EndToEndResult::confidence, 100 * d.unseen)
                 : std::string());
 }
 
@@ -183,8 +182,8 @@ std::string conformance_text(const Checks& checks) {
     text += checks.setup ? setup_text(*checks.setup) + "\n"
                          : "Set-up: not checked (check.golden and check.end_to_end = false).\n\n";
     if (checks.conformance)
-        text += decisions_text(*checks.conformance, checks.allowed_flips) + "\n" +
-                values_text(*checks.conformance) + "\n";
+        text +=
+            decisions_text(*checks.conformance, checks.allowed_flips) + "\n" + values_text(*checks.conformance) + "\n";
     else
         text += "Decisions and values: not checked (check.golden = false).\n\n";
     text += checks.end_to_end ? end_to_end_text(*checks.end_to_end) + "\n"
@@ -232,8 +231,7 @@ std::string conformance_json(const Checks& checks) {
                               {"golden_to_hardware", distance_json(e.golden_to_hardware)}};
     }
     if (checks.invariants) {
-        Json part = {{"passed", checks.invariants->passed()},
-                     {"first_violation", checks.invariants->first_violation}};
+        Json part = {{"passed", checks.invariants->passed()}, {"first_violation", checks.invariants->first_violation}};
         for (const InvariantFigure& figure : invariant_figures(*checks.invariants))
             part[figure.name] = {{"value", figure.value},
                                  {"kind", kind_name(figure.kind)},

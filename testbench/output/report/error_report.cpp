@@ -53,10 +53,10 @@ void add_direction(Figures& figures, const std::string& name, const char* words,
 
 void add_surface(Figures& figures, const char* group, const SurfaceError& error, double texel) {
     figures.group(group);
-    add_direction(figures, "reference_to_mesh", "the reference surface to the emitted mesh",
-                  error.reference_to_mesh, texel);
-    add_direction(figures, "mesh_to_reference", "the emitted mesh to the reference surface",
-                  error.mesh_to_reference, texel);
+    add_direction(figures, "reference_to_mesh", "the reference surface to the emitted mesh", error.reference_to_mesh,
+                  texel);
+    add_direction(figures, "mesh_to_reference", "the emitted mesh to the reference surface", error.mesh_to_reference,
+                  texel);
     figures.add("hausdorff", error.hausdorff(), "model unit", "the larger of the two largest distances");
     figures.add("hausdorff_texels", error.hausdorff() / texel, "texel", "the same, in texels");
 }
@@ -101,11 +101,9 @@ void add_vertical(Figures& figures, const RecordedMesh& mesh, const MeshError& e
     }
     const VerticalError& vertical = *error.vertical;
     figures.add("grid_points", vertical.grid_points, "texel", "texel centres on the base mesh");
-    figures.add("covered", vertical.covered, "texel",
-                "those of them that the emitted mesh lies over; only they count");
+    figures.add("covered", vertical.covered, "texel", "those of them that the emitted mesh lies over; only they count");
     figures.add("max", vertical.max, "model unit", "largest difference of heights at a grid point");
-    figures.add("rms", vertical.rms, "model unit",
-                "its root mean square, every grid point weighing the same");
+    figures.add("rms", vertical.rms, "model unit", "its root mean square, every grid point weighing the same");
     if (vertical.map_unit > 0) {
         figures.add("max_map", vertical.max / vertical.map_unit, "map unit",
                     "the largest, in the units of the map's file (PGM, PNG: its integers)");
@@ -137,8 +135,7 @@ std::string figures_heading(const char* other_unit) {
 /// Maximum and RMS in model units and in another.
 std::string figures_row(const char* name, double max, double rms, double unit) {
     const auto other = [&](double value) { return unit > 0 ? number(value / unit) : std::string("-"); };
-    return row(name,
-               fmt::format("{:>17}{:>17}{:>16}{:>16}", number(max), number(rms), other(max), other(rms)));
+    return row(name, fmt::format("{:>17}{:>17}{:>16}{:>16}", number(max), number(rms), other(max), other(rms)));
 }
 
 std::string density_text(double density, const char* per) {
@@ -147,8 +144,8 @@ std::string density_text(double density, const char* per) {
 }
 
 std::string triangle_text(std::uint64_t number, const RecordedMesh::Triangle& triangle) {
-    return fmt::format("triangle {} of base triangle {}, generation {}, kept whole by: {}", number,
-                       triangle.base, triangle.generation, why_whole(triangle.stopped_by));
+    return fmt::format("triangle {} of base triangle {}, generation {}, kept whole by: {}", number, triangle.base,
+                       triangle.generation, why_whole(triangle.stopped_by));
 }
 
 std::string place_text(const glm::dvec3& position) {
@@ -159,17 +156,15 @@ std::string worst_rows(const char* name, const RecordedMesh& mesh, const Directe
     if (!error.worst)
         return {};
     const WorstSpot& spot = *error.worst;
-    return row(name, fmt::format("at {}, s t ({:.6g}, {:.6g})", place_text(spot.position), spot.texture.x,
-                                 spot.texture.y)) +
+    return row(name,
+               fmt::format("at {}, s t ({:.6g}, {:.6g})", place_text(spot.position), spot.texture.x, spot.texture.y)) +
            row("", triangle_text(spot.triangle, mesh.triangles[spot.triangle]));
 }
 
 std::string surface_rows(const char* name, const SurfaceError& error, double texel) {
     return fmt::format("  {}\n", name) +
-           figures_row("  reference to mesh", error.reference_to_mesh.max, error.reference_to_mesh.rms,
-                       texel) +
-           figures_row("  mesh to reference", error.mesh_to_reference.max, error.mesh_to_reference.rms,
-                       texel);
+           figures_row("  reference to mesh", error.reference_to_mesh.max, error.reference_to_mesh.rms, texel) +
+           figures_row("  mesh to reference", error.mesh_to_reference.max, error.mesh_to_reference.rms, texel);
 }
 
 }  // namespace
@@ -180,12 +175,10 @@ std::vector<Figure> error_figures(const RecordedMesh& mesh, const MeshError& err
     figures.add("triangles", mesh.triangles.size(), "triangle", "of the emitted mesh, mesh.ply");
     figures.add("texel", error.texel, "model unit",
                 "a texel's length: mean over both axes of its area-weighted mean on the base surface");
-    figures.add(
-        "reference_density", error.reference_density, "sample/texel",
-        "samples of the reference along each axis, at least; 4 unless the limit of samples lowered it");
-    figures.add(
-        "mesh_density", error.mesh_density, "sample/texel",
-        "samples of the emitted mesh along each edge, at least; 1 unless the limit of samples lowered it");
+    figures.add("reference_density", error.reference_density, "sample/texel",
+                "samples of the reference along each axis, at least; 4 unless the limit of samples lowered it");
+    figures.add("mesh_density", error.mesh_density, "sample/texel",
+                "samples of the emitted mesh along each edge, at least; 1 unless the limit of samples lowered it");
     add_surface(figures, "interpolated", error.interpolated, error.texel);
     add_surface(figures, "nearest_texel", error.nearest_texel, error.texel);
     add_worst(figures, "worst_reference_to_mesh", mesh, error.interpolated.reference_to_mesh);
@@ -195,14 +188,13 @@ std::vector<Figure> error_figures(const RecordedMesh& mesh, const MeshError& err
 }
 
 std::string error_text(const Job& job, const RecordedMesh& mesh, const MeshError& error) {
-    std::string text = fmt::format("Error of the emitted mesh, {} triangles, against the displaced surface\n",
-                                   mesh.triangles.size());
+    std::string text =
+        fmt::format("Error of the emitted mesh, {} triangles, against the displaced surface\n", mesh.triangles.size());
     text += row("texel", fmt::format("{:.6g} model units", error.texel));
-    text += row(
-        "samples",
-        fmt::format("reference {}, {}; mesh {}, {}", error.interpolated.reference_to_mesh.samples,
-                    density_text(error.reference_density, "texel and axis"),
-                    error.interpolated.mesh_to_reference.samples, density_text(error.mesh_density, "texel")));
+    text += row("samples",
+                fmt::format("reference {}, {}; mesh {}, {}", error.interpolated.reference_to_mesh.samples,
+                            density_text(error.reference_density, "texel and axis"),
+                            error.interpolated.mesh_to_reference.samples, density_text(error.mesh_density, "texel")));
     text += "\n" + figures_heading("texels");
     text += surface_rows("map interpolated (the headline)", error.interpolated, error.texel);
     text += surface_rows("map as the hardware reads it", error.nearest_texel, error.texel);
@@ -214,12 +206,10 @@ std::string error_text(const Job& job, const RecordedMesh& mesh, const MeshError
         const VerticalError& vertical = *error.vertical;
         text += figures_heading("map units");
         text += figures_row("vertical, at grid points", vertical.max, vertical.rms, vertical.map_unit);
-        text += row("", fmt::format("{} grid points, {} covered by the mesh", vertical.grid_points,
-                                    vertical.covered));
+        text += row("", fmt::format("{} grid points, {} covered by the mesh", vertical.grid_points, vertical.covered));
         if (vertical.covered > 0) {
-            text += row("worst, vertical",
-                        fmt::format("at {}, texel ({}, {})", place_text(vertical.worst_position),
-                                    vertical.worst_texel.x, vertical.worst_texel.y));
+            text += row("worst, vertical", fmt::format("at {}, texel ({}, {})", place_text(vertical.worst_position),
+                                                       vertical.worst_texel.x, vertical.worst_texel.y));
             text += row("", triangle_text(vertical.worst_triangle, mesh.triangles[vertical.worst_triangle]));
         }
     } else {

@@ -14,26 +14,24 @@ constexpr std::size_t most_triangles = 700'000'000;  // three vertices each stil
 
 std::uint64_t hash(const Corner& c) {
     std::uint64_t result = 0;
-    for (const std::int32_t word :
-         {c.position.x, c.position.y, c.position.z, c.displaced.x, c.displaced.y, c.displaced.z,
-          c.displaced_normal.x, c.displaced_normal.y, c.displaced_normal.z,
-          static_cast<std::int32_t>(c.texture.u), static_cast<std::int32_t>(c.texture.v)})
+    for (const std::int32_t word : {c.position.x, c.position.y, c.position.z, c.displaced.x, c.displaced.y,
+                                    c.displaced.z, c.displaced_normal.x, c.displaced_normal.y, c.displaced_normal.z,
+                                    static_cast<std::int32_t>(c.texture.u), static_cast<std::int32_t>(c.texture.v)})
         result = mix_hash(result, static_cast<std::uint32_t>(word));
     return result;
 }
 
 bool same(const Corner& a, const Corner& b) {
-    return a.position == b.position && a.displaced == b.displaced &&
-           a.displaced_normal == b.displaced_normal && a.texture == b.texture;
+    return a.position == b.position && a.displaced == b.displaced && a.displaced_normal == b.displaced_normal &&
+           a.texture == b.texture;
 }
 
 }  // namespace
 
 IndexedMesh IndexedMesh::from(const EmittedMesh& mesh) {
     if (mesh.triangles.size() > most_triangles)
-        throw ResourceError(
-            "the mesh has more than " + std::to_string(most_triangles) +
-            " triangles, more than a mesh file can number; switch output.ply and output.obj off");
+        throw ResourceError("the mesh has more than " + std::to_string(most_triangles) +
+                            " triangles, more than a mesh file can number; switch output.ply and output.obj off");
     IndexedMesh result;
     std::size_t count = 0;
     for (const EmittedTriangle& triangle : mesh.triangles)

@@ -13,8 +13,8 @@ namespace {
 std::uint64_t vertex_hash(const EmittedTriangle::Corner& c) {
     std::uint64_t hash = 0;
     for (const std::int32_t word :
-         {static_cast<std::int32_t>(c.texture.u), static_cast<std::int32_t>(c.texture.v), c.displaced.x,
-          c.displaced.y, c.displaced.z, c.displaced_normal.x, c.displaced_normal.y, c.displaced_normal.z})
+         {static_cast<std::int32_t>(c.texture.u), static_cast<std::int32_t>(c.texture.v), c.displaced.x, c.displaced.y,
+          c.displaced.z, c.displaced_normal.x, c.displaced_normal.y, c.displaced_normal.z})
         hash = mix_hash(hash, static_cast<std::uint32_t>(word));
     return (hash & ~std::uint64_t{1}) | (c.generation > 0 ? 1 : 0);
 }

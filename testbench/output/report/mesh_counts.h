@@ -9,8 +9,7 @@ namespace tessera {
 /// by t, P' and N', an edge by its two ends: on a texture seam or a crease each side has its own.
 struct MeshCounts {
     std::uint64_t vertices = 0;
-    std::uint64_t inserted_vertices =
-        0;  ///< of these, not of the base mesh: one for each distinct edge that was split
+    std::uint64_t inserted_vertices = 0;  ///< of these, not of the base mesh: one for each distinct edge that was split
     std::uint64_t edges = 0;
 
     /// Distinct edges the machine tested: those of the mesh, and those that were split on the way to it. Vertices

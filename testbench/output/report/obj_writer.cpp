@@ -15,13 +15,11 @@
 namespace tessera {
 namespace {
 
-constexpr std::array<const char*, deciding_tests> test_names = {"base", "normal", "summed_height", "both",
-                                                                "highlight"};
+constexpr std::array<const char*, deciding_tests> test_names = {"base", "normal", "summed_height", "both", "highlight"};
 constexpr std::size_t generations = 256;
 
 std::size_t group_of(const EmittedTriangle& triangle) {
-    return static_cast<std::size_t>(deciding_test_of(triangle.split_by)) * generations +
-           triangle_generation(triangle);
+    return static_cast<std::size_t>(deciding_test_of(triangle.split_by)) * generations + triangle_generation(triangle);
 }
 
 /// The triangles' numbers in the order of their groups; stable. begins[g]: where group g begins.

@@ -18,15 +18,13 @@ std::string spoken(const char* name) {
 
 }  // namespace
 
-std::vector<SaturationFigure> saturation_figures(const MachineSetup& setup,
-                                                 const datapath::Saturations& saturations) {
+std::vector<SaturationFigure> saturation_figures(const MachineSetup& setup, const datapath::Saturations& saturations) {
     const InputSaturations& input = setup.input_saturations;
     return {
-        {"input_position", input.position, "value",
-         "components of base vertices beyond the position's format", "widen formats.position_bits"},
+        {"input_position", input.position, "value", "components of base vertices beyond the position's format",
+         "widen formats.position_bits"},
         {"input_normal", input.normal, "value",
-         "components of base vertices' normals and tangents beyond the normal's format",
-         "widen formats.normal_bits"},
+         "components of base vertices' normals and tangents beyond the normal's format", "widen formats.normal_bits"},
         {"input_texture", setup.texture_clamped, "vertex",
          "base vertices with u or v outside the map on an axis that clamps, set to its border", nullptr},
         {"input_register", input.registers, "value",
@@ -34,14 +32,13 @@ std::vector<SaturationFigure> saturation_figures(const MachineSetup& setup,
          "widen formats.position_bits or formats.normal_bits"},
         {"displaced_position", saturations.displaced_position, "value", "P' beyond the position's format",
          "widen formats.position_bits"},
-        {"normal", saturations.normal, "value", "N, T or N' beyond the normal's format",
-         "widen formats.normal_bits"},
+        {"normal", saturations.normal, "value", "N, T or N' beyond the normal's format", "widen formats.normal_bits"},
         {"screen_position", saturations.screen_position, "value", "P's beyond the screen's format",
          "widen formats.screen_bits, or move camera.eye back: the View Test sees an edge that reaches there "
          "too "
          "short"},
-        {"view_distance", saturations.view_distance, "value",
-         "w beyond the position's format: the eye is far", "widen formats.position_bits"},
+        {"view_distance", saturations.view_distance, "value", "w beyond the position's format: the eye is far",
+         "widen formats.position_bits"},
         {"screen_normal", saturations.screen_normal, "value", "N's beyond the normal's format",
          "widen formats.normal_bits"},
         {"degenerate_normal", saturations.degenerate_normal, "value", "zero vectors that stayed zero",
@@ -50,8 +47,8 @@ std::vector<SaturationFigure> saturation_figures(const MachineSetup& setup,
          "generations of inserted vertices beyond their field: only with the Generation Test off",
          "tests.generation = true, or widen formats.generation_bits"},
         {"intensity", saturations.intensity, "value",
-         "vertices that face the light fully: 256 of 256, lit as 255, the highest of Lighting's 8 bits",
-         nullptr, "no key widens Lighting's 8 bits, and their highest is full light"},
+         "vertices that face the light fully: 256 of 256, lit as 255, the highest of Lighting's 8 bits", nullptr,
+         "no key widens Lighting's 8 bits, and their highest is full light"},
     };
 }
 
@@ -59,16 +56,15 @@ std::string saturations_text(const std::vector<SaturationFigure>& figures) {
     std::string text;
     for (const SaturationFigure& figure : figures)
         if (figure.count > 0)
-            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", spoken(figure.name),
-                                grouped_digits(figure.count));
+            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", spoken(figure.name), grouped_digits(figure.count));
     return text.empty() ? "none" : text;
 }
 
 namespace {
 
 std::string sentence(const SaturationFigure& figure, const char* what_then) {
-    return fmt::format("{}: {} {}{} saturated ({}); {}", spoken(figure.name), grouped_digits(figure.count),
-                       figure.unit, figure.count == 1 ? "" : "s", figure.description, what_then);
+    return fmt::format("{}: {} {}{} saturated ({}); {}", spoken(figure.name), grouped_digits(figure.count), figure.unit,
+                       figure.count == 1 ? "" : "s", figure.description, what_then);
 }
 
 }  // namespace

@@ -14,15 +14,13 @@ struct SaturationFigure {
     std::uint64_t count;
     const char* unit;
     const char* description;
-    const char* remedy;  ///< the key to widen, or what else helps; null: no width does
-    const char* meaning =
-        nullptr;  ///< where no width helps: what to make of the count; null: the setup remarks on it
+    const char* remedy;             ///< the key to widen, or what else helps; null: no width does
+    const char* meaning = nullptr;  ///< where no width helps: what to make of the count; null: the setup remarks on it
 };
 
 /// Of every quantity that can saturate, in the machine (`saturations`) or on its way into it (MachineSetup), in the
 /// order of the pipeline; those of count 0 too.
-std::vector<SaturationFigure> saturation_figures(const MachineSetup& setup,
-                                                 const datapath::Saturations& saturations);
+std::vector<SaturationFigure> saturation_figures(const MachineSetup& setup, const datapath::Saturations& saturations);
 
 /// "normal 3, screen position 12", or "none".
 std::string saturations_text(const std::vector<SaturationFigure>& figures);

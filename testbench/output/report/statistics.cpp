@@ -51,8 +51,7 @@ Collector format_figures(const MachineSetup& setup) {
     Collector c("formats");
     c.add("position_bits", formats.position.bits, "bit", "P, P', one component");
     c.add("position_fraction", formats.position.fraction, "bit", "of which behind the point");
-    c.add("model_scale", setup.model_scale.scale, "world/model",
-          "world unit of the machine per unit of the model");
+    c.add("model_scale", setup.model_scale.scale, "world/model", "world unit of the machine per unit of the model");
     c.add("normal_bits", formats.normal.bits, "bit", "N, T, N', N's, normal map, one component");
     c.add("texture_bits", formats.texture.bits, "bit", "u or v, the border bit included");
     c.add("displacement_bits", formats.displacement.bits, "bit", "d");
@@ -61,8 +60,8 @@ Collector format_figures(const MachineSetup& setup) {
     c.add("largest_rectangle_sum", setup.largest_rectangle_sum, "code",
           "bound on any rectangle's sum over this mesh: what the SAT entry must hold");
     c.add("summed_height_bits_needed",
-          setup.largest_rectangle_sum == 0 ? 1 : 64 - datapath::leading_zeros(setup.largest_rectangle_sum),
-          "bit", "narrowest SAT entry that holds that sum");
+          setup.largest_rectangle_sum == 0 ? 1 : 64 - datapath::leading_zeros(setup.largest_rectangle_sum), "bit",
+          "narrowest SAT entry that holds that sum");
     c.add("view_distance_fraction", formats.view_distance.fraction, "bit", "of w, as wide as a position");
     c.add("screen_bits", formats.screen.bits, "bit", "P's, x or y");
     c.add("queue_entry", widths.triangle, "bit", "one triangle in the Triangle Queue");
@@ -85,15 +84,13 @@ Collector stream_figures(const MachineSetup& setup) {
     return c;
 }
 
-Collector memory_figures(const char* name, const datapath::TableLayout& table, std::uint64_t reads,
-                         double edges) {
+Collector memory_figures(const char* name, const datapath::TableLayout& table, std::uint64_t reads, double edges) {
     Collector c(name);
     c.add("size", table.bytes(), "byte", "the whole table");
     c.add("entry", table.entry_bytes, "byte", "one entry");
     c.add("reads", reads, "entry", "entries read");
     c.add("bytes_read", reads * table.entry_bytes, "byte", "bytes read");
-    c.add("reads_per_edge", ratio(static_cast<double>(reads), edges), "entry/edge",
-          "entries read per edge tested");
+    c.add("reads_per_edge", ratio(static_cast<double>(reads), edges), "entry/edge", "entries read per edge tested");
     return c;
 }
 
@@ -101,8 +98,7 @@ Collector host_figures(const MachineSetup& setup, std::uint64_t finished, std::u
     const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
     const auto bytes = [](std::uint64_t bits) { return (bits + 7) / 8; };
     const std::uint64_t base = base_mesh_bytes(setup);
-    const std::uint64_t tables = setup.registers.displacement_map.bytes() +
-                                 setup.registers.normal_map.bytes() +
+    const std::uint64_t tables = setup.registers.displacement_map.bytes() + setup.registers.normal_map.bytes() +
                                  setup.registers.summed_height_table.bytes();
     const std::uint64_t whole = bytes(finished * 3 * widths.finished_vertex);
     const std::uint64_t indexed = bytes(vertices * widths.finished_vertex) + finished * 3 * 4;
@@ -115,8 +111,7 @@ Collector host_figures(const MachineSetup& setup, std::uint64_t finished, std::u
           "changes");
     c.add("register_bytes", register_words(setup.registers).size() * sizeof(std::uint32_t), "byte",
           "registers, as 32 bit words; once, later those that change");
-    c.add("tessellated_vertices", vertices, "vertex",
-          "distinct vertices of the finished mesh, by t, P' and N'");
+    c.add("tessellated_vertices", vertices, "vertex", "distinct vertices of the finished mesh, by t, P' and N'");
     c.add("tessellated_mesh_bytes", indexed, "byte",
           "the same mesh sent whole and indexed: distinct vertices of P', N', t, three 32 bit indices per "
           "triangle; every frame");
@@ -125,15 +120,14 @@ Collector host_figures(const MachineSetup& setup, std::uint64_t finished, std::u
     c.add("bandwidth_saving", ratio(static_cast<double>(indexed), static_cast<double>(base)), "times",
           "tessellated mesh, indexed, over base mesh, per frame; tables left out");
     c.add("frames_to_pay_for_tables",
-          indexed > base ? ratio(static_cast<double>(tables), static_cast<double>(indexed - base)) : 0.0,
-          "frame", "after so many frames the tables' bytes are saved; 0: never");
+          indexed > base ? ratio(static_cast<double>(tables), static_cast<double>(indexed - base)) : 0.0, "frame",
+          "after so many frames the tables' bytes are saved; 0: never");
     return c;
 }
 
 /// Repeated work of the machine, beside what the mesh needs.
 Collector useful_work_figures(const Pipeline& p, std::uint64_t base_triangles, const MeshCounts& mesh) {
-    const std::uint64_t made = p.transform.positions(), normals = p.transform.normals(),
-                        tested = p.edges_tested();
+    const std::uint64_t made = p.transform.positions(), normals = p.transform.normals(), tested = p.edges_tested();
     const auto per = [](std::uint64_t done, std::uint64_t needed) {
         return ratio(static_cast<double>(done), static_cast<double>(needed));
     };
@@ -147,12 +141,10 @@ Collector useful_work_figures(const Pipeline& p, std::uint64_t base_triangles, c
     c.add("made_per_vertex", per(made, mesh.vertices), "times", "vertices made per distinct vertex");
     c.add("normals_transformed", normals, "normal",
           "N's: a vertex's again in each triangle whose parent did not have it");
-    c.add("normals_per_vertex", per(normals, mesh.vertices), "times",
-          "normals transformed per distinct vertex");
-    c.add(
-        "edges", mesh.tested_edges(), "edge",
-        "distinct edges that were tested, by their two vertices: those of the finished mesh, and those that "
-        "were split");
+    c.add("normals_per_vertex", per(normals, mesh.vertices), "times", "normals transformed per distinct vertex");
+    c.add("edges", mesh.tested_edges(), "edge",
+          "distinct edges that were tested, by their two vertices: those of the finished mesh, and those that "
+          "were split");
     c.add("edge_tests", tested, "edge", "edges tested: one of a triangle, in each pass");
     c.add("tests_per_edge", per(tested, mesh.tested_edges()), "times", "edge tests per distinct edge");
     return c;
@@ -178,8 +170,7 @@ Collector mesh_figures(const EmittedMesh& mesh) {
 }  // namespace
 
 std::uint64_t thrown_away_vertices(const Pipeline& pipeline, std::uint64_t base_triangles) {
-    return pipeline.transform.positions() - 3 * base_triangles -
-           pipeline.pass_or_tessellate.counts().edges_split;
+    return pipeline.transform.positions() - 3 * base_triangles - pipeline.pass_or_tessellate.counts().edges_split;
 }
 
 std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulation& simulation,
@@ -190,8 +181,7 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     const auto edges_real = static_cast<double>(edges);
     std::vector<Figure> all;
     const auto take = [&](Collector c) {
-        all.insert(all.end(), std::make_move_iterator(c.figures.begin()),
-                   std::make_move_iterator(c.figures.end()));
+        all.insert(all.end(), std::make_move_iterator(c.figures.begin()), std::make_move_iterator(c.figures.end()));
     };
 
     Collector run("run");
@@ -234,12 +224,10 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
         decide.add("split_in_highlight", counts.split_in_highlight, "edge",
                    "split while the Highlight Test was true, whatever the others said");
     }
-    decide.add("stopped_by_view", counts.stopped_by_view, "edge",
-               "kept whole by the View Test (perhaps among others)");
+    decide.add("stopped_by_view", counts.stopped_by_view, "edge", "kept whole by the View Test (perhaps among others)");
     decide.add("stopped_by_tex_coord", counts.stopped_by_tex_coord, "edge", "likewise the Tex Coord Test");
     decide.add("stopped_by_generation", counts.stopped_by_generation, "edge", "likewise the Generation Test");
-    const char* const alone =
-        "kept whole by this test alone: had it been true, the edge would have been split";
+    const char* const alone = "kept whole by this test alone: had it been true, the edge would have been split";
     decide.add("stopped_by_view_alone", counts.stopped_by_view_alone, "edge", alone);
     decide.add("stopped_by_tex_coord_alone", counts.stopped_by_tex_coord_alone, "edge", alone);
     decide.add("stopped_by_generation_alone", counts.stopped_by_generation_alone, "edge", alone);
@@ -253,31 +241,25 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     tessellation.add("made_into_2", made[2], "triangle", "one edge split");
     tessellation.add("made_into_3", made[3], "triangle", "two edges split");
     tessellation.add("made_into_4", made[4], "triangle", "three edges split");
-    tessellation.add("passed_unchanged", made[1], "triangle",
-                     "finished base triangles on their way to fetch normals");
+    tessellation.add("passed_unchanged", made[1], "triangle", "finished base triangles on their way to fetch normals");
     take(std::move(tessellation));
 
     Collector queue("triangle_queue");
     queue.add("taken", p.triangle_queue.taken(), "triangle", "triangles put in");
-    queue.add("high_water_mark", p.triangle_queue.high_water_mark(), "triangle",
-              "most triangles waiting at a time");
-    queue.add(
-        "high_water_bytes",
-        (p.triangle_queue.high_water_mark() * datapath::stream_widths(setup.registers.formats).triangle + 7) /
-            8,
-        "byte", "memory that this takes");
+    queue.add("high_water_mark", p.triangle_queue.high_water_mark(), "triangle", "most triangles waiting at a time");
+    queue.add("high_water_bytes",
+              (p.triangle_queue.high_water_mark() * datapath::stream_widths(setup.registers.formats).triangle + 7) / 8,
+              "byte", "memory that this takes");
     take(std::move(queue));
 
     Collector lighting("lighting");
-    lighting.add("triangles", simulation.rasteriser.triangles(), "triangle",
-                 "lit and sent to the rasteriser");
+    lighting.add("triangles", simulation.rasteriser.triangles(), "triangle", "lit and sent to the rasteriser");
     take(std::move(lighting));
 
-    take(memory_figures("displacement_map", setup.registers.displacement_map, p.displacement_map_reads(),
-                        edges_real));
+    take(memory_figures("displacement_map", setup.registers.displacement_map, p.displacement_map_reads(), edges_real));
     take(memory_figures("normal_map", setup.registers.normal_map, p.normal_map_reads(), edges_real));
-    take(memory_figures("summed_height_table", setup.registers.summed_height_table,
-                        p.summed_height_table_reads(), edges_real));
+    take(memory_figures("summed_height_table", setup.registers.summed_height_table, p.summed_height_table_reads(),
+                        edges_real));
 
     Collector saturated("saturations");
     for (const SaturationFigure& figure : saturation_figures(setup, p.saturations()))
@@ -287,8 +269,7 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     take(mesh_figures(simulation.monitor.mesh));
     if (timed) {
         std::vector<Figure> figures = timing_figures(simulation);
-        all.insert(all.end(), std::make_move_iterator(figures.begin()),
-                   std::make_move_iterator(figures.end()));
+        all.insert(all.end(), std::make_move_iterator(figures.begin()), std::make_move_iterator(figures.end()));
     }
     return all;
 }
@@ -322,10 +303,9 @@ std::string csv_cell(const std::string& value) {
 std::string statistics_csv(const std::vector<Figure>& figures) {
     std::string text = "name,value,unit,description\n";
     for (const Figure& figure : figures) {
-        const std::string value =
-            std::visit([](const auto& held) { return fmt::format("{}", held); }, figure.value);
-        text += fmt::format("{}.{},{},{},{}\n", figure.group, figure.name, csv_cell(value),
-                            csv_cell(figure.unit), csv_cell(figure.description));
+        const std::string value = std::visit([](const auto& held) { return fmt::format("{}", held); }, figure.value);
+        text += fmt::format("{}.{},{},{},{}\n", figure.group, figure.name, csv_cell(value), csv_cell(figure.unit),
+                            csv_cell(figure.description));
     }
     return text;
 }

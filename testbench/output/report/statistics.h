@@ -20,8 +20,7 @@ struct Figure {
 
 /// The figures of a run, in the order of the pipeline. No wall-clock time: two runs give the same bytes.
 /// mesh: counts of the simulation's mesh.
-std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulation& simulation,
-                                       const MeshCounts& mesh);
+std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulation& simulation, const MeshCounts& mesh);
 
 /// Midpoints that were displaced and transformed while their edge was tested, and not inserted.
 std::uint64_t thrown_away_vertices(const Pipeline& pipeline, std::uint64_t base_triangles);

@@ -26,8 +26,7 @@ bool is_memory(const Unit& unit) {
 const Activity::Share* largest_share(const Unit& unit, State state) {
     const Activity::Share* largest = nullptr;
     for (const Activity::Share& share : unit.activity().shares()) {
-        if (share.by != nullptr && share.state == state &&
-            (largest == nullptr || share.cycles > largest->cycles))
+        if (share.by != nullptr && share.state == state && (largest == nullptr || share.cycles > largest->cycles))
             largest = &share;
     }
     return largest;
@@ -62,8 +61,7 @@ double utilisation(const Unit& unit, std::uint64_t cycles) {
 }
 
 bool is_queue_or_wire(const Unit& unit) {
-    return dynamic_cast<const TriangleQueue*>(&unit) != nullptr ||
-           dynamic_cast<const CollectTests*>(&unit) != nullptr;
+    return dynamic_cast<const TriangleQueue*>(&unit) != nullptr || dynamic_cast<const CollectTests*>(&unit) != nullptr;
 }
 
 std::string Limit::names() const {
@@ -87,9 +85,7 @@ Bottleneck find_bottleneck(const Pipeline& pipeline, std::uint64_t cycles) {
         Limit limit;
         for (const Unit* unit : left)
             limit.utilisation = std::max(limit.utilisation, utilisation(*unit, cycles));
-        const auto ties = [&](const Unit* unit) {
-            return utilisation(*unit, cycles) >= 0.99 * limit.utilisation;
-        };
+        const auto ties = [&](const Unit* unit) { return utilisation(*unit, cycles) >= 0.99 * limit.utilisation; };
         std::copy_if(left.begin(), left.end(), std::back_inserter(limit.units), ties);
         left.erase(std::remove_if(left.begin(), left.end(), ties), left.end());
         return limit;
@@ -119,21 +115,18 @@ std::string binding_text(const Pipeline& pipeline, std::uint64_t cycles, const B
     const bool several = found.first.units.size() > 1;
     std::string text = found.first.names();
     if (several)
-        text +=
-            fmt::format(", which tie: {:.1f} % of their throughput is used", 100 * found.first.utilisation);
+        text += fmt::format(", which tie: {:.1f} % of their throughput is used", 100 * found.first.utilisation);
     else
-        text += fmt::format(
-            ": {:.1f} % of {}", 100 * found.first.utilisation,
-            is_memory(*found.first.units[0]) ? "its port slots are taken" : "its throughput is used");
+        text += fmt::format(": {:.1f} % of {}", 100 * found.first.utilisation,
+                            is_memory(*found.first.units[0]) ? "its port slots are taken" : "its throughput is used");
     const auto [waiting, most] = longest_wait(pipeline, found.first.units[0]);
     if (waiting != nullptr)
         text += fmt::format("; {} is held up by {} in {:.1f} % of all cycles", unit_name(*waiting),
                             several ? unit_name(*found.first.units[0]) : "it", 100 * ratio(most, cycles));
     if (found.bound() > 0)
-        text +=
-            fmt::format("; without {} at most {:.1f} times faster, bounded by {}, {} {:.1f} %",
-                        several ? "them" : "it", found.bound(), found.next.names(),
-                        found.next.units.size() > 1 ? "which tie at" : "at", 100 * found.next.utilisation);
+        text += fmt::format("; without {} at most {:.1f} times faster, bounded by {}, {} {:.1f} %",
+                            several ? "them" : "it", found.bound(), found.next.names(),
+                            found.next.units.size() > 1 ? "which tie at" : "at", 100 * found.next.utilisation);
     return text;
 }
 
@@ -158,12 +151,11 @@ std::string latency_text(const Pipeline& pipeline, std::uint64_t cycles, const B
     const double starved = state_percent(get, State::starved, cycles),
                  blocked = state_percent(get, State::blocked, cycles);
     const std::string held_up =
-        starved > blocked
-            ? fmt::format(
-                  "get_triangle is starved {:.1f} %: more base triangles, a higher "
-                  "hardware.queue_watermark",
-                  starved)
-            : fmt::format("get_triangle is blocked {:.1f} %: larger buffers, timing.*_buffer", blocked);
+        starved > blocked ? fmt::format(
+                                "get_triangle is starved {:.1f} %: more base triangles, a higher "
+                                "hardware.queue_watermark",
+                                starved)
+                          : fmt::format("get_triangle is blocked {:.1f} %: larger buffers, timing.*_buffer", blocked);
     const Unit& longest = longest_stay(pipeline);
     return fmt::format(
         "none: bound by latency; of the busiest ({}) {:.1f} % of the throughput is used; at most {:.1f} "
@@ -182,12 +174,12 @@ std::string without_trailing_blanks(std::string line) {
 std::string unit_line(const Unit& unit, std::uint64_t cycles) {
     const Activity& activity = unit.activity();
     return without_trailing_blanks(
-        fmt::format("{:<40}{:>10}{:>9.2f}{:>8.2f}{:>9.2f}{:>9.2f}{:>13.2f}{:>12.2f}{:>9.3f}{:>6}  {}",
-                    unit_name(unit), activity.items_in(), state_percent(unit, State::busy, cycles),
-                    state_percent(unit, State::waiting_for_memory, cycles),
-                    state_percent(unit, State::blocked, cycles), state_percent(unit, State::starved, cycles),
-                    100 * utilisation(unit, cycles), 1000 * ratio(activity.items_in(), cycles),
-                    ratio(activity.item_cycles(), cycles), activity.high_water_mark(), whom(unit)));
+        fmt::format("{:<40}{:>10}{:>9.2f}{:>8.2f}{:>9.2f}{:>9.2f}{:>13.2f}{:>12.2f}{:>9.3f}{:>6}  {}", unit_name(unit),
+                    activity.items_in(), state_percent(unit, State::busy, cycles),
+                    state_percent(unit, State::waiting_for_memory, cycles), state_percent(unit, State::blocked, cycles),
+                    state_percent(unit, State::starved, cycles), 100 * utilisation(unit, cycles),
+                    1000 * ratio(activity.items_in(), cycles), ratio(activity.item_cycles(), cycles),
+                    activity.high_water_mark(), whom(unit)));
 }
 
 std::string queue_line(const Unit& unit, std::uint64_t cycles) {
@@ -208,10 +200,10 @@ std::string bottleneck_text(const Pipeline& pipeline, std::uint64_t cycles) {
 
 std::string timing_tables(const Pipeline& pipeline, std::uint64_t cycles) {
     std::string text =
-        fmt::format("{:<40}{:>10}{:>9}{:>8}{:>9}{:>9}{:>13}{:>12}{:>9}{:>6}  {}\n", "unit", "items", "busy",
-                    "memory", "blocked", "starved", "utilisation", "items/kcyc", "occup.", "most", "by whom");
-    std::string queues = fmt::format("{:<40}{:>10}{:>12}{:>12}{:>10}\n", "queue or wire", "items",
-                                     "items/kcyc", "mean level", "most");
+        fmt::format("{:<40}{:>10}{:>9}{:>8}{:>9}{:>9}{:>13}{:>12}{:>9}{:>6}  {}\n", "unit", "items", "busy", "memory",
+                    "blocked", "starved", "utilisation", "items/kcyc", "occup.", "most", "by whom");
+    std::string queues =
+        fmt::format("{:<40}{:>10}{:>12}{:>12}{:>10}\n", "queue or wire", "items", "items/kcyc", "mean level", "most");
     for (const Unit* unit : pipeline.units()) {
         if (is_queue_or_wire(*unit))
             queues += queue_line(*unit, cycles);

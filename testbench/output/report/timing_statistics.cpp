@@ -42,22 +42,18 @@ void run_figures(const Simulation& simulation, std::vector<Figure>& figures) {
     Group run(figures, "timing");
     run.count("cycles", cycles, "cycle", "from the start to the end of the last in which anything happened");
     run.count("clock_period", simulation.setup.design.timing.cycle_picoseconds, "ps", "one cycle");
-    run.real("time", static_cast<double>(cycles) * simulation.setup.design.timing.cycle_picoseconds * 1e-12,
-             "s", "cycles times the clock's period");
-    run.real("cycles_per_triangle", ratio(cycles, counts.finished), "cycle/triangle",
-             "per finished triangle");
-    run.real("cycles_per_pass", ratio(cycles, counts.passes), "cycle/pass",
-             "per triangle that went through the tests");
+    run.real("time", static_cast<double>(cycles) * simulation.setup.design.timing.cycle_picoseconds * 1e-12, "s",
+             "cycles times the clock's period");
+    run.real("cycles_per_triangle", ratio(cycles, counts.finished), "cycle/triangle", "per finished triangle");
+    run.real("cycles_per_pass", ratio(cycles, counts.passes), "cycle/pass", "per triangle that went through the tests");
     run.real("cycles_per_edge", ratio(cycles, p.edges_tested()), "cycle/edge", "per edge tested");
     run.real("base_triangle_share",
-             ratio(p.get_triangle.host_triangles(),
-                   p.get_triangle.host_triangles() + p.get_triangle.queue_triangles()),
+             ratio(p.get_triangle.host_triangles(), p.get_triangle.host_triangles() + p.get_triangle.queue_triangles()),
              "", "base triangles in all triangles that Get Triangle took");
     run.count("most_triangles_ahead_of_parts", p.pass_or_tessellate.most_ahead_of_parts(), "triangle",
               "that waited in Pass or Tessellate for their first part");
-    run.text(
-        "bottleneck", bottleneck.binding ? bottleneck.first.names() : "none",
-        "the units or memories of the highest utilisation, if that is at least 85 %; none: latency binds");
+    run.text("bottleneck", bottleneck.binding ? bottleneck.first.names() : "none",
+             "the units or memories of the highest utilisation, if that is at least 85 %; none: latency binds");
     run.real("bottleneck_bound", bottleneck.bound(), "times",
              "how many times faster at most without it, or, if latency binds, without any wait");
     run.text("bottleneck_in_words", bottleneck_text(p, cycles), "why");
@@ -88,8 +84,7 @@ void unit_figures(const Unit& unit, std::uint64_t cycles, std::vector<Figure>& f
     const Activity& activity = unit.activity();
     Group group(figures, "timing." + unit_name(unit));
     group.count("items", activity.items_in(), "item", "taken; in a memory, requests");
-    group.count("items_out", activity.items_out(), "item",
-                "finished and handed on, or dropped as not needed");
+    group.count("items_out", activity.items_out(), "item", "finished and handed on, or dropped as not needed");
     if (!is_queue_or_wire(unit))
         state_figures(unit, cycles, group);
     group.real("throughput", ratio(activity.items_out(), cycles), "item/cycle", "items out per cycle");

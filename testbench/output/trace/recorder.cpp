@@ -62,8 +62,7 @@ Recorder::~Recorder() {
         track.unit.activity().observe(nullptr);
 }
 
-void Recorder::Track::stretch(State state, const sc_core::sc_object* by, std::uint64_t begin,
-                              std::uint64_t end) {
+void Recorder::Track::stretch(State state, const sc_core::sc_object* by, std::uint64_t begin, std::uint64_t end) {
     TimelineWriter::Item its_item;
     if (named)
         its_item = {item->triangle.pass, item->triangle.base, part_name(item->parts)};

@@ -44,11 +44,9 @@ class Recorder : public CycleObserver {
     using FlowStep = TimelineWriter::FlowStep;
     /// Passes a unit's stretches on, up to the one that reaches the window's end.
     struct Track : ActivityObserver {
-        Track(Unit& its_unit, TimelineWriter& its_timeline, TimelineWriter::Track its_number,
-              std::uint64_t last_cycle)
+        Track(Unit& its_unit, TimelineWriter& its_timeline, TimelineWriter::Track its_number, std::uint64_t last_cycle)
             : unit(its_unit), timeline(its_timeline), number(its_number), last(last_cycle) {}
-        void stretch(State state, const sc_core::sc_object* by, std::uint64_t begin,
-                     std::uint64_t end) override;
+        void stretch(State state, const sc_core::sc_object* by, std::uint64_t begin, std::uint64_t end) override;
 
         Unit& unit;
         TimelineWriter& timeline;
@@ -65,9 +63,7 @@ class Recorder : public CycleObserver {
     void show_all();
     void show_called(std::uint64_t called);
     void end_cycles_before(std::uint64_t cycle);
-    std::uint64_t end_of_window() const {
-        return window_.last == UINT64_MAX ? window_.last : window_.last + 1;
-    }
+    std::uint64_t end_of_window() const { return window_.last == UINT64_MAX ? window_.last : window_.last + 1; }
     void show_queue_level(std::uint64_t cycle);
     void enter_window();
     void name_items(std::uint64_t cycle, std::uint64_t called);

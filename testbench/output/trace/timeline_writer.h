@@ -58,8 +58,7 @@ class TimelineWriter {
 
   private:
     void check_open() const;
-    void write_counter(std::string_view name, std::string_view series, std::uint64_t cycle,
-                       std::uint64_t value);
+    void write_counter(std::string_view name, std::string_view series, std::uint64_t cycle, std::uint64_t value);
     void write_arguments(std::string_view detail, const Item* item);
     void begin_event(const char* phase, std::string_view name);
     void end_event();

@@ -64,8 +64,7 @@ class AtomicStream : private std::streambuf, public std::ostream {
 };
 
 TraceWindow window_of(const Job& job) {
-    return {static_cast<std::uint64_t>(job.output.trace_from),
-            static_cast<std::uint64_t>(job.output.trace_to)};
+    return {static_cast<std::uint64_t>(job.output.trace_from), static_cast<std::uint64_t>(job.output.trace_to)};
 }
 
 std::string_view name_in_pipeline(const Unit& unit, const Pipeline& pipeline) {
@@ -91,9 +90,8 @@ std::vector<const Unit*> units_to_trace(const std::string& words, const Pipeline
         std::string names;
         for (const Unit* unit : pipeline.units())
             names += fmt::format("{}{}", names.empty() ? "" : ", ", name_in_pipeline(*unit, pipeline));
-        throw InputError(
-            fmt::format("output.trace_units = \"{}\": no unit's name contains \"{}\"; the units are {}",
-                        words, word, names));
+        throw InputError(fmt::format("output.trace_units = \"{}\": no unit's name contains \"{}\"; the units are {}",
+                                     words, word, names));
     };
     for (std::size_t begin = words.find_first_not_of(separators); begin != std::string::npos;) {
         const std::size_t end = std::min(words.find_first_of(separators, begin), words.size());
@@ -106,8 +104,7 @@ std::vector<const Unit*> units_to_trace(const std::string& words, const Pipeline
 }
 
 struct Traces::Files {
-    Files(const Job& job, const fs::path& folder, Simulation& simulation,
-          const std::vector<const Unit*>& units) {
+    Files(const Job& job, const fs::path& folder, Simulation& simulation, const std::vector<const Unit*>& units) {
         const std::uint64_t period = simulation.setup.design.timing.cycle_picoseconds;
         if (job.output.vcd) {
             vcd_file.emplace(folder / "trace.vcd");
@@ -120,8 +117,8 @@ struct Traces::Files {
             timeline_file.emplace(folder / "timeline.json");
             timeline.emplace(*timeline_file, shown_cycle, window_of(job));
         }
-        recorder.emplace(simulation.pipeline, vcd ? &*vcd : nullptr, timeline ? &*timeline : nullptr,
-                         window_of(job), units);
+        recorder.emplace(simulation.pipeline, vcd ? &*vcd : nullptr, timeline ? &*timeline : nullptr, window_of(job),
+                         units);
     }
 
     std::optional<AtomicStream> vcd_file;
@@ -131,8 +128,7 @@ struct Traces::Files {
     std::optional<Recorder> recorder;
 };
 
-Traces::Traces(const Job& job, const fs::path& folder, Simulation& simulation,
-               const std::vector<const Unit*>& units)
+Traces::Traces(const Job& job, const fs::path& folder, Simulation& simulation, const std::vector<const Unit*>& units)
     : files_(std::make_unique<Files>(job, folder, simulation, units)),
       simulation_(simulation),
       window_(window_of(job)) {}
@@ -164,8 +160,7 @@ std::vector<std::string> Traces::text() const {
     const std::uint64_t cycles = simulation_.cycles();
     const std::string window =
         window_.first >= cycles
-            ? fmt::format("the run ended after {} cycles, before cycle {}: only its end", cycles,
-                          window_.first)
+            ? fmt::format("the run ended after {} cycles, before cycle {}: only its end", cycles, window_.first)
             : fmt::format("cycles {} to {}", window_.first, std::min(window_.last, cycles - 1));
     std::vector<std::string> text;
     if (files_->vcd)
@@ -198,8 +193,7 @@ std::string make_fst(const fs::path& folder, AtomicSet& files) {
         return "no trace.fst: vcd2fst is not installed; it is in the package gtkwave (apt-get install "
                "gtkwave)";
     if (error != 0)
-        return fmt::format("no trace.fst: vcd2fst cannot be started: {}",
-                           std::generic_category().message(error));
+        return fmt::format("no trace.fst: vcd2fst cannot be started: {}", std::generic_category().message(error));
     int status = 0;
     while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }

@@ -105,8 +105,7 @@ void VcdWriter::write_header() {
 
 void VcdWriter::write_scope(const Scope& scope, std::string& text) const {
     for (const Variable& variable : scope.variables) {
-        text += "$var wire " + std::to_string(variable.bits) + " " + make_code(variable.signal) + " " +
-                variable.name;
+        text += "$var wire " + std::to_string(variable.bits) + " " + make_code(variable.signal) + " " + variable.name;
         text += variable.bits == 1 ? " $end\n" : " [" + std::to_string(variable.bits - 1) + ":0] $end\n";
     }
     for (const std::size_t inner : scope.scopes) {

@@ -32,11 +32,9 @@ constexpr bool strikes_held_back(FaultKind kind) {
 /// One transaction of a run, broken on purpose.
 struct Fault {
     FaultKind kind = FaultKind::dropped;
-    std::string
-        place;  ///< an output or a memory port, without the machine's name: displace_vertex.to_transform
-    std::uint64_t transaction =
-        1;                  ///< of those at the place, from 1 on; of some kinds of those held back there
-    std::uint64_t bit = 0;  ///< with bit_flip of the payload, with address_flip of the address
+    std::string place;  ///< an output or a memory port, without the machine's name: displace_vertex.to_transform
+    std::uint64_t transaction = 1;  ///< of those at the place, from 1 on; of some kinds of those held back there
+    std::uint64_t bit = 0;          ///< with bit_flip of the payload, with address_flip of the address
 };
 
 /// A run's fault: says which transaction is the broken one, and remembers whether it came.
@@ -58,8 +56,7 @@ class FaultTrigger {
     /// Throws std::out_of_range if the transaction lacks the fault's bit.
     void require_bit(bool exists) const {
         if (!exists)
-            throw std::out_of_range("the transaction at " + fault_.place + " has no bit " +
-                                    std::to_string(fault_.bit));
+            throw std::out_of_range("the transaction at " + fault_.place + " has no bit " + std::to_string(fault_.bit));
     }
 
   private:

@@ -100,8 +100,7 @@ tlm::tlm_sync_enum MemoryFault::nb_transport_bw(MemoryRequest& request, tlm::tlm
     return status;
 }
 
-tlm::tlm_sync_enum MemoryFault::answer(MemoryRequest& request, tlm::tlm_phase& phase,
-                                       sc_core::sc_time& delay) {
+tlm::tlm_sync_enum MemoryFault::answer(MemoryRequest& request, tlm::tlm_phase& phase, sc_core::sc_time& delay) {
     if (&request != struck_) {
         const tlm::tlm_sync_enum status = socket->nb_transport_bw(request, phase, delay);
         if (held_ != nullptr) {

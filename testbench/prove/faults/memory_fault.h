@@ -34,10 +34,8 @@ class MemoryFault : public sc_core::sc_module {
 
   private:
     void b_transport(MemoryRequest& request, sc_core::sc_time& delay);
-    tlm::tlm_sync_enum nb_transport_fw(MemoryRequest& request, tlm::tlm_phase& phase,
-                                       sc_core::sc_time& delay);
-    tlm::tlm_sync_enum nb_transport_bw(MemoryRequest& request, tlm::tlm_phase& phase,
-                                       sc_core::sc_time& delay);
+    tlm::tlm_sync_enum nb_transport_fw(MemoryRequest& request, tlm::tlm_phase& phase, sc_core::sc_time& delay);
+    tlm::tlm_sync_enum nb_transport_bw(MemoryRequest& request, tlm::tlm_phase& phase, sc_core::sc_time& delay);
     unsigned transport_dbg(MemoryRequest& request);
     tlm::tlm_sync_enum answer(MemoryRequest& request, tlm::tlm_phase& phase, sc_core::sc_time& delay);
     tlm::tlm_sync_enum send_back(MemoryRequest& request, const tlm::tlm_phase& phase);

@@ -36,13 +36,10 @@ class StreamFault : public sc_core::sc_module {
         }
 
       private:
-        tlm::tlm_sync_enum nb_transport_fw(Payload& payload, tlm::tlm_phase& phase,
-                                           sc_core::sc_time& delay) override {
+        tlm::tlm_sync_enum nb_transport_fw(Payload& payload, tlm::tlm_phase& phase, sc_core::sc_time& delay) override {
             return fault_.forward(payload, phase, delay);
         }
-        void b_transport(Payload& payload, sc_core::sc_time& delay) override {
-            fault_.pass_on(payload, delay);
-        }
+        void b_transport(Payload& payload, sc_core::sc_time& delay) override { fault_.pass_on(payload, delay); }
         bool get_direct_mem_ptr(Payload&, tlm::tlm_dmi&) override { return false; }
         unsigned transport_dbg(Payload&) override { return 0; }
 
@@ -57,8 +54,7 @@ class StreamFault : public sc_core::sc_module {
         }
 
       private:
-        tlm::tlm_sync_enum nb_transport_bw(Payload& payload, tlm::tlm_phase& phase,
-                                           sc_core::sc_time& delay) override {
+        tlm::tlm_sync_enum nb_transport_bw(Payload& payload, tlm::tlm_phase& phase, sc_core::sc_time& delay) override {
             return fault_.backward(payload, phase, delay);
         }
         void invalidate_direct_mem_ptr(sc_dt::uint64, sc_dt::uint64) override {}

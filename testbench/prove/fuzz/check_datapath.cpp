@@ -65,8 +65,7 @@ void check_normalise(std::int64_t x, std::int64_t y, std::int64_t z, const Forma
     promise(holds_vector(formats.normal, unit), "a unit vector does not fit its format");
     promise(saturations.normal == 0, "a unit vector saturates");
     const bool zero = x == 0 && y == 0 && z == 0;
-    promise((saturations.degenerate_normal == 1) == zero,
-            "a vector without direction is not counted, or another is");
+    promise((saturations.degenerate_normal == 1) == zero, "a vector without direction is not counted, or another is");
     if (zero) {
         promise(unit == Direction{}, "a zero vector does not stay zero");
         return;
@@ -83,9 +82,7 @@ void check_normalise(std::int64_t x, std::int64_t y, std::int64_t z, const Forma
 }
 
 std::int64_t doubled_area(const TexCoord& a, const TexCoord& b, const TexCoord& c) {
-    const auto difference = [](std::uint32_t p, std::uint32_t q) {
-        return std::int64_t{p} - std::int64_t{q};
-    };
+    const auto difference = [](std::uint32_t p, std::uint32_t q) { return std::int64_t{p} - std::int64_t{q}; };
     return difference(b.u, a.u) * difference(c.v, a.v) - difference(b.v, a.v) * difference(c.u, a.u);
 }
 
@@ -115,8 +112,7 @@ void check_triangulate(const Triangle& triangle) {
             for (std::size_t k = 0; k < static_cast<std::size_t>(children.count); ++k) {
                 const auto& child = children.children[k];
                 for (const std::uint8_t corner : child)
-                    promise(corner < 3 || (split >> (corner - 3) & 1) != 0,
-                            "a child has a vertex that was not made");
+                    promise(corner < 3 || (split >> (corner - 3) & 1) != 0, "a child has a vertex that was not made");
                 covered += doubled_area(points[child[0]], points[child[1]], points[child[2]]);
             }
             promise(covered == enclosed, "the children do not cover their parent");
@@ -158,8 +154,7 @@ class Checker {
         pass.triangle.vertices = {i, j, i};
         machine_.evaluate_edge(pass, 0);
         machine_.evaluate_edge(pass, 1);
-        promise(pass.edges[0].tests == pass.edges[1].tests,
-                "an edge's tests depend on the side it is seen from");
+        promise(pass.edges[0].tests == pass.edges[1].tests, "an edge's tests depend on the side it is seen from");
         promise(testing::same_bits(inserted_vertex(pass, 0), inserted_vertex(pass, 1)),
                 "an inserted vertex depends on the side its edge is seen from");
     }
@@ -180,8 +175,7 @@ class Checker {
             for (std::uint32_t y = r.first_row; y < r.last_row; ++y)
                 for (std::uint32_t x = r.first_column; x < r.last_column; ++x)
                     sum += case_.codes[std::size_t{y % map.height} * map.width + x % map.width];
-            promise(machine_.sum_around(centre, size) == sum,
-                    "the Summed Height Table gives another sum than the map");
+            promise(machine_.sum_around(centre, size) == sum, "the Summed Height Table gives another sum than the map");
         }
         const bool constant = std::all_of(case_.codes.begin(), case_.codes.end(),
                                           [&](std::uint32_t code) { return code == case_.codes.front(); });
@@ -225,8 +219,7 @@ class Checker {
 
     /// Removes a base edge from the account, split by its own decisions.
     void take_away_chain(const Vertex& from, const Vertex& to, unsigned depth, EdgeAccount& account) {
-        promise(depth <= case_.registers.tests.generation_limit,
-                "the generation limit does not bound an edge");
+        promise(depth <= case_.registers.tests.generation_limit, "the generation limit does not bound an edge");
         TrianglePass pass;
         pass.triangle.vertices = {from, to, from};
         machine_.evaluate_edge(pass, 0);
@@ -245,8 +238,7 @@ class Checker {
         promise(pack_triangle(triangle, formats(), bytes.data()), "a triangle does not fit its queue entry");
         const Triangle back = unpack_triangle(bytes.data(), formats());
         for (std::size_t k = 0; k < 3; ++k)
-            promise(testing::same_bits(back.vertices[k], triangle.vertices[k]),
-                    "a queue entry holds another vertex");
+            promise(testing::same_bits(back.vertices[k], triangle.vertices[k]), "a queue entry holds another vertex");
         promise(back.base == triangle.base && back.split_by == triangle.split_by &&
                     back.stopped_by == triangle.stopped_by && back.finished == triangle.finished,
                 "a queue entry holds another triangle");

@@ -21,8 +21,7 @@ void promise_vertex(const BaseVertex& v) {
         promise(std::isfinite(v.texture[k]), "a texture coordinate is not finite");
     promise(std::abs(safe_length(v.normal) - 1) < rounding, "a normal is not of unit length");
     promise(std::abs(safe_length(v.tangent) - 1) < rounding, "a tangent is not of unit length");
-    promise(std::abs(glm::dot(v.normal, v.tangent)) < rounding,
-            "a tangent is not at right angles to its normal");
+    promise(std::abs(glm::dot(v.normal, v.tangent)) < rounding, "a tangent is not at right angles to its normal");
     promise(v.handedness == 1 || v.handedness == -1, "a handedness is neither 1 nor -1");
 }
 

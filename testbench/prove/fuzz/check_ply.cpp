@@ -14,8 +14,7 @@ void check_ply(std::string_view bytes) {
         promise(mesh.normals.size() == mesh.positions.size() && mesh.textures.size() == mesh.positions.size(),
                 "not as many normals or texture coordinates as positions");
         for (const glm::dvec3& p : mesh.positions)
-            promise(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z),
-                    "a position is not finite");
+            promise(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z), "a position is not finite");
         for (const glm::vec3& n : mesh.normals)
             promise(std::isfinite(n.x) && std::isfinite(n.y) && std::isfinite(n.z), "a normal is not finite");
         for (const glm::dvec2& t : mesh.textures)

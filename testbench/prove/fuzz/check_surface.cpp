@@ -13,9 +13,8 @@ void check_surface(std::string_view bytes) {
     const std::string name = "fuzzed.toml";
     try {
         const BakedMap map = bake_heights(parse_surface(bytes, name), width, height);
-        promise(
-            map.width == width && map.height == height && map.values.size() == std::size_t{width} * height,
-            "a baked map of another size");
+        promise(map.width == width && map.height == height && map.values.size() == std::size_t{width} * height,
+                "a baked map of another size");
         for (const double value : map.values)
             promise(std::isfinite(value), "a baked height is not finite");
     } catch (const InputError& error) {

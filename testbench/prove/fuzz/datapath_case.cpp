@@ -34,8 +34,8 @@ Job::Formats any_formats(ByteSource& source) {
     static const FormatRange position_bits("position_bits"), position_fraction("position_fraction"),
         normal_bits("normal_bits"), normal_fraction("normal_fraction"), texture_integer("texture_integer"),
         texture_fraction("texture_fraction"), displacement_bits("displacement_bits"),
-        summed_height_bits("summed_height_bits"), screen_bits("screen_bits"),
-        screen_fraction("screen_fraction"), generation_bits("generation_bits");
+        summed_height_bits("summed_height_bits"), screen_bits("screen_bits"), screen_fraction("screen_fraction"),
+        generation_bits("generation_bits");
     const auto any = [&](const FormatRange& range) { return source.integer(range.low, range.high); };
     const auto below = [&](const FormatRange& range, std::int64_t bits) {
         return source.integer(range.low, std::min(range.high, bits - 1));
@@ -73,8 +73,8 @@ Formats make_formats(const Job::Formats& job, int view_distance_shift) {
     formats.view_distance =
         Format::make_signed(bits(job.position_bits), bits(job.position_fraction) - view_distance_shift);
     formats.normal = Format::make_signed(bits(job.normal_bits), bits(job.normal_fraction));
-    formats.texture = Format::make_unsigned(bits(job.texture_integer + job.texture_fraction) + 1,
-                                            bits(job.texture_fraction));
+    formats.texture =
+        Format::make_unsigned(bits(job.texture_integer + job.texture_fraction) + 1, bits(job.texture_fraction));
     formats.displacement = Format::make_unsigned(bits(job.displacement_bits), bits(job.displacement_bits));
     formats.summed_height = Format::make_unsigned(bits(job.summed_height_bits), 0);
     formats.screen = Format::make_signed(bits(job.screen_bits), bits(job.screen_fraction));
@@ -93,8 +93,7 @@ Direction any_unit(ByteSource& source, const Formats& formats) {
 }
 
 MapGeometry any_map(ByteSource& source, const Job::Formats& formats) {
-    const std::int64_t most =
-        std::min<std::int64_t>(largest_side, std::int64_t{1} << formats.texture_integer);
+    const std::int64_t most = std::min<std::int64_t>(largest_side, std::int64_t{1} << formats.texture_integer);
     MapGeometry map;
     map.width = source.natural(1, most);
     map.height = source.natural(1, most);
@@ -111,15 +110,12 @@ TestParameters any_tests(ByteSource& source, const Formats& formats, std::int64_
     tests.view_test = (off & 4) == 0;
     tests.tex_coord_test = (off & 8) == 0;
     tests.highlight_test = (off & 16) != 0;
-    tests.summed_height_unit =
-        (off & 32) != 0 ? datapath::SummedHeightUnit::area : datapath::SummedHeightUnit::sum;
+    tests.summed_height_unit = (off & 32) != 0 ? datapath::SummedHeightUnit::area : datapath::SummedHeightUnit::sum;
     const bool area = tests.summed_height_unit == datapath::SummedHeightUnit::area;
     tests.normal_threshold = source.natural(0, 2 * formats.normal.highest + 1);
     tests.summed_height_threshold =
-        static_cast<std::uint64_t>(source.integer(0, std::int64_t{1} << (area ? 18 : 50))) >>
-        (source.byte() % 40);
-    tests.view_threshold =
-        static_cast<std::uint32_t>(source.integer(0, std::int64_t{1} << formats.screen.bits));
+        static_cast<std::uint64_t>(source.integer(0, std::int64_t{1} << (area ? 18 : 50))) >> (source.byte() % 40);
+    tests.view_threshold = static_cast<std::uint32_t>(source.integer(0, std::int64_t{1} << formats.screen.bits));
     tests.generation_limit = static_cast<std::uint32_t>(generation_limit);
     const Direction half = any_unit(source, formats);
     tests.half_vector = {half.x, half.y, half.z};
@@ -181,8 +177,7 @@ Vertex any_corner(ByteSource& source, const Registers& registers) {
     // On a repeated axis the host accepts all coordinates that fit the format, beyond the first period, too.
     const auto coordinate = [&](std::uint32_t size, AddressMode mode) {
         const std::int64_t border = std::int64_t{1} << (formats.texture.bits - 1);
-        return source.natural(
-            0, mode == AddressMode::repeat ? border : std::int64_t{size} << formats.texture.fraction);
+        return source.natural(0, mode == AddressMode::repeat ? border : std::int64_t{size} << formats.texture.fraction);
     };
     Vertex vertex;
     vertex.position = {position(), position(), position()};
@@ -225,9 +220,8 @@ void widen_summed_height(Registers& registers, const std::vector<Triangle>& base
     for (const Triangle& triangle : base) {
         std::uint64_t width = 1, height = 1;
         for (std::size_t k = 0; k < 3; ++k) {
-            const RectangleSize size =
-                rectangle_size(triangle.vertices[k].texture, triangle.vertices[(k + 1) % 3].texture,
-                               registers.map, registers.formats);
+            const RectangleSize size = rectangle_size(
+                triangle.vertices[k].texture, triangle.vertices[(k + 1) % 3].texture, registers.map, registers.formats);
             width = std::max<std::uint64_t>(width, size.width);
             height = std::max<std::uint64_t>(height, size.height);
         }

@@ -31,8 +31,7 @@ void MemoryFile::replace(std::string_view bytes) {
     if (::ftruncate(descriptor_, 0) != 0)
         fail("ftruncate");
     for (std::size_t done = 0; done < bytes.size();) {
-        const ssize_t count =
-            ::pwrite(descriptor_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(done));
+        const ssize_t count = ::pwrite(descriptor_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(done));
         if (count < 0)
             fail("pwrite");
         done += static_cast<std::size_t>(count);

@@ -50,14 +50,13 @@ constexpr double slack = 1e-6;
 DirectMap::DirectMap(const datapath::MapGeometry& geometry, std::vector<std::uint32_t> codes,
                      std::vector<Direction> normals)
     : geometry_(geometry), codes_(std::move(codes)), normals_(std::move(normals)) {
-    const std::size_t columns = 2 * std::size_t{geometry.width} + 1,
-                      rows = 2 * std::size_t{geometry.height} + 1;
+    const std::size_t columns = 2 * std::size_t{geometry.width} + 1, rows = 2 * std::size_t{geometry.height} + 1;
     sums_.assign(columns * rows, 0);
     for (std::size_t y = 1; y < rows; ++y)
         for (std::size_t x = 1; x < columns; ++x)
-            sums_[y * columns + x] =
-                sums_[(y - 1) * columns + x] + sums_[y * columns + x - 1] - sums_[(y - 1) * columns + x - 1] +
-                codes_[(y - 1) % geometry.height * geometry.width + (x - 1) % geometry.width];
+            sums_[y * columns + x] = sums_[(y - 1) * columns + x] + sums_[y * columns + x - 1] -
+                                     sums_[(y - 1) * columns + x - 1] +
+                                     codes_[(y - 1) % geometry.height * geometry.width + (x - 1) % geometry.width];
 }
 
 std::size_t DirectMap::index(std::uint32_t x, std::uint32_t y) const {
@@ -68,8 +67,7 @@ std::size_t DirectMap::index(std::uint32_t x, std::uint32_t y) const {
            inside(x, geometry_.width, geometry_.address_u);
 }
 
-std::uint64_t DirectMap::sum(std::uint32_t x, std::uint32_t y, std::uint32_t width,
-                             std::uint32_t height) const {
+std::uint64_t DirectMap::sum(std::uint32_t x, std::uint32_t y, std::uint32_t width, std::uint32_t height) const {
     const std::size_t columns = 2 * std::size_t{geometry_.width} + 1;
     const auto entry = [&](std::size_t column, std::size_t row) { return sums_[row * columns + column]; };
     return entry(x + width, y + height) - entry(x, y + height) - entry(x + width, y) + entry(x, y);
@@ -102,26 +100,24 @@ bool DirectEdge::is_bumped(const Vertex& v) const {
     const auto cross = [&](std::int64_t a, std::int64_t b, std::int64_t c, std::int64_t d) {
         return v.handedness * nearest(a * b - c * d, fraction);
     };
-    const std::int64_t bx = cross(n.y, t.z, n.z, t.y), by = cross(n.z, t.x, n.x, t.z),
-                       bz = cross(n.x, t.y, n.y, t.x);
+    const std::int64_t bx = cross(n.y, t.z, n.z, t.y), by = cross(n.z, t.x, n.x, t.z), bz = cross(n.x, t.y, n.y, t.x);
     const Texel at = texel(v.texture);
     const Direction& m = map_.normal(at.x, at.y);
     const auto combined = [&](std::int64_t tangent, std::int64_t bitangent, std::int64_t normal) {
         return nearest(m.x * tangent + m.y * bitangent + m.z * normal, std::max(0, fraction - 2));
     };
-    return is_unit({combined(t.x, bx, n.x), combined(t.y, by, n.y), combined(t.z, bz, n.z)},
-                   v.displaced_normal);
+    return is_unit({combined(t.x, bx, n.x), combined(t.y, by, n.y), combined(t.z, bz, n.z)}, v.displaced_normal);
 }
 
 bool DirectEdge::is_displaced(const Vertex& v) const {
     const datapath::Formats& formats = registers_.formats;
     const Texel at = texel(v.texture);
-    const std::int64_t height = nearest(std::int64_t{registers_.displacement.scale} * map_.code(at.x, at.y),
-                                        formats.displacement.bits) +
-                                registers_.displacement.bias;
+    const std::int64_t height =
+        nearest(std::int64_t{registers_.displacement.scale} * map_.code(at.x, at.y), formats.displacement.bits) +
+        registers_.displacement.bias;
     const auto right = [&](std::int64_t base, std::int64_t normal, std::int64_t found) {
-        return found == std::clamp(base + nearest(height * normal, formats.normal.fraction),
-                                   formats.position.lowest, formats.position.highest);
+        return found == std::clamp(base + nearest(height * normal, formats.normal.fraction), formats.position.lowest,
+                                   formats.position.highest);
     };
     return right(v.position.x, v.normal.x, v.displaced.x) && right(v.position.y, v.normal.y, v.displaced.y) &&
            right(v.position.z, v.normal.z, v.displaced.z);
@@ -135,10 +131,9 @@ bool DirectEdge::is_on_screen(const Vertex& v) const {
                                          Wide{r[2]} * v.displaced.z + r[3]);
     };
     const std::int64_t w = row(parameters.row_w);
-    const int w_places = datapath::TransformParameters::matrix_fraction + formats.position.fraction -
-                         formats.view_distance.fraction;
-    if (v.screen.w !=
-        std::clamp(nearest(w, w_places), formats.view_distance.lowest, formats.view_distance.highest))
+    const int w_places =
+        datapath::TransformParameters::matrix_fraction + formats.position.fraction - formats.view_distance.fraction;
+    if (v.screen.w != std::clamp(nearest(w, w_places), formats.view_distance.lowest, formats.view_distance.highest))
         return false;
     if (v.screen.in_front != (w > parameters.near_plane))
         return false;
@@ -147,23 +142,20 @@ bool DirectEdge::is_on_screen(const Vertex& v) const {
     const auto right = [&](const std::array<std::int64_t, 4>& r, std::int32_t found) {
         const double exact = std::ldexp(static_cast<double>(row(r)) / static_cast<double>(w),
                                         parameters.exponent + formats.screen.fraction);
-        const double held = std::clamp(exact, static_cast<double>(formats.screen.lowest),
-                                       static_cast<double>(formats.screen.highest));
+        const double held =
+            std::clamp(exact, static_cast<double>(formats.screen.lowest), static_cast<double>(formats.screen.highest));
         return std::fabs(held - found) <= 0.5 + std::fabs(held) * 0x1p-28 + slack;
     };
     return right(parameters.row_x, v.screen.x) && right(parameters.row_y, v.screen.y);
 }
 
 const char* DirectEdge::fault_of_vertex(const Vertex& i, const Vertex& j, const Vertex& inserted) const {
-    const auto middle = [](std::int64_t a, std::int64_t b, std::int64_t found) {
-        return found == half_of_both(a, b);
-    };
+    const auto middle = [](std::int64_t a, std::int64_t b, std::int64_t found) { return found == half_of_both(a, b); };
     if (!middle(i.position.x, j.position.x, inserted.position.x) ||
         !middle(i.position.y, j.position.y, inserted.position.y) ||
         !middle(i.position.z, j.position.z, inserted.position.z))
         return "P";
-    if (!middle(i.texture.u, j.texture.u, inserted.texture.u) ||
-        !middle(i.texture.v, j.texture.v, inserted.texture.v))
+    if (!middle(i.texture.u, j.texture.u, inserted.texture.u) || !middle(i.texture.v, j.texture.v, inserted.texture.v))
         return "t";
     if (!is_unit(mean(i.normal, j.normal), inserted.normal))
         return "N";
@@ -197,12 +189,11 @@ EdgeMeasures DirectEdge::measure(const Vertex& i, const Vertex& j, const Vertex&
     result.cosine = cosine(inserted.displaced_normal);
     for (const Vertex* end : {&i, &j}) {
         const Direction &n = end->displaced_normal, &m = inserted.displaced_normal;
-        result.normal = std::max({result.normal, magnitude(std::int64_t{n.x} - m.x),
-                                  magnitude(std::int64_t{n.y} - m.y), magnitude(std::int64_t{n.z} - m.z)});
+        result.normal = std::max({result.normal, magnitude(std::int64_t{n.x} - m.x), magnitude(std::int64_t{n.y} - m.y),
+                                  magnitude(std::int64_t{n.z} - m.z)});
         result.cosine = std::max(result.cosine, cosine(n));
     }
-    result.length =
-        magnitude(std::int64_t{i.screen.x} - j.screen.x) + magnitude(std::int64_t{i.screen.y} - j.screen.y);
+    result.length = magnitude(std::int64_t{i.screen.x} - j.screen.x) + magnitude(std::int64_t{i.screen.y} - j.screen.y);
 
     const datapath::MapGeometry& map = registers_.map;
     const std::uint64_t unit = std::uint64_t{1} << registers_.formats.texture.fraction;
@@ -215,8 +206,7 @@ EdgeMeasures DirectEdge::measure(const Vertex& i, const Vertex& j, const Vertex&
     const auto sum = [&](const Vertex& v) {
         const Texel at = texel(v.texture);
         return static_cast<std::int64_t>(map_.sum(first_texel(at.x, width, map.width, map.address_u),
-                                                  first_texel(at.y, height, map.height, map.address_v), width,
-                                                  height));
+                                                  first_texel(at.y, height, map.height, map.address_v), width, height));
     };
     result.rectangle_area = std::uint64_t{width} * height;
     result.summed_height = magnitude(2 * sum(inserted) - sum(i) - sum(j));
@@ -233,20 +223,17 @@ std::uint8_t DirectEdge::tests(const Vertex& i, const Vertex& j, const Vertex& i
             measures.cosine > parameters.highlight_cosine,
         datapath::highlight_bit);
     const bool by_area = parameters.summed_height_unit == datapath::SummedHeightUnit::area;
-    set(parameters.summed_height_test &&
-            Wide{measures.summed_height} >
-                Wide{parameters.summed_height_threshold} * (by_area ? measures.rectangle_area : 1),
+    set(parameters.summed_height_test && Wide{measures.summed_height} > Wide{parameters.summed_height_threshold} *
+                                                                            (by_area ? measures.rectangle_area : 1),
         datapath::summed_height_bit);
     const int in_front = (i.screen.in_front ? 1 : 0) + (j.screen.in_front ? 1 : 0);
-    set(!parameters.view_test || in_front == 1 ||
-            (in_front == 2 && measures.length > parameters.view_threshold),
+    set(!parameters.view_test || in_front == 1 || (in_front == 2 && measures.length > parameters.view_threshold),
         datapath::view_bit);
     const auto same = [](const Texel& a, const Texel& b) { return a.x == b.x && a.y == b.y; };
     const Texel middle = texel(inserted.texture);
     set(!parameters.tex_coord_test || !(same(middle, texel(i.texture)) || same(middle, texel(j.texture))),
         datapath::tex_coord_bit);
-    set(!parameters.generation_test || inserted.generation <= parameters.generation_limit,
-        datapath::generation_bit);
+    set(!parameters.generation_test || inserted.generation <= parameters.generation_limit, datapath::generation_bit);
     return static_cast<std::uint8_t>(bits);
 }
 

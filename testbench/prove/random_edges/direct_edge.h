@@ -15,9 +15,7 @@ class DirectMap {
               std::vector<datapath::Direction> normals);
 
     std::uint32_t code(std::uint32_t x, std::uint32_t y) const { return codes_[index(x, y)]; }
-    const datapath::Direction& normal(std::uint32_t x, std::uint32_t y) const {
-        return normals_[index(x, y)];
-    }
+    const datapath::Direction& normal(std::uint32_t x, std::uint32_t y) const { return normals_[index(x, y)]; }
     /// Sum of the codes in columns x .. x + width, rows y .. y + height; x, y inside the map, the size no larger.
     std::uint64_t sum(std::uint32_t x, std::uint32_t y, std::uint32_t width, std::uint32_t height) const;
 
@@ -45,16 +43,14 @@ struct EdgeMeasures {
 /// and Newton steps.
 class DirectEdge {
   public:
-    DirectEdge(const datapath::Registers& registers, const DirectMap& map)
-        : registers_(registers), map_(map) {}
+    DirectEdge(const datapath::Registers& registers, const DirectMap& map) : registers_(registers), map_(map) {}
 
     /// Compares the vertex inserted on (i, j) with the definitions: quotients and unit vectors within the documented
     /// bounds, all other components exactly. Null, or the name of a wrong value.
     const char* fault_of_vertex(const datapath::Vertex& i, const datapath::Vertex& j,
                                 const datapath::Vertex& inserted) const;
 
-    EdgeMeasures measure(const datapath::Vertex& i, const datapath::Vertex& j,
-                         const datapath::Vertex& inserted) const;
+    EdgeMeasures measure(const datapath::Vertex& i, const datapath::Vertex& j, const datapath::Vertex& inserted) const;
 
     /// The six tests as TestBits.
     std::uint8_t tests(const datapath::Vertex& i, const datapath::Vertex& j, const datapath::Vertex& inserted,

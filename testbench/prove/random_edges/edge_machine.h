@@ -63,22 +63,20 @@ class Machine {
 
     std::uint64_t sum_around(const datapath::TexCoord& t, const datapath::RectangleSize& size) const {
         const datapath::TableLayout& table = registers.summed_height_table;
-        return rectangle_sum(centred_rectangle(t, size, registers.map, registers.formats), registers.map,
-                             table, registers.formats, [&](std::uint64_t address) {
-                                 return tables_.sums.at(Tables::entry(address, table));
-                             });
+        return rectangle_sum(centred_rectangle(t, size, registers.map, registers.formats), registers.map, table,
+                             registers.formats,
+                             [&](std::uint64_t address) { return tables_.sums.at(Tables::entry(address, table)); });
     }
 
     bool summed_height(const datapath::TexCoord& i, const datapath::TexCoord& j) const {
         const datapath::RectangleSize size = rectangle_size(i, j, registers.map, registers.formats);
-        return summed_height_test(sum_around(i, size), sum_around(j, size), sum_around(midpoint(i, j), size),
-                                  size, registers.tests);
+        return summed_height_test(sum_around(i, size), sum_around(j, size), sum_around(midpoint(i, j), size), size,
+                                  registers.tests);
     }
 
     datapath::Direction bumped(const datapath::Direction& n, const datapath::Direction& t, int handedness,
                                const datapath::TexCoord& texture) {
-        const std::uint64_t address =
-            texel_address(texture, registers.normal_map, registers.map, registers.formats);
+        const std::uint64_t address = texel_address(texture, registers.normal_map, registers.map, registers.formats);
         return bump(n, t, handedness,
                     datapath::unpack_normal(tables_.normals.at(Tables::entry(address, registers.normal_map)),
                                             registers.formats.normal.bits),
@@ -116,8 +114,7 @@ class Machine {
         made.position = midpoint(i.position, j.position);
         made.mean_normal = midpoint(i.normal, j.normal);
         made.texture = midpoint(i.texture, j.texture);
-        made.displaced =
-            displaced(made.position, normalise(made.mean_normal, formats, saturations), made.texture);
+        made.displaced = displaced(made.position, normalise(made.mean_normal, formats, saturations), made.texture);
         made.screen = transform(made.displaced, registers.transform, formats, saturations);
 
         datapath::EdgeTests& edge = pass.edges[static_cast<std::size_t>(k)];
@@ -125,8 +122,7 @@ class Machine {
         edge.normal = normalise(midpoint(i.normal, j.normal), formats, saturations);
         edge.tangent = normalise(midpoint(i.tangent, j.tangent), formats, saturations);
         edge.displaced_normal =
-            bumped(edge.normal, edge.tangent, datapath::inserted_handedness(i.handedness, j.handedness),
-                   edge.texture);
+            bumped(edge.normal, edge.tangent, datapath::inserted_handedness(i.handedness, j.handedness), edge.texture);
     }
 
     /// Evaluates the tests of edge k, whose vertex is known.
@@ -144,13 +140,11 @@ class Machine {
             bit(parameters.highlight_test &&
                     highlight_test(i.displaced_normal, j.displaced_normal, edge.displaced_normal, parameters),
                 datapath::highlight_bit) |
-            bit(parameters.summed_height_test && summed_height(i.texture, j.texture),
-                datapath::summed_height_bit) |
+            bit(parameters.summed_height_test && summed_height(i.texture, j.texture), datapath::summed_height_bit) |
             bit(!parameters.view_test || view_test(i.screen, j.screen, parameters), datapath::view_bit) |
             bit(!parameters.tex_coord_test || tex_coord_test(i.texture, j.texture, edge.texture, formats),
                 datapath::tex_coord_bit) |
-            bit(!parameters.generation_test ||
-                    datapath::generation_test(i.generation, j.generation, parameters),
+            bit(!parameters.generation_test || datapath::generation_test(i.generation, j.generation, parameters),
                 datapath::generation_bit));
         if (datapath::split_decision(edge.tests))
             pass.split = static_cast<std::uint8_t>(pass.split | 1 << k);
@@ -169,11 +163,10 @@ class Machine {
 };
 
 inline bool same_bits(const datapath::Vertex& a, const datapath::Vertex& b) {
-    return a.position == b.position && a.normal == b.normal && a.tangent == b.tangent &&
-           a.texture == b.texture && a.handedness == b.handedness && a.generation == b.generation &&
-           a.displaced_known == b.displaced_known && a.screen_normal_known == b.screen_normal_known &&
-           a.displaced == b.displaced && a.displaced_normal == b.displaced_normal && a.screen == b.screen &&
-           a.screen_normal == b.screen_normal;
+    return a.position == b.position && a.normal == b.normal && a.tangent == b.tangent && a.texture == b.texture &&
+           a.handedness == b.handedness && a.generation == b.generation && a.displaced_known == b.displaced_known &&
+           a.screen_normal_known == b.screen_normal_known && a.displaced == b.displaced &&
+           a.displaced_normal == b.displaced_normal && a.screen == b.screen && a.screen_normal == b.screen_normal;
 }
 
 }  // namespace tessera

@@ -18,10 +18,10 @@ std::string text_of(const char* name, const Vertex& v) {
         "\n  {}: P ({}, {}, {}), N ({}, {}, {}), T ({}, {}, {}), handedness {}, t ({}, {}), generation {}, "
         "P' ({}, {}, "
         "{}), N' ({}, {}, {}), P's ({}, {}), w {}, {}",
-        name, v.position.x, v.position.y, v.position.z, v.normal.x, v.normal.y, v.normal.z, v.tangent.x,
-        v.tangent.y, v.tangent.z, int{v.handedness}, v.texture.u, v.texture.v, int{v.generation},
-        v.displaced.x, v.displaced.y, v.displaced.z, v.displaced_normal.x, v.displaced_normal.y,
-        v.displaced_normal.z, v.screen.x, v.screen.y, v.screen.w, v.screen.in_front ? "in front" : "behind");
+        name, v.position.x, v.position.y, v.position.z, v.normal.x, v.normal.y, v.normal.z, v.tangent.x, v.tangent.y,
+        v.tangent.z, int{v.handedness}, v.texture.u, v.texture.v, int{v.generation}, v.displaced.x, v.displaced.y,
+        v.displaced.z, v.displaced_normal.x, v.displaced_normal.y, v.displaced_normal.z, v.screen.x, v.screen.y,
+        v.screen.w, v.screen.in_front ? "in front" : "behind");
 }
 
 class Trial {
@@ -37,16 +37,16 @@ class Trial {
                         const EdgeMeasures& measures);
     std::uint64_t threshold(std::uint64_t measure, std::uint64_t usual, std::uint64_t& at_limit);
     void try_moved(Machine& machine, const TrianglePass& here, const Vertex& inserted);
-    void fault(std::uint64_t& count, const std::string& what, const Machine& machine,
-               const TrianglePass& pass, const Vertex& inserted);
+    void fault(std::uint64_t& count, const std::string& what, const Machine& machine, const TrianglePass& pass,
+               const Vertex& inserted);
 
     Random random_;
     EdgeTrial result_;
     Vertex third_, inserted_;
 };
 
-void Trial::fault(std::uint64_t& count, const std::string& what, const Machine& machine,
-                  const TrianglePass& pass, const Vertex& inserted) {
+void Trial::fault(std::uint64_t& count, const std::string& what, const Machine& machine, const TrianglePass& pass,
+                  const Vertex& inserted) {
     if (++count > 1 || !result_.first_fault.empty())
         return;
     const auto& f = machine.registers.formats;
@@ -58,10 +58,10 @@ void Trial::fault(std::uint64_t& count, const std::string& what, const Machine& 
         "displacement {}, summed height {}",
         result_.edges, result_.machines, what, text_of("i", pass.triangle.vertices[0]),
         text_of("j", pass.triangle.vertices[1]), text_of("inserted", inserted), unsigned{pass.edges[0].tests},
-        tests.normal_threshold, tests.summed_height_threshold, tests.view_threshold,
-        tests.highlight_normal_threshold, machine.registers.map.width, machine.registers.map.height,
-        f.position.bits, f.position.fraction, f.normal.bits, f.normal.fraction, f.texture.bits,
-        f.texture.fraction, f.screen.bits, f.screen.fraction, f.displacement.bits, f.summed_height.bits);
+        tests.normal_threshold, tests.summed_height_threshold, tests.view_threshold, tests.highlight_normal_threshold,
+        machine.registers.map.width, machine.registers.map.height, f.position.bits, f.position.fraction, f.normal.bits,
+        f.normal.fraction, f.texture.bits, f.texture.fraction, f.screen.bits, f.screen.fraction, f.displacement.bits,
+        f.summed_height.bits);
 }
 
 std::uint64_t Trial::threshold(std::uint64_t measure, std::uint64_t usual, std::uint64_t& at_limit) {
@@ -79,25 +79,22 @@ std::uint64_t Trial::threshold(std::uint64_t measure, std::uint64_t usual, std::
 void Trial::set_thresholds(datapath::TestParameters& tests, const datapath::Formats& formats,
                            const EdgeMeasures& measures) {
     const auto unit = static_cast<std::uint64_t>(formats.normal.highest);
-    tests.normal_threshold =
-        static_cast<std::uint32_t>(threshold(measures.normal, unit, result_.at_limit[0]));
+    tests.normal_threshold = static_cast<std::uint32_t>(threshold(measures.normal, unit, result_.at_limit[0]));
     const bool by_area = tests.summed_height_unit == datapath::SummedHeightUnit::area;
     const auto full = static_cast<std::uint64_t>(formats.displacement.highest);
     tests.summed_height_threshold =
         by_area ? threshold(measures.summed_height / measures.rectangle_area, full, result_.at_limit[1])
                 : threshold(measures.summed_height, full * measures.rectangle_area, result_.at_limit[1]);
     tests.view_threshold = static_cast<std::uint32_t>(std::min<std::uint64_t>(
-        threshold(measures.length, std::max<std::uint64_t>(1, measures.length * 2), result_.at_limit[2]),
-        UINT32_MAX));
+        threshold(measures.length, std::max<std::uint64_t>(1, measures.length * 2), result_.at_limit[2]), UINT32_MAX));
     tests.highlight_normal_threshold =
         static_cast<std::uint32_t>(random_.bits() % (measures.normal + measures.normal / 4 + 2));
     const std::uint64_t choice = random_.bits() & 3;
     result_.at_limit[3] += choice == 0 ? 1U : 0U;
-    tests.highlight_cosine = choice == 0 ? measures.cosine
-                             : choice == 1
-                                 ? measures.cosine - 1
-                                 : random_.integer(-(std::int64_t{1} << (2 * formats.normal.fraction)),
-                                                   std::int64_t{1} << (2 * formats.normal.fraction));
+    tests.highlight_cosine = choice == 0   ? measures.cosine
+                             : choice == 1 ? measures.cosine - 1
+                                           : random_.integer(-(std::int64_t{1} << (2 * formats.normal.fraction)),
+                                                             std::int64_t{1} << (2 * formats.normal.fraction));
 }
 
 void Trial::try_edge(Machine& machine, const DirectEdge& direct, const Vertex& i, const Vertex& j) {
@@ -117,15 +114,14 @@ void Trial::try_edge(Machine& machine, const DirectEdge& direct, const Vertex& i
         fault(result_.unlike_reversed, "another vertex is inserted on (j, i)", machine, one, inserted_);
     if (one.edges[0].tests != other.edges[0].tests || one.split != other.split)
         fault(result_.unlike_reversed,
-              fmt::format("(j, i) is decided otherwise: {:06b}", unsigned{other.edges[0].tests}), machine,
-              one, inserted_);
-    if (const char* const what = direct.fault_of_vertex(i, j, inserted_))
-        fault(result_.unlike_direct, fmt::format("{} is not what the definition says", what), machine, one,
+              fmt::format("(j, i) is decided otherwise: {:06b}", unsigned{other.edges[0].tests}), machine, one,
               inserted_);
+    if (const char* const what = direct.fault_of_vertex(i, j, inserted_))
+        fault(result_.unlike_direct, fmt::format("{} is not what the definition says", what), machine, one, inserted_);
     const std::uint8_t tests = direct.tests(i, j, inserted_, measures);
     if (tests != one.edges[0].tests)
-        fault(result_.unlike_direct, fmt::format("by definition the tests are {:06b}", unsigned{tests}),
-              machine, one, inserted_);
+        fault(result_.unlike_direct, fmt::format("by definition the tests are {:06b}", unsigned{tests}), machine, one,
+              inserted_);
 
     for (std::size_t bit = 0; bit < 6; ++bit)
         result_.yes[bit] += static_cast<unsigned>(tests) >> bit & 1U;
@@ -144,9 +140,8 @@ void Trial::try_moved(Machine& machine, const TrianglePass& here, const Vertex& 
     const std::uint32_t border = 1U << (formats.texture.bits - 1);
     const auto room = [&](std::uint32_t size, datapath::AddressMode mode, std::uint32_t a, std::uint32_t b) {
         const std::uint32_t period = size << formats.texture.fraction;
-        return mode == datapath::AddressMode::repeat && std::max(a, b) <= border - std::min(border, period)
-                   ? period
-                   : 0U;
+        return mode == datapath::AddressMode::repeat && std::max(a, b) <= border - std::min(border, period) ? period
+                                                                                                            : 0U;
     };
     const std::uint32_t du = room(map.width, map.address_u, i.texture.u, j.texture.u);
     const std::uint32_t dv = room(map.height, map.address_v, i.texture.v, j.texture.v);
@@ -165,14 +160,13 @@ void Trial::try_moved(Machine& machine, const TrianglePass& here, const Vertex& 
     back.texture.v -= dv;
     if (!same_bits(back, inserted) || there.edges[0].tests != here.edges[0].tests)
         fault(result_.unlike_moved,
-              fmt::format("it comes out otherwise {}, {} further: {:06b}", du, dv,
-                          unsigned{there.edges[0].tests}),
+              fmt::format("it comes out otherwise {}, {} further: {:06b}", du, dv, unsigned{there.edges[0].tests}),
               machine, here, inserted);
     machine.complete(i);
     if (!(i.displaced == here.triangle.vertices[0].displaced &&
           i.displaced_normal == here.triangle.vertices[0].displaced_normal))
-        fault(result_.unlike_moved, fmt::format("its end i lies elsewhere {}, {} further", du, dv), machine,
-              here, inserted);
+        fault(result_.unlike_moved, fmt::format("its end i lies elsewhere {}, {} further", du, dv), machine, here,
+              inserted);
 }
 
 void Trial::try_machine(RandomMachine& made, std::uint64_t edges) {
@@ -193,8 +187,7 @@ void Trial::try_machine(RandomMachine& made, std::uint64_t edges) {
 }
 
 EdgeTrial Trial::run(std::uint64_t edges) {
-    constexpr std::array widths{FormatWidths::usual, FormatWidths::narrow, FormatWidths::wide,
-                                FormatWidths::any};
+    constexpr std::array widths{FormatWidths::usual, FormatWidths::narrow, FormatWidths::wide, FormatWidths::any};
     while (result_.edges < edges) {
         RandomMachine made = make_random_machine(random_, widths[result_.machines % widths.size()]);
         try_machine(made, std::min(EdgeTrial::edges_a_machine, edges - result_.edges));

@@ -38,8 +38,8 @@ void print(const EdgeTrial& trial, std::uint64_t seed, double seconds) {
     const auto percent = [&](std::uint64_t value) {
         return 100 * static_cast<double>(value) / static_cast<double>(trial.edges);
     };
-    fmt::print("random edges, seed {}: {} edges, {} machines with formats usual, narrow, wide, any in turn\n",
-               seed, number(trial.edges), number(trial.machines));
+    fmt::print("random edges, seed {}: {} edges, {} machines with formats usual, narrow, wide, any in turn\n", seed,
+               number(trial.edges), number(trial.machines));
     fmt::print(
         "  true: Normal Test {:.1f} %, Summed Height Test {:.1f} %, View Test {:.1f} %, Tex Coord Test "
         "{:.1f} %, "
@@ -50,8 +50,7 @@ void print(const EdgeTrial& trial, std::uint64_t seed, double seconds) {
         "  thresholds exactly at the measure: Normal Test {}, Summed Height Test {}, View Test {}, Highlight "
         "Test "
         "{}\n",
-        number(trial.at_limit[0]), number(trial.at_limit[1]), number(trial.at_limit[2]),
-        number(trial.at_limit[3]));
+        number(trial.at_limit[0]), number(trial.at_limit[1]), number(trial.at_limit[2]), number(trial.at_limit[3]));
     fmt::print(
         "  {} with an end behind the near plane, {} inserted normals without direction, {} tried again "
         "periods "

@@ -23,8 +23,7 @@ Formats any_formats(Random& random, FormatWidths widths) {
     const int position = bits(8, 32), screen = bits(8, 31), normal = bits(6, 18);
     formats.position = Format::make_signed(position, random.integer32(0, position - 1));
     formats.view_distance = Format::make_signed(position, formats.position.fraction - random.integer32(0, 3));
-    formats.normal =
-        Format::make_signed(normal, random.chance(70) ? normal - 2 : random.integer32(0, normal - 2));
+    formats.normal = Format::make_signed(normal, random.chance(70) ? normal - 2 : random.integer32(0, normal - 2));
     const int fraction = bits(0, 12);
     formats.texture = Format::make_unsigned(bits(6, 12) + fraction + 1, fraction);
     const int displacement = bits(1, 16);
@@ -64,8 +63,7 @@ datapath::TestParameters any_tests(Random& random, const Formats& formats) {
     tests.tex_coord_test = on();
     tests.generation_test = on();
     tests.highlight_test = random.coin();
-    tests.summed_height_unit =
-        random.coin() ? datapath::SummedHeightUnit::sum : datapath::SummedHeightUnit::area;
+    tests.summed_height_unit = random.coin() ? datapath::SummedHeightUnit::sum : datapath::SummedHeightUnit::area;
     tests.generation_limit = random.natural(0, 15);
     const Direction half = any_unit(random, formats);
     tests.half_vector = {half.x, half.y, half.z};
@@ -95,9 +93,7 @@ RandomMachine make_random_machine(Random& random, FormatWidths widths) {
     datapath::Registers registers;
     registers.formats = any_formats(random, widths);
     Formats& formats = registers.formats;
-    const auto mode = [&] {
-        return random.coin() ? datapath::AddressMode::repeat : datapath::AddressMode::clamp;
-    };
+    const auto mode = [&] { return random.coin() ? datapath::AddressMode::repeat : datapath::AddressMode::clamp; };
     const std::uint32_t most = 1U << std::min(6, formats.texture.bits - 1 - formats.texture.fraction);
     registers.map.width = random.chance(12) ? 1 : random.natural(1, most);
     registers.map.height = random.chance(12) ? 1 : random.natural(1, most);
@@ -120,8 +116,7 @@ RandomMachine make_random_machine(Random& random, FormatWidths widths) {
     registers.displacement = {static_cast<std::int32_t>(random.any_size(formats.position.highest)),
                               static_cast<std::int32_t>(random.any_size(formats.position.highest))};
     registers.transform = any_transform(random, formats);
-    return {Machine(registers, std::move(tables)),
-            DirectMap(registers.map, std::move(codes), std::move(normals))};
+    return {Machine(registers, std::move(tables)), DirectMap(registers.map, std::move(codes), std::move(normals))};
 }
 
 datapath::Vertex make_random_vertex(Random& random, Machine& machine, const datapath::Vertex* near) {
@@ -140,19 +135,17 @@ datapath::Vertex make_random_vertex(Random& random, Machine& machine, const data
             return std::uint32_t{0};
         if (near == nullptr || choice == 2)
             return random.natural(0, border);
-        return static_cast<std::uint32_t>(std::clamp<std::int64_t>(
-            std::int64_t{other} + random.any_size(std::int64_t{6} << fraction), 0, border));
+        return static_cast<std::uint32_t>(
+            std::clamp<std::int64_t>(std::int64_t{other} + random.any_size(std::int64_t{6} << fraction), 0, border));
     };
     datapath::Vertex v;
     v.texture.u = coordinate(map.width, map.address_u, near != nullptr ? near->texture.u : 0);
     v.texture.v = coordinate(map.height, map.address_v, near != nullptr ? near->texture.v : 0);
     const auto position = [&](std::int32_t other) {
         const std::int64_t reach = formats.position.highest / 2;
-        const std::int64_t value = near != nullptr && random.chance(70)
-                                       ? other + random.any_size(reach / 16 + 1)
-                                       : random.any_size(reach);
-        return static_cast<std::int32_t>(
-            std::clamp(value, formats.position.lowest, formats.position.highest));
+        const std::int64_t value =
+            near != nullptr && random.chance(70) ? other + random.any_size(reach / 16 + 1) : random.any_size(reach);
+        return static_cast<std::int32_t>(std::clamp(value, formats.position.lowest, formats.position.highest));
     };
     const datapath::Position other = near != nullptr ? near->position : datapath::Position{};
     v.position.x = position(other.x);
@@ -160,8 +153,7 @@ datapath::Vertex make_random_vertex(Random& random, Machine& machine, const data
     v.position.z = position(other.z);
     // Sometimes the opposite of the other end's: the mean is zero, or rounding error only.
     const bool against = near != nullptr && random.chance(3);
-    v.normal =
-        against ? Direction{-near->normal.x, -near->normal.y, -near->normal.z} : any_unit(random, formats);
+    v.normal = against ? Direction{-near->normal.x, -near->normal.y, -near->normal.z} : any_unit(random, formats);
     v.tangent = any_unit(random, formats);
     v.handedness = random.chance(80) ? std::int8_t{1} : std::int8_t{-1};
     v.generation = static_cast<std::uint8_t>(random.integer(0, 10));

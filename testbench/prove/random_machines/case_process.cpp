@@ -74,9 +74,8 @@ CaseResult run_case_in_process(const RandomCase& random_case, Mode mode) {
         result.figures.runs = 1;
         result.failure =
             WIFSIGNALED(status)
-                ? fmt::format(
-                      "ended by signal {}, {}{}", WTERMSIG(status), ::strsignal(WTERMSIG(status)),
-                      WTERMSIG(status) == SIGALRM ? fmt::format(": over {} s", most_seconds) : std::string{})
+                ? fmt::format("ended by signal {}, {}{}", WTERMSIG(status), ::strsignal(WTERMSIG(status)),
+                              WTERMSIG(status) == SIGALRM ? fmt::format(": over {} s", most_seconds) : std::string{})
                 : fmt::format("ended with exit code {}", WEXITSTATUS(status));
         return result;
     }

@@ -66,17 +66,14 @@ CaseResult run_case(const RandomCase& random_case, Mode mode) {
     simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
 
     CaseResult result;
-    const auto fail = [&](const std::string& what) {
-        result.failure += (result.failure.empty() ? "" : "\n") + what;
-    };
+    const auto fail = [&](const std::string& what) { result.failure += (result.failure.empty() ? "" : "\n") + what; };
     if (const std::string stuck = simulation.run(); !stuck.empty())
         fail(stuck);
 
     const EmittedMesh& mesh = simulation.monitor.mesh;
     const InvariantResult invariants = check_invariants(mesh, setup);
     if (!invariants.passed())
-        fail(fmt::format("{} violations of the invariants: {}", invariants.violations(),
-                         invariants.first_violation));
+        fail(fmt::format("{} violations of the invariants: {}", invariants.violations(), invariants.first_violation));
     const SetupResult checked_setup =
         check_setup(setup, GoldenJob(with_mode.job, base_mesh, height_map, setup.model_scale), simulation);
     if (!checked_setup.passed())
@@ -87,9 +84,8 @@ CaseResult run_case(const RandomCase& random_case, Mode mode) {
 
     result.mesh_digest = digest_of(mesh);
     if (simulation.pipeline.edges_tested() != invariants.edges || conformance.edges != invariants.edges)
-        fail(
-            fmt::format("the machine tested {} edges, the scoreboard saw {}, the datapath by itself needs {}",
-                        simulation.pipeline.edges_tested(), conformance.edges, invariants.edges));
+        fail(fmt::format("the machine tested {} edges, the scoreboard saw {}, the datapath by itself needs {}",
+                         simulation.pipeline.edges_tested(), conformance.edges, invariants.edges));
 
     CaseFigures& figures = result.figures;
     figures.runs = 1;

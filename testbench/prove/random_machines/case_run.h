@@ -18,9 +18,9 @@ struct CaseFigures {
     std::uint64_t collapsed = 0;         ///< rounding's doing, or the input's
     std::uint64_t turned_over = 0;       ///< likewise
     std::uint64_t open_input_edges = 0;  ///< at texture seams and creases of the input
-    std::uint64_t flips = 0;       ///< edges, allowed: golden within the formats' bound of its threshold
-    std::uint64_t mismatches = 0;  ///< with the golden model
-    std::uint64_t spilled = 0;     ///< triangles that went off chip
+    std::uint64_t flips = 0;             ///< edges, allowed: golden within the formats' bound of its threshold
+    std::uint64_t mismatches = 0;        ///< with the golden model
+    std::uint64_t spilled = 0;           ///< triangles that went off chip
     std::uint64_t cycles = 0;
 
     void add(const CaseFigures& other);

@@ -32,16 +32,16 @@ struct Order {
 void print_totals(std::uint64_t first, std::uint64_t count, std::uint64_t failed, const CaseFigures& all) {
     const auto number = [](std::uint64_t value) { return grouped_digits(value); };
     fmt::print("random cases, seeds {} to {}, in both modes\n", first, first + count - 1);
-    fmt::print("  {} runs, {} triangles from {}, {} edges, {} cycles, {} triangles spilled\n",
-               number(all.runs), number(all.triangles), number(all.base_triangles), number(all.edges),
-               number(all.cycles), number(all.spilled));
+    fmt::print("  {} runs, {} triangles from {}, {} edges, {} cycles, {} triangles spilled\n", number(all.runs),
+               number(all.triangles), number(all.base_triangles), number(all.edges), number(all.cycles),
+               number(all.spilled));
     fmt::print(
         "  allowed: {} flipped edges, {} collapsed and {} turned over triangles, {} "
         "pieces open at the input's seams and creases\n",
         number(all.flips), number(all.collapsed), number(all.turned_over), number(all.open_input_edges));
-    fmt::print("{} cases: {} cracks, {} T-vertices, {} other violations, {} mismatches, {} failed\n",
-               number(count), number(all.cracks), number(all.t_vertices), number(all.other_violations),
-               number(all.mismatches), number(failed));
+    fmt::print("{} cases: {} cracks, {} T-vertices, {} other violations, {} mismatches, {} failed\n", number(count),
+               number(all.cracks), number(all.t_vertices), number(all.other_violations), number(all.mismatches),
+               number(failed));
 }
 
 /// The case as files and what was wrong with it.
@@ -50,8 +50,8 @@ void leave_failure(const RandomCase& random_case, Mode mode, const std::string& 
         std::filesystem::path(order.failures) / fmt::format("seed_{}", random_case.seed);
     random_case.write(folder, mode);
     write_file(folder / "failure.txt", failure + "\n");
-    fmt::print("seed {}, {}: {}\n{}\n  in {}\n", random_case.seed,
-               mode == Mode::timed ? "timed" : "functional", random_case.summary(), failure, folder.string());
+    fmt::print("seed {}, {}: {}\n{}\n  in {}\n", random_case.seed, mode == Mode::timed ? "timed" : "functional",
+               random_case.summary(), failure, folder.string());
     std::fflush(stdout);
 }
 
@@ -64,8 +64,7 @@ int run_cases(const Order& order) {
         CaseResult timed = run_case_in_process(random_case, Mode::timed);
         all.add(functional.figures);
         all.add(timed.figures);
-        if (functional.failure.empty() && timed.failure.empty() &&
-            functional.mesh_digest != timed.mesh_digest)
+        if (functional.failure.empty() && timed.failure.empty() && functional.mesh_digest != timed.mesh_digest)
             timed.failure = "the two modes leave different meshes";
         if (!functional.failure.empty())
             leave_failure(random_case, Mode::functional, functional.failure, order);
@@ -73,9 +72,8 @@ int run_cases(const Order& order) {
             leave_failure(random_case, Mode::timed, timed.failure, order);
         failed += functional.failure.empty() && timed.failure.empty() ? 0U : 1U;
         if (order.list)
-            fmt::print("seed {}: {} triangles from {}, {} edges, {} cycles: {}\n", seed,
-                       timed.figures.triangles, timed.figures.base_triangles, timed.figures.edges,
-                       timed.figures.cycles, random_case.summary());
+            fmt::print("seed {}: {} triangles from {}, {} edges, {} cycles: {}\n", seed, timed.figures.triangles,
+                       timed.figures.base_triangles, timed.figures.edges, timed.figures.cycles, random_case.summary());
     }
     print_totals(order.seed, order.count, failed, all);
     return static_cast<int>(failed == 0 ? ExitCode::fine : ExitCode::check_failed);

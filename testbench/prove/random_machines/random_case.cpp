@@ -84,9 +84,8 @@ void refine(Random& random, const Job::Formats& formats, Job::Tests& tests) {
         tests.view = false;
     if (random.chance(30))
         tests.tex_coord = false;
-    tests.generation_limit =
-        std::min(tests.generation_limit + random.integer(0, 2),
-                 std::min<std::int64_t>(15, (std::int64_t{1} << formats.generation_bits) - 1));
+    tests.generation_limit = std::min(tests.generation_limit + random.integer(0, 2),
+                                      std::min<std::int64_t>(15, (std::int64_t{1} << formats.generation_bits) - 1));
 }
 
 std::uint64_t edges_of(const RandomCase& random_case) {
@@ -116,11 +115,10 @@ void settle(Random& random, RandomCase& random_case) {
 }  // namespace
 
 std::string RandomCase::summary() const {
-    return fmt::format("{}, map {} x {}, position {}.{}, normal {}.{}, texture {}+{}, screen {}.{}, {}{}",
-                       mesh.kind, map.width, map.height, job.formats.position_bits,
-                       job.formats.position_fraction, job.formats.normal_bits, job.formats.normal_fraction,
-                       job.formats.texture_integer, job.formats.texture_fraction, job.formats.screen_bits,
-                       job.formats.screen_fraction,
+    return fmt::format("{}, map {} x {}, position {}.{}, normal {}.{}, texture {}+{}, screen {}.{}, {}{}", mesh.kind,
+                       map.width, map.height, job.formats.position_bits, job.formats.position_fraction,
+                       job.formats.normal_bits, job.formats.normal_fraction, job.formats.texture_integer,
+                       job.formats.texture_fraction, job.formats.screen_bits, job.formats.screen_fraction,
                        job.hardware.tests_units == 3 ? "3 tests units" : "1 tests unit",
                        job.hardware.queue_order == QueueOrder::lifo ? ", lifo" : ", fifo");
 }

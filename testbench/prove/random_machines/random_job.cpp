@@ -21,8 +21,7 @@ void choose_formats(Random& random, std::int64_t least_texture_integer, Job::For
     formats.position_bits = bits(10, 32);
     formats.position_fraction = random.integer(0, formats.position_bits - 1);
     formats.normal_bits = bits(6, 18);
-    formats.normal_fraction =
-        random.chance(70) ? formats.normal_bits - 2 : random.integer(2, formats.normal_bits - 2);
+    formats.normal_fraction = random.chance(70) ? formats.normal_bits - 2 : random.integer(2, formats.normal_bits - 2);
     formats.texture_integer = std::max(least_texture_integer, bits(1, 12));
     formats.texture_fraction = bits(0, 12);
     formats.displacement_bits = bits(1, 16);
@@ -46,14 +45,13 @@ void choose_tests(Random& random, const Job::Formats& formats, Job::Tests& tests
                                         : random.one_of({0.0, 0.001, 0.01, 0.1, 0.5});
     const double most = std::ldexp(1.0, static_cast<int>(formats.screen_bits - formats.screen_fraction));
     tests.view_threshold = std::min(most, random.one_of({0.0, 0.5, 1.0, 4.0, 4.0, 13.3, 40.0, 200.0}));
-    tests.generation_limit = std::min(random.chance(60) ? 12 : random.integer(0, 15),
-                                      (std::int64_t{1} << formats.generation_bits) - 1);
+    tests.generation_limit =
+        std::min(random.chance(60) ? 12 : random.integer(0, 15), (std::int64_t{1} << formats.generation_bits) - 1);
     tests.highlight_angle = random.one_of({0.0, 5.0, 25.0, 60.0, 90.0});
     tests.highlight_normal_threshold = random.one_of({0.0, 0.01, 0.05, 0.3});
 }
 
-void choose_camera(Random& random, const JobContext& context, const Job::Formats& formats,
-                   Job::Camera& camera) {
+void choose_camera(Random& random, const JobContext& context, const Job::Formats& formats, Job::Camera& camera) {
     const auto near_the_mesh = [&](double distance) {
         std::array<double, 3> point{};
         for (std::size_t k = 0; k < 3; ++k)
@@ -65,15 +63,14 @@ void choose_camera(Random& random, const JobContext& context, const Job::Formats
     camera.up = {random.real(-1, 1), random.real(-1, 1), random.real(-1, 1)};
     camera.field_of_view = random.one_of({2.0, 20.0, 36.0, 60.0, 120.0, 170.0});
     camera.near_plane = std::clamp(context.size * random.one_of({0.0001, 0.01, 0.01, 0.3, 2.0}), 1e-6, 1e6);
-    const std::int64_t most =
-        std::int64_t{1} << std::min<std::int64_t>(13, formats.screen_bits - formats.screen_fraction - 1);
+    const std::int64_t most = std::int64_t{1}
+                              << std::min<std::int64_t>(13, formats.screen_bits - formats.screen_fraction - 1);
     camera.viewport_width = std::min(most, random.one_of<std::int64_t>({1, 160, 640, 1024, 1920, 5000}));
     camera.viewport_height = std::min(most, random.one_of<std::int64_t>({1, 120, 480, 768, 1080, 4000}));
 }
 
 void choose_hardware(Random& random, Job::Hardware& hardware) {
-    hardware.triangulation =
-        random.one_of({Triangulation::shorter, Triangulation::first, Triangulation::second});
+    hardware.triangulation = random.one_of({Triangulation::shorter, Triangulation::first, Triangulation::second});
     hardware.culling = random.chance(30) ? Culling::back : Culling::none;
     hardware.queue_order = random.coin() ? QueueOrder::fifo : QueueOrder::lifo;
     hardware.queue_watermark = random.one_of<std::int64_t>({1, 1, 3, 20, 1000});
@@ -92,9 +89,9 @@ void choose_timing(Random& random, Timing& timing) {
     if (random.chance(60))
         for (UnitTiming* unit :
              {&timing.get_triangle, &timing.calculate_new_p, &timing.displace_vertex, &timing.transform,
-              &timing.calculate_new_u, &timing.tex_coord_test, &timing.summed_height_test,
-              &timing.normal_test, &timing.view_test, &timing.pass_or_tessellate, &timing.tessellation,
-              &timing.triangle_queue, &timing.lighting})
+              &timing.calculate_new_u, &timing.tex_coord_test, &timing.summed_height_test, &timing.normal_test,
+              &timing.view_test, &timing.pass_or_tessellate, &timing.tessellation, &timing.triangle_queue,
+              &timing.lighting})
             if (random.chance(40))
                 *unit = {any(1, 30), any(1, 4), any(1, 9)};
     timing.highlight_test_latency = any(0, 5);
@@ -116,8 +113,7 @@ void make_random_job(Random& random, const JobContext& context, Job& job) {
     choose_camera(random, context, job.formats, job.camera);
     choose_hardware(random, job.hardware);
     choose_timing(random, job.timing);
-    job.displacement.scale =
-        context.size * random.one_of({0.0, 0.02, 0.1, 0.1, 0.3, 1.0, -0.1, -0.5, 3.0, 0.0001});
+    job.displacement.scale = context.size * random.one_of({0.0, 0.02, 0.1, 0.1, 0.3, 1.0, -0.1, -0.5, 3.0, 0.0001});
     job.displacement.bias = context.size * random.one_of({0.0, 0.0, 0.1, -0.05, 1.0});
     job.check.end_to_end = false;   // narrow formats lead to another mesh of the same surface
     job.check.allowed_flips = 100;  // narrow formats flip often; each flip is judged by its bound

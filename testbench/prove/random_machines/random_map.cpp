@@ -83,8 +83,8 @@ HeightMap RandomMap::height_map() const {
     map.values.resize(samples.size());
     for (int row = 0; row < height; ++row)
         for (int x = 0; x < width; ++x)
-            map.at(x, height - 1 - row) = static_cast<float>(
-                static_cast<double>(samples[static_cast<std::size_t>(row * width + x)]) / highest);
+            map.at(x, height - 1 - row) =
+                static_cast<float>(static_cast<double>(samples[static_cast<std::size_t>(row * width + x)]) / highest);
     return map;
 }
 

@@ -109,17 +109,16 @@ void MeshMaker::grid(int columns, int rows, bool closed_u, bool closed_v, Shape&
         corners.emplace_back();
         for (std::size_t x = 0; x < u.size(); ++x) {
             const bool last_u = closed_u && x + 1 == u.size(), last_v = closed_v && y + 1 == v.size();
-            const std::size_t p =
-                last_u ? corners[y][0].position
-                       : (last_v ? corners[0][x].position : position(shape(u[x], v[y]) + jitter(size)));
+            const std::size_t p = last_u
+                                      ? corners[y][0].position
+                                      : (last_v ? corners[0][x].position : position(shape(u[x], v[y]) + jitter(size)));
             corners[y].push_back({p, texture({u[x], v[y]}), 0});
         }
     }
     const bool same_cut = random_.coin();
     for (std::size_t y = 0; y + 1 < v.size(); ++y)
         for (std::size_t x = 0; x + 1 < u.size(); ++x) {
-            const Corner &a = corners[y][x], &b = corners[y][x + 1], &c = corners[y + 1][x + 1],
-                         &d = corners[y + 1][x];
+            const Corner &a = corners[y][x], &b = corners[y][x + 1], &c = corners[y + 1][x + 1], &d = corners[y + 1][x];
             if (same_cut || random_.coin()) {
                 face(a, b, c);
                 face(a, c, d);
@@ -142,8 +141,7 @@ void MeshMaker::solid() {
             break;
         case 1:
             points = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-            triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
-                         {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+            triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
             break;
         default:
             for (int k = 0; k < 8; ++k)
@@ -176,8 +174,7 @@ void MeshMaker::solid() {
     for (const auto& triangle : triangles) {
         Face made;
         for (std::size_t k = 0; k < 3; ++k)
-            made[k] = {triangle[k], charts ? texture({random_.real(0, 1), random_.real(0, 1)}) : triangle[k],
-                       0};
+            made[k] = {triangle[k], charts ? texture({random_.real(0, 1), random_.real(0, 1)}) : triangle[k], 0};
         faces_.push_back(made);
     }
 }
@@ -197,8 +194,7 @@ void MeshMaker::fan() {
                        radial ? texture({around[k], 0}) : texture({at.x / 2 + 0.5, at.y / 2 + 0.5}), 0});
     }
     for (std::size_t k = 0; k + 1 < rim.size(); ++k)
-        face({centre, radial ? texture({(around[k] + around[k + 1]) / 2, 1}) : middle, 0}, rim[k],
-             rim[k + 1]);
+        face({centre, radial ? texture({(around[k] + around[k + 1]) / 2, 1}) : middle, 0}, rim[k], rim[k + 1]);
 }
 
 /// A strip of long thin triangles, in space and, if so drawn, in the map as well.
@@ -210,8 +206,8 @@ void MeshMaker::slivers() {
     for (int k = 0; k <= count; ++k) {
         const double at = width * k, in_texture = in_map ? at / (width * count) : at / (count + 1);
         low.push_back({position({0, at, 0}), texture({0, in_texture}), 0});
-        high.push_back({position({1, at + random_.real(0, width / 2), random_.real(0, 0.1)}),
-                        texture({1, in_texture}), 0});
+        high.push_back(
+            {position({1, at + random_.real(0, width / 2), random_.real(0, 0.1)}), texture({1, in_texture}), 0});
     }
     for (std::size_t k = 0; k + 1 < low.size(); ++k) {
         face(low[k], high[k], low[k + 1]);
@@ -221,8 +217,7 @@ void MeshMaker::slivers() {
 
 /// Pages that share one edge: not manifold there.
 void MeshMaker::book() {
-    const Corner bottom{position({0, 0, 0}), texture({0, 0}), 0},
-        top{position({0, 0, 1}), texture({0, 1}), 0};
+    const Corner bottom{position({0, 0, 0}), texture({0, 0}), 0}, top{position({0, 0, 1}), texture({0, 1}), 0};
     const int pages = random_.integer32(3, 7);
     const bool one_texture = random_.coin();
     for (int k = 0; k < pages; ++k) {
@@ -335,8 +330,7 @@ void MeshMaker::set_normals() {
     for (Face& face : faces_) {
         if (choice == 1) {
             const dvec3 a = positions_[face[0].position];
-            normals_.push_back(
-                unit(glm::cross(positions_[face[1].position] - a, positions_[face[2].position] - a)));
+            normals_.push_back(unit(glm::cross(positions_[face[1].position] - a, positions_[face[2].position] - a)));
         }
         for (Corner& corner : face)
             corner.normal = choice == 0 ? corner.position : normals_.size() - 1;

@@ -27,8 +27,7 @@ std::string baked(const std::vector<std::string>& arguments, const fs::path& her
 }
 
 /// Requires this exit code, one message on standard error with these words, and no new file.
-void refused(const std::vector<std::string>& arguments, const TestFolder& here,
-             const std::vector<std::string>& words) {
+void refused(const std::vector<std::string>& arguments, const TestFolder& here, const std::vector<std::string>& words) {
     const std::vector<std::string> before = here.names();
     const ProgramEnd end = bake(arguments, here.path());
     INFO(end.text());
@@ -50,10 +49,9 @@ TEST_CASE("bake: the examples in all formats, the same twice, and jobs that run"
         const std::string surface = example((std::string(name) + ".toml").c_str()).string();
         const std::string map = name;
         for (const std::string ending : {".pgm", ".png", ".exr", ".PGM"}) {
-            const std::string out =
-                baked({surface, "--size", "40x30", "--output", map + ending}, here.path());
-            CHECK_THAT(out, Contains("40 x 30 texels") && Contains("displacement.scale") &&
-                                Contains(map + ".job.toml"));
+            const std::string out = baked({surface, "--size", "40x30", "--output", map + ending}, here.path());
+            CHECK_THAT(out,
+                       Contains("40 x 30 texels") && Contains("displacement.scale") && Contains(map + ".job.toml"));
             const HeightMap read = read_height_map(here.path() / (map + ending));
             CHECK(read.width == 40);
             CHECK(read.height == 30);
@@ -63,8 +61,7 @@ TEST_CASE("bake: the examples in all formats, the same twice, and jobs that run"
             CHECK(read_all(here.path() / (map + ending)) == once);
             CHECK(read_all(here.path() / (map + ".job.toml")) == job);
         }
-        const ProgramEnd run =
-            run_tessera({"run", map + ".job.toml", "--set", "mode=functional"}, here.path());
+        const ProgramEnd run = run_tessera({"run", map + ".job.toml", "--set", "mode=functional"}, here.path());
         INFO(run.text());
         CHECK(run.exit_code == 0);
         CHECK(fs::exists(here.path() / "runs" / map / "mesh.ply"));
@@ -93,8 +90,7 @@ TEST_CASE("bake: the job fits the domain and finds its files from its own folder
     CHECK_THAT(job, Contains("width = 4.0\ndepth = 0.5\n") && Contains("file = \"wide.png\""));
 
     write_all(here.path() / "ball.toml", "[quadric]\nshape = \"sphere\"\nradius = 3\n");
-    const std::string out =
-        baked({"ball.toml", "--mesh", "base/job.toml", "--output", "out/ball.pgm"}, here.path());
+    const std::string out = baked({"ball.toml", "--mesh", "base/job.toml", "--output", "out/ball.pgm"}, here.path());
     CHECK_THAT(out, Contains("no base triangle"));
     CHECK_THAT(read_all(here.path() / "out/ball.job.toml"), Contains("file = \"../base/square.obj\""));
     const ProgramEnd run = run_tessera({"run", "out/ball.job.toml"}, here.path());
@@ -111,11 +107,10 @@ TEST_CASE("bake: the job fits the domain and finds its files from its own folder
 TEST_CASE("bake: overlapping base triangles are told of") {
     const TestFolder here;
     write_all(here.path() / "ball.toml", "[quadric]\nshape = \"sphere\"\nradius = 6\n");
-    CHECK_THAT(
-        baked({"ball.toml", "--mesh", (source_folder() / "testbench/examples/jobs/teapot.toml").string(),
-               "--output", "ball.pgm"},
-              here.path()),
-        Contains("note: 6") && Contains("lie in several base triangles"));
+    CHECK_THAT(baked({"ball.toml", "--mesh", (source_folder() / "testbench/examples/jobs/teapot.toml").string(),
+                      "--output", "ball.pgm"},
+                     here.path()),
+               Contains("note: 6") && Contains("lie in several base triangles"));
 }
 
 TEST_CASE("bake: hostile arguments are refused in one line") {
@@ -126,8 +121,7 @@ TEST_CASE("bake: hostile arguments are refused in one line") {
     refused({"", "--output", "a.pgm"}, here, {"SURFACE"});
     refused({"absent.toml", "--output", "a.pgm"}, here, {"absent.toml: no such surface file"});
     refused({".", "--output", "a.pgm"}, here, {"is a folder"});
-    for (const std::string size :
-         {"0x5", "5x0", "256", "x", "5x", "4097x4", "4x4097", "-3x5", "5x5x5", "1e3x5", ""})
+    for (const std::string size : {"0x5", "5x0", "256", "x", "5x", "4097x4", "4x4097", "-3x5", "5x5x5", "1e3x5", ""})
         refused({dome, "--output", "a.pgm", "--size=" + size}, here, {"--size"});
     for (const std::string output : {"a.jpg", "a", "", ".pgm/", "folder/"})
         refused({dome, "--output", output}, here, {"--output"});
@@ -152,8 +146,7 @@ TEST_CASE("bake: a disk that is full ends it with exit code 4 and no map") {
     const TestFolder here;
     ProgramLimits limits;
     limits.file_bytes = 4096;
-    const ProgramEnd end =
-        bake({example("dome.toml").string(), "--output", "new/a.pgm"}, here.path(), limits);
+    const ProgramEnd end = bake({example("dome.toml").string(), "--output", "new/a.pgm"}, here.path(), limits);
     INFO(end.text());
     CHECK(end.exit_code == 4);
     CHECK_THAT(end.err, Contains("a.pgm"));

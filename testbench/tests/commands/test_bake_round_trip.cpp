@@ -24,8 +24,7 @@ std::string baked(const std::vector<std::string>& arguments, const fs::path& her
 }
 
 /// Runs a job in functional mode, with all checks, and gives its mesh.
-RecordedMesh mesh_of_run(const std::string& job, const std::vector<std::string>& settings,
-                         const fs::path& here) {
+RecordedMesh mesh_of_run(const std::string& job, const std::vector<std::string>& settings, const fs::path& here) {
     std::vector<std::string> arguments{"run", job};
     for (const char* const setting :
          {"mode=functional", "output.picture=false", "output.obj=false", "output.folder=run"})
@@ -65,11 +64,10 @@ void check_round_trip(const std::string& surface, const std::string& map, double
     write_all(here.path() / "surface.toml", surface);
     write_all(here.path() / "square.obj", centred_square);
     baked({"surface.toml", "--size", "129x129", "--output", map}, here.path());
-    const RecordedMesh mesh =
-        mesh_of_run(map.substr(0, map.find('.')) + ".job.toml",
-                    {"mesh.source=file", "mesh.file=square.obj", "tests.generation_limit=7",
-                     "tests.view=false", "tests.normal_threshold=0.02"},
-                    here.path());
+    const RecordedMesh mesh = mesh_of_run(map.substr(0, map.find('.')) + ".job.toml",
+                                          {"mesh.source=file", "mesh.file=square.obj", "tests.generation_limit=7",
+                                           "tests.view=false", "tests.normal_threshold=0.02"},
+                                          here.path());
     CHECK(mesh.triangles.size() > 1500);
     // Positions have some 28 fraction bits here; what seven midpoints round is far below 1e-7.
     const double bound = 0.5 * range / 65535 + 1e-7;
@@ -87,8 +85,8 @@ TEST_CASE("round trip: a baked paraboloid's vertices lie on the paraboloid") {
     const double end = 128 / 129.0;
     for (const std::string map : {"map.pgm", "map.png", "map.exr"}) {
         INFO(map);
-        check_round_trip("[quadric]\nshape = \"paraboloid\"\ncentre = [0, 0, 0.6]\nsemi_axes = [1, 2, 0.5]\n",
-                         map, paraboloid(0, 0) - paraboloid(end, end), paraboloid);
+        check_round_trip("[quadric]\nshape = \"paraboloid\"\ncentre = [0, 0, 0.6]\nsemi_axes = [1, 2, 0.5]\n", map,
+                         paraboloid(0, 0) - paraboloid(end, end), paraboloid);
     }
 }
 
@@ -109,8 +107,7 @@ TEST_CASE("round trip: a baked Bezier patch's vertices lie on the patch") {
 
 TEST_CASE("round trip: on the default plane a vertex lies on the dome at the texel it reads") {
     const TestFolder here;
-    baked({(source_folder() / "testbench/examples/surfaces/dome.toml").string(), "--output", "dome.pgm"},
-          here.path());
+    baked({(source_folder() / "testbench/examples/surfaces/dome.toml").string(), "--output", "dome.pgm"}, here.path());
     const RecordedMesh mesh = mesh_of_run("dome.job.toml", {}, here.path());
     CHECK(mesh.triangles.size() > 1000);
     const auto centre = [](double t) {  // of the texel that t reads, in the plane -1..1
@@ -132,11 +129,10 @@ TEST_CASE("round trip: a cylinder baked to a sphere closes at its seam, and only
     const TestFolder here;
     const fs::path examples = source_folder() / "testbench/examples/surfaces";
     // Off the axis, so that the two sides of the seam are not each other's mirror image.
-    write_all(here.path() / "ball.toml",
-              "[quadric]\nshape = \"sphere\"\nradius = 1.4\ncentre = [0.25, 0.1, 0.05]\n");
-    const std::string out = baked({"ball.toml", "--mesh", (examples / "barrel_base.toml").string(), "--size",
-                                   "512x256", "--output", "ball.pgm"},
-                                  here.path());
+    write_all(here.path() / "ball.toml", "[quadric]\nshape = \"sphere\"\nradius = 1.4\ncentre = [0.25, 0.1, 0.05]\n");
+    const std::string out = baked(
+        {"ball.toml", "--mesh", (examples / "barrel_base.toml").string(), "--size", "512x256", "--output", "ball.pgm"},
+        here.path());
     CHECK(out.find("note") == std::string::npos);
     const RecordedMesh mesh = mesh_of_run("ball.job.toml", {}, here.path());
     CHECK(invariant(here.path(), "open_texture_seam_edges") == 0);

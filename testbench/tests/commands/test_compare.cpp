@@ -80,8 +80,7 @@ TEST_CASE("compare tells the default run's error") {
     CHECK(value(error, "vertical", "covered") == 69696);
     CHECK(value(error, "vertical", "rms") < 0.005);
     CHECK(value(error, "vertical", "max_map") == Approx(value(error, "vertical", "max") / 0.25));
-    CHECK(value(error, "worst_reference_to_mesh", "distance") ==
-          value(error, "interpolated", "reference_to_mesh_max"));
+    CHECK(value(error, "worst_reference_to_mesh", "distance") == value(error, "interpolated", "reference_to_mesh_max"));
     CHECK(value(error, "worst_mesh_to_reference", "base") < 18);
     CHECK_FALSE(error.at("worst_vertical").at("why_whole").at("value").get<std::string>().empty());
 
@@ -103,8 +102,7 @@ TEST_CASE("an undisplaced run of a constant map has the error its bias makes") {
     const TestFolder here;
     run_job(here.path(), {"--set", "map.source=constant", "--set", "displacement.bias=0.25"});
     const json error = compare(here.path(), "runs/half_donut");
-    CHECK(value(error, "interpolated", "hausdorff") <
-          1e-4);  // 0.25 + 0.25 / 2, rounded to the position's format
+    CHECK(value(error, "interpolated", "hausdorff") < 1e-4);  // 0.25 + 0.25 / 2, rounded to the position's format
     CHECK(value(error, "vertical", "max") < 1e-4);
     run_job(here.path(), {"--set", "mesh.source=cylinder", "--set", "map.address_u=repeat", "--set",
                           "displacement.scale=0.05", "--set", "output.folder=runs/round"});
@@ -115,15 +113,13 @@ TEST_CASE("an undisplaced run of a constant map has the error its bias makes") {
 
 TEST_CASE("a run whose triangles were all culled has no mesh to compare") {
     const TestFolder here;
-    run_job(here.path(),
-            {"--set", "hardware.culling=back", "--set", "camera.eye=[0,0,-9]", "--set",
-             "camera.target=[0,0,0]", "--set", "camera.up=[0,1,0]", "--set", "displacement.scale=0"});
+    run_job(here.path(), {"--set", "hardware.culling=back", "--set", "camera.eye=[0,0,-9]", "--set",
+                          "camera.target=[0,0,0]", "--set", "camera.up=[0,1,0]", "--set", "displacement.scale=0"});
     const json error = compare(here.path(), "runs/half_donut");
     CHECK(value(error, "measurement", "triangles") == 0);
     CHECK(error.at("interpolated").at("reference_to_mesh_max").at("value").is_null());
     CHECK(value(error, "vertical", "covered") == 0);
-    CHECK_THAT(read_all(here.path() / "runs/half_donut/error.txt"),
-               Contains("no mesh") && Contains("culling"));
+    CHECK_THAT(read_all(here.path() / "runs/half_donut/error.txt"), Contains("no mesh") && Contains("culling"));
 }
 
 TEST_CASE("compare refuses what is no run, and leaves nothing then") {
@@ -138,11 +134,10 @@ TEST_CASE("compare refuses what is no run, and leaves nothing then") {
     const fs::path mesh = here.path() / "runs/half_donut/mesh.ply";
     const std::string bytes = read_all(mesh);
     write_all(mesh, bytes.substr(0, bytes.size() - 7));
-    CHECK_THAT(refused(here.path(), {"compare", "runs/half_donut"}),
-               Contains("mesh.ply") && Contains("announces"));
+    CHECK_THAT(refused(here.path(), {"compare", "runs/half_donut"}), Contains("mesh.ply") && Contains("announces"));
     // Another job's mesh: of more base triangles than this one has.
-    run_job(here.path(), {"--set", "tests.normal_threshold=1", "--set", "mesh.columns=9", "--set",
-                          "output.folder=runs/other"});
+    run_job(here.path(),
+            {"--set", "tests.normal_threshold=1", "--set", "mesh.columns=9", "--set", "output.folder=runs/other"});
     fs::copy_file(here.path() / "runs/other/mesh.ply", mesh, fs::copy_options::overwrite_existing);
     CHECK_THAT(refused(here.path(), {"compare", "runs/half_donut"}), Contains("another job"));
     CHECK_FALSE(fs::exists(here.path() / "runs/half_donut/error.json"));
@@ -152,15 +147,13 @@ TEST_CASE("compare refuses what is no run, and leaves nothing then") {
 TEST_CASE("compare tells Crater Lake's error in metres") {
     const TestFolder here;
     const auto run = [&](const std::string& name, const std::vector<std::string>& more) {
-        std::vector<std::string> arguments{
-            (source_folder() / "testbench/examples/jobs" / (name + ".toml")).string()};
+        std::vector<std::string> arguments{(source_folder() / "testbench/examples/jobs" / (name + ".toml")).string()};
         arguments.insert(arguments.end(), more.begin(), more.end());
         run_job(here.path(), arguments);
         return compare(here.path(), "runs/" + name);
     };
     // The grid of 704 triangles itself, without a split.
-    const json base =
-        run("crater_lake_704", {"--set", "tests.normal=false", "--set", "tests.summed_height=false"});
+    const json base = run("crater_lake_704", {"--set", "tests.normal=false", "--set", "tests.summed_height=false"});
     CHECK(value(base, "measurement", "triangles") == 704);
     CHECK(value(base, "vertical", "grid_points") == 336 * 459);
     CHECK(value(base, "vertical", "covered") == 336 * 459);

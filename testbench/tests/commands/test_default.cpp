@@ -69,10 +69,8 @@ TEST_CASE("the summary says which test decided, in the statistics' figures") {
                                      "output.folder=out"},
                                     here.path());
     CHECK_THAT(end.out, Contains("split by                normal alone 6, summed height alone 0, both 0\n"));
-    CHECK_THAT(
-        end.out,
-        Contains(
-            "wanted, but stopped by  view alone 0, tex coord alone 0, generation alone 24, several 0\n"));
+    CHECK_THAT(end.out,
+               Contains("wanted, but stopped by  view alone 0, tex coord alone 0, generation alone 24, several 0\n"));
     const RunFolder run(here.path() / "out");
     CHECK(run.count("pass_or_tessellate", "split_by_normal") == 6);
     CHECK(run.count("pass_or_tessellate", "stopped_by_view_alone") == 0);
@@ -84,8 +82,8 @@ TEST_CASE("the summary says which test decided, in the statistics' figures") {
 TEST_CASE("a map that the mesh's quads do not divide: the run warns, and its remedy helps") {
     const TestFolder here;
     const auto run = [&](const char* side) {
-        return run_well({"run", "--set", "mode=functional", "--set", std::string("map.width=") + side,
-                         "--set", std::string("map.height=") + side, "--set", "check.golden=false", "--set",
+        return run_well({"run", "--set", "mode=functional", "--set", std::string("map.width=") + side, "--set",
+                         std::string("map.height=") + side, "--set", "check.golden=false", "--set",
                          "check.end_to_end=false", "--set", "output.picture=false"},
                         here.path())
             .out;
@@ -145,8 +143,8 @@ TEST_CASE("a job that reads files runs again from its run folder") {
     }
     SECTION("with paths set on the command line, from there") {
         run_well({"run", "--set", "mesh.source=file", "--set", "mesh.file=inputs/square.obj", "--set",
-                  "map.source=file", "--set", "map.file=inputs/bump.pgm", "--set", "tests.generation_limit=4",
-                  "--set", "tests.tex_coord=false", "--set", "output.folder=out"},
+                  "map.source=file", "--set", "map.file=inputs/bump.pgm", "--set", "tests.generation_limit=4", "--set",
+                  "tests.tex_coord=false", "--set", "output.folder=out"},
                  here.path());
         require_same_files(first, RunFolder(here.path() / "out").files());
     }

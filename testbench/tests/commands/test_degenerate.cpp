@@ -16,8 +16,7 @@ struct Attempt {
 
     explicit Attempt(const std::vector<std::string>& settings) {
         // A picture takes ten times as long as all the rest.
-        std::vector<std::string> arguments{"run", "--set", "output.folder=out", "--set",
-                                           "output.picture=false"};
+        std::vector<std::string> arguments{"run", "--set", "output.folder=out", "--set", "output.picture=false"};
         for (const std::string& setting : settings)
             arguments.insert(arguments.end(), {"--set", setting});
         end = run_tessera(arguments, here.path());
@@ -83,8 +82,8 @@ TEST_CASE("a camera anywhere runs") {
 }
 
 TEST_CASE("an eye out of the machine's reach is a clear error or a run") {
-    const Attempt attempt({"camera.eye=[0, -1000000, 1000000]", "displacement.scale=1e-6", "mesh.width=1e-6",
-                           "mesh.depth=1e-6"});
+    const Attempt attempt(
+        {"camera.eye=[0, -1000000, 1000000]", "displacement.scale=1e-6", "mesh.width=1e-6", "mesh.depth=1e-6"});
     INFO(attempt.end.text());
     CHECK((attempt.end.exit_code == 0 || attempt.end.exit_code == 2));
     if (attempt.end.exit_code == 2) {
@@ -102,8 +101,8 @@ TEST_CASE("culling takes from what is written and lit, and from nothing else") {
     CHECK(finished(front) == finished(all));
 
     // seen from below, all of it faces away: an empty mesh and an empty picture
-    const Attempt below({"map.source=constant", "camera.eye=[0, -3.2, -2.4]", "hardware.culling=back",
-                         "output.picture=true"});
+    const Attempt below(
+        {"map.source=constant", "camera.eye=[0, -3.2, -2.4]", "hardware.culling=back", "output.picture=true"});
     const RunFolder none = below.well();
     CHECK(none.count("pass_or_tessellate", "culled") == 18);
     CHECK(none.read_ply().faces == 0);
@@ -136,9 +135,8 @@ TEST_CASE("thresholds of zero end at the map's resolution, the generation limit 
     CHECK_THAT(limited.end.err, Contains("limits.triangles = 5000"));
     CHECK(limited.here.names().empty());
     // nothing but the triangle limit ends this one
-    const Attempt endless =
-        with({"limits.triangles=20000", "tests.generation=false", "tests.tex_coord=false", "tests.view=false",
-              "tests.summed_height_unit=area", "displacement.scale=1"});
+    const Attempt endless = with({"limits.triangles=20000", "tests.generation=false", "tests.tex_coord=false",
+                                  "tests.view=false", "tests.summed_height_unit=area", "displacement.scale=1"});
     INFO(endless.end.text());
     CHECK((endless.end.exit_code == 0 || endless.end.exit_code == 4));
 }
@@ -173,9 +171,8 @@ TEST_CASE("the narrowest and widest formats run or say what does not fit") {
 }
 
 TEST_CASE("checks and files that are switched off are left out") {
-    const Attempt attempt({"check.golden=false", "check.end_to_end=false", "check.invariants=false",
-                           "check.work=false", "output.ply=false", "output.obj=false", "output.picture=false",
-                           "tests.generation_limit=2"});
+    const Attempt attempt({"check.golden=false", "check.end_to_end=false", "check.invariants=false", "check.work=false",
+                           "output.ply=false", "output.obj=false", "output.picture=false", "tests.generation_limit=2"});
     INFO(attempt.end.text());
     REQUIRE(attempt.end.exit_code == 0);
     const RunFolder run(attempt.here.path() / "out");

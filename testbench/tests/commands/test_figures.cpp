@@ -42,8 +42,7 @@ TEST_CASE("figures: the page holds what the runs left") {
         CHECK(times(page, source_folder().string()) == 0);
     }
     SECTION("figures are the runs' own") {
-        const auto statistics =
-            nlohmann::json::parse(read_all(folder / "runs/curved_surfaces/hills/statistics.json"));
+        const auto statistics = nlohmann::json::parse(read_all(folder / "runs/curved_surfaces/hills/statistics.json"));
         const long triangles = statistics["mesh"]["triangles"]["value"];
         const std::vector<std::string> rows = lines_of(read_all(folder / "tables/curved_surfaces.csv"));
         REQUIRE(rows.size() == 4);
@@ -58,8 +57,7 @@ TEST_CASE("figures: the page holds what the runs left") {
 TEST_CASE("figures: a program that fails is named on the page, and by the exit code") {
     const Checkout checkout;
     fs::remove(checkout.root() / "build/release/testbench/commands/tessera");
-    write_all(checkout.root() / "build/release/testbench/commands/tessera",
-              "#!/bin/sh\necho no luck >&2\nexit 3\n");
+    write_all(checkout.root() / "build/release/testbench/commands/tessera", "#!/bin/sh\necho no luck >&2\nexit 3\n");
     fs::permissions(checkout.root() / "build/release/testbench/commands/tessera", fs::perms::owner_all);
     const ProgramEnd end = checkout.run("scripts/figures --only text_plane");
     CHECK(end.exit_code == 1);
@@ -76,8 +74,7 @@ TEST_CASE("figures: an experiment nobody knows is refused, with those there are"
 
 TEST_CASE("figures: a folder of pictures that no evaluation left is refused") {
     const Checkout checkout;
-    const ProgramEnd end =
-        checkout.run("mkdir -p mine/pictures && scripts/figures --only text_plane --output mine");
+    const ProgramEnd end = checkout.run("mkdir -p mine/pictures && scripts/figures --only text_plane --output mine");
     CHECK(end.exit_code == 2);
     CHECK_THAT(end.err, Contains("mine/pictures would be replaced"));
     CHECK(fs::exists(checkout.root() / "mine/pictures"));

@@ -57,14 +57,13 @@ TEST_CASE("frames.txt: what was sent, by kind, and beside the tessellated meshes
     rows[2].name = "frame_002";
     rows[2].sent.registers = 7;
     rows[2].tessellated_bytes = 0;
-    CHECK(
-        frames_traffic(rows) ==
-        "  sent for the first frame  54,321 bytes: base mesh 1, displacement map 20, normal map 300, Summed "
-        "Height Table 4,000, registers 50,000\n"
-        "  for a later one           309 bytes: base mesh 1, normal map 300, registers 8 (the most, "
-        "frame_001)\n"
-        "  for all frames            54,938 bytes; the tessellated meshes, indexed, would be 108,630: the "
-        "host sends 0.51 times as much\n");
+    CHECK(frames_traffic(rows) ==
+          "  sent for the first frame  54,321 bytes: base mesh 1, displacement map 20, normal map 300, Summed "
+          "Height Table 4,000, registers 50,000\n"
+          "  for a later one           309 bytes: base mesh 1, normal map 300, registers 8 (the most, "
+          "frame_001)\n"
+          "  for all frames            54,938 bytes; the tessellated meshes, indexed, would be 108,630: the "
+          "host sends 0.51 times as much\n");
 }
 
 TEST_CASE("frames: what a frame counted is read from its own figures") {
@@ -76,8 +75,7 @@ TEST_CASE("frames: what a frame counted is read from its own figures") {
         write_all(here.path() / "statistics.json",
                   "{\"run\": {" + figure("mode", mode) + ", " + figure("triangles_finished", "1") + ", " +
                       figure("edges_tested", "2") + ", " + figure("edges_split", "3") + "}, \"timing\": {" +
-                      figure("cycles", "4") + "}, \"host\": {" + figure("tessellated_mesh_bytes", "5") +
-                      "}}");
+                      figure("cycles", "4") + "}, \"host\": {" + figure("tessellated_mesh_bytes", "5") + "}}");
     };
     write("\"timed\"");
     FrameRow row;

@@ -38,8 +38,8 @@ const std::vector<std::string> small{"map.width=64",
 
 std::vector<std::string> frames(int count, std::vector<std::string> more = {}) {
     std::vector<std::string> settings = small;
-    settings.insert(settings.end(), {"frames.count=" + std::to_string(count), "output.folder=out",
-                                     "displacement.scale=0.25"});
+    settings.insert(settings.end(),
+                    {"frames.count=" + std::to_string(count), "output.folder=out", "displacement.scale=0.25"});
     settings.insert(settings.end(), more.begin(), more.end());
     return settings;
 }
@@ -117,8 +117,7 @@ TEST_CASE("frames grow out of a flat one, and the table says what they cost") {
         CHECK(number(table, k + 1, "edges_split") == frame.count("run", "edges_split"));
         CHECK(number(table, k + 1, "cycles") == frame.count("timing", "cycles"));
         CHECK(number(table, k + 1, "base_mesh_bytes") == frame.count("host", "mesh_bytes"));
-        CHECK(number(table, k + 1, "tessellated_mesh_bytes") ==
-              frame.count("host", "tessellated_mesh_bytes"));
+        CHECK(number(table, k + 1, "tessellated_mesh_bytes") == frame.count("host", "tessellated_mesh_bytes"));
         CHECK(number(table, k + 1, "normal_map_bytes") == 64 * 64 * 6);
         CHECK(number(table, k + 1, "displacement_map_bytes") == (k == 0 ? 64 * 64 * 2 : 0));
         CHECK(number(table, k + 1, "summed_height_table_bytes") == (k == 0 ? 65 * 65 * 4 : 0));
@@ -137,8 +136,7 @@ TEST_CASE("frames are the same twice, and from the job they leave") {
     const TestFolder here;
     require_fine(run(here.path(), frames(2)));
     const auto once = RunFolder(here.path() / "out/frame_001").files();
-    const std::string table = read_all(here.path() / "out/frames.csv"),
-                      job = read_all(here.path() / "out/job.toml");
+    const std::string table = read_all(here.path() / "out/frames.csv"), job = read_all(here.path() / "out/job.toml");
     require_fine(run_tessera({"run", "out/job.toml"}, here.path()));
     require_same_files(once, RunFolder(here.path() / "out/frame_001").files());
     CHECK(read_all(here.path() / "out/frames.csv") == table);
@@ -155,17 +153,16 @@ TEST_CASE("a frame that fails ends the run with its exit code and its name") {
         CHECK(names_in(here.path() / "out") == std::vector<std::string>{"frame_000"});
     }
     SECTION("a deadlock") {
-        const ProgramEnd end = run(
-            here.path(), frames(3, {"hardware.queue_capacity=20", "hardware.queue_overflow=stall"}), "timed");
+        const ProgramEnd end =
+            run(here.path(), frames(3, {"hardware.queue_capacity=20", "hardware.queue_overflow=stall"}), "timed");
         INFO(end.text());
         CHECK(end.exit_code == 3);
         CHECK_THAT(end.err, Contains("deadlock") && Contains("frame_00"));
         CHECK_FALSE(fs::exists(here.path() / "out/frames.csv"));
     }
     SECTION("a check: all frames are there, and the failing ones are named") {
-        const ProgramEnd end =
-            run(here.path(),
-                frames(3, {"formats.normal_bits=7", "formats.normal_fraction=5", "check.allowed_flips=0"}));
+        const ProgramEnd end = run(
+            here.path(), frames(3, {"formats.normal_bits=7", "formats.normal_fraction=5", "check.allowed_flips=0"}));
         INFO(end.text());
         CHECK(end.exit_code == 1);
         CHECK_THAT(end.err, Contains("frame_002") && Contains("conformance.txt") && !Contains("frame_000"));
@@ -231,9 +228,9 @@ TEST_CASE("frames that cannot be are refused before the first, and what was ther
         return end.err;
     };
     // Frame 0 could be; the displacement of the next leaves the mesh too few steps.
-    CHECK_THAT(refused(frames(
-                   3, {"displacement.scale=1e6", "formats.position_bits=16", "formats.position_fraction=0"})),
-               Contains("frame_001 (displacement.scale = 500000)"));
+    CHECK_THAT(
+        refused(frames(3, {"displacement.scale=1e6", "formats.position_bits=16", "formats.position_fraction=0"})),
+        Contains("frame_001 (displacement.scale = 500000)"));
     CHECK_THAT(refused(frames(3, {"map.source=file", "map.file=absent.pgm"})), Contains("absent.pgm"));
     CHECK_THAT(refused(frames(0)), Contains("frames.count") && Contains("1 .. 1000"));
     CHECK_THAT(refused({"frames.cuont=3"}), Contains("did you mean `frames.count`?"));
@@ -241,8 +238,7 @@ TEST_CASE("frames that cannot be are refused before the first, and what was ther
     const ProgramEnd end = run_tessera({"run", "job.toml"}, here.path());
     CHECK(end.exit_code == 2);
     CHECK_THAT(end.err, Contains("job.toml:3:") && Contains("first_scale"));
-    CHECK_THAT(refused(frames(3, {"mesh.source=run", "mesh.file=out/frame_001"})),
-               Contains("its own base mesh"));
+    CHECK_THAT(refused(frames(3, {"mesh.source=run", "mesh.file=out/frame_001"})), Contains("its own base mesh"));
     CHECK_THAT(refused({"mesh.source=run", "mesh.file=out"}), Contains("out/frame_000"));
     CHECK(read_all(here.path() / "out/frames.csv") == table);
     CHECK(fs::exists(here.path() / "out/frame_001/mesh.ply"));

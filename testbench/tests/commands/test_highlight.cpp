@@ -86,8 +86,7 @@ TEST_CASE("highlight run: to the cycle a Normal Test as much longer") {
     const TestFolder here;
     const auto levels_of = [&](const std::vector<std::string>& more) {
         std::vector<std::string> settings{"map.width=64", "map.height=64", "output.picture=false",
-                                          "timing.summed_height_table_ports=12",
-                                          "tests.highlight_normal_threshold=2"};
+                                          "timing.summed_height_table_ports=12", "tests.highlight_normal_threshold=2"};
         settings.insert(settings.end(), more.begin(), more.end());
         const ProgramEnd end = run_tessera(run_with(settings), here.path());
         INFO(end.text());
@@ -100,17 +99,15 @@ TEST_CASE("highlight run: to the cycle a Normal Test as much longer") {
     const std::string as_is = levels_of({});
     CHECK((as_is != longer));
     CHECK((levels_of({"tests.highlight=true", "timing.highlight_test_latency=0"}) == as_is));
-    CHECK((levels_of({"timing.highlight_test_latency=25"}) ==
-           as_is));  // no Highlight Test: it counts for nothing
+    CHECK((levels_of({"timing.highlight_test_latency=25"}) == as_is));  // no Highlight Test: it counts for nothing
 }
 
 TEST_CASE("highlight run: waveforms have its bit only in a design that has it") {
     const TestFolder here;
     const auto waveforms = [&](const std::string& highlight) {
-        const ProgramEnd end =
-            run_tessera(run_with({"tests.highlight=" + highlight, "tests.generation_limit=3",
-                                  "output.vcd=true", "output.picture=false"}),
-                        here.path());
+        const ProgramEnd end = run_tessera(run_with({"tests.highlight=" + highlight, "tests.generation_limit=3",
+                                                     "output.vcd=true", "output.picture=false"}),
+                                           here.path());
         INFO(end.text());
         REQUIRE(end.exit_code == 0);
         return read_all(here.path() / "out/trace.vcd");

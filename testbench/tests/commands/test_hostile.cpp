@@ -27,8 +27,7 @@ void try_file(const fs::path& file, const std::string& table, const std::vector<
     std::vector<std::string> arguments{"run"};
     for (const std::string& setting : settings)
         arguments.insert(arguments.end(), {"--set", setting});
-    arguments.insert(arguments.end(),
-                     {"--set", table + ".source=file", "--set", table + ".file=" + file.string()});
+    arguments.insert(arguments.end(), {"--set", table + ".source=file", "--set", table + ".file=" + file.string()});
     const unsigned cpu_seconds = sanitized ? 200 : 20;
     const ProgramEnd end = run_tessera(arguments, here.path(), {cpu_seconds, 300});
 
@@ -87,9 +86,9 @@ TEST_CASE("hostile OBJ files end well or in one message") {
     if (folder.empty())
         return;
     for (const fs::path& file : files_in(folder))
-        try_file(file, "mesh",
-                 {"output.folder=out", "map.width=16", "map.height=16", "tests.generation_limit=1",
-                  "output.picture=false"});
+        try_file(
+            file, "mesh",
+            {"output.folder=out", "map.width=16", "map.height=16", "tests.generation_limit=1", "output.picture=false"});
 }
 
 TEST_CASE("good maps of every kind run") {
@@ -100,8 +99,7 @@ TEST_CASE("good maps of every kind run") {
         for (const fs::path& file : files_in(data / folder)) {
             const std::string extension = file.extension().string();
             if (extension == ".pgm" || extension == ".png" || extension == ".exr")
-                try_file(file, "map",
-                         {"output.folder=out", "tests.generation_limit=2", "output.picture=false"});
+                try_file(file, "map", {"output.folder=out", "tests.generation_limit=2", "output.picture=false"});
         }
     }
 }
@@ -112,10 +110,9 @@ TEST_CASE("what was mended in mesh and map is said and written down") {
               "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
               "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\nf 1/1 2/2 2/2\n");
     write_all(here.path() / "map.png", "P2 2 2 7\n0 1 2 3\n");
-    const ProgramEnd end =
-        run_tessera({"run", "--set", "mesh.source=file", "--set", "mesh.file=flat.obj", "--set",
-                     "map.source=file", "--set", "map.file=map.png", "--set", "output.folder=out"},
-                    here.path());
+    const ProgramEnd end = run_tessera({"run", "--set", "mesh.source=file", "--set", "mesh.file=flat.obj", "--set",
+                                        "map.source=file", "--set", "map.file=map.png", "--set", "output.folder=out"},
+                                       here.path());
     INFO(end.text());
     REQUIRE(end.exit_code == 0);
     CHECK(end.err.empty());

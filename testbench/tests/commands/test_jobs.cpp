@@ -56,8 +56,8 @@ void run_job_well(const std::string& name) {
         CHECK(run.invariant("open_texture_seam_edges") == 0);
     }
 
-    const auto* const expected = std::find_if(job_results.begin(), job_results.end(),
-                                              [&](const JobResult& each) { return name == each.name; });
+    const auto* const expected =
+        std::find_if(job_results.begin(), job_results.end(), [&](const JobResult& each) { return name == each.name; });
     REQUIRE(expected != job_results.end());
     check_result(*expected, here.path() / "runs" / name);
     CHECK(run.count("timing", "cycles") == expected->cycles);
@@ -101,21 +101,15 @@ TEST_CASE("the data folder can be elsewhere") {
     const TestFolder here;
     fs::create_directories(here.path() / "data/maps");
     write_all(here.path() / "data/maps/dot.pgm", "P2 1 1 9\n5\n");
-    const std::vector<std::string> job{"run",
-                                       "--set",
-                                       "map.source=file",
-                                       "--set",
-                                       "map.file=data:maps/dot.pgm",
-                                       "--set",
-                                       "output.folder=out"};
+    const std::vector<std::string> job{
+        "run", "--set", "map.source=file", "--set", "map.file=data:maps/dot.pgm", "--set", "output.folder=out"};
     std::vector<std::string> with_option = job;
     with_option.insert(with_option.end(), {"--data", "data"});
     CHECK(run_tessera(with_option, here.path()).exit_code == 0);
 
     std::vector<std::string> command{TESSERA_PROGRAM};
     command.insert(command.end(), job.begin(), job.end());
-    CHECK(run_program(command, here.path(), {}, {{"TESSERA_DATA", (here.path() / "data").string()}})
-              .exit_code == 0);
+    CHECK(run_program(command, here.path(), {}, {{"TESSERA_DATA", (here.path() / "data").string()}}).exit_code == 0);
 
     const ProgramEnd absent = run_program(command, here.path(), {}, {{"TESSERA_DATA", "absent"}});
     CHECK(absent.exit_code == 2);

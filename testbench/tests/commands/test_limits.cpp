@@ -22,8 +22,7 @@ namespace {
 constexpr double most_mebibytes = 256;
 constexpr unsigned soon = sanitized ? 100 : 10;  // seconds of processor time
 
-ProgramEnd run_with(const std::vector<std::string>& settings, const fs::path& folder,
-                    unsigned cpu_seconds = soon) {
+ProgramEnd run_with(const std::vector<std::string>& settings, const fs::path& folder, unsigned cpu_seconds = soon) {
     std::vector<std::string> arguments{"run"};
     for (const char* const setting :
          {"mode=functional", "output.folder=out", "output.picture=false", "tests.generation_limit=1"})
@@ -78,8 +77,7 @@ std::string big_endian(std::uint32_t value) {
     return bytes;
 }
 
-const std::vector<std::string> polygon_of_file{"mesh.source=file", "mesh.file=a.obj", "map.width=16",
-                                               "map.height=16"};
+const std::vector<std::string> polygon_of_file{"mesh.source=file", "mesh.file=a.obj", "map.width=16", "map.height=16"};
 
 }  // namespace
 
@@ -119,17 +117,16 @@ TEST_CASE("limits: a polygon that is too much work to cut is refused") {
 }
 
 TEST_CASE("limits: a hundred million triangles are refused before anything is made") {
-    refused({"mesh.columns=10000", "mesh.rows=5000"}, ExitCode::bad_input,
-            {"`mesh.columns` = 10000", "2048"});
+    refused({"mesh.columns=10000", "mesh.rows=5000"}, ExitCode::bad_input, {"`mesh.columns` = 10000", "2048"});
     refused({"mesh.rows=50000000"}, ExitCode::bad_input, {"`mesh.rows` = 50000000", "2048"});
     for (const char* const source : {"plane", "cylinder", "sphere"})
-        refused({std::string("mesh.source=") + source, "mesh.columns=2048", "mesh.rows=2048"},
-                ExitCode::resource_limit, {"mesh.columns = 2048", "mesh.rows", "the limit is 4000000"});
+        refused({std::string("mesh.source=") + source, "mesh.columns=2048", "mesh.rows=2048"}, ExitCode::resource_limit,
+                {"mesh.columns = 2048", "mesh.rows", "the limit is 4000000"});
     const TestFolder here;
     write_all(here.path() / "p.txt", "1\n1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1\n1\n0,0,0\n");
-    check_refused(run_with({"mesh.source=patches", "mesh.file=p.txt", "mesh.columns=2048", "mesh.rows=2048"},
-                           here.path()),
-                  ExitCode::resource_limit, {"p.txt", "mesh.columns", "4000000"});
+    check_refused(
+        run_with({"mesh.source=patches", "mesh.file=p.txt", "mesh.columns=2048", "mesh.rows=2048"}, here.path()),
+        ExitCode::resource_limit, {"p.txt", "mesh.columns", "4000000"});
     write_all(here.path() / "p.txt", "99999999999\n");
     check_refused(run_with({"mesh.source=patches", "mesh.file=p.txt"}, here.path()), ExitCode::resource_limit,
                   {"p.txt:1", "99999999999", "the limit is 4000000"});
@@ -151,9 +148,9 @@ TEST_CASE("limits: memory that runs out, wherever it does, is told as that") {
         return;  // AddressSanitizer reserves address space by the terabyte
     const TestFolder here;
     const auto within = [&](unsigned kibibytes, const std::string& command) {
-        return run_program({"sh", "-c", "ulimit -v " + std::to_string(kibibytes) + "; exec \"$0\" " + command,
-                            TESSERA_PROGRAM},
-                           here.path());
+        return run_program(
+            {"sh", "-c", "ulimit -v " + std::to_string(kibibytes) + "; exec \"$0\" " + command, TESSERA_PROGRAM},
+            here.path());
     };
     unsigned floor = 40000;  // what the program needs to begin depends on the machine's libraries
     while (within(floor, "--version").exit_code != 0)
@@ -186,9 +183,8 @@ TEST_CASE("limits: headers of a few bytes that claim gigabytes") {
     check_map("P5 65536 65536 255\n" + filling, {"the width", "65536", "4096"});
     check_map("P5 99999999999999999999 1 255\n" + filling, {"the width", "99999999999999999999", "4096"});
     for (const std::uint32_t side : {4096u, 0x7fffffffu, 0xffffffffu}) {
-        const std::string png = std::string("\x89PNG\r\n\x1a\n") + big_endian(13) + "IHDR" +
-                                big_endian(side) + big_endian(side) + std::string("\x10\x06\0\0\1", 5) +
-                                big_endian(0);
+        const std::string png = std::string("\x89PNG\r\n\x1a\n") + big_endian(13) + "IHDR" + big_endian(side) +
+                                big_endian(side) + std::string("\x10\x06\0\0\1", 5) + big_endian(0);
         const std::string sides = std::to_string(side) + " x " + std::to_string(side);
         check_map(png + filling, {side == 4096 ? "libpng cannot read" : sides});
     }

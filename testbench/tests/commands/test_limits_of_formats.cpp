@@ -83,8 +83,8 @@ TEST_CASE("limits: a base mesh without a triangle is refused with its file's nam
 
 TEST_CASE("limits: a view distance whose format has fewer than no fraction bits is told as it is") {
     const TestFolder here;
-    const ProgramEnd end = run_with(
-        {"formats.position_bits=12", "formats.position_fraction=0", "camera.eye=[0, -30, 30]"}, here.path());
+    const ProgramEnd end =
+        run_with({"formats.position_bits=12", "formats.position_fraction=0", "camera.eye=[0, -30, 30]"}, here.path());
     INFO(end.text());
     REQUIRE(end.exit_code == 0);
     const RunFolder run(here.path() / "out");
@@ -107,9 +107,9 @@ TEST_CASE("limits: directions as short as a number can be are directions") {
 
 TEST_CASE("limits: a saturation that no width helps is noted, not warned of") {
     const TestFolder here;
-    const ProgramEnd end = run_with({"map.source=constant", "camera.eye=[0, -3, 0]",
-                                     "camera.target=[0, 0, 0]", "hardware.light=[0, 0, 1]"},
-                                    here.path());
+    const ProgramEnd end = run_with(
+        {"map.source=constant", "camera.eye=[0, -3, 0]", "camera.target=[0, 0, 0]", "hardware.light=[0, 0, 1]"},
+        here.path());
     INFO(end.text());
     CHECK(end.exit_code == 0);
     CHECK_THAT(end.out, Contains("note: intensity: ") && Contains("no key widens") && !Contains("warning: "));
@@ -117,8 +117,7 @@ TEST_CASE("limits: a saturation that no width helps is noted, not warned of") {
 
 TEST_CASE("limits: a threshold below its register's step is refused before the work") {
     const TestFolder here;
-    const ProgramEnd end =
-        run_with({"tests.highlight=true", "tests.highlight_normal_threshold=1e-5"}, here.path());
+    const ProgramEnd end = run_with({"tests.highlight=true", "tests.highlight_normal_threshold=1e-5"}, here.path());
     INFO(end.text());
     CHECK(end.exit_code == 2);
     CHECK(lines_of(end.err).size() == 1);

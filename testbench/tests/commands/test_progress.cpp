@@ -32,8 +32,7 @@ class Log {
 
     Progress::Display display() const { return {file_, terminal_, begin_, &now}; }
     void at(double seconds) const {
-        the_time =
-            begin_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+        the_time = begin_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
     }
     std::string text() const {
         std::string text;
@@ -108,8 +107,7 @@ TEST_CASE("progress on a terminal: a bar that is overwritten, ten times a second
     const Log log(true);
     Progress progress("frame_3: ", log.display());
     progress.show("running", 0.5);
-    const std::string half =
-        "\r\x1b[K[" + std::string(15, '=') + std::string(15, ' ') + "]  50 %  frame_3: running";
+    const std::string half = "\r\x1b[K[" + std::string(15, '=') + std::string(15, ' ') + "]  50 %  frame_3: running";
     CHECK(log.text() == half);
     log.at(0.099);
     progress.show("running", 0.6);

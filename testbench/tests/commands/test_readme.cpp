@@ -40,8 +40,8 @@ std::vector<std::string> commands_in(const std::string& markdown) {
 
 /// What a command is to be held to.
 enum class Trial {
-    run,    ///< run it, exit code 0
-    parse,  ///< a script that takes long or needs more tools than tests do: it is there and its syntax is right
+    run,      ///< run it, exit code 0
+    parse,    ///< a script that takes long or needs more tools than tests do: it is there and its syntax is right
     build,    ///< builds and runs another program of ours: its folder has that target
     foreign,  ///< it fetches or installs
 };
@@ -63,11 +63,9 @@ void parse_script(const fs::path& script) {
     CHECK(::access(script.c_str(), X_OK) == 0);
     const std::string first = lines_of(read_all(script)).at(0);
     const std::vector<std::string> python{
-        "python3", "-c", "import sys; compile(open(sys.argv[1]).read(), sys.argv[1], 'exec')",
-        script.string()};
+        "python3", "-c", "import sys; compile(open(sys.argv[1]).read(), sys.argv[1], 'exec')", script.string()};
     const std::vector<std::string> bash{"bash", "-n", script.string()};
-    const ProgramEnd end =
-        run_program(first.find("python3") != std::string::npos ? python : bash, source_folder());
+    const ProgramEnd end = run_program(first.find("python3") != std::string::npos ? python : bash, source_folder());
     INFO(end.text());
     CHECK(end.exit_code == 0);
 }
@@ -75,8 +73,8 @@ void parse_script(const fs::path& script) {
 /// cmake --build FOLDER --target TARGET && FOLDER/path/TARGET
 void check_target(const std::string& command) {
     std::smatch parts;
-    REQUIRE(std::regex_match(command, parts,
-                             std::regex("cmake --build (\\S+) --target (\\S+) && (\\S+)/([^/ ]+)( .*)?")));
+    REQUIRE(
+        std::regex_match(command, parts, std::regex("cmake --build (\\S+) --target (\\S+) && (\\S+)/([^/ ]+)( .*)?")));
     CHECK(parts[2] == parts[4]);
     const std::string build = parts[1], folder = parts[3];
     REQUIRE(folder.rfind(build + "/", 0) == 0);
@@ -178,8 +176,7 @@ TEST_CASE("scripts/check lists its checks and runs those named, with their optio
     const ProgramEnd both = checkout.run("scripts/check failing rooms");
     INFO(both.text());
     CHECK(both.exit_code == 1);
-    CHECK(std::regex_search(both.out,
-                            std::regex("summary: \\d+ min =+\nFAILED .* failing\npassed .* rooms\n$")));
+    CHECK(std::regex_search(both.out, std::regex("summary: \\d+ min =+\nFAILED .* failing\npassed .* rooms\n$")));
     CHECK(checkout.run("scripts/check failing --help").out == "Fails.\n");
 
     for (const char* const words : {"nothing", "failing rooms nothing", "--nothing"}) {

@@ -14,9 +14,8 @@ namespace {
 /// A small run in here/run: a second or less.
 void make_run(const fs::path& here, const std::vector<std::string>& settings = {}) {
     std::vector<std::string> arguments{"run"};
-    std::vector<std::string> all{"mode=functional",  "check.golden=false", "check.end_to_end=false",
-                                 "output.obj=false", "map.width=64",       "map.height=64",
-                                 "output.folder=run"};
+    std::vector<std::string> all{"mode=functional", "check.golden=false", "check.end_to_end=false", "output.obj=false",
+                                 "map.width=64",    "map.height=64",      "output.folder=run"};
     all.insert(all.end(), settings.begin(), settings.end());
     for (const std::string& setting : all) {
         arguments.push_back("--set");
@@ -52,8 +51,8 @@ std::string rendered(std::vector<std::string> arguments, const fs::path& here) {
 }
 
 /// Requires this exit code, one message on standard error with these words, and no new file.
-void refused(std::vector<std::string> arguments, const TestFolder& here,
-             const std::vector<std::string>& words, int exit_code = 2) {
+void refused(std::vector<std::string> arguments, const TestFolder& here, const std::vector<std::string>& words,
+             int exit_code = 2) {
     const std::vector<std::string> before = here.names();
     arguments.insert(arguments.begin(), "render");
     const ProgramEnd end = run_tessera(arguments, here.path());
@@ -99,8 +98,8 @@ TEST_CASE("render: pictures do not outlive the mesh they show") {
 TEST_CASE("render: several views at once, the same as one by one and again") {
     const TestFolder here;
     make_run(here.path());
-    rendered({"run", "--size", "300x240", "--view", "shaded,wireframe", "--view", "generation", "--view",
-              "test", "--view", "stopped", "--view", "error", "--view", "shaded", "--output", "all"},
+    rendered({"run", "--size", "300x240", "--view", "shaded,wireframe", "--view", "generation", "--view", "test",
+              "--view", "stopped", "--view", "error", "--view", "shaded", "--output", "all"},
              here.path());
     std::vector<std::string> contents;
     for (const std::string view : {"shaded", "wireframe", "generation", "test", "stopped", "error"}) {
@@ -145,8 +144,8 @@ TEST_CASE("render: camera, zoom, lines and error scale change the picture") {
     }
     CHECK(picture({"--view", "error"}) != picture({"--view", "error", "--error-scale", "0.5"}));
     // The run's own camera, said aloud.
-    CHECK(picture({"--view", "wireframe", "--eye", "1.06953", "-2.9385", "2.56815", "--target", "0", "0",
-                   "0.125", "--up", "0", "0", "1", "--field-of-view", "36"}) == usual);
+    CHECK(picture({"--view", "wireframe", "--eye", "1.06953", "-2.9385", "2.56815", "--target", "0", "0", "0.125",
+                   "--up", "0", "0", "1", "--field-of-view", "36"}) == usual);
 }
 
 TEST_CASE("render: EXR files by name or by wish") {
@@ -154,8 +153,7 @@ TEST_CASE("render: EXR files by name or by wish") {
     make_run(here.path());
     const std::string magic("\x76\x2f\x31\x01", 4);
     rendered({"run", "--size", "120x100", "--view", "shaded", "--output", "a.exr"}, here.path());
-    rendered({"run", "--size", "120x100", "--view", "shaded", "--output", "b.exr", "--exr", "half"},
-             here.path());
+    rendered({"run", "--size", "120x100", "--view", "shaded", "--output", "b.exr", "--exr", "half"}, here.path());
     rendered({"run", "--size", "120x100", "--view", "shaded", "--exr", "float"}, here.path());
     const std::string half = read_all(here.path() / "a.exr");
     const std::string single = read_all(here.path() / "run/shaded.exr");
@@ -166,12 +164,11 @@ TEST_CASE("render: EXR files by name or by wish") {
     CHECK_FALSE(fs::exists(here.path() / "run/shaded.png"));
 }
 
-TEST_CASE(
-    "render: a camera that sees nothing, and a run that emitted nothing, give an empty picture and say so") {
+TEST_CASE("render: a camera that sees nothing, and a run that emitted nothing, give an empty picture and say so") {
     const TestFolder here;
     make_run(here.path());
-    CHECK_THAT(rendered({"run", "--size", "100x80", "--view", "shaded", "--eye", "0", "0", "5", "--target",
-                         "0", "0", "9", "--up", "0", "1", "0", "--output", "behind.png"},
+    CHECK_THAT(rendered({"run", "--size", "100x80", "--view", "shaded", "--eye", "0", "0", "5", "--target", "0", "0",
+                         "9", "--up", "0", "1", "0", "--output", "behind.png"},
                         here.path()),
                Contains("no part of the mesh is in this camera's view"));
     CHECK(all_background(read_png(here.path() / "behind.png")));
@@ -186,8 +183,8 @@ TEST_CASE(
 TEST_CASE("render: hostile arguments are refused in one line") {
     const TestFolder here;
     make_run(here.path());
-    for (const std::string size : {"0", "0x0", "1x1", "100000x1", "63x64", "64x16385", "-5x100", "x", "64x",
-                                   "x64", "64x64x64", "1e3", "99999999999x99999999999"})
+    for (const std::string size : {"0", "0x0", "1x1", "100000x1", "63x64", "64x16385", "-5x100", "x", "64x", "x64",
+                                   "64x64x64", "1e3", "99999999999x99999999999"})
         refused({"run", "--size=" + size}, here, {"--size", "64", "16384"});
     refused({"run", "--size", "16384x16384"}, here, {"--size", "33554432"});
     refused({"run", "--size", "16384"}, here, {"--size", "33554432"});
@@ -241,9 +238,8 @@ TEST_CASE("render: a disk that is full ends it with exit code 4 and no picture")
     make_run(here.path());
     ProgramLimits limits;
     limits.file_bytes = 4096;
-    const ProgramEnd end =
-        run_tessera({"render", "run", "--size", "400x300", "--view", "generation", "--output", "new/"},
-                    here.path(), limits);
+    const ProgramEnd end = run_tessera(
+        {"render", "run", "--size", "400x300", "--view", "generation", "--output", "new/"}, here.path(), limits);
     INFO(end.text());
     CHECK(end.signal == 0);
     CHECK(end.exit_code == 4);

@@ -72,8 +72,7 @@ void check_same_mesh(const RecordedMesh& a, const RecordedMesh& b, double positi
             const std::uint32_t i = a.triangles[t].vertices[k], j = b.triangles[t].vertices[k];
             for (int axis = 0; axis < 3; ++axis) {
                 apart = std::max(apart, std::abs(a.positions[i][axis] - b.positions[j][axis]));
-                normal_apart =
-                    std::max<double>(normal_apart, std::abs(a.normals[i][axis] - b.normals[j][axis]));
+                normal_apart = std::max<double>(normal_apart, std::abs(a.normals[i][axis] - b.normals[j][axis]));
             }
             for (int axis = 0; axis < 2; ++axis)
                 texture_apart = std::max(texture_apart, std::abs(a.textures[i][axis] - b.textures[j][axis]));
@@ -90,8 +89,8 @@ TEST_CASE("a second map on a run's mesh leaves no crack") {
     const RunFolder first = run(here.path(), "donut", small_donut);
     const std::uint64_t base = first.count("run", "triangles_finished");
     for (const std::string map : {"text", "noise"}) {
-        const RunFolder second = run(
-            here.path(), map, on("donut", {"map.source=" + map, "map.width=100", "displacement.scale=0.04"}));
+        const RunFolder second =
+            run(here.path(), map, on("donut", {"map.source=" + map, "map.width=100", "displacement.scale=0.04"}));
         CHECK(second.count("host", "base_triangles") == base);
         CHECK(second.count("run", "triangles_finished") > base + base / 10);
         check_closed(second);
@@ -106,8 +105,7 @@ TEST_CASE("the base vertices of a second run are the first run's emitted vertice
     const TestFolder here;
     run(here.path(), "first", small_donut);
     const RecordedMesh first = read_ply(here.path() / "runs/first/mesh.ply");
-    const std::vector<std::string> no_splits{"displacement.scale=0", "tests.normal=false",
-                                             "tests.summed_height=false"};
+    const std::vector<std::string> no_splits{"displacement.scale=0", "tests.normal=false", "tests.summed_height=false"};
     SECTION("with a map of the same size texture coordinates are the same to the bit") {
         std::vector<std::string> settings = no_splits;
         settings.insert(settings.end(), {"map.source=constant", "map.width=64", "map.height=64"});
@@ -118,33 +116,31 @@ TEST_CASE("the base vertices of a second run are the first run's emitted vertice
         std::vector<std::string> settings = no_splits;
         settings.insert(settings.end(), {"map.source=constant", "map.width=100", "map.height=7"});
         const RunFolder second = run(here.path(), "second", on("first", settings));
-        check_same_mesh(first, read_ply(here.path() / "runs/second/mesh.ply"), step(second) / 2,
-                        0.5 / 4096 / 7);
+        check_same_mesh(first, read_ply(here.path() / "runs/second/mesh.ply"), step(second) / 2, 0.5 / 4096 / 7);
     }
 }
 
 TEST_CASE("a second map of nothing changes nothing but what the Normal Test sees anew") {
     const TestFolder here;
     run(here.path(), "first", small_donut);
-    const RunFolder second = run(
-        here.path(), "second",
-        on("first", {"map.source=constant", "map.value=0", "displacement.scale=0", "tests.normal=false"}));
+    const RunFolder second =
+        run(here.path(), "second",
+            on("first", {"map.source=constant", "map.value=0", "displacement.scale=0", "tests.normal=false"}));
     CHECK(second.count("run", "edges_split") == 0);
-    check_same_mesh(read_ply(here.path() / "runs/first/mesh.ply"),
-                    read_ply(here.path() / "runs/second/mesh.ply"), step(second) / 2,
+    check_same_mesh(read_ply(here.path() / "runs/first/mesh.ply"), read_ply(here.path() / "runs/second/mesh.ply"),
+                    step(second) / 2,
                     0.5 / 4096 / 264 + 0x1p-25);  // of a step, and of mesh.ply's floats
 }
 
 TEST_CASE("the seam of a cylinder stays closed under a second map of another size") {
     const TestFolder here;
-    const std::vector<std::string> cylinder{
-        "mesh.source=cylinder",    "mesh.columns=12",        "mesh.rows=4",
-        "map.source=noise",        "map.address_u=repeat",   "map.width=100",
-        "displacement.scale=0.05", "tests.view_threshold=16"};
+    const std::vector<std::string> cylinder{"mesh.source=cylinder",    "mesh.columns=12",        "mesh.rows=4",
+                                            "map.source=noise",        "map.address_u=repeat",   "map.width=100",
+                                            "displacement.scale=0.05", "tests.view_threshold=16"};
     check_closed(run(here.path(), "first", cylinder));
     check_closed(run(here.path(), "second",
-                     on("first", {"map.source=noise", "map.address_u=repeat", "map.width=77",
-                                  "displacement.scale=0.02", "tests.view_threshold=12"})));
+                     on("first", {"map.source=noise", "map.address_u=repeat", "map.width=77", "displacement.scale=0.02",
+                                  "tests.view_threshold=12"})));
 }
 
 TEST_CASE("a run on a run is the same twice, and from its own folder") {
@@ -169,8 +165,7 @@ TEST_CASE("a run on a run of an OBJ file stands as that did") {
     run(here.path(), "second", on("first", coarse));
     const RunFolder third = run(here.path(), "third", on("second", coarse));
     CHECK_THAT(third.files().at("job.toml"), Contains("up = [0.0, 1.0, 0.0]"));
-    const RunFolder set =
-        run(here.path(), "set", on("second", {"tests.generation_limit=1", "camera.up=[0, 0, 1]"}));
+    const RunFolder set = run(here.path(), "set", on("second", {"tests.generation_limit=1", "camera.up=[0, 0, 1]"}));
     CHECK_THAT(set.files().at("job.toml"), Contains("up = [0.0, 0.0, 1.0]"));
 }
 
@@ -206,8 +201,7 @@ TEST_CASE("compare and render read a run on a run, and the first run's own input
 
 TEST_CASE("a base mesh that is no finished run's is refused with what it is") {
     const TestFolder here;
-    CHECK_THAT(refused(here.path(), {"mesh.source=run"}),
-               Contains("mesh.file") && Contains("folder of a run"));
+    CHECK_THAT(refused(here.path(), {"mesh.source=run"}), Contains("mesh.file") && Contains("folder of a run"));
     CHECK_THAT(refused(here.path(), on("absent", {})), Contains("runs/absent: no such folder"));
     fs::create_directories(here.path() / "runs/empty");
     CHECK_THAT(refused(here.path(), on("empty", {})),
@@ -220,8 +214,7 @@ TEST_CASE("a base mesh that is no finished run's is refused with what it is") {
                Contains("output.folder") && Contains("its own base mesh"));
     CHECK(fs::exists(here.path() / "runs/first/mesh.ply"));
     const ProgramEnd end = run_tessera(
-        arguments_of({"output.ply=false", "tests.generation_limit=1", "output.folder=runs/first"}),
-        here.path());
+        arguments_of({"output.ply=false", "tests.generation_limit=1", "output.folder=runs/first"}), here.path());
     REQUIRE(end.exit_code == 0);
     CHECK_THAT(refused(here.path(), on("first", {})), Contains("--set output.ply=true"));
 }
@@ -231,11 +224,11 @@ TEST_CASE("a run takes away neither the mesh file nor the map file that it reads
     run(here.path(), "first", {"tests.generation_limit=1", "output.obj=true"});
     const std::string mesh = read_all(here.path() / "runs/first/mesh.obj");
     for (const char* const frames : {"frames.count=1", "frames.count=2"}) {
-        CHECK_THAT(refused(here.path(), {"mesh.source=file", "mesh.file=runs/first/mesh.obj",
-                                         "output.folder=runs/first", frames}),
+        CHECK_THAT(refused(here.path(),
+                           {"mesh.source=file", "mesh.file=runs/first/mesh.obj", "output.folder=runs/first", frames}),
                    Contains("its own base mesh") && Contains("mesh.obj"));
-        CHECK_THAT(refused(here.path(), {"map.source=file", "map.file=runs/first/picture.png",
-                                         "output.folder=runs/first", frames}),
+        CHECK_THAT(refused(here.path(),
+                           {"map.source=file", "map.file=runs/first/picture.png", "output.folder=runs/first", frames}),
                    Contains("its own map") && Contains("picture.png"));
     }
     CHECK(read_all(here.path() / "runs/first/mesh.obj") == mesh);
@@ -268,10 +261,9 @@ TEST_CASE("the teapot's donuts take a second map") {
     const TestFolder here;
     const auto teapot = [&](const std::string& name, std::vector<std::string> settings) {
         std::vector<std::string> arguments = arguments_of(settings);
-        arguments.insert(arguments.begin() + 1,
-                         (source_folder() / "testbench/examples/jobs/teapot.toml").string());
-        arguments.insert(arguments.end(), {"--set", "output.folder=runs/" + name, "--set",
-                                           "check.end_to_end=false", "--set", "output.obj=false"});
+        arguments.insert(arguments.begin() + 1, (source_folder() / "testbench/examples/jobs/teapot.toml").string());
+        arguments.insert(arguments.end(), {"--set", "output.folder=runs/" + name, "--set", "check.end_to_end=false",
+                                           "--set", "output.obj=false"});
         const ProgramEnd end = run_tessera(arguments, here.path());
         INFO(end.text());
         REQUIRE(end.exit_code == 0);
@@ -292,11 +284,8 @@ TEST_CASE("a run on files that were changed since is not measured or drawn again
     run(here.path(), "first", small_donut);
     write_all(here.path() / "map.pgm", "P2 3 2 9\n0 9 5\n1 2 3\n");
     run(here.path(), "second",
-        on("first",
-           {"map.source=file", "map.file=map.pgm", "displacement.scale=0.02", "tests.generation_limit=1"}));
-    const auto fate_of = [&](const std::vector<std::string>& arguments) {
-        return run_tessera(arguments, here.path());
-    };
+        on("first", {"map.source=file", "map.file=map.pgm", "displacement.scale=0.02", "tests.generation_limit=1"}));
+    const auto fate_of = [&](const std::vector<std::string>& arguments) { return run_tessera(arguments, here.path()); };
     const std::vector<std::vector<std::string>> readers{
         {"compare", "runs/second"},
         {"render", "runs/second", "--view", "error", "--size", "64"},

@@ -34,13 +34,11 @@ TEST_CASE("summary: counts of the machine, each in its place") {
     INFO(text);
     CHECK(value_of(text, "triangles") == "0 base -> 9 finished, 2 culled");
     CHECK(value_of(text, "edges") == "33 tested, 17 split (51.5 %)");
-    CHECK(value_of(text, "  split by") ==
-          "normal alone 10, summed height alone 4, both 1, highlight alone 2");
+    CHECK(value_of(text, "  split by") == "normal alone 10, summed height alone 4, both 1, highlight alone 2");
     CHECK(value_of(text, "  wanted, but stopped by") ==
           "view alone 3, tex coord alone 4, generation alone 1, several 1");
     CHECK(value_of(text, "distinct edges") == "11, each tested 3.0 times on average");
-    CHECK(value_of(text, "distinct vertices") ==
-          "6; 33 computed, 16 of them discarded, and 15 normals transformed");
+    CHECK(value_of(text, "distinct vertices") == "6; 33 computed, 16 of them discarded, and 15 normals transformed");
     // the default design's entry, and a bit for the Highlight Test
     CHECK(value_of(text, "triangle queue") == "at most 24 triangles waiting, 1573 bits each");
     CHECK_THAT(value_of(text, "summed height table"), Contains("0 reads, 0.0 an edge"));
@@ -56,8 +54,7 @@ TEST_CASE("summary: counts of the machine, each in its place") {
     CHECK(value_of(other, "triangles") == "1 base -> 9 finished, 2 culled");
     CHECK(value_of(other, "  split by") == "normal alone 10, summed height alone 4, both 1");
     CHECK(value_of(other, "distinct edges") == "0, each tested 0.0 times on average");
-    CHECK(value_of(other, "distinct vertices") ==
-          "0; 33 computed, 13 of them discarded, and 15 normals transformed");
+    CHECK(value_of(other, "distinct vertices") == "0; 33 computed, 13 of them discarded, and 15 normals transformed");
 }
 
 TEST_CASE("summary: seconds and edges a second") {
@@ -106,17 +103,14 @@ TEST_CASE("summary: what was checked") {
     checks.reads = reads;
     const std::string text = summary(run.setup, run.simulation, {}, checks, 1);
     INFO(text);
-    CHECK(value_of(text, "golden model") ==
-          "FAILED: 2,000 edges compared, 3 mismatches, 5 allowed flips (0.250 %)");
+    CHECK(value_of(text, "golden model") == "FAILED: 2,000 edges compared, 3 mismatches, 5 allowed flips (0.250 %)");
     CHECK(value_of(text, "golden mesh") ==
           "1,015 triangles (+1.50 %, allowed 2 %); 1.00 % of the points farther apart than rounding explains "
           "(allowed 6), at most 0.5 model units, RMS 0.125 (allowed 0.45)");
-    CHECK(
-        value_of(text, "invariants") ==
-        "FAILED: 1 cracks, 2 T-vertices, 3,002 triangles wrong; in texture space 3 collapsed, 4 turned over");
+    CHECK(value_of(text, "invariants") ==
+          "FAILED: 1 cracks, 2 T-vertices, 3,002 triangles wrong; in texture space 3 collapsed, 4 turned over");
     CHECK(value_of(text, "texture seams") == "no such row");
-    CHECK(value_of(text, "work conservation") ==
-          "FAILED: 40 triangles and 2 balances of units checked, 7 violations");
+    CHECK(value_of(text, "work conservation") == "FAILED: 40 triangles and 2 balances of units checked, 7 violations");
     CHECK(value_of(text, "reads") == "FAILED: 60 entries compared, 8 wrong");
 
     // What passes says nothing of it; a row fails for each of its reasons.
@@ -136,8 +130,7 @@ TEST_CASE("summary: what was checked") {
     checks.allowed_flips = 0.2;
     checks.invariants->open_texture_seam_edges = 9;
     const std::string other = summary(run.setup, run.simulation, {}, checks, 1);
-    CHECK(value_of(other, "set-up") ==
-          "FAILED: 5 values of registers, base vertices and tables compared, 1 wrong");
+    CHECK(value_of(other, "set-up") == "FAILED: 5 values of registers, base vertices and tables compared, 1 wrong");
     CHECK(value_of(other, "golden model") ==
           "FAILED: 2,000 edges compared, 0 mismatches, 5 allowed flips (0.250 %), more than the 0.2 % that "
           "check.allowed_flips allows");
@@ -198,12 +191,10 @@ TEST_CASE("summary: a timed run of one triangle") {
     CHECK(value_of(text, "triangles") == "1 base -> 1 finished");
     CHECK(value_of(text, "edges") == "3 tested, 0 split (0.0 %)");
     CHECK(value_of(text, "distinct edges") == "3, each tested 1.0 times on average");
-    CHECK(value_of(text, "distinct vertices") ==
-          "3; 6 computed, 3 of them discarded, and 3 normals transformed");
+    CHECK(value_of(text, "distinct vertices") == "3; 6 computed, 3 of them discarded, and 3 normals transformed");
     CHECK_THAT(value_of(text, "triangle queue"), Catch::StartsWith("at most 1 triangles waiting, "));
     CHECK_THAT(value_of(text, "summed height table"), Contains("; 36 reads, 12.0 an edge"));
-    CHECK(value_of(text, "cycles") ==
-          "86: 86.0 a finished triangle, 86.0 a pass, 28.7 an edge; 0.00043 ms at 200 MHz");
+    CHECK(value_of(text, "cycles") == "86: 86.0 a finished triangle, 86.0 a pass, 28.7 an edge; 0.00043 ms at 200 MHz");
     CHECK_THAT(value_of(text, "bottleneck"), Catch::StartsWith("none: bound by latency; "));
     CHECK(value_of(text, "timed mode") ==
           "simulated in 1.00 s, 0.00 million edges a second, with the checks of each edge");

@@ -33,13 +33,12 @@ std::vector<std::string> with(std::vector<std::string> settings, const std::vect
 
 TEST_CASE("timed run: a full queue that stalls ends with exit code 3 and says who holds what") {
     const TestFolder here;
-    const ProgramEnd end = run_tessera(
-        timed_run("out", {"hardware.queue_capacity=8", "hardware.queue_overflow=stall"}), here.path());
+    const ProgramEnd end =
+        run_tessera(timed_run("out", {"hardware.queue_capacity=8", "hardware.queue_overflow=stall"}), here.path());
     INFO(end.text());
     CHECK(end.exit_code == 3);
-    CHECK_THAT(end.err, Contains("tessera: deadlock: ") && Contains("triangle_queue: ") &&
-                            Contains("(capacity 8)") && Contains("waits for get_triangle") &&
-                            Contains("hardware.queue_overflow = \"spill\"") &&
+    CHECK_THAT(end.err, Contains("tessera: deadlock: ") && Contains("triangle_queue: ") && Contains("(capacity 8)") &&
+                            Contains("waits for get_triangle") && Contains("hardware.queue_overflow = \"spill\"") &&
                             Contains("pass_or_tessellate: ") && Contains("waits for tessellation"));
 }
 
@@ -53,8 +52,7 @@ TEST_CASE("timed run: no progress within the bound ends with exit code 3") {
 
 TEST_CASE("timed run: to be slow is no livelock") {
     const TestFolder here;
-    const std::vector<std::string> tiny{"tests.generation_limit=1", "output.picture=false",
-                                        "check.end_to_end=false"};
+    const std::vector<std::string> tiny{"tests.generation_limit=1", "output.picture=false", "check.end_to_end=false"};
     for (const std::vector<std::string>& slow : std::vector<std::vector<std::string>>{
              {"timing.transform_latency=1000000", "limits.cycles_without_progress=1000"},
              {"timing.stalls_per_mille=1000", "timing.stalls_longest=1000000"},
@@ -68,14 +66,13 @@ TEST_CASE("timed run: to be slow is no livelock") {
 TEST_CASE("timed run: off-chip memory that is full ends with exit code 4 and names the key") {
     const TestFolder here;
     for (const std::string order : {"fifo", "lifo"}) {
-        const ProgramEnd end =
-            run_tessera(timed_run("out", {"hardware.queue_capacity=2", "hardware.off_chip_triangles=5",
-                                          "hardware.queue_order=" + order}),
-                        here.path());
+        const ProgramEnd end = run_tessera(
+            timed_run("out",
+                      {"hardware.queue_capacity=2", "hardware.off_chip_triangles=5", "hardware.queue_order=" + order}),
+            here.path());
         INFO(end.text());
         CHECK(end.exit_code == 4);
-        CHECK_THAT(end.err,
-                   Contains("hardware.off_chip_triangles = 5") && Contains("hardware.queue_capacity = 2"));
+        CHECK_THAT(end.err, Contains("hardware.off_chip_triangles = 5") && Contains("hardware.queue_capacity = 2"));
         CHECK(here.names().empty());
     }
 }
@@ -95,8 +92,8 @@ TEST_CASE("timed run: a window or units to trace without a trace are refused") {
 
 TEST_CASE("timed run: a queue that may not overflow ends with exit code 4 and names the key") {
     const TestFolder here;
-    const ProgramEnd end = run_tessera(
-        timed_run("out", {"hardware.queue_capacity=8", "hardware.queue_overflow=error"}), here.path());
+    const ProgramEnd end =
+        run_tessera(timed_run("out", {"hardware.queue_capacity=8", "hardware.queue_overflow=error"}), here.path());
     INFO(end.text());
     CHECK(end.exit_code == 4);
     CHECK_THAT(end.err, Contains("hardware.queue_capacity = 8"));
@@ -130,6 +127,6 @@ TEST_CASE("timed run: the mesh files are functional mode's, byte for byte, stall
     const std::string functional = mesh_of("functional", {"mode=functional"});
     CHECK(functional.size() > 10'000);
     CHECK(mesh_of("timed", {}) == functional);
-    CHECK(mesh_of("stalled", {"timing.stalls_per_mille=500", "timing.stalls_seed=7",
-                              "hardware.queue_order=lifo", "hardware.queue_capacity=4"}) == functional);
+    CHECK(mesh_of("stalled", {"timing.stalls_per_mille=500", "timing.stalls_seed=7", "hardware.queue_order=lifo",
+                              "hardware.queue_capacity=4"}) == functional);
 }

@@ -32,9 +32,7 @@ void check_by_run_and_compare(const fs::path& folder, const std::string& name) {
     const fs::path run = folder / "runs" / fs::path(name).filename();
     succeed({"compare", run.string()}, folder);
     const Json error = read_json(run / "error.json");
-    const auto value = [&](const char* group, const char* figure) {
-        return error.at(group).at(figure).at("value");
-    };
+    const auto value = [&](const char* group, const char* figure) { return error.at(group).at(figure).at("value"); };
     CHECK(value("measurement", "triangles") == tuned.at("triangles"));
     const bool vertical = tuned.at("error").at("what") == "vertical error";
     const bool map_units = tuned.at("error").at("unit") == "map unit";
@@ -69,8 +67,8 @@ TEST_CASE("tune writes a job that runs to the figures it tells, and the same byt
 TEST_CASE("tune chooses a base mesh, writes a lattice beside the job, and keeps a bound") {
     const TestFolder here;
     fs::create_directory(here.path() / "found");
-    succeed(Arguments{"tune", "--triangles", "900", "--grid", "lattice16", "--output", "found/lattice.toml",
-                      "--set", "tests.view=false"} +
+    succeed(Arguments{"tune", "--triangles", "900", "--grid", "lattice16", "--output", "found/lattice.toml", "--set",
+                      "tests.view=false"} +
                 small_map,
             here.path());
     CHECK(fs::exists(here.path() / "found/lattice.obj"));
@@ -78,8 +76,7 @@ TEST_CASE("tune chooses a base mesh, writes a lattice beside the job, and keeps 
     CHECK(read_json(here.path() / "found/lattice.json").at("base").at("spacing") == 16);
     check_by_run_and_compare(here.path(), "found/lattice");
 
-    succeed(Arguments{"tune", "--error", "0.02", "--grid", "auto", "--output", "bound.toml"} + small_map,
-            here.path());
+    succeed(Arguments{"tune", "--error", "0.02", "--grid", "auto", "--output", "bound.toml"} + small_map, here.path());
     const Json bound = read_json(here.path() / "bound.json");
     CHECK(bound.at("goal").at("error") == 0.02);
     CHECK(bound.at("error").at("rms") <= 0.02);
@@ -90,10 +87,9 @@ TEST_CASE("tune chooses a base mesh, writes a lattice beside the job, and keeps 
 TEST_CASE("a bound on the error holds for the error that compare measures, to the last bit") {
     const TestFolder here;
     const auto error_for = [&](const char* option, const std::string& value) {
-        succeed(
-            Arguments{"tune", option, value, "--vary", "none", "--grid", "5x7", "--set", "tests.view=false"} +
-                small_map,
-            here.path());
+        succeed(Arguments{"tune", option, value, "--vary", "none", "--grid", "5x7", "--set", "tests.view=false"} +
+                    small_map,
+                here.path());
         return read_json(here.path() / "tuned.json").at("error").at("rms").get<double>();
     };
     for (int triangles = 100; triangles <= 800; triangles += 100) {
@@ -105,9 +101,8 @@ TEST_CASE("a bound on the error holds for the error that compare measures, to th
 
 TEST_CASE("tune works where the surface is no height field") {
     const TestFolder here;
-    succeed(Arguments{"tune", "--triangles", "1200", "--set", "mesh.source=cylinder", "--set",
-                      "mesh.columns=12", "--set", "mesh.rows=6", "--set", "map.address_u=repeat", "--set",
-                      "displacement.scale=0.1"} +
+    succeed(Arguments{"tune", "--triangles", "1200", "--set", "mesh.source=cylinder", "--set", "mesh.columns=12",
+                      "--set", "mesh.rows=6", "--set", "map.address_u=repeat", "--set", "displacement.scale=0.1"} +
                 small_map,
             here.path());
     const Json tuned = read_json(here.path() / "tuned.json");
@@ -119,9 +114,8 @@ TEST_CASE("tune works where the surface is no height field") {
 TEST_CASE("tune finds thresholds for Crater Lake") {
     const TestFolder here;
     const std::string job = (source_folder() / "testbench/examples/jobs/crater_lake_704.toml").string();
-    succeed(
-        {"tune", job, "--triangles", "3047", "--grid", "lattice16,lattice32", "--set", "tests.view=false"},
-        here.path());
+    succeed({"tune", job, "--triangles", "3047", "--grid", "lattice16,lattice32", "--set", "tests.view=false"},
+            here.path());
     const Json tuned = read_json(here.path() / "tuned.json");
     CHECK(tuned.at("triangles") <= 3047);
     CHECK(tuned.at("error").at("rms") < 8.2);  // metres; the sketch had 9.1
@@ -131,9 +125,7 @@ TEST_CASE("tune finds thresholds for Crater Lake") {
 
 TEST_CASE("tune refuses wrong usage and goals out of reach, and leaves nothing") {
     const TestFolder here;
-    const auto tune = [&](const Arguments& more) {
-        return refused(Arguments{"tune"} + more + small_map, here.path());
-    };
+    const auto tune = [&](const Arguments& more) { return refused(Arguments{"tune"} + more + small_map, here.path()); };
     CHECK_THAT(tune({}), Contains("--triangles") && Contains("--error") && Contains("tune --help"));
     CHECK_THAT(tune({"--triangles", "5", "--error", "1"}), Contains("either"));
     CHECK_THAT(tune({"--triangles", "0"}), Contains("--triangles 0"));
@@ -154,22 +146,19 @@ TEST_CASE("tune refuses wrong usage and goals out of reach, and leaves nothing")
     CHECK_THAT(tune({"--triangles", "500", "--grid", "big"}), Contains("--grid big"));
     CHECK_THAT(tune({"--triangles", "500", "--grid", "0x4"}), Contains("--grid 0x4"));
     CHECK_THAT(tune({"--triangles", "500", "--grid", "lattice24"}), Contains("power of two"));
-    CHECK_THAT(tune({"--triangles", "500", "--grid", "auto", "--set", "mesh.source=sphere"}),
-               Contains("plane"));
+    CHECK_THAT(tune({"--triangles", "500", "--grid", "auto", "--set", "mesh.source=sphere"}), Contains("plane"));
     CHECK_THAT(tune({"--triangles", "500", "--output", "absent/tuned.toml"}), Contains("absent"));
     CHECK_THAT(tune({"--triangles", "500", "--output", "tuned.json"}), Contains("tuned.json"));
     CHECK_THAT(tune({"--triangles", "500", "--output", ""}), Contains("--output"));
     CHECK_THAT(tune({"--triangles", "500", "--set", "hardware.culling=back"}), Contains("culling"));
     CHECK_THAT(tune({"--triangles", "500", "--set", "tests.highlight=true"}), Contains("tests.highlight"));
-    CHECK_THAT(
-        tune({"--triangles", "500", "--set", "tests.normal=false", "--set", "tests.summed_height=false"}),
-        Contains("both off"));
+    CHECK_THAT(tune({"--triangles", "500", "--set", "tests.normal=false", "--set", "tests.summed_height=false"}),
+               Contains("both off"));
     CHECK_THAT(tune({"--triangles", "500", "--set", "tests.view_treshold=1"}), Contains("view_threshold"));
     CHECK_THAT(tune({"--triangles", "500", "--set", "frames.count=3"}), Contains("frames.count"));
     CHECK_THAT(tune({"--triangles", "500", "--output", "map.exr"}), Contains(".toml"));
     CHECK_THAT(tune({"--triangles", "500", "--output", "a.toml", "--tried", "a.json"}), Contains("--tried"));
-    CHECK_THAT(tune({"--triangles", "500", "--output", "a.toml", "--tried", "./a.toml"}),
-               Contains("--tried"));
+    CHECK_THAT(tune({"--triangles", "500", "--output", "a.toml", "--tried", "./a.toml"}), Contains("--tried"));
     CHECK(here.names().empty());
 }
 
@@ -180,17 +169,15 @@ TEST_CASE("tune overwrites nothing that it reads and nobody's mesh") {
     CHECK_THAT(refused({"tune", "mine.toml", "--triangles", "300", "--output", "mine.toml"}, here.path()),
                Contains("would overwrite mine.toml"));
     CHECK_THAT(
-        refused(Arguments{"tune", "--triangles", "300", "--grid", "lattice16", "--output", "own.toml"} +
-                    small_map,
+        refused(Arguments{"tune", "--triangles", "300", "--grid", "lattice16", "--output", "own.toml"} + small_map,
                 here.path()),
         Contains("own.obj"));
     CHECK(read_all(here.path() / "own.obj") == "# mine\nv 0 0 0\n");
-    REQUIRE(run_tessera({"run", "--set", "mode=functional", "--set", "map.width=32", "--set", "map.height=32",
-                         "--set", "output.folder=runs/tuned"},
+    REQUIRE(run_tessera({"run", "--set", "mode=functional", "--set", "map.width=32", "--set", "map.height=32", "--set",
+                         "output.folder=runs/tuned"},
                         here.path())
                 .exit_code == 0);
-    CHECK_THAT(
-        refused({"tune", "--triangles", "30000", "--set", "mesh.source=run", "--set", "mesh.file=runs/tuned"},
-                here.path()),
-        Contains("remove its own base mesh"));
+    CHECK_THAT(refused({"tune", "--triangles", "30000", "--set", "mesh.source=run", "--set", "mesh.file=runs/tuned"},
+                       here.path()),
+               Contains("remove its own base mesh"));
 }

@@ -32,14 +32,13 @@ std::string refused(const std::vector<std::string>& arguments, const fs::path& f
 
 TEST_CASE("wrong usage is refused in one line that says how to find help") {
     const TestFolder here;
-    for (const std::vector<std::string>& arguments :
-         std::vector<std::vector<std::string>>{{},
-                                               {"rum"},
-                                               {"run", "--verbose"},
-                                               {"run", "--set"},
-                                               {"run", "--data"},
-                                               {"keys", "--all"},
-                                               {"run", "a", "b"}})
+    for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{{},
+                                                                                           {"rum"},
+                                                                                           {"run", "--verbose"},
+                                                                                           {"run", "--set"},
+                                                                                           {"run", "--data"},
+                                                                                           {"keys", "--all"},
+                                                                                           {"run", "a", "b"}})
         refused(arguments, here.path(), {"--help"});
     refused({"rum"}, here.path(), {"rum"});
     refused({"run", "--verbose"}, here.path(), {"--verbose"});
@@ -63,8 +62,7 @@ TEST_CASE("a mistyped key is refused with file, line and what was meant") {
 
 TEST_CASE("a setting that is unknown, out of range or no setting is refused") {
     const TestFolder here;
-    refused({"run", "--set", "tests.view_treshold=2"}, here.path(),
-            {"tests.view_treshold", "tests.view_threshold"});
+    refused({"run", "--set", "tests.view_treshold=2"}, here.path(), {"tests.view_treshold", "tests.view_threshold"});
     refused({"run", "--set", "nonsense=2"}, here.path(), {"nonsense", "tessera keys"});
     refused({"run", "--set", "tests.view_threshold"}, here.path(), {"tests.view_threshold"});
     refused({"run", "--set", "tests.view_threshold=-1"}, here.path(), {"tests.view_threshold", "-1"});
@@ -83,13 +81,11 @@ TEST_CASE("a job, mesh or map file that is absent, a folder or a device is refus
     fs::create_directory(here.path() / "folder");
     refused({"run", "folder"}, here.path(), {"folder"});
     refused({"run", "/dev/zero"}, here.path(), {"/dev/zero"});
-    REQUIRE(::mkfifo((here.path() / "pipe").c_str(), 0600) ==
-            0);  // nobody writes: reading would wait for ever
+    REQUIRE(::mkfifo((here.path() / "pipe").c_str(), 0600) == 0);  // nobody writes: reading would wait for ever
     for (const std::string table : {"mesh", "map"}) {
         for (const std::string file : {"absent.file", "folder", "/dev/zero", "pipe"}) {
             INFO(table << ' ' << file);
-            refused({"run", "--set", table + ".source=file", "--set", table + ".file=" + file}, here.path(),
-                    {file});
+            refused({"run", "--set", table + ".source=file", "--set", table + ".file=" + file}, here.path(), {file});
         }
     }
     refused({"run", "pipe"}, here.path(), {"pipe"});
@@ -107,13 +103,12 @@ TEST_CASE("a run folder that cannot be is refused before the work") {
     if (::geteuid() != 0) {  // root may write anywhere
         fs::create_directory(here.path() / "locked");
         fs::permissions(here.path() / "locked", fs::perms::owner_read | fs::perms::owner_exec);
-        refused({"run", "--set", "output.folder=locked"}, here.path(),
-                {"output.folder", "locked", "ermission"});
+        refused({"run", "--set", "output.folder=locked"}, here.path(), {"output.folder", "locked", "ermission"});
         refused({"run", "--set", "output.folder=locked/below"}, here.path(), {"output.folder", "locked"});
     }
     fs::create_directories(here.path() / "taken/mesh.ply");
-    const ProgramEnd end = run_tessera(
-        {"run", "--set", "output.folder=taken", "--set", "tests.generation_limit=1"}, here.path());
+    const ProgramEnd end =
+        run_tessera({"run", "--set", "output.folder=taken", "--set", "tests.generation_limit=1"}, here.path());
     INFO(end.text());
     CHECK(end.exit_code == 2);
     CHECK_THAT(end.err, Contains("taken/mesh.ply"));
@@ -123,8 +118,7 @@ TEST_CASE("a stated limit ends a run with exit code 4, one message and no trace"
     const TestFolder here;
     const std::string folder = "output.folder=out";
     SECTION("too many triangles") {
-        const ProgramEnd end =
-            run_tessera({"run", "--set", "limits.triangles=1000", "--set", folder}, here.path());
+        const ProgramEnd end = run_tessera({"run", "--set", "limits.triangles=1000", "--set", folder}, here.path());
         INFO(end.text());
         CHECK(end.exit_code == 4);
         CHECK(end.out.empty());
@@ -170,10 +164,10 @@ TEST_CASE("a stated limit ends a run with exit code 4, one message and no trace"
 
 TEST_CASE("the largest map runs") {
     const TestFolder here;
-    const ProgramEnd end = run_tessera(
-        {"run", "--set", "map.source=noise", "--set", "map.width=4096", "--set", "map.height=4096", "--set",
-         "tests.normal_threshold=1", "--set", "tests.generation_limit=6", "--set", "output.folder=out"},
-        here.path());
+    const ProgramEnd end =
+        run_tessera({"run", "--set", "map.source=noise", "--set", "map.width=4096", "--set", "map.height=4096", "--set",
+                     "tests.normal_threshold=1", "--set", "tests.generation_limit=6", "--set", "output.folder=out"},
+                    here.path());
     INFO(end.text());
     REQUIRE(end.exit_code == 0);
     const RunFolder run(here.path() / "out");
@@ -197,8 +191,7 @@ TEST_CASE("help and version are asked for and given") {
     const std::string run_help = run_tessera({"run", "--help"}, here.path()).out;
     for (const char* const word : {"JOB", "--set", "--data", "--dump-config"})
         CHECK_THAT(run_help, Contains(word));
-    CHECK_THAT(run_tessera({"--version"}, here.path()).out,
-               Catch::Matches("tessera [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+    CHECK_THAT(run_tessera({"--version"}, here.path()).out, Catch::Matches("tessera [0-9]+\\.[0-9]+\\.[0-9]+\n"));
     CHECK(here.names().empty());
 }
 

@@ -17,9 +17,9 @@ const Arguments small{"--set", "map.width=48", "--set", "map.height=48", "--set"
 
 TEST_CASE("widths: a row has the figures of tessera run with those formats") {
     const TestFolder here;
-    const ProgramEnd end = succeed(
-        Arguments{"widths", "--quantity", "normal,screen_range", "--bits", "8..14", "--output", "w"} + small,
-        here.path());
+    const ProgramEnd end =
+        succeed(Arguments{"widths", "--quantity", "normal,screen_range", "--bits", "8..14", "--output", "w"} + small,
+                here.path());
     CHECK_THAT(end.out, Contains("knee: ") && Contains("refused: ") && Contains("w/widths.csv"));
     CHECK(lines_of(read_all(here.path() / "w/widths.csv")).size() == 1 + 14);
     const Json table = read_json(here.path() / "w/widths.json");
@@ -30,11 +30,11 @@ TEST_CASE("widths: a row has the figures of tessera run with those formats") {
             if (each.at("bits") == bits)
                 row = &each;
         REQUIRE(row != nullptr);
-        succeed(Arguments{"run", "--set", "mode=functional", "--set", "output.picture=false", "--set",
-                          "check.allowed_flips=100", "--set", "check.allowed_triangles=100", "--set",
-                          "output.folder=run"} +
-                    formats + small,
-                here.path());
+        succeed(
+            Arguments{"run", "--set", "mode=functional", "--set", "output.picture=false", "--set",
+                      "check.allowed_flips=100", "--set", "check.allowed_triangles=100", "--set", "output.folder=run"} +
+                formats + small,
+            here.path());
         const Json statistics = read_json(here.path() / "run/statistics.json");
         const Json conformance = read_json(here.path() / "run/conformance.json");
         const auto value = [&](const char* group, const std::string& name) {
@@ -60,13 +60,12 @@ TEST_CASE("widths: a row of saturated screen positions has the run's count, and 
     const TestFolder here;
     const Arguments near{"--set", "camera.eye=[0.2, -0.5, 0.4]", "--set", "camera.viewport_width=256",
                          "--set", "camera.viewport_height=256"};
-    succeed(
-        Arguments{"widths", "--quantity", "screen_range", "--bits", "18", "--output", "s.csv"} + near + small,
-        here.path());
+    succeed(Arguments{"widths", "--quantity", "screen_range", "--bits", "18", "--output", "s.csv"} + near + small,
+            here.path());
     const Json row = read_json(here.path() / "s.json").at("quantities").at("screen_range").at("rows").at(0);
     const ProgramEnd run =
-        succeed(Arguments{"run", "--set", "formats.screen_bits=18", "--set", "check.allowed_triangles=100",
-                          "--set", "output.folder=run", "--set", "output.picture=false"} +
+        succeed(Arguments{"run", "--set", "formats.screen_bits=18", "--set", "check.allowed_triangles=100", "--set",
+                          "output.folder=run", "--set", "output.picture=false"} +
                     near + small,
                 here.path());
     const Json statistics = read_json(here.path() / "run/statistics.json");
@@ -84,8 +83,7 @@ TEST_CASE("widths: a map that the mesh's quads do not divide: the sweep warns") 
                      std::string("map.width=") + side, "--set", std::string("map.height=") + side},
                     here.path())
                 .out;
-        CHECK(read_json(here.path() / "w.json").contains("warning") ==
-              (text.find("warning: ") != std::string::npos));
+        CHECK(read_json(here.path() / "w.json").contains("warning") == (text.find("warning: ") != std::string::npos));
         return text;
     };
     CHECK_THAT(sweep("64"), Contains("warning: ") && Contains("map.height = 72"));
@@ -94,8 +92,7 @@ TEST_CASE("widths: a map that the mesh's quads do not divide: the sweep warns") 
 
 TEST_CASE("widths: the same bytes again, with two threads, into a folder or a file") {
     const TestFolder here;
-    const Arguments sweep =
-        Arguments{"widths", "--quantity", "position,displacement", "--bits", "10..12"} + small;
+    const Arguments sweep = Arguments{"widths", "--quantity", "position,displacement", "--bits", "10..12"} + small;
     const ProgramEnd first = succeed(sweep + Arguments{"--output", "a"}, here.path());
     const ProgramEnd second = succeed(sweep + Arguments{"--output", "b.csv", "--jobs", "2"}, here.path());
     CHECK(here.names() == Arguments{"a", "b.csv", "b.json"});
@@ -114,8 +111,7 @@ TEST_CASE("widths: wrong usage is refused in one line, and leaves nothing") {
         CHECK(lines_of(end.err).size() == 1);
         return end.err;
     };
-    CHECK_THAT(refused({"--quantity", "normals"}),
-               Contains("--quantity normals") && Contains("did you mean normal?"));
+    CHECK_THAT(refused({"--quantity", "normals"}), Contains("--quantity normals") && Contains("did you mean normal?"));
     CHECK_THAT(refused({"--quantity", "normal,normal"}), Contains("twice"));
     CHECK_THAT(refused({"--bits", "8-12"}), Contains("--bits 8-12") && Contains("8..16"));
     CHECK_THAT(refused({"--bits", "12..8"}), Contains("8..12"));
@@ -144,9 +140,8 @@ TEST_CASE("widths: wrong usage is refused in one line, and leaves nothing") {
 
 TEST_CASE("widths: a sweep of which every width is refused is no result") {
     const TestFolder here;
-    const ProgramEnd end =
-        run_tessera(Arguments{"widths", "--quantity", "screen", "--bits", "10..14", "--output", "w"} + small,
-                    here.path());
+    const ProgramEnd end = run_tessera(
+        Arguments{"widths", "--quantity", "screen", "--bits", "10..14", "--output", "w"} + small, here.path());
     INFO(end.text());
     CHECK(end.exit_code == 2);
     CHECK(lines_of(end.err).size() == 1);
@@ -158,8 +153,7 @@ TEST_CASE("widths: a sweep of which every width is refused is no result") {
 TEST_CASE("widths: Crater Lake's Summed Height Table and positions") {
     const TestFolder here;
     const std::string job = (source_folder() / "testbench/examples/jobs/crater_lake_24.toml").string();
-    succeed({"widths", job, "--quantity", "summed_height,position", "--bits", "24..32", "--output", "w"},
-            here.path());
+    succeed({"widths", job, "--quantity", "summed_height,position", "--bits", "24..32", "--output", "w"}, here.path());
     const Json table = read_json(here.path() / "w/widths.json").at("quantities");
     // a table that is wide enough changes nothing
     const Json& heights = table.at("summed_height").at("rows");

@@ -31,9 +31,8 @@ bool is_unfinished(const std::string& name) {
 /// A run small enough to be made some hundred times, with every file there is but the picture, which takes long.
 std::vector<std::string> run_arguments(const std::string& seed) {
     std::vector<std::string> arguments{"run", "--vcd", "--timeline"};
-    for (const char* const setting :
-         {"map.width=16", "map.height=16", "map.source=noise", "tests.generation_limit=3",
-          "output.picture=false", "output.trace_to=3000", "output.folder=out/run"})
+    for (const char* const setting : {"map.width=16", "map.height=16", "map.source=noise", "tests.generation_limit=3",
+                                      "output.picture=false", "output.trace_to=3000", "output.folder=out/run"})
         arguments.insert(arguments.end(), {"--set", setting});
     arguments.insert(arguments.end(), {"--set", "map.seed=" + seed});
     return arguments;
@@ -53,9 +52,9 @@ long disk_calls(const std::vector<std::string>& arguments, const fs::path& folde
     const TestFolder log;
     std::vector<std::string> command{TESSERA_PROGRAM};
     command.insert(command.end(), arguments.begin(), arguments.end());
-    const ProgramEnd end = run_program(
-        command, folder, {},
-        {{"LD_PRELOAD", TESSERA_FAILING_DISK}, {"TESSERA_DISK_LOG", (log.path() / "calls").string()}});
+    const ProgramEnd end =
+        run_program(command, folder, {},
+                    {{"LD_PRELOAD", TESSERA_FAILING_DISK}, {"TESSERA_DISK_LOG", (log.path() / "calls").string()}});
     INFO(end.text());
     REQUIRE(end.exit_code == 0);
     const long calls = std::stol(read_all(log.path() / "calls"));
@@ -68,8 +67,8 @@ struct Expected {
     Files before, after;
 };
 
-void check_ends_well(const std::vector<std::string>& arguments, const fs::path& folder,
-                     const Expected& expected, const std::string& what) {
+void check_ends_well(const std::vector<std::string>& arguments, const fs::path& folder, const Expected& expected,
+                     const std::string& what) {
     const long calls = disk_calls(arguments, folder);
     long failures = 0;
     for (long at = 1; at <= calls; ++at) {
@@ -172,8 +171,7 @@ TEST_CASE("a folder that is not for a run is refused") {
         CHECK_THAT(end.err, Contains("output.folder = \"" + folder + "\""));
         return end.err;
     };
-    for (const std::string& folder :
-         {std::string("/"), std::string(".."), std::string("../.."), here.path().string()})
+    for (const std::string& folder : {std::string("/"), std::string(".."), std::string("../.."), here.path().string()})
         CHECK_THAT(refused(folder), Contains("holds the working folder"));
 
     write_all(here.path() / "work/deep/runs/frame_001/mesh.ply", "mine");
@@ -202,8 +200,7 @@ TEST_CASE("an output that is a link is replaced, and what it leads to stays") {
             fs::create_symlink(input, name);
         }
     };
-    const auto check_replaced = [&](const std::vector<std::string>& arguments,
-                                    const std::vector<fs::path>& names) {
+    const auto check_replaced = [&](const std::vector<std::string>& arguments, const std::vector<fs::path>& names) {
         link_all(names);
         const ProgramEnd end = run_tessera(arguments, here.path());
         INFO(end.text());
@@ -219,12 +216,12 @@ TEST_CASE("an output that is a link is replaced, and what it leads to stays") {
     check_replaced({"compare", "out/run"}, {run / "error.txt", run / "error.json"});
     check_replaced({"render", "out/run", "--size", "64x64", "--view", "shaded"}, {run / "shaded.png"});
     const fs::path out = here.path() / "out";
-    check_replaced({"bake", (source_folder() / "testbench/examples/surfaces/dome.toml").string(), "--size",
-                    "16x16", "--output", "out/baked.png"},
+    check_replaced({"bake", (source_folder() / "testbench/examples/surfaces/dome.toml").string(), "--size", "16x16",
+                    "--output", "out/baked.png"},
                    {out / "baked.png"});
-    check_replaced({"tune", "--triangles", "60", "--set", "map.width=16", "--set", "map.height=16",
-                    "--output", "out/tuned.toml"},
-                   {out / "tuned.toml", out / "tuned.json"});
+    check_replaced(
+        {"tune", "--triangles", "60", "--set", "map.width=16", "--set", "map.height=16", "--output", "out/tuned.toml"},
+        {out / "tuned.toml", out / "tuned.json"});
     check_replaced({"widths", "--quantity", "normal", "--bits", "16..16", "--set", "map.width=16", "--set",
                     "map.height=16", "--output", "out/widths.csv"},
                    {out / "widths.csv", out / "widths.json"});
@@ -324,8 +321,7 @@ TEST_CASE("what cannot be taken away or replaced leaves the earlier run as it wa
         const ProgramEnd refused = run_tessera(run_arguments("1"), here.path());
         INFO(refused.text());
         CHECK(refused.exit_code == 2);
-        CHECK_THAT(refused.err, Contains("output.folder = \"out/run\"") &&
-                                    Contains(std::string("out/run/") + name) &&
+        CHECK_THAT(refused.err, Contains("output.folder = \"out/run\"") && Contains(std::string("out/run/") + name) &&
                                     Contains("move the file away, or choose another"));
         CHECK(files_in(run) == mine);
         fs::remove_all(run);

@@ -15,9 +15,7 @@ namespace tessera::golden::testing {
 /// Seeded, and the same numbers with every standard library.
 class Random {
   public:
-    double real(double low, double high) {
-        return low + (high - low) * static_cast<double>(bits_()) * 0x1p-64;
-    }
+    double real(double low, double high) { return low + (high - low) * static_cast<double>(bits_()) * 0x1p-64; }
     std::int64_t integer(std::int64_t low, std::int64_t high) {
         return low + static_cast<std::int64_t>(bits_() % static_cast<std::uint64_t>(high - low + 1));
     }

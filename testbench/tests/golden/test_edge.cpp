@@ -29,11 +29,11 @@ bool same_bits(const Vector& a, const Vector& b) {
 }
 
 bool same_bits(const Vertex& a, const Vertex& b) {
-    return same_bits(a.position, b.position) && same_bits(a.normal, b.normal) &&
-           same_bits(a.tangent, b.tangent) && same_bits(a.handedness, b.handedness) &&
-           same_bits(a.texture, b.texture) && same_bits(a.displaced_position, b.displaced_position) &&
-           same_bits(a.displaced_normal, b.displaced_normal) && same_bits(a.screen, b.screen) &&
-           same_bits(a.w, b.w) && a.in_front == b.in_front && a.generation == b.generation;
+    return same_bits(a.position, b.position) && same_bits(a.normal, b.normal) && same_bits(a.tangent, b.tangent) &&
+           same_bits(a.handedness, b.handedness) && same_bits(a.texture, b.texture) &&
+           same_bits(a.displaced_position, b.displaced_position) && same_bits(a.displaced_normal, b.displaced_normal) &&
+           same_bits(a.screen, b.screen) && same_bits(a.w, b.w) && a.in_front == b.in_front &&
+           a.generation == b.generation;
 }
 
 bool same_bits(const EdgeEvaluation& a, const EdgeEvaluation& b) {
@@ -43,11 +43,10 @@ bool same_bits(const EdgeEvaluation& a, const EdgeEvaluation& b) {
            same_bits(a.inserted.bump_length, b.inserted.bump_length) &&
            same_bits(a.normal_difference, b.normal_difference) && a.rectangle_width == b.rectangle_width &&
            a.rectangle_height == b.rectangle_height && same_bits(a.summed_height, b.summed_height) &&
-           same_bits(a.summed_height_limit, b.summed_height_limit) &&
-           same_bits(a.view_length, b.view_length) && a.normal_test == b.normal_test &&
-           a.summed_height_test == b.summed_height_test && a.view_test == b.view_test &&
-           a.tex_coord_test == b.tex_coord_test && a.generation_test == b.generation_test &&
-           a.split == b.split;
+           same_bits(a.summed_height_limit, b.summed_height_limit) && same_bits(a.view_length, b.view_length) &&
+           a.normal_test == b.normal_test && a.summed_height_test == b.summed_height_test &&
+           a.view_test == b.view_test && a.tex_coord_test == b.tex_coord_test &&
+           a.generation_test == b.generation_test && a.split == b.split;
 }
 
 Vertex random_vertex(Random& random, double low_u, double high_u, double low_v, double high_v) {
@@ -78,9 +77,8 @@ TEST_CASE("edge: each test on operands worked out by hand") {
 
     SECTION("summed height, strictly greater, and the area option") {
         p.enabled.normal = false;
-        const Vertex i = vertex(4.5, 4.5),
-                     j = vertex(12.5, 4.5);  // rectangles of 4 x 1; only r_ij sees the peak
-        p.summed_height_threshold = 49;      // |100/2 - 0| > 49
+        const Vertex i = vertex(4.5, 4.5), j = vertex(12.5, 4.5);  // rectangles of 4 x 1; only r_ij sees the peak
+        p.summed_height_threshold = 49;                            // |100/2 - 0| > 49
         EdgeEvaluation e = evaluate_edge(i, j, map, p);
         CHECK(e.rectangle_width == 4);
         CHECK(e.rectangle_height == 1);
@@ -178,14 +176,12 @@ TEST_CASE("edge: summed height equals its definition, texel by texel") {
             const double reach = mode == AddressMode::repeat ? 3 : 1;
             for (int k = 0; k < 300; ++k) {
                 const double w = width, h = height;
-                const Vertex i =
-                    random_vertex(random, (1 - reach) * w, reach * w, (1 - reach) * h, reach * h);
-                const Vertex j =
-                    random_vertex(random, (1 - reach) * w, reach * w, (1 - reach) * h, reach * h);
+                const Vertex i = random_vertex(random, (1 - reach) * w, reach * w, (1 - reach) * h, reach * h);
+                const Vertex j = random_vertex(random, (1 - reach) * w, reach * w, (1 - reach) * h, reach * h);
                 const EdgeEvaluation e = evaluate_edge(i, j, map, {});
                 const auto sum_about = [&](const glm::dvec2& t) {
-                    return static_cast<double>(map.brute_force_sum(
-                        map.rectangle_about(t, {0, 0, e.rectangle_width, e.rectangle_height})));
+                    return static_cast<double>(
+                        map.brute_force_sum(map.rectangle_about(t, {0, 0, e.rectangle_width, e.rectangle_height})));
                 };
                 REQUIRE(e.rectangle_width <= width);
                 REQUIRE(e.rectangle_height <= height);
@@ -283,8 +279,7 @@ TEST_CASE("repeat: an edge any number of periods away decides alike") {
                                  19.0 * static_cast<double>(random.integer(-50, 50)));
         i.texture += periods;
         j.texture += periods;
-        EdgeEvaluation there =
-            evaluate_edge(complete_base_vertex(i, map, p), complete_base_vertex(j, map, p), map, p);
+        EdgeEvaluation there = evaluate_edge(complete_base_vertex(i, map, p), complete_base_vertex(j, map, p), map, p);
         there.inserted.vertex.texture -= periods;
         REQUIRE(same_bits(here, there));
     }

@@ -17,14 +17,13 @@ TEST_CASE("table: four reads equal the sum texel by texel") {
     Random random;
     for (const auto& [width, height] : sizes) {
         for (const bool constant : {true, false}) {
-            const Map map(
-                width, height, AddressMode::repeat, AddressMode::repeat,
-                constant ? constant_codes(width, height, 65535) : random_codes(width, height, random));
+            const Map map(width, height, AddressMode::repeat, AddressMode::repeat,
+                          constant ? constant_codes(width, height, 65535) : random_codes(width, height, random));
             const auto check = [&, w = width, h = height](const Rectangle& r) {
                 const std::uint64_t sum = map.sum(r), expected = map.brute_force_sum(r);
                 if (sum != expected) {
-                    FAIL(w << "x" << h << " map, rectangle at " << r.x << "," << r.y << " of " << r.width
-                           << "x" << r.height << ": table " << sum << ", brute force " << expected);
+                    FAIL(w << "x" << h << " map, rectangle at " << r.x << "," << r.y << " of " << r.width << "x"
+                           << r.height << ": table " << sum << ", brute force " << expected);
                 }
             };
             if (width * height < 1000) {
@@ -124,8 +123,8 @@ TEST_CASE("normal map: central differences, borders, thin axes") {
     Map repeated(5, 4, AddressMode::repeat, AddressMode::repeat, ramp);
     repeated.derive_normals(scale, {su, sv});
     CHECK(glm::distance(repeated.normal(6), expected(10 * scale / su, 30 * scale / sv)) < 1e-15);
-    CHECK(glm::distance(repeated.normal(0),
-                        expected((10 - 40) / 2.0 * scale / su, (30 - 90) / 2.0 * scale / sv)) < 1e-15);
+    CHECK(glm::distance(repeated.normal(0), expected((10 - 40) / 2.0 * scale / su, (30 - 90) / 2.0 * scale / sv)) <
+          1e-15);
     for (const AddressMode mode : both_modes) {
         Map thin(1, 3, mode, AddressMode::clamp, {0, 7, 20});
         thin.derive_normals(scale, {su, sv});
@@ -152,8 +151,7 @@ TEST_CASE("bump: a flat normal map returns the normal, axes and handedness") {
 }
 
 TEST_CASE("vertex: displaced, inserted and transformed as ALGORITHM.md section 3 says") {
-    Map map(4, 4, AddressMode::clamp, AddressMode::clamp,
-            {0, 0, 0, 0, 0, 0, 100, 0, 0, 0, 0, 0, 0, 0, 0, 300});
+    Map map(4, 4, AddressMode::clamp, AddressMode::clamp, {0, 0, 0, 0, 0, 0, 100, 0, 0, 0, 0, 0, 0, 0, 0, 300});
     Parameters p;
     p.scale = 0.5;
     p.bias = -2;

@@ -101,9 +101,7 @@ TEST_CASE("subdivision: every pattern tiles the triangle and keeps its winding")
             DirectedEdges<int> edges;
             for (int c = 0; c < s.count; ++c) {
                 const auto& child = s.children[static_cast<std::size_t>(c)];
-                const auto at = [&](int k) {
-                    return v[static_cast<std::size_t>(child[static_cast<std::size_t>(k)])];
-                };
+                const auto at = [&](int k) { return v[static_cast<std::size_t>(child[static_cast<std::size_t>(k)])]; };
                 const double child_area = texture_area({at(0), at(1), at(2)});
                 CHECK(child_area > 0);
                 area += child_area;
@@ -113,8 +111,7 @@ TEST_CASE("subdivision: every pattern tiles the triangle and keeps its winding")
             }
             CHECK(area == Approx(texture_area({v[0], v[1], v[2]})));
             // The rest of the boundary: 3 edges, or 2 halves where split.
-            const std::size_t boundary =
-                3 + std::size_t{split[0]} + std::size_t{split[1]} + std::size_t{split[2]};
+            const std::size_t boundary = 3 + std::size_t{split[0]} + std::size_t{split[1]} + std::size_t{split[2]};
             CHECK(edges.without_partner([](int, int) { return false; }) == boundary);
         }
     }
@@ -208,14 +205,11 @@ TEST_CASE("the printed algorithm's endless case, and the generation test that en
     p.summed_height_threshold = 200;
     p.enabled.view = false;
     const std::array<Vertex, 3> triangle{plane_vertex(to_grid(78.667), 36),
-                                         plane_vertex(to_grid(82.667), to_grid(34.667)),
-                                         plane_vertex(80, 37)};
-    CHECK_FALSE(evaluate_edge(complete_base_vertex(triangle[0], map, p),
-                              complete_base_vertex(triangle[1], map, p), map, p)
-                    .split);
-    const auto run = [&](std::uint64_t bound) {
-        return tessellate({triangle}, map, p, bound, [](const Triangle&) {});
-    };
+                                         plane_vertex(to_grid(82.667), to_grid(34.667)), plane_vertex(80, 37)};
+    CHECK_FALSE(
+        evaluate_edge(complete_base_vertex(triangle[0], map, p), complete_base_vertex(triangle[1], map, p), map, p)
+            .split);
+    const auto run = [&](std::uint64_t bound) { return tessellate({triangle}, map, p, bound, [](const Triangle&) {}); };
     const std::array<std::uint64_t, 3> with_generation_test{40, 46, 64};
     for (const Diagonal diagonal : {Diagonal::shorter, Diagonal::first, Diagonal::second}) {
         p.diagonal = diagonal;
@@ -266,8 +260,7 @@ TEST_CASE("cylinder: repeat closes the seam, clamp opens it") {
     const int around = 8, up = 3, width = 64, height = 48;
     std::vector<std::array<Vertex, 3>> base;
     const auto vertex = [&](int x, int y) {
-        const double angle =
-            2 * std::acos(-1.0) * (x % around) / around;  // the seam's copies share the frame
+        const double angle = 2 * std::acos(-1.0) * (x % around) / around;  // the seam's copies share the frame
         Vertex v;
         v.normal = {std::cos(angle), std::sin(angle), 0};
         v.tangent = {-std::sin(angle), std::cos(angle), 0};
@@ -303,9 +296,8 @@ TEST_CASE("cylinder: repeat closes the seam, clamp opens it") {
             }
         });
         CHECK(result.triangles_emitted > 1000);
-        const std::size_t open = edges.without_partner([&](const Key& a, const Key& b) {
-            return row[a] == row[b] && (row[a] == 0 || row[a] == height);
-        });
+        const std::size_t open = edges.without_partner(
+            [&](const Key& a, const Key& b) { return row[a] == row[b] && (row[a] == 0 || row[a] == height); });
         if (mode == AddressMode::repeat) {
             CHECK(open == 0);
         } else {

@@ -107,8 +107,7 @@ inline JobValue random_value(const Key& key) {
         case KeyKind::number:
             return random_number(key.range);
         case KeyKind::vector:
-            return std::array<double, 3>{random_number(key.range), random_number(key.range),
-                                         random_number(key.range)};
+            return std::array<double, 3>{random_number(key.range), random_number(key.range), random_number(key.range)};
         case KeyKind::span: {
             const double a = random_number(key.range), b = random_number(key.range);
             return a < b ? std::array<double, 2>{a, b} : std::array<double, 2>{key.range.low, key.range.high};

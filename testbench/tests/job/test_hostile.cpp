@@ -63,8 +63,7 @@ TEST_CASE("deep nesting of every kind ends in a message") {
     };
     CHECK_THAT(parse_error_of("a = " + repeated("[", 500000)), StartsWith("job.toml:1:"));
     CHECK_THAT(parse_error_of("a = " + repeated("{a=", 300000)), StartsWith("job.toml:1:"));
-    CHECK_THAT(parse_error_of("a" + repeated(".a", 500000) + " = 1"),
-               Contains("dots in one line; the limit is 64"));
+    CHECK_THAT(parse_error_of("a" + repeated(".a", 500000) + " = 1"), Contains("dots in one line; the limit is 64"));
     CHECK_THAT(parse_error_of("\n[a" + repeated(".a", 500000) + "]"), StartsWith("job.toml:2:1: "));
     CHECK_THAT(parse_error_of("[[a" + repeated(".a", 500000) + "]]"), Contains("dots in one line"));
     CHECK_THAT(parse_error_of(repeated("[[a]]\n", 100000)), Contains("unknown"));
@@ -208,15 +207,13 @@ TEST_CASE("a dumped job with every byte changed") {
 
 TEST_CASE("characters beyond ASCII at every place") {
     const std::string bare = bare_dump(Job{}) + "# comment\n'a\"b' = 'c\"'\n\"d'\\\"\" = \"e'\\\\\"\n";
-    for (const std::string character :
-         {"\xc2\xa0", "\xc3\xa4", "\xe1\x9a\x80", "\xe2\x80\x83", "\xef\xbb\xbf", "\xe2\x80\xa8", "\xc2\x85",
-          "\xf0\x9f\x98\x80", "\xff", "\xc3"}) {
+    for (const std::string character : {"\xc2\xa0", "\xc3\xa4", "\xe1\x9a\x80", "\xe2\x80\x83", "\xef\xbb\xbf",
+                                        "\xe2\x80\xa8", "\xc2\x85", "\xf0\x9f\x98\x80", "\xff", "\xc3"}) {
         for (std::size_t i = 0; i <= bare.size(); ++i) {
             survives(bare.substr(0, i) + character + bare.substr(i));
         }
     }
-    CHECK(parse_job("# \xc3\xa4\n[map]\ntext = \"\xc3\xa4\" # \xc3\xa4\n", "job.toml").map.text ==
-          "\xc3\xa4");
+    CHECK(parse_job("# \xc3\xa4\n[map]\ntext = \"\xc3\xa4\" # \xc3\xa4\n", "job.toml").map.text == "\xc3\xa4");
     CHECK_THAT(parse_error_of("[map]\ntext = '\xc3\xa4' \xc3\xa4\n"), StartsWith("job.toml:2:12: not TOML"));
     CHECK(parse_job("map.text = \"\"\"\n\\\n \xc3\xa4\nb\"\"\"\n", "job.toml").map.text == "\xc3\xa4\nb");
 }
@@ -230,8 +227,8 @@ TEST_CASE("no file can steer the terminal that its message is shown on") {
 TEST_CASE("random bytes are a job or an InputError") {
     rc::prop("raw bytes", [] { survives(*rc::gen::arbitrary<std::string>()); });
     rc::prop("bytes that TOML uses", [] {
-        survives(*rc::gen::container<std::string>(
-            rc::gen::elementOf(std::string("[]{}=.,\"'\\#\n\r\t amesh01-+e_:TZx"))));
+        survives(
+            *rc::gen::container<std::string>(rc::gen::elementOf(std::string("[]{}=.,\"'\\#\n\r\t amesh01-+e_:TZx"))));
     });
 }
 

@@ -83,8 +83,7 @@ struct Anything {
 template <typename Aggregate, typename Members, typename = void>
 struct CanHold : std::false_type {};
 template <typename Aggregate, typename... Members>
-struct CanHold<Aggregate, std::tuple<Members...>, std::void_t<decltype(Aggregate{Members{}...})>>
-    : std::true_type {};
+struct CanHold<Aggregate, std::tuple<Members...>, std::void_t<decltype(Aggregate{Members{}...})>> : std::true_type {};
 
 template <typename Aggregate, typename... Members>
 constexpr std::size_t count_members() {
@@ -185,8 +184,7 @@ TEST_CASE("what may be left to the program reads as auto, and is so by default")
         INFO(key.name);
         const std::string fault = parse_error_of(one_key(key, "\"auto\""));
         if (!key.range.or_auto) {
-            const bool text =
-                key.kind == KeyKind::text || key.kind == KeyKind::file || key.kind == KeyKind::folder;
+            const bool text = key.kind == KeyKind::text || key.kind == KeyKind::file || key.kind == KeyKind::folder;
             CHECK(fault.empty() == text);
             continue;
         }
@@ -203,13 +201,12 @@ TEST_CASE("what may be left to the program reads as auto, and is so by default")
         }
         CHECK_THAT(set_error_of(key.name + "=automatic"), Contains("expected auto or "));
     }
-    CHECK(automatic_keys == std::vector<std::string>{"displacement.scale", "camera.eye", "camera.target",
-                                                     "camera.up", "camera.near_plane"});
+    CHECK(automatic_keys == std::vector<std::string>{"displacement.scale", "camera.eye", "camera.target", "camera.up",
+                                                     "camera.near_plane"});
     CHECK(automatic_key(Job{}) == "displacement.scale");
     Job set;
-    for (const char* const setting :
-         {"displacement.scale=1", "camera.eye=[1, 2, 3]", "camera.target=[0, 0, 0]", "camera.up=[0, 0, 1]",
-          "camera.near_plane=0.1"}) {
+    for (const char* const setting : {"displacement.scale=1", "camera.eye=[1, 2, 3]", "camera.target=[0, 0, 0]",
+                                      "camera.up=[0, 0, 1]", "camera.near_plane=0.1"}) {
         CHECK_FALSE(automatic_key(set).empty());
         apply_setting(set, setting);
     }
@@ -244,8 +241,7 @@ TEST_CASE("a file named without a source is an OBJ file, or an image") {
     apply_setting(set, "map.file=b.png");
     CHECK(set.mesh.source == MeshSource::file);
     CHECK(set.map.source == MapSource::file);
-    CHECK(parse_job("[mesh]\nfile = \"a.txt\"\nsource = \"patches\"", "a").mesh.source ==
-          MeshSource::patches);
+    CHECK(parse_job("[mesh]\nfile = \"a.txt\"\nsource = \"patches\"", "a").mesh.source == MeshSource::patches);
     CHECK(parse_job("[mesh]\nfile = \"a.txt\"\nsource = \"sphere\"", "a").mesh.source == MeshSource::sphere);
     CHECK(parse_job("[mesh]\nfile = \"\"", "a").mesh.source == MeshSource::plane);
     Job patches;
@@ -279,8 +275,7 @@ TEST_CASE("numbers print in their shortest form and read back exactly") {
     CHECK(toml_number(0.1) == "0.1");
     CHECK(toml_number(1e300) == "1e+300");
     CHECK(toml_number(1.0 / 3) == "0.3333333333333333");
-    for (const double value :
-         {-0.0, 5e-324, 2.2250738585072014e-308, 0.1 + 0.2, 1e6, -1e6, 123456.789e-300}) {
+    for (const double value : {-0.0, 5e-324, 2.2250738585072014e-308, 0.1 + 0.2, 1e6, -1e6, 123456.789e-300}) {
         const Job job = parse_job("displacement.bias = " + toml_number(value), "job.toml");
         CHECK(std::memcmp(&job.displacement.bias, &value, sizeof value) == 0);
     }
@@ -330,8 +325,7 @@ TEST_CASE("settings of the command line") {
     CHECK_THAT(set_error_of("mesh.colums=3"),
                Equals("--set mesh.colums=3: unknown key `mesh.colums`; did you mean `mesh.columns`?"));
     CHECK_THAT(set_error_of("mesh.columns=-1"), Contains("out of range; the range is 0 .. 2048 quads"));
-    CHECK_THAT(set_error_of("mesh.columns=three"),
-               Contains("`mesh.columns` cannot be three; expected an integer"));
+    CHECK_THAT(set_error_of("mesh.columns=three"), Contains("`mesh.columns` cannot be three; expected an integer"));
     CHECK_THAT(set_error_of("mesh.columns="), Contains("has no value"));
     CHECK_THAT(set_error_of("mesh.columns"), Contains("expected table.key=value"));
     CHECK_THAT(set_error_of("=3"), Contains("unknown key"));
@@ -399,8 +393,7 @@ TEST_CASE("a job dumped into a run folder runs again from there") {
     CHECK_THAT(dump_job(job), Contains("file = \"meshes/head.obj\""));
 
     const std::string dump = dump_job(job, root.path() / "runs/one");
-    CHECK_THAT(dump,
-               Contains("file = \"../../jobs/meshes/head.obj\"") && Contains("file = \"data:head.exr\""));
+    CHECK_THAT(dump, Contains("file = \"../../jobs/meshes/head.obj\"") && Contains("file = \"data:head.exr\""));
     const Job again = read_job(root.write("runs/one/job.toml", dump));
     CHECK(fs::exists(mesh_path(again)));
     CHECK(dump_job(again, root.path() / "runs/one") == dump);

@@ -85,9 +85,8 @@ TEST_CASE("every number's range holds at its ends and refuses beyond them") {
     for (const Key& key : all_keys()) {
         INFO(key.name);
         const auto around = [&](double value) {
-            const std::string text = key.kind == KeyKind::integer
-                                         ? std::to_string(static_cast<std::int64_t>(value))
-                                         : toml_number(value);
+            const std::string text =
+                key.kind == KeyKind::integer ? std::to_string(static_cast<std::int64_t>(value)) : toml_number(value);
             return key.kind == KeyKind::vector ? "[1, 1, " + text + "]" : text;
         };
         if (key.kind != KeyKind::integer && key.kind != KeyKind::number && key.kind != KeyKind::vector) {
@@ -107,8 +106,8 @@ TEST_CASE("every number's range holds at its ends and refuses beyond them") {
         }
         if (!whole) {
             for (const std::string value : {"nan", "-nan", "inf", "-inf"}) {
-                const std::string error = parse_error_of(
-                    one_key(key, key.kind == KeyKind::vector ? "[1, " + value + ", 1]" : value));
+                const std::string error =
+                    parse_error_of(one_key(key, key.kind == KeyKind::vector ? "[1, " + value + ", 1]" : value));
                 CHECK_THAT(error, Contains("`" + key.name + "` = ") && Contains("not a finite number"));
             }
         }
@@ -133,8 +132,7 @@ TEST_CASE("mistyped names are reported with place and suggestion") {
             {"[mesh.rows]\nx = 2\n", {"`mesh.rows` is a table; expected an integer"}},
             {"[mesh.more]\nx = 2\n", {"unknown table `mesh.more`"}},
             {"mesh.camera = {eye = [1, 2, 3]}\n",
-             {"unknown table `mesh.camera`; did you mean the group `camera`?", "write [camera]",
-              "eye, target, "}},
+             {"unknown table `mesh.camera`; did you mean the group `camera`?", "write [camera]", "eye, target, "}},
             {"camera = {eye = [1, 2, 3]}\n", {}},
             {"\"\" = 1\n", {"unknown key `\"\"`"}},
             {"folder = \"x\"\n", {"unknown key `folder`"}},
@@ -148,21 +146,18 @@ TEST_CASE("mistyped names are reported with place and suggestion") {
 TEST_CASE("values are reported with place, value and what is wanted") {
     expect_whole("[mesh]\ncolumns = 99999\n",
                  "job.toml:2:1: `mesh.columns` = 99999 is out of range; the range is 0 .. 2048 quads");
-    expect_whole(
-        "[mesh]\ncolumns = \"three\"\n",
-        "job.toml:2:1: `mesh.columns` is \"three\", a string; expected an integer, 0 .. 2048 quads");
-    expect_whole(
-        "[map]\nsource = \"half-donut\"\n",
-        "job.toml:2:1: `map.source` = \"half-donut\" is not a choice; the choices are half_donut, text, "
-        "noise, constant, ramp, file; did you mean \"half_donut\"?");
+    expect_whole("[mesh]\ncolumns = \"three\"\n",
+                 "job.toml:2:1: `mesh.columns` is \"three\", a string; expected an integer, 0 .. 2048 quads");
+    expect_whole("[map]\nsource = \"half-donut\"\n",
+                 "job.toml:2:1: `map.source` = \"half-donut\" is not a choice; the choices are half_donut, text, "
+                 "noise, constant, ramp, file; did you mean \"half_donut\"?");
     expect_refusals(
         {
             {"[mesh]\ncolumns = 3.0\n", {"is 3.0, a floating-point number"}},
             {"[map]\ntext = \"a\\u0000b\"\n", {"without NUL"}},
             {"[map]\ntext = \"" + std::string(5000, 'x') + "\"\n", {"has 5000 bytes"}},
             {"[output]\nfolder = \"\"\n", {"`output.folder` = \"\" is empty"}},
-            {"[output]\nply = 1\n[mesh]\nrows = -1\n",
-             {"job.toml:2:1: `output.ply`", "\njob.toml:4:1: `mesh.rows`"}},
+            {"[output]\nply = 1\n[mesh]\nrows = -1\n", {"job.toml:2:1: `output.ply`", "\njob.toml:4:1: `mesh.rows`"}},
         },
         parse_error_of);
 }
@@ -212,8 +207,7 @@ TEST_CASE("keys that contradict each other") {
             {"mesh.source=file", {"`mesh.file` is empty"}},
             {"mesh.source=patches", {"`mesh.file` is empty, but `mesh.source` = \"patches\""}},
             {"mesh.source=patches; mesh.file=a.txt", {}},
-            {"mesh.file=a.obj; mesh.source=plane",
-             {"`mesh.file` = \"a.obj\", but `mesh.source` = \"plane\""}},
+            {"mesh.file=a.obj; mesh.source=plane", {"`mesh.file` = \"a.obj\", but `mesh.source` = \"plane\""}},
             {"map.source=file", {"`map.file` is empty"}},
             {"map.file=a.exr; map.source=half_donut", {"`map.source` = \"half_donut\" reads no file"}},
             {"map.source=file; map.file=a.exr; mesh.source=file; mesh.file=a.obj", {}},
@@ -240,8 +234,7 @@ TEST_CASE("keys that contradict each other") {
             {"hardware.light=[0, 0, 0]", {"`hardware.light`"}},
 
             {"map.fingerprint=0123456789abcdef", {"`map.file` is empty"}},
-            {"map.source=file; map.file=a.exr; map.fingerprint=0123456789ABCDEF",
-             {"wanted are 16 hexadecimal digits"}},
+            {"map.source=file; map.file=a.exr; map.fingerprint=0123456789ABCDEF", {"wanted are 16 hexadecimal digits"}},
             {"map.source=file; map.file=a.exr; map.fingerprint=0123456789abcdef", {}},
         },
         settings_error_of);
@@ -249,9 +242,8 @@ TEST_CASE("keys that contradict each other") {
     Job out_of_range;  // made in code, past the checks of reading
     out_of_range.tests.normal_threshold = -1;
     out_of_range.camera.viewport_width = 0;
-    CHECK_THAT(validate_error_of(out_of_range),
-               Contains("`camera.viewport_width` = 0 is out of range") &&
-                   Contains("\n`tests.normal_threshold` = -1.0 is out of range"));
+    CHECK_THAT(validate_error_of(out_of_range), Contains("`camera.viewport_width` = 0 is out of range") &&
+                                                    Contains("\n`tests.normal_threshold` = -1.0 is out of range"));
     out_of_range.formats.texture_integer = 1000;  // must not reach a shift
     CHECK_THAT(validate_error_of(out_of_range), Contains("`formats.texture_integer` = 1000"));
 }

@@ -19,10 +19,9 @@ inline std::multiset<Key> keys(const EmittedMesh& mesh) {
         for (const auto& c : triangle.corners)
             for (const std::int64_t value :
                  {std::int64_t{c.texture.u}, std::int64_t{c.texture.v}, std::int64_t{c.displaced.x},
-                  std::int64_t{c.displaced.y}, std::int64_t{c.displaced.z},
-                  std::int64_t{c.displaced_normal.x}, std::int64_t{c.displaced_normal.y},
-                  std::int64_t{c.displaced_normal.z}, std::int64_t{c.position.x}, std::int64_t{c.position.y},
-                  std::int64_t{c.generation}})
+                  std::int64_t{c.displaced.y}, std::int64_t{c.displaced.z}, std::int64_t{c.displaced_normal.x},
+                  std::int64_t{c.displaced_normal.y}, std::int64_t{c.displaced_normal.z}, std::int64_t{c.position.x},
+                  std::int64_t{c.position.y}, std::int64_t{c.generation}})
                 key[place++] = value;
         key[place++] = triangle.base;
         key[place++] = triangle.split_by;

@@ -38,48 +38,47 @@ struct Row {
     std::string settings;
 };
 
-const CaseTable meshes(
-    "",
-    {
-        Row{"half donut: the pipeline's mesh is the bare datapath's, bit for bit", ""},
-        {"half donut, last in first out: the same mesh", "hardware.queue_order=lifo"},
-        {"half donut, many host triangles at a time: the same mesh", "hardware.queue_watermark=1000"},
-        {"half donut, memories read by transactions: the same mesh", "hardware.direct_memory=false"},
-        {"half donut, always the first diagonal", "hardware.triangulation=first"},
-        {"half donut, always the second diagonal", "hardware.triangulation=second"},
-        {"narrow formats: wide SAT entries, few fraction bits",
-         "formats.summed_height_bits=44 formats.normal_bits=12 formats.normal_fraction=10 "
-         "formats.position_bits=24 formats.position_fraction=12 formats.texture_fraction=10 "
-         "formats.displacement_bits=10"},
-        {"cylinder in repeat: the seam stays closed",
-         "mesh.source=cylinder map.source=noise map.width=64 map.height=33 map.address_u=repeat "
-         "displacement.scale=0.1 tests.view_threshold=8"},
-    },
-    [](const Row& row) {
-        const CheckedRun run(functional_setup(row.settings));
-        expect_sound(run);
-        CHECK(run.mesh.triangles.size() > 1000);
-    });
+const CaseTable meshes("",
+                       {
+                           Row{"half donut: the pipeline's mesh is the bare datapath's, bit for bit", ""},
+                           {"half donut, last in first out: the same mesh", "hardware.queue_order=lifo"},
+                           {"half donut, many host triangles at a time: the same mesh",
+                            "hardware.queue_watermark=1000"},
+                           {"half donut, memories read by transactions: the same mesh", "hardware.direct_memory=false"},
+                           {"half donut, always the first diagonal", "hardware.triangulation=first"},
+                           {"half donut, always the second diagonal", "hardware.triangulation=second"},
+                           {"narrow formats: wide SAT entries, few fraction bits",
+                            "formats.summed_height_bits=44 formats.normal_bits=12 formats.normal_fraction=10 "
+                            "formats.position_bits=24 formats.position_fraction=12 formats.texture_fraction=10 "
+                            "formats.displacement_bits=10"},
+                           {"cylinder in repeat: the seam stays closed",
+                            "mesh.source=cylinder map.source=noise map.width=64 map.height=33 map.address_u=repeat "
+                            "displacement.scale=0.1 tests.view_threshold=8"},
+                       },
+                       [](const Row& row) {
+                           const CheckedRun run(functional_setup(row.settings));
+                           expect_sound(run);
+                           CHECK(run.mesh.triangles.size() > 1000);
+                       });
 
-const CaseTable constant_maps(
-    "constant map splits nothing: ",
-    {
-        Row{"plane, clamp", "map.value=0"},
-        {"plane, repeat", "map.value=1 map.address_u=repeat map.address_v=repeat"},
-        {"cylinder, clamp", "map.value=0.37 mesh.source=cylinder"},
-        {"cylinder, repeat", "map.value=1 mesh.source=cylinder map.address_u=repeat"},
-        {"sphere, clamp", "map.value=0.5 mesh.source=sphere"},
-        {"sphere, repeat", "map.value=0.001 mesh.source=sphere map.address_u=repeat"},
-    },
-    [](const Row& row) {
-        const CheckedRun run(functional_setup(
-            row.settings +
-            " map.source=constant map.width=97 map.height=61 tests.summed_height_threshold=0 "
-            "tests.view_threshold=0"));
-        CHECK(run.mesh.triangles.size() == run.setup.base_triangles.size());
-        CHECK(run.counts.edges_split == 0);
-        CHECK(run.simulation.rasteriser.triangles() == run.setup.base_triangles.size());
-    });
+const CaseTable constant_maps("constant map splits nothing: ",
+                              {
+                                  Row{"plane, clamp", "map.value=0"},
+                                  {"plane, repeat", "map.value=1 map.address_u=repeat map.address_v=repeat"},
+                                  {"cylinder, clamp", "map.value=0.37 mesh.source=cylinder"},
+                                  {"cylinder, repeat", "map.value=1 mesh.source=cylinder map.address_u=repeat"},
+                                  {"sphere, clamp", "map.value=0.5 mesh.source=sphere"},
+                                  {"sphere, repeat", "map.value=0.001 mesh.source=sphere map.address_u=repeat"},
+                              },
+                              [](const Row& row) {
+                                  const CheckedRun run(functional_setup(
+                                      row.settings +
+                                      " map.source=constant map.width=97 map.height=61 tests.summed_height_threshold=0 "
+                                      "tests.view_threshold=0"));
+                                  CHECK(run.mesh.triangles.size() == run.setup.base_triangles.size());
+                                  CHECK(run.counts.edges_split == 0);
+                                  CHECK(run.simulation.rasteriser.triangles() == run.setup.base_triangles.size());
+                              });
 
 }  // namespace
 
@@ -112,16 +111,13 @@ namespace {
 
 /// Every third item of a stream waits on its way: the host's triangles and the queue's may overtake one another there.
 template <class Item>
-struct Detour : sc_core::sc_module,
-                tlm::tlm_fw_transport_if<Stream<Item>>,
-                tlm::tlm_bw_transport_if<Stream<Item>> {
+struct Detour : sc_core::sc_module, tlm::tlm_fw_transport_if<Stream<Item>>, tlm::tlm_bw_transport_if<Stream<Item>> {
     tlm::tlm_target_socket<32, Stream<Item>> in{"in"};
     tlm::tlm_initiator_socket<32, Stream<Item>> out{"out"};
     unsigned items = 0;
     unsigned& overtaken;
 
-    Detour(const sc_core::sc_module_name& name, unsigned& overtakings)
-        : sc_module(name), overtaken(overtakings) {
+    Detour(const sc_core::sc_module_name& name, unsigned& overtakings) : sc_module(name), overtaken(overtakings) {
         in.bind(*this);
         out.bind(*this);
     }
@@ -135,12 +131,8 @@ struct Detour : sc_core::sc_module,
         }
         out->b_transport(item, delay);
     }
-    tlm::tlm_sync_enum nb_transport_fw(Item&, tlm::tlm_phase&, sc_core::sc_time&) override {
-        return tlm::TLM_ACCEPTED;
-    }
-    tlm::tlm_sync_enum nb_transport_bw(Item&, tlm::tlm_phase&, sc_core::sc_time&) override {
-        return tlm::TLM_ACCEPTED;
-    }
+    tlm::tlm_sync_enum nb_transport_fw(Item&, tlm::tlm_phase&, sc_core::sc_time&) override { return tlm::TLM_ACCEPTED; }
+    tlm::tlm_sync_enum nb_transport_bw(Item&, tlm::tlm_phase&, sc_core::sc_time&) override { return tlm::TLM_ACCEPTED; }
     bool get_direct_mem_ptr(Item&, tlm::tlm_dmi&) override { return false; }
     unsigned transport_dbg(Item&) override { return 0; }
     void invalidate_direct_mem_ptr(sc_dt::uint64, sc_dt::uint64) override {}
@@ -158,8 +150,7 @@ struct Detours : UnitFactory {
     void interpose(StreamOutput<Item>& output) {
         if constexpr (is_part<Item>)
             output.interpose([this](StreamOutput<Item>& from, StreamInput<Item>& to) {
-                auto detour =
-                    std::make_unique<Detour<Item>>(sc_core::sc_gen_unique_name("detour"), overtaken);
+                auto detour = std::make_unique<Detour<Item>>(sc_core::sc_gen_unique_name("detour"), overtaken);
                 from.bind(detour->in);
                 detour->out.bind(to);
                 detours.push_back(std::move(detour));
@@ -202,8 +193,7 @@ TEST_CASE("a read outside a table is an error that names the reader") {
         simulation.run();
         FAIL("no error");
     } catch (const sc_core::sc_report& report) {
-        CHECK_THAT(report.what(),
-                   Catch::Contains("tessera.displace_vertex") && Catch::Contains("TLM_ADDRESS_ERROR"));
+        CHECK_THAT(report.what(), Catch::Contains("tessera.displace_vertex") && Catch::Contains("TLM_ADDRESS_ERROR"));
     }
 }
 

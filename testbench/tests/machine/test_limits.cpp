@@ -14,12 +14,10 @@ using namespace tessera::testing;
 namespace {
 
 /// A few hundred triangles, of every size.
-const std::string small =
-    "map.width=32 map.height=32 tests.summed_height_threshold=0.3 tests.generation_limit=5 ";
+const std::string small = "map.width=32 map.height=32 tests.summed_height_threshold=0.3 tests.generation_limit=5 ";
 
 std::string stalls(int seed, int per_mille, int longest) {
-    return "timing.stalls_seed=" + std::to_string(seed) +
-           " timing.stalls_per_mille=" + std::to_string(per_mille) +
+    return "timing.stalls_seed=" + std::to_string(seed) + " timing.stalls_per_mille=" + std::to_string(per_mille) +
            " timing.stalls_longest=" + std::to_string(longest) + " ";
 }
 
@@ -65,14 +63,12 @@ const CaseTable designs(
          all_memories(0) + "timing.summed_height_table_latency=1000", 1000},
         {"the displacement map 1000 cycles away, the others at hand",
          all_memories(0) + "timing.displacement_map_latency=1000", 1000},
-        {"the normal map 1000 cycles away, the others at hand",
-         all_memories(0) + "timing.normal_map_latency=1000", 1000},
+        {"the normal map 1000 cycles away, the others at hand", all_memories(0) + "timing.normal_map_latency=1000",
+         1000},
         {"off-chip memory 1000 cycles away, a byte a cycle, one request at a time",
-         queue("fifo", 1) +
-             "timing.off_chip_latency=1000 timing.off_chip_bandwidth=1 timing.off_chip_buffer=1"},
-        {"every latency and interval 1",
-         all_units(1, 1, 1) + all_memories(0) +
-             "timing.summed_height_table_ports=64 timing.summed_height_table_banks=64"},
+         queue("fifo", 1) + "timing.off_chip_latency=1000 timing.off_chip_bandwidth=1 timing.off_chip_buffer=1"},
+        {"every latency and interval 1", all_units(1, 1, 1) + all_memories(0) +
+                                             "timing.summed_height_table_ports=64 timing.summed_height_table_banks=64"},
         // Transform, if none else: one part after another, 1000 cycles each
         {"every latency and interval 1000, stalls",
          "tests.generation_limit=2 " + all_units(1000, 1000, 1) + stalls(105, 200, 1000), 100'000},
@@ -86,23 +82,22 @@ const CaseTable designs(
     },
     [](const Row& row) { expect_whole_run(row, true); });
 
-const CaseTable whole(
-    "limits: ",
-    {
-        Row{"nothing to split, one place in the queue, stalls",
-            "map.source=constant " + queue("fifo", 1) + stalls(106, 1000, 100)},
-        {"no test asks for a split", "tests.normal=false tests.summed_height=false"},
-        {"a generation limit of 0", "tests.generation_limit=0"},
-        {"a map of one texel", "map.width=1 map.height=1"},
-        {"a map of one texel, repeated",
-         "map.source=noise map.width=1 map.height=1 map.address_u=repeat map.address_v=repeat"},
-        {"a viewport of one pixel splits nothing that the View Test measures in pixels",
-         "camera.viewport_width=1 camera.viewport_height=1"},
-        {"all of it behind the camera: no edge is seen, none splits",
-         "camera.eye=[0,-3,0.5] camera.target=[0,-6,0.5]"},
-        {"all of it beyond the near plane's reach: likewise", "camera.near_plane=1e6"},
-    },
-    [](const Row& row) { expect_whole_run(row, false); });
+const CaseTable whole("limits: ",
+                      {
+                          Row{"nothing to split, one place in the queue, stalls",
+                              "map.source=constant " + queue("fifo", 1) + stalls(106, 1000, 100)},
+                          {"no test asks for a split", "tests.normal=false tests.summed_height=false"},
+                          {"a generation limit of 0", "tests.generation_limit=0"},
+                          {"a map of one texel", "map.width=1 map.height=1"},
+                          {"a map of one texel, repeated",
+                           "map.source=noise map.width=1 map.height=1 map.address_u=repeat map.address_v=repeat"},
+                          {"a viewport of one pixel splits nothing that the View Test measures in pixels",
+                           "camera.viewport_width=1 camera.viewport_height=1"},
+                          {"all of it behind the camera: no edge is seen, none splits",
+                           "camera.eye=[0,-3,0.5] camera.target=[0,-6,0.5]"},
+                          {"all of it beyond the near plane's reach: likewise", "camera.near_plane=1e6"},
+                      },
+                      [](const Row& row) { expect_whole_run(row, false); });
 
 }  // namespace
 

@@ -80,13 +80,11 @@ const CaseTable meshes("formats: ",
                            {"the widest, a cylinder in repeat that spills, timed", "timed", cylinder, widest},
                            {"odd ones, a plane, functional", "functional", plane, odd},
                            {"odd ones, a cylinder in repeat that spills, timed", "timed", cylinder, odd},
-                           {"whole numbers, a cylinder in repeat that spills, timed", "timed", cylinder,
-                            whole_numbers},
+                           {"whole numbers, a cylinder in repeat that spills, timed", "timed", cylinder, whole_numbers},
                            {"fractions only, a plane, timed", "timed", plane, fractions},
                        },
                        [](const Row& row) {
-                           const Job job =
-                               with_settings({}, "mode=" + row.mode + " " + row.job + row.formats);
+                           const Job job = with_settings({}, "mode=" + row.mode + " " + row.job + row.formats);
                            check(width_run_of(job));
                            const CheckedRun run(job);
                            CHECK(run.counts.edges_split > 0);
@@ -168,8 +166,8 @@ TEST_CASE("formats: any that a job may have, on any small job: within the bounds
             ++ran;
         } catch (const InputError& error) {
             ++refused;
-            CHECK_THAT(error.what(), Catch::Contains(".") && Catch::Contains("`") ||
-                                         Catch::Contains("formats.") || Catch::Contains("tests."));
+            CHECK_THAT(error.what(), Catch::Contains(".") && Catch::Contains("`") || Catch::Contains("formats.") ||
+                                         Catch::Contains("tests."));
         }
     }
     CHECK(ran > 60);

@@ -37,17 +37,15 @@ std::vector<Extreme> extremes_of(const Key& key) {
     std::vector<Extreme> all;
     const double largest = 9223372036854775807.0;
     if (key.kind == KeyKind::integer) {
-        const auto low = static_cast<std::int64_t>(key.range.low),
-                   high = static_cast<std::int64_t>(key.range.high);
+        const auto low = static_cast<std::int64_t>(key.range.low), high = static_cast<std::int64_t>(key.range.high);
         for (const std::int64_t value :
-             {low, high, low - 1, high + 1, std::int64_t{0}, std::int64_t{-1},
-              std::numeric_limits<std::int64_t>::max(), std::numeric_limits<std::int64_t>::min()})
+             {low, high, low - 1, high + 1, std::int64_t{0}, std::int64_t{-1}, std::numeric_limits<std::int64_t>::max(),
+              std::numeric_limits<std::int64_t>::min()})
             all.push_back({std::to_string(value), static_cast<double>(value)});
         all.push_back({"9223372036854775808", 2 * largest});  // no 64 bit integer
         return all;
     }
-    const double nan = std::numeric_limits<double>::quiet_NaN(),
-                 infinity = std::numeric_limits<double>::infinity();
+    const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
     const auto add = [&](double value) {
         char text[40];
         std::snprintf(text, sizeof text, "%.17g", value);
@@ -55,12 +53,11 @@ std::vector<Extreme> extremes_of(const Key& key) {
         if (number.find_first_of(".en") == std::string::npos)
             number += ".0";
         all.push_back(
-            {key.kind == KeyKind::vector ? "[" + number + ", " + number + ", " + number + "]" : number,
-             value});
+            {key.kind == KeyKind::vector ? "[" + number + ", " + number + ", " + number + "]" : number, value});
     };
     const double low = key.range.low, high = key.range.high;
-    for (const double value : {low, high, std::nextafter(low, -infinity), std::nextafter(high, infinity),
-                               -0.0, 0.0, 1e308, -1e308, 5e-324, -5e-324, nan, infinity, -infinity})
+    for (const double value : {low, high, std::nextafter(low, -infinity), std::nextafter(high, infinity), -0.0, 0.0,
+                               1e308, -1e308, 5e-324, -5e-324, nan, infinity, -infinity})
         add(value);
     return all;
 }
@@ -144,11 +141,9 @@ void expect(const Refused& row, const std::string& message) {
 
 TEST_CASE("limits: cameras that see nothing sensible are refused with both keys' names") {
     const Refused rows[] = {
-        {{"camera.eye=[1, 2, 3]", "camera.target=[1, 2, 3]"},
-         {"`camera.eye`", "`camera.target`", "same point"}},
+        {{"camera.eye=[1, 2, 3]", "camera.target=[1, 2, 3]"}, {"`camera.eye`", "`camera.target`", "same point"}},
         {{"camera.eye=[1e6, 1e6, 1e6]", "camera.target=[1e6, 1e6, 999999.9999999]"}, {"same point"}},
-        {{"camera.eye=[0, 0, 3]", "camera.target=[0, 0, 0]", "camera.up=[0, 0, 1]"},
-         {"`camera.up`", "parallel"}},
+        {{"camera.eye=[0, 0, 3]", "camera.target=[0, 0, 0]", "camera.up=[0, 0, 1]"}, {"`camera.up`", "parallel"}},
         {{"camera.eye=[0, 0, 3]", "camera.target=[0, 0, 0]", "camera.up=[0, 0, -5]"}, {"parallel"}},
         {{"camera.up=[0, 0, 0]"}, {"`camera.up`", "no direction"}},
         {{"hardware.light=[0, 0, 0]"}, {"`hardware.light`"}},

@@ -55,8 +55,7 @@ double filled_part(const Job::Camera& camera, const std::vector<glm::dvec3>& poi
     const glm::dvec3 right = glm::normalize(glm::cross(vector(camera.up), backward));
     const glm::dvec3 above = glm::cross(backward, right);
     const double tangent = std::tan(camera.field_of_view * pi / 360);
-    const double aspect =
-        static_cast<double>(camera.viewport_width) / static_cast<double>(camera.viewport_height);
+    const double aspect = static_cast<double>(camera.viewport_width) / static_cast<double>(camera.viewport_height);
     double part = 0;
     for (const glm::dvec3& point : points) {
         const glm::dvec3 seen = point - vector(camera.eye);
@@ -119,8 +118,7 @@ TEST_CASE("up is z, but y for an OBJ file, and a flat one's axis on the side of 
     CHECK(up_of(of_a_run, MeshSource::run) == Up{0, -1, 0});
 }
 
-TEST_CASE(
-    "the camera looks at the displaced box from the right of the front, and one corner touches nine tenths") {
+TEST_CASE("the camera looks at the displaced box from the right of the front, and one corner touches nine tenths") {
     const double right = std::sin(20 * pi / 180) * std::cos(38 * pi / 180),
                  front = std::cos(20 * pi / 180) * std::cos(38 * pi / 180), above = std::sin(38 * pi / 180);
     SECTION("where z is up, the front is -y") {
@@ -165,8 +163,7 @@ TEST_CASE(
     SECTION("whatever the model's size") {
         for (const double size : {1e-5, 1e-3, 1.0, 1e5, 1e9}) {
             const Job::Camera camera = resolve_job(Job{}, make_sphere(8, 4, size), map_of(0, 0)).job.camera;
-            CHECK(filled_part(camera, corners(glm::dvec3(-size), glm::dvec3(size))) ==
-                  Approx(0.9).epsilon(2e-5));
+            CHECK(filled_part(camera, corners(glm::dvec3(-size), glm::dvec3(size))) == Approx(0.9).epsilon(2e-5));
         }
     }
 }
@@ -209,9 +206,9 @@ TEST_CASE("a model beyond what a camera can be set to is refused with what to do
             return std::string(error.what());
         }
     };
-    CHECK_THAT(refusal(make_sphere(8, 4, 1e20)),
-               Contains("out of range") &&
-                   Contains("it follows from a base mesh of 2e+20 model units; scale the mesh"));
+    CHECK_THAT(
+        refusal(make_sphere(8, 4, 1e20)),
+        Contains("out of range") && Contains("it follows from a base mesh of 2e+20 model units; scale the mesh"));
     CHECK_THAT(refusal(box(2, 2, 2, {0, -3e13, 5})),
                Contains("out of range") && Contains("it follows from a base mesh of 2 model units around (1, "
                                                     "-3e+13, 6); move the mesh to the origin"));

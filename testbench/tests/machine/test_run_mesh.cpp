@@ -48,8 +48,7 @@ Job without_automatic(Job job) {
     return job;
 }
 
-BaseMesh read_back(const std::vector<EmittedTriangle>& triangles, const Job& job = {},
-                   std::uint32_t map_size = 8) {
+BaseMesh read_back(const std::vector<EmittedTriangle>& triangles, const Job& job = {}, std::uint32_t map_size = 8) {
     const TestFolder run;
     EmittedMesh mesh;
     mesh.triangles = triangles;
@@ -77,8 +76,8 @@ MachineSetup setup_of(double scale) {
 }  // namespace
 
 TEST_CASE("a run's mesh as a base: displaced vertices, shared, complete") {
-    const BaseMesh mesh = read_back({triangle(corner(0, 0), corner(4, 0), corner(4, 4)),
-                                     triangle(corner(0, 0), corner(4, 4), corner(0, 4))});
+    const BaseMesh mesh = read_back(
+        {triangle(corner(0, 0), corner(4, 0), corner(4, 4)), triangle(corner(0, 0), corner(4, 4), corner(0, 4))});
     REQUIRE(mesh.vertices.size() == 4);
     REQUIRE(mesh.triangles.size() == 2);
     CHECK(mesh.repairs.empty());
@@ -102,8 +101,7 @@ TEST_CASE("texture coordinates keep every bit, whatever the map's size") {
     CHECK(std::abs(steps.y - fine.texture.v) < 1e-6);
 }
 
-TEST_CASE(
-    "vertices of a run that only their base position tells apart become one, and triangles so collapsed go") {
+TEST_CASE("vertices of a run that only their base position tells apart become one, and triangles so collapsed go") {
     // Corner (4, 0) came of two places; the triangle between them has no edge any more that a neighbour needs.
     const BaseMesh mesh = read_back({triangle(corner(0, 0), corner(4, 0), corner(4, 4)),
                                      triangle(corner(4, 0), corner(4, 0, 7), corner(4, 4)),
@@ -117,10 +115,9 @@ TEST_CASE(
 TEST_CASE("a triangle without area that holds a T-vertex's place stays") {
     // (2, 0) lies on the edge from (0, 0) to (4, 0): whole on one side, cut on the other, and the flat
     // triangle between.
-    const BaseMesh mesh = read_back({triangle(corner(0, 0), corner(4, 0), corner(4, 4)),
-                                     triangle(corner(4, 0), corner(0, 0), corner(2, 0)),
-                                     triangle(corner(2, 0), corner(0, 0), corner(2, -4)),
-                                     triangle(corner(4, 0), corner(2, 0), corner(2, -4))});
+    const BaseMesh mesh = read_back(
+        {triangle(corner(0, 0), corner(4, 0), corner(4, 4)), triangle(corner(4, 0), corner(0, 0), corner(2, 0)),
+         triangle(corner(2, 0), corner(0, 0), corner(2, -4)), triangle(corner(4, 0), corner(2, 0), corner(2, -4))});
     CHECK(mesh.triangles.size() == 4);
     CHECK(mesh.dropped_degenerate == 0);
     for (const BaseVertex& vertex : mesh.vertices)
@@ -140,8 +137,7 @@ TEST_CASE("normals that the run had not, and triangles it culled, are said") {
     CHECK(repaired(mesh, "1 vertices of the run have no normal"));
     CHECK(repaired(mesh, "culled"));
     CHECK_THROWS_WITH(read_back({culled}, job), Contains("no triangle is left"));
-    CHECK_THROWS_WITH(read_back({triangle(corner(0, 0), corner(0, 0), corner(0, 0))}),
-                      Contains("no triangle is left"));
+    CHECK_THROWS_WITH(read_back({triangle(corner(0, 0), corner(0, 0), corner(0, 0))}), Contains("no triangle is left"));
 }
 
 TEST_CASE("up is the run's camera.up if its mesh was a file or a run, else z") {

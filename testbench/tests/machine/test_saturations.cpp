@@ -84,25 +84,21 @@ TEST_CASE("saturations: displaced positions, as 128 bit integers count them") {
     r.displacement.scale = static_cast<std::int32_t>(r.formats.position.highest / 3);
     std::uint64_t expected = 0, wrong = 0;
     const Saturations counted = run_watched(setup, [&](const TrianglePass& pass) {
-        for_each_displaced(
-            pass, [&](const auto& p, const auto& n, const auto& t, const auto& displaced, const auto&) {
-                const auto texel = [&](std::uint32_t c, std::uint32_t size) {
-                    return std::min(c >> r.formats.texture.fraction, size - 1);
-                };
-                const Wide code = setup.map.code(texel(t.u, r.map.width), texel(t.v, r.map.height));
-                const Wide height =
-                    nearest(r.displacement.scale * code, r.formats.displacement.bits) + r.displacement.bias;
-                const auto count = [&](std::int32_t base, std::int32_t normal, std::int32_t machine) {
-                    const Wide exact = base + nearest(height * normal, r.formats.normal.fraction);
-                    expected += beyond(exact, r.formats.position) ? 1u : 0u;
-                    wrong += machine == clamped(exact, r.formats.position.lowest, r.formats.position.highest)
-                                 ? 0u
-                                 : 1u;
-                };
-                count(p.x, n.x, displaced.x);
-                count(p.y, n.y, displaced.y);
-                count(p.z, n.z, displaced.z);
-            });
+        for_each_displaced(pass, [&](const auto& p, const auto& n, const auto& t, const auto& displaced, const auto&) {
+            const auto texel = [&](std::uint32_t c, std::uint32_t size) {
+                return std::min(c >> r.formats.texture.fraction, size - 1);
+            };
+            const Wide code = setup.map.code(texel(t.u, r.map.width), texel(t.v, r.map.height));
+            const Wide height = nearest(r.displacement.scale * code, r.formats.displacement.bits) + r.displacement.bias;
+            const auto count = [&](std::int32_t base, std::int32_t normal, std::int32_t machine) {
+                const Wide exact = base + nearest(height * normal, r.formats.normal.fraction);
+                expected += beyond(exact, r.formats.position) ? 1u : 0u;
+                wrong += machine == clamped(exact, r.formats.position.lowest, r.formats.position.highest) ? 0u : 1u;
+            };
+            count(p.x, n.x, displaced.x);
+            count(p.y, n.y, displaced.y);
+            count(p.z, n.z, displaced.z);
+        });
     });
     CHECK(expected > 50);
     CHECK(counted.displaced_position == expected);
@@ -116,24 +112,21 @@ TEST_CASE("saturations: screen positions, as a division in doubles counts them")
     const datapath::Format& screen = setup.registers.formats.screen;
     std::uint64_t certain = 0, possible = 0;
     const Saturations counted = run_watched(setup, [&](const TrianglePass& pass) {
-        for_each_displaced(
-            pass, [&](const auto&, const auto&, const auto&, const auto& p, const auto& on_screen) {
-                if (!on_screen.in_front)
-                    return;
-                const auto along = [&](const std::array<std::int64_t, 4>& row) {
-                    return static_cast<double>(Wide{row[0]} * p.x + Wide{row[1]} * p.y + Wide{row[2]} * p.z +
-                                               row[3]);
-                };
-                for (const auto& row : {transform.row_x, transform.row_y}) {
-                    const double exact =
-                        std::ldexp(along(row) / along(transform.row_w), transform.exponent + screen.fraction);
-                    const double room = 0.5 + std::abs(exact) * 0x1p-28;
-                    const auto lowest = static_cast<double>(screen.lowest),
-                               highest = static_cast<double>(screen.highest);
-                    certain += exact > highest + 0.5 + room || exact < lowest - 0.5 - room ? 1u : 0u;
-                    possible += exact > highest + 0.5 - room || exact < lowest - 0.5 + room ? 1u : 0u;
-                }
-            });
+        for_each_displaced(pass, [&](const auto&, const auto&, const auto&, const auto& p, const auto& on_screen) {
+            if (!on_screen.in_front)
+                return;
+            const auto along = [&](const std::array<std::int64_t, 4>& row) {
+                return static_cast<double>(Wide{row[0]} * p.x + Wide{row[1]} * p.y + Wide{row[2]} * p.z + row[3]);
+            };
+            for (const auto& row : {transform.row_x, transform.row_y}) {
+                const double exact =
+                    std::ldexp(along(row) / along(transform.row_w), transform.exponent + screen.fraction);
+                const double room = 0.5 + std::abs(exact) * 0x1p-28;
+                const auto lowest = static_cast<double>(screen.lowest), highest = static_cast<double>(screen.highest);
+                certain += exact > highest + 0.5 + room || exact < lowest - 0.5 - room ? 1u : 0u;
+                possible += exact > highest + 0.5 - room || exact < lowest - 0.5 + room ? 1u : 0u;
+            }
+        });
     });
     CHECK(certain > 50);
     CHECK(counted.screen_position >= certain);
@@ -150,8 +143,8 @@ TEST_CASE("saturations: view distances, as 128 bit integers count them") {
     datapath::Format& format = setup.registers.formats.view_distance;
     format.fraction += 6;  // more than the host would choose
     const auto& row = setup.registers.transform.row_w;
-    const int shift = datapath::TransformParameters::matrix_fraction +
-                      setup.registers.formats.position.fraction - format.fraction;
+    const int shift =
+        datapath::TransformParameters::matrix_fraction + setup.registers.formats.position.fraction - format.fraction;
     std::uint64_t expected = 0;
     const Saturations counted = run_watched(setup, [&](const TrianglePass& pass) {
         for_each_displaced(pass, [&](const auto&, const auto&, const auto&, const auto& p, const auto&) {
@@ -255,20 +248,18 @@ TEST_CASE("saturations: vertices that face the light fully") {
     CHECK(saturation_warnings(figures).empty());  // no width helps
     const auto notes = saturation_notes(figures);
     REQUIRE(notes.size() == 1);
-    CHECK_THAT(notes[0], Catch::Contains("intensity: 54 values saturated") &&
-                             Catch::Contains("no key widens Lighting's 8 bits"));
+    CHECK_THAT(notes[0],
+               Catch::Contains("intensity: 54 values saturated") && Catch::Contains("no key widens Lighting's 8 bits"));
 }
 
 TEST_CASE("saturations: each says what to widen, what it means, or is remarked on by the setup") {
     for (const SaturationFigure& figure : saturation_figures(setup_of(small_job()), {})) {
         INFO(figure.name);
-        CHECK((figure.remedy != nullptr || figure.meaning != nullptr) ==
-              (figure.name != std::string("input_texture")));
+        CHECK((figure.remedy != nullptr || figure.meaning != nullptr) == (figure.name != std::string("input_texture")));
     }
 }
 
-TEST_CASE(
-    "saturations: texture coordinates beyond a map that clamps are counted, and the setup remarks on them") {
+TEST_CASE("saturations: texture coordinates beyond a map that clamps are counted, and the setup remarks on them") {
     const Job job = small_job();
     BaseMesh mesh = load_mesh(job);
     mesh.vertices.front().texture.x = -0.25;
@@ -279,8 +270,7 @@ TEST_CASE(
     CHECK(saturation_warnings(figures).empty());
     CHECK(saturation_notes(figures).empty());
     REQUIRE(setup.remarks.size() == 1);
-    CHECK_THAT(setup.remarks[0],
-               Catch::Contains("set to the map's border") && Catch::Contains("map.address_u"));
+    CHECK_THAT(setup.remarks[0], Catch::Contains("set to the map's border") && Catch::Contains("map.address_u"));
 }
 
 TEST_CASE("saturations: what the host rounds is counted too") {
@@ -312,8 +302,7 @@ TEST_CASE("a threshold that its register cannot tell from 0 is refused with the 
             {"tests.highlight=true tests.highlight_normal_threshold=6e-5",
              {"tests.highlight_normal_threshold = 6e-05", "6.103515625e-05"}},
             {"tests.view_threshold=0.003", {"tests.view_threshold = 0.003", "0.00390625"}},
-            {"tests.summed_height_threshold=3e-6",
-             {"tests.summed_height_threshold", "formats.displacement_bits"}},
+            {"tests.summed_height_threshold=3e-6", {"tests.summed_height_threshold", "formats.displacement_bits"}},
             {"tests.summed_height_threshold=0.4 tests.summed_height_unit=area formats.displacement_bits=1",
              {"tests.summed_height_threshold = 0.4"}},
             {"tests.normal_threshold=6.103515625e-05", {}},

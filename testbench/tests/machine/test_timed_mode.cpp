@@ -21,8 +21,7 @@ const std::string cylinder =
     "map.address_u=repeat displacement.scale=0.1 tests.view_threshold=24 ";
 
 std::string stalls(int seed, int per_mille, int longest = 16) {
-    return "timing.stalls_seed=" + std::to_string(seed) +
-           " timing.stalls_per_mille=" + std::to_string(per_mille) +
+    return "timing.stalls_seed=" + std::to_string(seed) + " timing.stalls_per_mille=" + std::to_string(per_mille) +
            " timing.stalls_longest=" + std::to_string(longest) + " ";
 }
 
@@ -46,14 +45,12 @@ const CaseTable meshes(
         {"last in first out", small, "hardware.queue_order=lifo"},
         {"three tests units", small, "hardware.tests_units=3"},
         {"three tests units, four ports, last in first out, stalls", small,
-         "hardware.tests_units=3 hardware.queue_order=lifo timing.summed_height_table_ports=4 " +
-             stalls(11, 300)},
+         "hardware.tests_units=3 hardware.queue_order=lifo timing.summed_height_table_ports=4 " + stalls(11, 300)},
         {"two ports", small, "timing.summed_height_table_ports=2"},
         {"four ports, two banks, narrow", small,
          "timing.summed_height_table_ports=4 timing.summed_height_table_banks=2 "
          "timing.summed_height_table_width=3"},
-        {"a cylinder in repeat, three tests units, stalls", cylinder,
-         "hardware.tests_units=3 " + stalls(5, 400), 3000},
+        {"a cylinder in repeat, three tests units, stalls", cylinder, "hardware.tests_units=3 " + stalls(5, 400), 3000},
 
         {"random stalls, seed 1, 100 per mille", small, stalls(1, 100)},
         {"random stalls, seed 2, 300 per mille, up to 40 cycles", small, stalls(2, 300, 40)},
@@ -61,18 +58,15 @@ const CaseTable meshes(
          "hardware.queue_order=lifo " + stalls(3, 500)},
         {"every item of every channel stalled", small, "hardware.tests_units=3 " + stalls(4, 1000, 5)},
 
-        {"one place for an incomplete triangle", small,
-         "timing.pass_or_tessellate_buffer=1 timing.results_buffer=1"},
+        {"one place for an incomplete triangle", small, "timing.pass_or_tessellate_buffer=1 timing.results_buffer=1"},
         {"one place for an incomplete triangle, three tests units, stalls", small,
-         "timing.pass_or_tessellate_buffer=1 timing.results_buffer=1 hardware.tests_units=3 " +
-             stalls(8, 400)},
+         "timing.pass_or_tessellate_buffer=1 timing.results_buffer=1 hardware.tests_units=3 " + stalls(8, 400)},
         {"large buffers everywhere", small,
          every_unit("buffer", 37) + every_table("buffer", 37) +
              "timing.results_buffer=37 hardware.queue_watermark=1000 " + stalls(9, 200)},
         {"intervals and latencies of all sizes", small,
          every_unit("latency", [](int k) { return 1 + (k + 1) * 7 % 13; }) +
-             every_unit("interval", [](int k) { return 1 + (k + 1) * 5 % 11; }) +
-             "hardware.transform_pipelines=3"},
+             every_unit("interval", [](int k) { return 1 + (k + 1) * 5 % 11; }) + "hardware.transform_pipelines=3"},
         {"memories of latency 0", small, every_table("latency", 0)},
         {"memories of latency 300, 100 and 30", small,
          "timing.summed_height_table_latency=300 timing.displacement_map_latency=100 "
@@ -101,15 +95,12 @@ const CaseTable spills(
         Spill{"first in first out, one place, spills", queue("fifo", 1), 1},
         {"first in first out, 8 places, spills and stalls", queue("fifo", 8) + stalls(21, 300), 8},
         {"first in first out, 64 places, spills to a slow memory",
-         queue("fifo", 64) +
-             "timing.off_chip_latency=500 timing.off_chip_bandwidth=3 timing.off_chip_buffer=1",
-         64},
+         queue("fifo", 64) + "timing.off_chip_latency=500 timing.off_chip_bandwidth=3 timing.off_chip_buffer=1", 64},
         {"last in first out, one place, spills", queue("lifo", 1), 1},
         {"last in first out, 8 places, spills and stalls", queue("lifo", 8) + stalls(22, 300), 8},
         {"last in first out, 8 places, many host triangles, a fast memory",
-         queue("lifo", 8) +
-             "hardware.queue_watermark=200 timing.off_chip_latency=0 timing.off_chip_bandwidth=4096 "
-             "timing.off_chip_buffer=1",
+         queue("lifo", 8) + "hardware.queue_watermark=200 timing.off_chip_latency=0 timing.off_chip_bandwidth=4096 "
+                            "timing.off_chip_buffer=1",
          8},
     },
     [](const Spill& row) {
@@ -124,8 +115,7 @@ const CaseTable spills(
 }  // namespace
 
 TEST_CASE("timed mesh: every item through its packed form, three tests units, a Highlight Test") {
-    MachineSetup setup =
-        setup_of(with_settings(timed_job(), small + "hardware.tests_units=3 tests.highlight=true"));
+    MachineSetup setup = setup_of(with_settings(timed_job(), small + "hardware.tests_units=3 tests.highlight=true"));
     setup.design.packed_streams = true;
     const CheckedRun run(setup);
     CHECK(run.mesh.triangles.size() > 2 * setup.base_triangles.size());

@@ -24,8 +24,7 @@ struct NamedMachine : sc_core::sc_module {
     std::vector<sc_core::sc_time> drained;  ///< when its event fired
 
     /// `setup` must outlive the machine.
-    NamedMachine(const sc_core::sc_module_name& name, const MachineSetup& its_setup,
-                 UnitFactory* units = nullptr)
+    NamedMachine(const sc_core::sc_module_name& name, const MachineSetup& its_setup, UnitFactory* units = nullptr)
         : sc_module(name),
           setup(its_setup),
           pipeline("pipeline", setup.registers, setup.design, units),

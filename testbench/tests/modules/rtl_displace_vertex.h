@@ -47,8 +47,7 @@ class Wires {
 class RtlDisplaceVertex {
   public:
     /// latency: cycles from the map's answer to the result; stages: items in it at a time.
-    RtlDisplaceVertex(const datapath::Registers& registers, int tag_bits, unsigned latency,
-                      std::size_t stages)
+    RtlDisplaceVertex(const datapath::Registers& registers, int tag_bits, unsigned latency, std::size_t stages)
         : registers_(registers), tag_bits_(tag_bits), latency_(latency), stages_(stages) {}
 
     // Combinational.
@@ -59,9 +58,8 @@ class RtlDisplaceVertex {
             return std::nullopt;
         const datapath::Formats& f = registers_.formats;
         const std::size_t t = p_at() + vector_bits(f.position) + vector_bits(f.normal);
-        const datapath::TexCoord texel{
-            static_cast<std::uint32_t>(in.slice(t, f.texture.bits)),
-            static_cast<std::uint32_t>(in.slice(t + bits_of(f.texture), f.texture.bits))};
+        const datapath::TexCoord texel{static_cast<std::uint32_t>(in.slice(t, f.texture.bits)),
+                                       static_cast<std::uint32_t>(in.slice(t + bits_of(f.texture), f.texture.bits))};
         return texel_address(texel, registers_.displacement_map, registers_.map, f);
     }
     /// The item's wires, and P' above them.
@@ -74,8 +72,8 @@ class RtlDisplaceVertex {
             datapath::Direction n{nx, ny, nz};
             if (is_edge(in))
                 n = normalise(n, f, saturations);
-            displaced = displace({px, py, pz}, n, static_cast<std::uint32_t>(code), registers_.displacement,
-                                 f, saturations);
+            displaced =
+                displace({px, py, pz}, n, static_cast<std::uint32_t>(code), registers_.displacement, f, saturations);
         }
         Wires out = in;
         for (const std::int32_t component : {displaced.x, displaced.y, displaced.z})
@@ -111,9 +109,7 @@ class RtlDisplaceVertex {
             return;
         }
     }
-    bool valid() const {
-        return !places_.empty() && places_.front().answered && places_.front().cycles_left == 0;
-    }
+    bool valid() const { return !places_.empty() && places_.front().answered && places_.front().cycles_left == 0; }
     const Wires& out() const { return places_.front().wires; }
     void take() { places_.pop_front(); }
 

@@ -16,8 +16,7 @@ namespace {
 /// The line of a report that begins with a unit's name.
 std::string line_of(const std::string& report, const std::string& unit) {
     const std::size_t begin = report.find("tessera." + unit + ":");
-    return begin == std::string::npos ? std::string{}
-                                      : report.substr(begin, report.find('\n', begin) - begin);
+    return begin == std::string::npos ? std::string{} : report.substr(begin, report.find('\n', begin) - begin);
 }
 
 /// Cycles in the four states add up for a run that did not drain, too.
@@ -76,8 +75,8 @@ TEST_CASE("the same queue that may not overflow ends the run with the key's name
         simulation.run();
         FAIL("no error");
     } catch (const ResourceError& error) {
-        CHECK_THAT(error.what(), Contains("hardware.queue_capacity = 8") &&
-                                     Contains("hardware.queue_order") && Contains("hardware.queue_overflow"));
+        CHECK_THAT(error.what(), Contains("hardware.queue_capacity = 8") && Contains("hardware.queue_order") &&
+                                     Contains("hardware.queue_overflow"));
     }
 }
 

@@ -148,8 +148,7 @@ TEST_CASE("Highlight Test: splits in the highlight, and there only") {
 }
 
 // What it is for: as many triangles, but lighting per vertex nearer to lighting per texel where it shines.
-TEST_CASE(
-    "Highlight Test: per-vertex highlights are better than those of a finer mesh of as many triangles") {
+TEST_CASE("Highlight Test: per-vertex highlights are better than those of a finer mesh of as many triangles") {
     Job job = functional_job();
     const MachineSetup with = setup_of(with_highlight(job));
     const MachineSetup without = setup_of(job);
@@ -162,15 +161,14 @@ TEST_CASE(
     const GoldenInputs inputs(with);
     Highlight highlight;
     const auto& half = with.registers.tests.half_vector;
-    highlight.half_vector =
-        glm::normalize(Dequantise(with.registers.formats).direction({half[0], half[1], half[2]}));
+    highlight.half_vector = glm::normalize(Dequantise(with.registers.formats).direction({half[0], half[1], half[2]}));
     const GouraudError on = measure_gouraud(highlighted, with, inputs, highlight);
     const GouraudError off = measure_gouraud(bare_mesh(without), without, inputs, highlight);
     const GouraudError fine = measure_gouraud(finer_mesh, finer, inputs, highlight);
     WARN("triangles " << highlighted.triangles.size() << " with, " << finer_mesh.triangles.size()
-                      << " finer; RMS in the highlight " << off.highlight_rms << " without, "
-                      << on.highlight_rms << " with, " << fine.highlight_rms << " finer; everywhere "
-                      << off.rms << ", " << on.rms << ", " << fine.rms);
+                      << " finer; RMS in the highlight " << off.highlight_rms << " without, " << on.highlight_rms
+                      << " with, " << fine.highlight_rms << " finer; everywhere " << off.rms << ", " << on.rms << ", "
+                      << fine.rms);
     CHECK(on.highlight_rms < 0.7 * off.highlight_rms);
     CHECK(on.highlight_rms < 0.8 * fine.highlight_rms);
     CHECK(on.highlight_triangles > 2 * off.highlight_triangles);

@@ -28,8 +28,7 @@ class PassThrough : public Stage<DisplacedPoint, DisplacedPoint> {
     StreamInput<DisplacedPoint> input{"input"};
     StreamOutput<DisplacedPoint> output{"output"};
 
-    PassThrough(const sc_core::sc_module_name& name, const UnitContext& context)
-        : Stage(name, context, timing) {
+    PassThrough(const sc_core::sc_module_name& name, const UnitContext& context) : Stage(name, context, timing) {
         takes_from(context, input);
         delivers_to(context, output);
     }

@@ -54,10 +54,9 @@ std::uint64_t derived_cycles(const Timing& t) {
     const std::uint64_t a = g + 2 + c + t.normal_map.latency;
     const std::uint64_t w = c == 1 ? std::max({g + 5, v, a}) + 1 : std::max({g + 5 + c, v, a});
     const std::uint64_t s = std::max(u + 2 * slots, w);
-    const std::uint64_t joined =
-        std::max({v + 3, std::max(w, a + 2) + t.normal_map.latency + t.normal_test.latency,
-                  s + slots - 1 + t.summed_height_table.latency + t.summed_height_test.latency,
-                  std::max(w, v + 2) + l});
+    const std::uint64_t joined = std::max({v + 3, std::max(w, a + 2) + t.normal_map.latency + t.normal_test.latency,
+                                           s + slots - 1 + t.summed_height_table.latency + t.summed_height_test.latency,
+                                           std::max(w, v + 2) + l});
     const std::uint64_t o = t.pass_or_tessellate.latency;
     const std::uint64_t lit = joined + o + t.tessellation.latency + t.triangle_queue.latency + g + 2 + p + d +
                               transform + o + t.lighting.latency;
@@ -89,15 +88,14 @@ const CaseTable derived(
         // nothing: 38.
         {"a displacement map of latency 100", "timing.displacement_map_latency=100", 146 + 38 + 1},
         // A = 1 + 2 + 1 + 200 = 204, after V = 31: W = 205, edge 2 starts in 206, J = 206 + 200 + 9 = 415.
-        {"a normal map of latency 200: the Normal Test is the last", "timing.normal_map_latency=200",
-         415 + 38 + 1},
+        {"a normal map of latency 200: the Normal Test is the last", "timing.normal_map_latency=200", 415 + 38 + 1},
         // J = 32 + 1 + 300 = 333.
         {"a Normal Test of 300 cycles", "timing.normal_test_latency=300", 333 + 38 + 1},
         // Edge 2 starts in V + 2 = 33, J = 103.
         {"a View Test of 70 cycles", "timing.view_test_latency=70", 103 + 38 + 1},
         // Two ports: 6 cycles an edge; S = 32, J = 32 + 5 + 1 + 3 = 41, before the Normal Test's 42 = 32 + 1 + 9.
-        {"two ports on the Summed Height Table: the Normal Test is the last",
-         "timing.summed_height_table_ports=2", 42 + 38 + 1},
+        {"two ports on the Summed Height Table: the Normal Test is the last", "timing.summed_height_table_ports=2",
+         42 + 38 + 1},
         {"four ports on the Summed Height Table: no faster than two", "timing.summed_height_table_ports=4",
          42 + 38 + 1},
     },
@@ -129,8 +127,8 @@ const CaseTable designs(
         {"Transform every 4 cycles", "timing.transform_interval=4", 53 + 44 + 1},
         // The two take turns, each every 4 cycles: starts in 9, 10, 13: V = 33, W = 34, edges 34, 37, 38. J = 34 + 15.
         // Normals: the third starts 4 after the first: 38 + 2.
-        {"two Transform pipelines every 4 cycles",
-         "timing.transform_interval=4 hardware.transform_pipelines=2", 49 + 40 + 1},
+        {"two Transform pipelines every 4 cycles", "timing.transform_interval=4 hardware.transform_pipelines=2",
+         49 + 40 + 1},
     },
     [](const Row& row) {
         const MachineSetup setup = one_triangle(with_settings(one_quad_job(), row.settings));

@@ -150,8 +150,7 @@ class StalledHeights : public UnitFactory {
     std::unique_ptr<SummedHeightTest> summed_height_test(Name name, const UnitContext& context) override {
         Design design = context.design;
         design.timing.stalls = {7, 300, 100};
-        return std::make_unique<SummedHeightTest>(name,
-                                                  UnitContext{context.clock, context.registers, design});
+        return std::make_unique<SummedHeightTest>(name, UnitContext{context.clock, context.registers, design});
     }
 };
 
@@ -162,8 +161,7 @@ class OtherThreshold : public UnitFactory {
 
   private:
     std::unique_ptr<SummedHeightTest> summed_height_test(Name name, const UnitContext& context) override {
-        return std::make_unique<SummedHeightTest>(name,
-                                                  UnitContext{context.clock, registers_, context.design});
+        return std::make_unique<SummedHeightTest>(name, UnitContext{context.clock, registers_, context.design});
     }
 
     const datapath::Registers& registers_;
@@ -205,8 +203,7 @@ class HalfLight : public Stage<LitTriangle, LitTriangle> {
     StreamInput<LitTriangle> input{"input"};
     StreamOutput<LitTriangle> output{"output"};
 
-    HalfLight(const sc_core::sc_module_name& name, const UnitContext& context)
-        : Stage(name, context, timing) {
+    HalfLight(const sc_core::sc_module_name& name, const UnitContext& context) : Stage(name, context, timing) {
         takes_from(context, input);
         delivers_to(context, output);
     }
@@ -276,8 +273,7 @@ void expect_halved_test(const Job& job) {
     CHECK(count_below<HalvedHeightTest>(halved) == tests_units);
     CHECK(count_below<SummedHeightTest>(halved) == 0);
     CHECK(count_below<SummedHeightTest>(own) == tests_units);
-    const auto* const unit =
-        sc_core::sc_find_object("halved.pipeline.tessellation_tests_0.summed_height_test");
+    const auto* const unit = sc_core::sc_find_object("halved.pipeline.tessellation_tests_0.summed_height_test");
     REQUIRE(unit != nullptr);
     CHECK(typeid(*unit) == typeid(HalvedHeightTest));
     CHECK(unit == &halved.pipeline.tessellation_tests[0].summed_height_test);

@@ -77,8 +77,8 @@ struct DrainedWatch : sc_core::sc_module {
     void note() {
         ++notified;
         lit = simulation_.rasteriser.triangles();
-        always_empty = always_empty && simulation_.pipeline.idle() &&
-                       lit == 16 * (sent_before + simulation_.host.sent());
+        always_empty =
+            always_empty && simulation_.pipeline.idle() && lit == 16 * (sent_before + simulation_.host.sent());
     }
     Simulation& simulation_;
 };

@@ -50,14 +50,12 @@ void run_full_split(Simulation& simulation) {
 }
 
 void require_sole_bottleneck(const Simulation& simulation, const Unit* unit) {
-    CHECK(find_bottleneck(simulation.pipeline, simulation.cycles()).first.units ==
-          std::vector<const Unit*>{unit});
+    CHECK(find_bottleneck(simulation.pipeline, simulation.cycles()).first.units == std::vector<const Unit*>{unit});
 }
 
 const Unit& unit_named(const Pipeline& pipeline, const std::string& name) {
     const auto units = pipeline.units();
-    return **std::find_if(units.begin(), units.end(),
-                          [&](const Unit* unit) { return unit->basename() == name; });
+    return **std::find_if(units.begin(), units.end(), [&](const Unit* unit) { return unit->basename() == name; });
 }
 
 /// Cycles, from `least` to `most`, and for how many of them one unit is occupied.
@@ -85,8 +83,7 @@ const CaseTable rates(
     {
         // 18 cycles a pass; the first triangle's first two edges are through in 5 to 16, its third comes in 32.
         Row{"two ports on the Summed Height Table: 18 cycles a pass", "timing.summed_height_table_ports=2",
-            fill + 15 + 18 * passes + drain, fill + 15 + 18 * passes + drain, "summed_height_table",
-            18 * passes},
+            fill + 15 + 18 * passes + drain, fill + 15 + 18 * passes + drain, "summed_height_table", 18 * passes},
         // 9 cycles a pass: still more than a pass has parts (at most 6). A base triangle's 31 cycles to the screen are
         // now longer than the work on the ones before it, so each of 18 may hold the table up for so long at most.
         {"four ports on the Summed Height Table: 9 cycles a pass, still bound by it",
@@ -94,22 +91,21 @@ const CaseTable rates(
          fill + 9 * passes + drain + base* until_on_screen, "summed_height_table", 9 * passes},
         // 64 ports: a rectangle takes no more than its cycle, and what binds is one part a cycle, out of Get Triangle
         // and through Calculate New P, Displace Vertex and Transform alike.
-        {"with ports to spare a part a cycle is what binds", "timing.summed_height_table_ports=64",
-         a_part_a_cycle, a_part_a_cycle + base* until_on_screen, "get_triangle", parts},
+        {"with ports to spare a part a cycle is what binds", "timing.summed_height_table_ports=64", a_part_a_cycle,
+         a_part_a_cycle + base* until_on_screen, "get_triangle", parts},
         // They share the one port: nothing gained but the first triangle's three cycles and one vertex.
         {"three tests units on one port: 36 cycles a pass as before", "hardware.tests_units=3",
-         fill_of_three + 36 * passes + drain, fill_of_three + 36 * passes + drain, "summed_height_table",
-         36 * passes},
+         fill_of_three + 36 * passes + drain, fill_of_three + 36 * passes + drain, "summed_height_table", 36 * passes},
         {"three tests units on four ports: 9 cycles a pass",
          "hardware.tests_units=3 timing.summed_height_table_ports=4", fill_of_three + 9 * passes + drain,
          fill_of_three + 9 * passes + drain + base* until_on_screen, "summed_height_table", 9 * passes},
         // The table, with four ports, needs 9 cycles of the 24 and more that three edges take here.
         {"Transform every 8 cycles binds: 8 cycles a part",
-         "timing.summed_height_table_ports=4 timing.transform_interval=8", transform_every_8,
-         transform_every_8, "transform", 8 * parts},
+         "timing.summed_height_table_ports=4 timing.transform_interval=8", transform_every_8, transform_every_8,
+         "transform", 8 * parts},
         {"two Transform pipelines every 8 cycles: 4 cycles a part",
-         "timing.summed_height_table_ports=4 timing.transform_interval=8 hardware.transform_pipelines=2",
-         two_every_8, two_every_8, "transform", 4 * parts},
+         "timing.summed_height_table_ports=4 timing.transform_interval=8 hardware.transform_pipelines=2", two_every_8,
+         two_every_8, "transform", 4 * parts},
         // 6120 children, one every 20 cycles, also from one pass's last to the next one's first. When the last is made,
         // the finished ones may still wait for the table, nine cycles each.
         {"Tessellation every 20 cycles binds where the tests take less",

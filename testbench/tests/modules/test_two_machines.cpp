@@ -30,8 +30,7 @@ void expect_drained_in_last_cycle(const NamedMachine& machine) {
 
 /// A queue that fills up; `overflow`: what happens then.
 MachineSetup full_queue_setup(const std::string& overflow) {
-    return setup_of(
-        with_settings(timed_job(), "hardware.queue_capacity=8 hardware.queue_overflow=" + overflow));
+    return setup_of(with_settings(timed_job(), "hardware.queue_capacity=8 hardware.queue_overflow=" + overflow));
 }
 
 }  // namespace

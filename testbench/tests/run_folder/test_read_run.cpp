@@ -188,13 +188,10 @@ TEST_CASE("a mesh file that says something else is refused with what it says") {
         changed.replace(place, bytes.size(), bytes);
         return refusal(here, changed);
     };
-    CHECK_THAT(with_bytes(vertices, std::string("\0\0\0\0\0\0\xf8\x7f", 8)),
-               Contains("vertex 0: its position"));
+    CHECK_THAT(with_bytes(vertices, std::string("\0\0\0\0\0\0\xf8\x7f", 8)), Contains("vertex 0: its position"));
     CHECK_THAT(with_bytes(vertices, "\xff\xff\xff\xff\xff\xff\xef\x7f"), Contains("vertex 0: its position"));
-    CHECK_THAT(with_bytes(vertices + 52 + 24, std::string("\0\0\x80\x7f", 4)),
-               Contains("vertex 1: its normal"));
-    CHECK_THAT(with_bytes(vertices + 36, std::string("\0\0\0\0\0\0\xf0\xff", 8)),
-               Contains("its texture coordinate"));
+    CHECK_THAT(with_bytes(vertices + 52 + 24, std::string("\0\0\x80\x7f", 4)), Contains("vertex 1: its normal"));
+    CHECK_THAT(with_bytes(vertices + 36, std::string("\0\0\0\0\0\0\xf0\xff", 8)), Contains("its texture coordinate"));
     CHECK_THAT(with_bytes(faces, "\x04"), Contains("4 corners"));
     CHECK_THAT(with_bytes(faces + 1, std::string("\x04\0\0\0", 4)), Contains("vertex 4 of 4"));
     CHECK_THAT(with_bytes(faces + 1, "\xff\xff\xff\xff"), Contains("face 0 names vertex"));

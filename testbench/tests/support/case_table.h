@@ -13,9 +13,8 @@ namespace tessera::testing {
 template <class Row>
 class CaseTable {
   public:
-    CaseTable(const std::string& prefix, std::initializer_list<Row> rows,
-              std::common_type_t<void (*)(const Row&)> run, const char* file = __builtin_FILE(),
-              std::size_t line = __builtin_LINE()) {
+    CaseTable(const std::string& prefix, std::initializer_list<Row> rows, std::common_type_t<void (*)(const Row&)> run,
+              const char* file = __builtin_FILE(), std::size_t line = __builtin_LINE()) {
         for (const Row& row : rows)
             Catch::AutoReg(new Case([=] { run(row); }), {file, line}, "", {prefix + row.name});
     }

@@ -19,10 +19,9 @@ template <class Value>
 std::string every_unit(const std::string& figure, Value value) {
     std::ostringstream settings;
     int k = 0;
-    for (const char* const unit :
-         {"get_triangle", "calculate_new_p", "displace_vertex", "transform", "calculate_new_u",
-          "tex_coord_test", "summed_height_test", "normal_test", "view_test", "pass_or_tessellate",
-          "tessellation", "triangle_queue", "lighting"})
+    for (const char* const unit : {"get_triangle", "calculate_new_p", "displace_vertex", "transform", "calculate_new_u",
+                                   "tex_coord_test", "summed_height_test", "normal_test", "view_test",
+                                   "pass_or_tessellate", "tessellation", "triangle_queue", "lighting"})
         settings << "timing." << unit << '_' << figure << '=' << value(k++) << ' ';
     return settings.str();
 }

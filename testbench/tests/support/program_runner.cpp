@@ -41,8 +41,8 @@ std::vector<std::string> TestFolder::names() const {
 
 std::string ProgramEnd::text() const {
     std::ostringstream text;
-    text << "exit code " << exit_code << ", signal " << signal << (timed_out ? ", timed out" : "")
-         << ", peak " << peak_mib << " MiB\nstandard output:\n"
+    text << "exit code " << exit_code << ", signal " << signal << (timed_out ? ", timed out" : "") << ", peak "
+         << peak_mib << " MiB\nstandard output:\n"
          << out << "\nstandard error:\n"
          << err;
     return text.str();
@@ -65,9 +65,8 @@ void redirect(const char* file, int flags, int descriptor) {
 }
 
 /// Runs in the child process; does not return.
-[[noreturn]] void become(const std::vector<std::string>& command, const fs::path& folder,
-                         const fs::path& outputs, const ProgramLimits& limits,
-                         const Environment& environment) {
+[[noreturn]] void become(const std::vector<std::string>& command, const fs::path& folder, const fs::path& outputs,
+                         const ProgramLimits& limits, const Environment& environment) {
     ::setpgid(0, 0);
     redirect("/dev/null", O_RDONLY, STDIN_FILENO);
     redirect((outputs / "out").c_str(), O_WRONLY | O_CREAT, STDOUT_FILENO);
@@ -96,8 +95,8 @@ std::string without_progress(const std::string& text) {
 
 }  // namespace
 
-ProgramEnd run_program(const std::vector<std::string>& command, const fs::path& folder,
-                       const ProgramLimits& limits, const Environment& environment) {
+ProgramEnd run_program(const std::vector<std::string>& command, const fs::path& folder, const ProgramLimits& limits,
+                       const Environment& environment) {
     const TestFolder outputs;
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(limits.wall_seconds);
     const pid_t child = ::fork();

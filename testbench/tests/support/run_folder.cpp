@@ -116,9 +116,7 @@ void require_consistent(const RunFolder& run) {
     }
     std::vector<std::string> wanted{"conformance.json", "conformance.txt", "job.toml",
                                     "mesh.ply",         "statistics.csv",  "statistics.json"};
-    const auto job_says = [&](const char* words) {
-        return files.at("job.toml").find(words) != std::string::npos;
-    };
+    const auto job_says = [&](const char* words) { return files.at("job.toml").find(words) != std::string::npos; };
     if (!job_says("picture = false\n")) {
         wanted.push_back("picture.png");
         CHECK(files.at("picture.png").rfind("\x89PNG\r\n\x1a\n", 0) == 0);
@@ -179,8 +177,7 @@ void require_consistent(const RunFolder& run) {
             CHECK(run.statistics.at(memory).at("reads_per_edge").at("value").get<double>() ==
                   Approx(static_cast<double>(run.count(memory, "reads")) / static_cast<double>(edges)));
     }
-    CHECK(run.count("host", "table_bytes") == run.count("displacement_map", "size") +
-                                                  run.count("normal_map", "size") +
+    CHECK(run.count("host", "table_bytes") == run.count("displacement_map", "size") + run.count("normal_map", "size") +
                                                   run.count("summed_height_table", "size"));
 
     // A unit's cycles add up to the run's exactly, and it is empty at the end.
@@ -238,8 +235,7 @@ void require_consistent(const RunFolder& run) {
     CHECK(files.at("conformance.txt").rfind("Conformance report: passed\n", 0) == 0);
 }
 
-void require_same_files(const std::map<std::string, std::string>& a,
-                        const std::map<std::string, std::string>& b) {
+void require_same_files(const std::map<std::string, std::string>& a, const std::map<std::string, std::string>& b) {
     CHECK(a.size() == b.size());
     for (const auto& [name, content] : a) {
         INFO(name);

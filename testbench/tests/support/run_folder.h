@@ -45,7 +45,6 @@ class RunFolder {
 void require_consistent(const RunFolder& run);
 
 /// Requires equal names and bytes; reports the files that differ.
-void require_same_files(const std::map<std::string, std::string>& a,
-                        const std::map<std::string, std::string>& b);
+void require_same_files(const std::map<std::string, std::string>& a, const std::map<std::string, std::string>& b);
 
 }  // namespace tessera

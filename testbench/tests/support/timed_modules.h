@@ -102,8 +102,7 @@ class BareInitiator : public sc_core::sc_module, public tlm::tlm_bw_transport_if
     }
 
   private:
-    tlm::tlm_sync_enum nb_transport_bw(Payload& payload, tlm::tlm_phase& phase,
-                                       sc_core::sc_time& delay) override {
+    tlm::tlm_sync_enum nb_transport_bw(Payload& payload, tlm::tlm_phase& phase, sc_core::sc_time& delay) override {
         if (phase == tlm::END_REQ)
             ended.emplace_back(&payload, delay);
         return tlm::TLM_ACCEPTED;

@@ -19,9 +19,9 @@
 /// Random designs, maps, views and triangles for the scoreboard's tests.
 namespace tessera::testing {
 
-inline datapath::Formats make_formats(int position_bits, int position_fraction, int normal_bits,
-                                      int normal_fraction, int texture_fraction, int displacement_bits,
-                                      int screen_bits, int screen_fraction) {
+inline datapath::Formats make_formats(int position_bits, int position_fraction, int normal_bits, int normal_fraction,
+                                      int texture_fraction, int displacement_bits, int screen_bits,
+                                      int screen_fraction) {
     datapath::Formats formats;
     formats.position = datapath::Format::make_signed(position_bits, position_fraction);
     formats.view_distance = formats.position;
@@ -46,14 +46,12 @@ inline std::vector<datapath::Formats> many_formats() {
 }
 
 inline double real(Random& random, double low, double high) {
-    return low +
-           (high - low) * static_cast<double>(random.integer(0, 1 << 30)) / static_cast<double>(1 << 30);
+    return low + (high - low) * static_cast<double>(random.integer(0, 1 << 30)) / static_cast<double>(1 << 30);
 }
 
 inline glm::dvec3 unit_vector(Random& random) {
     for (;;) {
-        const glm::dvec3 v{real(random, -1, 1), real(random, -1, 1),
-                           real(random, -1, 1)};  // braces: in this order
+        const glm::dvec3 v{real(random, -1, 1), real(random, -1, 1), real(random, -1, 1)};  // braces: in this order
         const double length = glm::length(v);
         if (length > 0.1 && length < 1)
             return v / length;
@@ -85,28 +83,24 @@ struct Case {
         MachineSetup setup;
         datapath::Registers& registers = setup.registers;
         registers.formats = formats;
-        const auto mode = [&] {
-            return random.coin() ? datapath::AddressMode::repeat : datapath::AddressMode::clamp;
-        };
+        const auto mode = [&] { return random.coin() ? datapath::AddressMode::repeat : datapath::AddressMode::clamp; };
         registers.map = {random.natural(1, 90), random.natural(1, 70), mode(), mode()};
         setup.map.geometry = registers.map;
         setup.map.bits = formats.displacement.bits;
         for (std::uint32_t k = 0; k < registers.map.width * registers.map.height; ++k)
-            setup.map.codes.push_back(
-                static_cast<std::uint16_t>(random.natural(0, setup.map.highest_code())));
+            setup.map.codes.push_back(static_cast<std::uint16_t>(random.natural(0, setup.map.highest_code())));
 
         const std::int64_t highest = formats.position.highest;
         const std::int64_t reach = manner == Manner::wild ? highest : highest / 8;
         registers.displacement = {random.integer32(-reach, reach), random.integer32(-reach, reach)};
-        setup.height_per_code = std::ldexp(static_cast<double>(registers.displacement.scale),
-                                           -formats.position.fraction - setup.map.bits);
+        setup.height_per_code =
+            std::ldexp(static_cast<double>(registers.displacement.scale), -formats.position.fraction - setup.map.bits);
         const double world = std::ldexp(static_cast<double>(highest), -formats.position.fraction);
         setup.texel_size = glm::dvec2{real(random, 0.01, 2), real(random, 0.01, 2)} * world;
 
         datapath::TestParameters& tests = registers.tests;
         tests.normal_threshold = random.natural(0, 1u << formats.normal.fraction);
-        tests.summed_height_unit =
-            random.coin() ? datapath::SummedHeightUnit::area : datapath::SummedHeightUnit::sum;
+        tests.summed_height_unit = random.coin() ? datapath::SummedHeightUnit::area : datapath::SummedHeightUnit::sum;
         tests.summed_height_threshold = random.natural(0, setup.map.highest_code());
         tests.view_threshold = random.natural(0, 200u << std::min(formats.screen.fraction, 8));
         tests.generation_limit = random.natural(0, 15);
@@ -125,8 +119,8 @@ struct Case {
         const glm::dvec3 right = glm::normalize(glm::cross(forward, unit_vector(random) + 0.01));
         const glm::dvec3 up = glm::cross(right, forward);
         const glm::dvec3 eye = -forward * world * (manner == Manner::wild ? real(random, -1, 2) : 1.5);
-        const double pixels = std::ldexp(static_cast<double>(registers.formats.screen.highest),
-                                         -registers.formats.screen.fraction);
+        const double pixels =
+            std::ldexp(static_cast<double>(registers.formats.screen.highest), -registers.formats.screen.fraction);
         const double half = std::min(pixels / 4, 500.0);
         datapath::TransformParameters& transform = registers.transform;
         transform.exponent = std::max(0, static_cast<int>(std::ceil(std::log2(3 * half))));
@@ -147,8 +141,7 @@ struct Case {
 
     Case(const MachineSetup& made, Manner how)
         : setup(made), inputs(setup), machine(make_machine(setup)), manner(how) {}
-    Case(Random& random, const datapath::Formats& formats, Manner how)
-        : Case(make_setup(random, formats, how), how) {}
+    Case(Random& random, const datapath::Formats& formats, Manner how) : Case(make_setup(random, formats, how), how) {}
 
     static Machine make_machine(MachineSetup& setup) {
         std::vector<datapath::Direction> normals;
@@ -156,9 +149,8 @@ struct Case {
             for (std::uint32_t x = 0; x < setup.map.geometry.width; ++x)
                 normals.push_back(map_normal(setup.map, x, y, setup.height_per_code, setup.texel_size,
                                              setup.registers.formats.normal));
-        const Tables tables =
-            make_tables(setup.registers,
-                        std::vector<std::uint32_t>(setup.map.codes.begin(), setup.map.codes.end()), normals);
+        const Tables tables = make_tables(
+            setup.registers, std::vector<std::uint32_t>(setup.map.codes.begin(), setup.map.codes.end()), normals);
         return Machine(setup.registers, tables);
     }
 

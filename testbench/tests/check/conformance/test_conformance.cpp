@@ -41,8 +41,8 @@ void expect_conformance(const Job& asked, const HeightMap& map) {
     const SetupResult host = check_setup(setup, golden, simulation);
     INFO(host.first_wrong);
     CHECK(host.passed());
-    const EndToEndResult meshes = compare_end_to_end(setup, golden, host.base_triangles,
-                                                     simulation.monitor.mesh, Job::Check{}.allowed_triangles);
+    const EndToEndResult meshes =
+        compare_end_to_end(setup, golden, host.base_triangles, simulation.monitor.mesh, Job::Check{}.allowed_triangles);
     CHECK_FALSE(meshes.bound_hit);
     CHECK(std::abs(meshes.more_triangles()) < Job::Check{}.allowed_triangles);
     CHECK(meshes.passed());

@@ -60,8 +60,8 @@ class GoldenCount : public tlm::tlm_analysis_if<datapath::TrianglePass> {
     void write(const datapath::TrianglePass& pass) override {
         for (int k = 0; k < 3; ++k) {
             const golden::EdgeEvaluation e =
-                golden::evaluate_edge(dequantise_.vertex(pass.edge_begin(k)),
-                                      dequantise_.vertex(pass.edge_end(k)), inputs_.map, inputs_.parameters);
+                golden::evaluate_edge(dequantise_.vertex(pass.edge_begin(k)), dequantise_.vertex(pass.edge_end(k)),
+                                      inputs_.map, inputs_.parameters);
             if (e.split) {
                 ++counts.edges_split;
                 counts.split_by_normal += e.normal_test && !e.summed_height_test ? 1u : 0u;
@@ -69,8 +69,7 @@ class GoldenCount : public tlm::tlm_analysis_if<datapath::TrianglePass> {
                 counts.split_by_both += e.normal_test && e.summed_height_test ? 1u : 0u;
                 counts.split_by_highlight += !e.normal_test && !e.summed_height_test ? 1u : 0u;
             } else if (e.normal_test || e.summed_height_test || e.highlight_test) {
-                const bool view = !e.view_test, tex_coord = !e.tex_coord_test,
-                           generation = !e.generation_test;
+                const bool view = !e.view_test, tex_coord = !e.tex_coord_test, generation = !e.generation_test;
                 counts.stopped_by_view_alone += view && !tex_coord && !generation ? 1u : 0u;
                 counts.stopped_by_tex_coord_alone += tex_coord && !view && !generation ? 1u : 0u;
                 counts.stopped_by_generation_alone += generation && !view && !tex_coord ? 1u : 0u;
@@ -98,8 +97,7 @@ datapath::TrianglePass pass_at(const std::array<datapath::TexCoord, 6>& t) {
 
 }  // namespace
 
-TEST_CASE(
-    "deciding: the Normal Test alone splits 6 edges, the Generation Test alone stops their 24 children") {
+TEST_CASE("deciding: the Normal Test alone splits 6 edges, the Generation Test alone stops their 24 children") {
     Job job = one_quad();
     job.tests.summed_height = false;
     const auto counts = counts_of(job);
@@ -220,16 +218,14 @@ TEST_CASE("texel borders: the warning names the next map size and number of quad
     job.mesh.columns = 7;
     job.mesh.rows = 8;  // divides
     const std::string one_axis = texel_borders_warning(many, job, 100, 100);
-    CHECK_THAT(one_axis,
-               Contains("map.width = 112 (a multiple of 7 quads), or mesh.columns = 8") && !Contains("rows"));
+    CHECK_THAT(one_axis, Contains("map.width = 112 (a multiple of 7 quads), or mesh.columns = 8") && !Contains("rows"));
     job.mesh = {};
     for (const MeshSource source : {MeshSource::cylinder, MeshSource::sphere}) {
         job.mesh.source = source;  // 32 quads a side, whatever the map
         CHECK(texel_borders_warning(many, job, 264, 100).empty());
     }
     job.mesh.columns = 30;  // the next multiple of 240, 4320, is more than a map has
-    CHECK_THAT(texel_borders_warning(many, job, 4096, 100),
-               Contains("map.width = 4080 (a multiple of 30 quads)"));
+    CHECK_THAT(texel_borders_warning(many, job, 4096, 100), Contains("map.width = 4080 (a multiple of 30 quads)"));
     job.mesh.columns = 600;  // as is 4800; no more quads than 2048 either, and 512 divide the map
     job.formats.texture_fraction = 0;
     job.mesh.rows = 1;

@@ -26,8 +26,7 @@ std::array<glm::dvec3, 3> random_triangle(Random& random, double size) {
 EmittedMesh hardware_mesh(Case& c) {
     EmittedMesh mesh;
     WorkList work(c.machine, c.setup.base_triangles);
-    work.run(1000000,
-             [&](const datapath::Triangle& t) { mesh.triangles.push_back(EmittedTriangle::from(t, false)); });
+    work.run(1000000, [&](const datapath::Triangle& t) { mesh.triangles.push_back(EmittedTriangle::from(t, false)); });
     return mesh;
 }
 
@@ -51,8 +50,7 @@ TEST_CASE("the closest point of a triangle, by region") {
     CHECK(same(closest_point(t, {4, 4, 1}), {2, 2, 0}));
     // Collapsed to a segment, in each way, and to a point.
     const glm::dvec3 a(0, 0, 0), b(2, 0, 0);
-    for (const auto& segment :
-         {std::array<glm::dvec3, 3>{a, b, b}, {a, a, b}, {a, b, a}, {a, glm::dvec3(1, 0, 0), b}})
+    for (const auto& segment : {std::array<glm::dvec3, 3>{a, b, b}, {a, a, b}, {a, b, a}, {a, glm::dvec3(1, 0, 0), b}})
         CHECK(same(closest_point(segment, {1.5, 1, 0}), {1.5, 0, 0}));
     CHECK(same(closest_point({b, b, b}, {5, 5, 5}), b));
 }
@@ -84,8 +82,7 @@ TEST_CASE("the closest point of a needle is that of a search along it") {
             const glm::dvec3 along = unit_vector(random);
             const glm::dvec3 across = unit_vector(random);
             const double width = std::pow(10.0, -exponent);
-            std::array<glm::dvec3, 3> t = {at, at + along,
-                                           at + real(random, -0.1, 1.1) * along + width * across};
+            std::array<glm::dvec3, 3> t = {at, at + along, at + real(random, -0.1, 1.1) * along + width * across};
             const glm::dvec3 p = at + real(random, -0.5, 1.5) * along +
                                  real(random, -1, 1) * (k % 2 == 0 ? width : 1.0) * across +
                                  std::pow(10.0, -real(random, 0, 12)) * unit_vector(random);
@@ -134,8 +131,7 @@ TEST_CASE("distances through Embree are those of a search through all triangles"
     CHECK(std::isinf(distance_between({random_triangle(random, 1)}, {}).max));
 }
 
-TEST_CASE(
-    "distances to long thin triangles, and to such without an area, are those of a search through all") {
+TEST_CASE("distances to long thin triangles, and to such without an area, are those of a search through all") {
     Random random(22);
     const auto needle = [&](double width) {
         const glm::dvec3 at(real(random, -1, 1), real(random, -1, 1), real(random, -1, 1));
@@ -191,8 +187,7 @@ TEST_CASE("a sample of the points says how many it is, and what that tells of th
     for (const std::size_t threads : {1U, 2U, 3U}) {
         const OnThreads on(threads);
         for (const std::uint64_t most : {most_looks, std::uint64_t{120'000}}) {
-            const SurfaceDistance again = distance_between(from, to, most),
-                                  first = most == most_looks ? all : some;
+            const SurfaceDistance again = distance_between(from, to, most), first = most == most_looks ? all : some;
             CHECK(again.max == first.max);
             CHECK(again.rms == first.rms);
         }
@@ -236,9 +231,8 @@ TEST_CASE("hardware and golden run to nearly the same surface") {
     CHECK(result.hardware_triangles == mesh.triangles.size());
     CHECK(result.hardware_triangles > 500);
     CHECK_FALSE(result.bound_hit);
-    CHECK(std::abs(static_cast<double>(result.golden_triangles) /
-                       static_cast<double>(result.hardware_triangles) -
-                   1) < 0.01);
+    CHECK(std::abs(static_cast<double>(result.golden_triangles) / static_cast<double>(result.hardware_triangles) - 1) <
+          0.01);
     CHECK(result.golden_largest_generation <= 12);
     for (const auto& d : {result.hardware_to_golden, result.golden_to_hardware}) {
         CHECK(d.points > result.hardware_triangles);

@@ -62,8 +62,8 @@ TEST_CASE("the datapath conforms on random edges of many formats") {
 TEST_CASE("no bound is more than four times the largest error seen") {
     Random random(2);
     for (const datapath::Formats& formats :
-         {datapath::Formats{}, make_formats(32, 31, 18, 16, 12, 16, 32, 20),
-          make_formats(24, 12, 12, 10, 8, 12, 24, 8), make_formats(16, 8, 10, 8, 4, 8, 20, 8)}) {
+         {datapath::Formats{}, make_formats(32, 31, 18, 16, 12, 16, 32, 20), make_formats(24, 12, 12, 10, 8, 12, 24, 8),
+          make_formats(16, 8, 10, 8, 4, 8, 20, 8)}) {
         // One design at a time: a large bound in one must not be excused by a large error in another.
         std::map<std::string, double> loosest;
         for (int design = 0; design < 10; ++design) {
@@ -134,8 +134,7 @@ TEST_CASE("a value beyond its bound is caught in every field") {
     };
     Random random(3);
     int unbounded = 0;
-    for (const datapath::Formats& formats :
-         {datapath::Formats{}, make_formats(24, 12, 12, 10, 8, 12, 24, 8)}) {
+    for (const datapath::Formats& formats : {datapath::Formats{}, make_formats(24, 12, 12, 10, 8, 12, 24, 8)}) {
         Case c(random, formats, Manner::tame);
         for (int k = 0; k < 40; ++k) {
             Pass good = c.pass(random);
@@ -146,8 +145,7 @@ TEST_CASE("a value beyond its bound is caught in every field") {
                 // The bound is that of the pass's worst component, so this is one LSB beyond it or more; a
                 // midpoint has a single right value.
                 const double bound = quantity(before, field.quantity).max_bound;
-                const bool single = std::string(field.quantity) == "P_ij" ||
-                                    std::string(field.quantity) == "t_ij" ||
+                const bool single = std::string(field.quantity) == "P_ij" || std::string(field.quantity) == "t_ij" ||
                                     std::string(field.quantity) == "(N_i+N_j)/2";
                 // Next to the near plane a screen position's bound may reach as far as its format: nothing lies beyond.
                 if (bound > 1e6) {
@@ -267,15 +265,14 @@ TEST_CASE("broken arithmetic is caught") {
         tests = static_cast<std::uint8_t>(value ? tests | datapath::summed_height_bit
                                                 : tests & ~datapath::summed_height_bit);
     };
-    const auto summed_height_with = [&](const datapath::TrianglePass& pass, int k,
-                                        const datapath::RectangleSize& size,
+    const auto summed_height_with = [&](const datapath::TrianglePass& pass, int k, const datapath::RectangleSize& size,
                                         const std::function<std::uint64_t(const datapath::Rectangle&)>& sum) {
         const auto about = [&](const datapath::TexCoord& t) {
             return sum(datapath::centred_rectangle(t, size, registers.map, formats));
         };
-        return datapath::summed_height_test(
-            about(pass.edge_begin(k).texture), about(pass.edge_end(k).texture),
-            about(pass.edges[static_cast<std::size_t>(k)].texture), size, registers.tests);
+        return datapath::summed_height_test(about(pass.edge_begin(k).texture), about(pass.edge_end(k).texture),
+                                            about(pass.edges[static_cast<std::size_t>(k)].texture), size,
+                                            registers.tests);
     };
     const auto right_sum = [&](const datapath::Rectangle& r) {
         std::uint64_t sum = 0;
@@ -288,21 +285,20 @@ TEST_CASE("broken arithmetic is caught") {
     SECTION("none") {
         CHECK(sabotaged([](datapath::TrianglePass&, int) {}).mismatches == 0);
         CHECK(sabotaged([&](datapath::TrianglePass& pass, int k) {
-                  const auto size = datapath::rectangle_size(
-                      pass.edge_begin(k).texture, pass.edge_end(k).texture, registers.map, formats);
+                  const auto size = datapath::rectangle_size(pass.edge_begin(k).texture, pass.edge_end(k).texture,
+                                                             registers.map, formats);
                   set_summed_height(pass, k, summed_height_with(pass, k, size, right_sum));
               }).mismatches == 0);
     }
     SECTION("two corners of a rectangle swapped") {
         const auto prefix = [&](std::uint32_t x, std::uint32_t y) { return right_sum({0, x, 0, y}); };
         const auto result = sabotaged([&](datapath::TrianglePass& pass, int k) {
-            const auto size = datapath::rectangle_size(pass.edge_begin(k).texture, pass.edge_end(k).texture,
-                                                       registers.map, formats);
-            set_summed_height(
-                pass, k, summed_height_with(pass, k, size, [&](const datapath::Rectangle& r) {
-                    return prefix(r.last_column, r.last_row) - prefix(r.first_column, r.last_row) +
-                           prefix(r.last_column, r.first_row) - prefix(r.first_column, r.first_row);
-                }));
+            const auto size =
+                datapath::rectangle_size(pass.edge_begin(k).texture, pass.edge_end(k).texture, registers.map, formats);
+            set_summed_height(pass, k, summed_height_with(pass, k, size, [&](const datapath::Rectangle& r) {
+                                  return prefix(r.last_column, r.last_row) - prefix(r.first_column, r.last_row) +
+                                         prefix(r.last_column, r.first_row) - prefix(r.first_column, r.first_row);
+                              }));
         });
         CHECK(test(result, "SHT").mismatches > 10);
         CHECK(result.mismatches == test(result, "SHT").mismatches);
@@ -312,8 +308,8 @@ TEST_CASE("broken arithmetic is caught") {
             const auto result = sabotaged([&](datapath::TrianglePass& pass, int k) {
                 datapath::Formats shifted = formats;
                 shifted.texture.fraction += wrong;
-                const auto size = datapath::rectangle_size(pass.edge_begin(k).texture,
-                                                           pass.edge_end(k).texture, registers.map, shifted);
+                const auto size = datapath::rectangle_size(pass.edge_begin(k).texture, pass.edge_end(k).texture,
+                                                           registers.map, shifted);
                 set_summed_height(pass, k, summed_height_with(pass, k, size, right_sum));
             });
             CHECK(test(result, "SHT").mismatches > 10);
@@ -321,8 +317,8 @@ TEST_CASE("broken arithmetic is caught") {
     }
     SECTION("a rectangle one texel off") {
         const auto result = sabotaged([&](datapath::TrianglePass& pass, int k) {
-            const auto size = datapath::rectangle_size(pass.edge_begin(k).texture, pass.edge_end(k).texture,
-                                                       registers.map, formats);
+            const auto size =
+                datapath::rectangle_size(pass.edge_begin(k).texture, pass.edge_end(k).texture, registers.map, formats);
             set_summed_height(pass, k, summed_height_with(pass, k, size, [&](datapath::Rectangle r) {
                                   ++r.first_row;
                                   ++r.last_row;
@@ -347,9 +343,8 @@ TEST_CASE("broken arithmetic is caught") {
                 datapath::Saturations saturations;
                 const std::uint32_t code =
                     c.setup.map.codes[c.inputs.map.texel(Dequantise(formats).texture(made.texture))];
-                made.displaced =
-                    datapath::displace(made.position, pass.edges[static_cast<std::size_t>(k)].normal, code,
-                                       registers.displacement, shifted, saturations);
+                made.displaced = datapath::displace(made.position, pass.edges[static_cast<std::size_t>(k)].normal, code,
+                                                    registers.displacement, shifted, saturations);
                 made.screen = datapath::transform(made.displaced, registers.transform, formats, saturations);
             });
             CHECK(quantity(result, "P'_ij").outside > 100);
@@ -359,25 +354,22 @@ TEST_CASE("broken arithmetic is caught") {
         const auto result = sabotaged([&](datapath::TrianglePass& pass, int k) {
             datapath::TexCoord t = pass.new_vertex[static_cast<std::size_t>(k)].texture;
             t.u += 1u << formats.texture.fraction;
-            pass.edges[static_cast<std::size_t>(k)].displaced_normal =
-                c.machine.bumped(pass.edges[static_cast<std::size_t>(k)].normal,
-                                 pass.edges[static_cast<std::size_t>(k)].tangent, 1, t);
+            pass.edges[static_cast<std::size_t>(k)].displaced_normal = c.machine.bumped(
+                pass.edges[static_cast<std::size_t>(k)].normal, pass.edges[static_cast<std::size_t>(k)].tangent, 1, t);
         });
         CHECK(quantity(result, "N'_ij").outside > 100);
     }
     SECTION("bitangent with the wrong sign") {
         const auto result = sabotaged([&](datapath::TrianglePass& pass, int k) {
-            pass.edges[static_cast<std::size_t>(k)].displaced_normal =
-                c.machine.bumped(pass.edges[static_cast<std::size_t>(k)].normal,
-                                 pass.edges[static_cast<std::size_t>(k)].tangent, -1,
-                                 pass.edges[static_cast<std::size_t>(k)].texture);
+            pass.edges[static_cast<std::size_t>(k)].displaced_normal = c.machine.bumped(
+                pass.edges[static_cast<std::size_t>(k)].normal, pass.edges[static_cast<std::size_t>(k)].tangent, -1,
+                pass.edges[static_cast<std::size_t>(k)].texture);
         });
         CHECK(quantity(result, "N'_ij").outside > 100);
     }
     SECTION("the mean normal not normalised") {
         const auto result = sabotaged([](datapath::TrianglePass& pass, int k) {
-            pass.edges[static_cast<std::size_t>(k)].normal =
-                pass.new_vertex[static_cast<std::size_t>(k)].mean_normal;
+            pass.edges[static_cast<std::size_t>(k)].normal = pass.new_vertex[static_cast<std::size_t>(k)].mean_normal;
         });
         CHECK(quantity(result, "N_ij").outside > 100);
     }
@@ -483,9 +475,7 @@ TEST_CASE("normals and tangents of length zero stay zero on both sides") {
             change(pass.triangle);
             return c.evaluate(pass.triangle, true);
         };
-        const auto opposite = [](const datapath::Direction& d) {
-            return datapath::Direction{-d.x, -d.y, -d.z};
-        };
+        const auto opposite = [](const datapath::Direction& d) { return datapath::Direction{-d.x, -d.y, -d.z}; };
         const std::vector<datapath::TrianglePass> passes = {
             with([](datapath::Triangle& t) {
                 for (datapath::Vertex& v : t.vertices)
@@ -559,9 +549,8 @@ TEST_CASE("the first mismatch is told with all operands") {
     CHECK(result.mismatches == 2);
     const std::string& text = result.first_mismatch;
     CHECK(text.rfind("P_ij.y: hardware " + std::to_string(pass.new_vertex[1].position.y), 0) == 0);
-    for (const char* part :
-         {"base triangle 77, edge 1", "i: P (", "j: P (", "T (", "handedness", "generation", "N'_ij",
-          "golden:", "lengths before normalising", "near plane", "formats"}) {
+    for (const char* part : {"base triangle 77, edge 1", "i: P (", "j: P (", "T (", "handedness", "generation", "N'_ij",
+                             "golden:", "lengths before normalising", "near plane", "formats"}) {
         INFO(part);
         CHECK(text.find(part) != std::string::npos);
     }

@@ -44,8 +44,7 @@ TEST_CASE("another diagonal than golden's is caught for each pair of split edges
             }
             const auto length = [&](unsigned a, unsigned b) {
                 const auto corner = [&](unsigned index) {
-                    return index < 3 ? pass.triangle.vertices[index].displaced
-                                     : pass.new_vertex[index - 3].displaced;
+                    return index < 3 ? pass.triangle.vertices[index].displaced : pass.new_vertex[index - 3].displaced;
                 };
                 const datapath::Position from = corner(a), to = corner(b);
                 return std::abs(std::int64_t{from.x} - to.x) + std::abs(std::int64_t{from.y} - to.y) +
@@ -71,12 +70,11 @@ TEST_CASE("another diagonal than golden's is caught for each pair of split edges
 }
 
 TEST_CASE("each wrong decision of each edge is one mismatch of its name") {
-    const std::vector<std::pair<datapath::TestBits, std::string>> tests = {
-        {datapath::normal_bit, "NT"},
-        {datapath::summed_height_bit, "SHT"},
-        {datapath::view_bit, "VT"},
-        {datapath::tex_coord_bit, "TCT"},
-        {datapath::generation_bit, "GT"}};
+    const std::vector<std::pair<datapath::TestBits, std::string>> tests = {{datapath::normal_bit, "NT"},
+                                                                           {datapath::summed_height_bit, "SHT"},
+                                                                           {datapath::view_bit, "VT"},
+                                                                           {datapath::tex_coord_bit, "TCT"},
+                                                                           {datapath::generation_bit, "GT"}};
     Random random(9);
     int behind = 0, wrong = 0, excused = 0;
     for (int design = 0; design < 40; ++design) {

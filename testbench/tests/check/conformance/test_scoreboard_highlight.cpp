@@ -131,19 +131,15 @@ TEST_CASE("Highlight Test: the split decision follows an allowed flip, and only 
 
 TEST_CASE("Highlight Test: the bound on N'.H holds and is no more than four times the largest error") {
     Random random(65);
-    for (const datapath::Formats& formats :
-         {datapath::Formats{}, make_formats(24, 12, 12, 10, 8, 12, 24, 8)}) {
+    for (const datapath::Formats& formats : {datapath::Formats{}, make_formats(24, 12, 12, 10, 8, 12, 24, 8)}) {
         const ErrorBounds bounds(formats);
         const Dequantise dequantise(formats);
         double largest_bound = 0, largest_error = 0;
         for (int k = 0; k < 200'000; ++k) {
-            const auto unit = [&] {
-                return dequantise.direction(rounded(unit_vector(random), formats.normal));
-            };
+            const auto unit = [&] { return dequantise.direction(rounded(unit_vector(random), formats.normal)); };
             const glm::dvec3 half = unit(), golden = unit_vector(random);
             const glm::dvec3 hardware = dequantise.direction(rounded(golden, formats.normal));
-            const double bound =
-                bounds.cosine(golden, glm::dvec3(std::ldexp(0.5, -formats.normal.fraction)), half);
+            const double bound = bounds.cosine(golden, glm::dvec3(std::ldexp(0.5, -formats.normal.fraction)), half);
             const double error = std::abs(glm::dot(hardware, half) - glm::dot(golden, half));
             if (error > bound)
                 FAIL(error << " beyond " << bound);

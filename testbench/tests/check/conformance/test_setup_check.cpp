@@ -73,8 +73,7 @@ std::vector<Mistake> register_mistakes() {
         list.push_back({name, [member](MachineSetup& setup) { --member(setup.registers); }});
     };
     const auto turn = [&](const std::string& name, auto member) {
-        list.push_back(
-            {name, [member](MachineSetup& setup) { member(setup.registers) = !member(setup.registers); }});
+        list.push_back({name, [member](MachineSetup& setup) { member(setup.registers) = !member(setup.registers); }});
     };
     const auto format = [&](const std::string& name, datapath::Format datapath::Formats::*it) {
         add(
@@ -108,10 +107,8 @@ std::vector<Mistake> register_mistakes() {
         "map.width", [](auto& r) -> auto& { return r.map.width; });
     add(
         "map.height", [](auto& r) -> auto& { return r.map.height; });
-    list.push_back(
-        {"map.address_u", [](MachineSetup& s) { s.registers.map.address_u = AddressMode::repeat; }});
-    list.push_back(
-        {"map.address_v", [](MachineSetup& s) { s.registers.map.address_v = AddressMode::repeat; }});
+    list.push_back({"map.address_u", [](MachineSetup& s) { s.registers.map.address_u = AddressMode::repeat; }});
+    list.push_back({"map.address_v", [](MachineSetup& s) { s.registers.map.address_v = AddressMode::repeat; }});
     const auto table = [&](const std::string& name, datapath::TableLayout datapath::Registers::*it) {
         add(
             name + ".columns", [it](auto& r) -> auto& { return (r.*it).columns; });
@@ -123,9 +120,8 @@ std::vector<Mistake> register_mistakes() {
     table("displacement_map", &datapath::Registers::displacement_map);
     table("normal_map", &datapath::Registers::normal_map);
     table("summed_height_table", &datapath::Registers::summed_height_table);
-    list.push_back({"overlap", [](MachineSetup& s) {
-                        s.registers.normal_map.base = s.registers.displacement_map.base + 2;
-                    }});
+    list.push_back(
+        {"overlap", [](MachineSetup& s) { s.registers.normal_map.base = s.registers.displacement_map.base + 2; }});
 
     turn(
         "tests.normal_test", [](auto& r) -> auto& { return r.tests.normal_test; });
@@ -143,9 +139,8 @@ std::vector<Mistake> register_mistakes() {
         "tests.normal_threshold", [](auto& r) -> auto& { return r.tests.normal_threshold; });
     add(
         "tests.summed_height_threshold", [](auto& r) -> auto& { return r.tests.summed_height_threshold; });
-    list.push_back({"tests.summed_height_unit", [](MachineSetup& s) {
-                        s.registers.tests.summed_height_unit = datapath::SummedHeightUnit::area;
-                    }});
+    list.push_back({"tests.summed_height_unit",
+                    [](MachineSetup& s) { s.registers.tests.summed_height_unit = datapath::SummedHeightUnit::area; }});
     add(
         "tests.view_threshold", [](auto& r) -> auto& { return r.tests.view_threshold; });
     add(
@@ -153,8 +148,7 @@ std::vector<Mistake> register_mistakes() {
     add(
         "tests.highlight_cosine", [](auto& r) -> auto& { return r.tests.highlight_cosine; });
     add(
-        "tests.highlight_normal_threshold",
-        [](auto& r) -> auto& { return r.tests.highlight_normal_threshold; });
+        "tests.highlight_normal_threshold", [](auto& r) -> auto& { return r.tests.highlight_normal_threshold; });
 
     add(
         "displacement.scale", [](auto& r) -> auto& { return r.displacement.scale; });
@@ -190,8 +184,8 @@ std::vector<Mistake> register_mistakes() {
     }
     add(
         "light.ambient", [](auto& r) -> auto& { return r.light.ambient; });
-    list.push_back({"triangulation",
-                    [](MachineSetup& s) { s.registers.triangulation = datapath::Triangulation::first; }});
+    list.push_back(
+        {"triangulation", [](MachineSetup& s) { s.registers.triangulation = datapath::Triangulation::first; }});
     turn(
         "back_face_culling", [](auto& r) -> auto& { return r.back_face_culling; });
     return list;
@@ -235,26 +229,23 @@ std::vector<Mistake> vertex_mistakes() {
         const std::string vertex = "triangle 7, vertex " + std::to_string(k) + ", ";
         list.push_back({vertex + "displaced_known",
                         [k](MachineSetup& s) { s.base_triangles[7].vertices[k].displaced_known = true; }});
-        list.push_back({vertex + "screen_normal_known", [k](MachineSetup& s) {
-                            s.base_triangles[7].vertices[k].screen_normal_known = true;
-                        }});
+        list.push_back({vertex + "screen_normal_known",
+                        [k](MachineSetup& s) { s.base_triangles[7].vertices[k].screen_normal_known = true; }});
     }
     list.push_back({"triangle 7, split_by", [](MachineSetup& s) { ++s.base_triangles[7].split_by; }});
     list.push_back({"triangle 7, stopped_by", [](MachineSetup& s) { ++s.base_triangles[7].stopped_by; }});
     list.push_back({"triangle 7, finished", [](MachineSetup& s) { s.base_triangles[7].finished = true; }});
     list.push_back({"triangle 7, base", [](MachineSetup& s) { ++s.base_triangles[7].base; }});
-    list.push_back(
-        {"triangle 17 of the mesh is missing", [](MachineSetup& s) { s.base_triangles.pop_back(); }});
-    list.push_back(
-        {"19 base triangles", [](MachineSetup& s) { s.base_triangles.push_back(s.base_triangles.back()); }});
+    list.push_back({"triangle 17 of the mesh is missing", [](MachineSetup& s) { s.base_triangles.pop_back(); }});
+    list.push_back({"19 base triangles", [](MachineSetup& s) { s.base_triangles.push_back(s.base_triangles.back()); }});
     return list;
 }
 
 using Socket = tlm_utils::simple_initiator_socket<Host>;
 
 /// Adds to a byte of an entry by debug transport, as the host writes.
-void add_to_entry(Socket& socket, const datapath::TableLayout& layout, std::uint32_t x, std::uint32_t y,
-                  unsigned which, int add) {
+void add_to_entry(Socket& socket, const datapath::TableLayout& layout, std::uint32_t x, std::uint32_t y, unsigned which,
+                  int add) {
     unsigned char byte = 0;
     tlm::tlm_generic_payload payload;
     payload.set_address(layout.address(x, y) + which);
@@ -293,8 +284,7 @@ TEST_CASE("one wrong register, base vertex or table entry fails the default job"
                 add_to_entry(socket, layout, x, y, which, 1);
                 const SetupResult result = run.check();
                 CHECK(result.wrong() == 1);
-                CHECK_THAT(result.first_wrong,
-                           Contains(fmt::format("{}: ({}, {}){}", name, x, y, component)));
+                CHECK_THAT(result.first_wrong, Contains(fmt::format("{}: ({}, {}){}", name, x, y, component)));
                 add_to_entry(socket, layout, x, y, which, -1);
             }
     };
@@ -382,9 +372,8 @@ TEST_CASE("a model scale that is no power of two, or too large, is not sound") {
     CheckedRun run{Job{}};
     ModelScale three = run.setup.model_scale;
     three.scale *= 3;
-    CHECK_THAT(
-        check_setup(run.setup, GoldenJob(run.resolved, run.mesh, run.map, three), run.simulation).first_wrong,
-        Contains("not a power of two"));
+    CHECK_THAT(check_setup(run.setup, GoldenJob(run.resolved, run.mesh, run.map, three), run.simulation).first_wrong,
+               Contains("not a power of two"));
     ModelScale large = run.setup.model_scale;
     large.scale *= 16;
     const SetupResult result =
@@ -476,9 +465,8 @@ TEST_CASE("on a cylinder rounding moves normals, too, and they turn") {
         compare_end_to_end(run.setup, run.golden, checked.base_triangles, run.simulation.monitor.mesh, 1);
     CHECK(result.passed());
     REQUIRE(result.golden_largest_generation == 4);
-    CHECK(result.allowed.rounding ==
-          Approx(std::sqrt(3.0) *
-                 (4 * std::ldexp(1.0, -16) / run.setup.model_scale.scale + 10 * std::ldexp(1.0, -14) * 0.3)));
+    CHECK(result.allowed.rounding == Approx(std::sqrt(3.0) * (4 * std::ldexp(1.0, -16) / run.setup.model_scale.scale +
+                                                              10 * std::ldexp(1.0, -14) * 0.3)));
     // Normals of neighbours are 45 degrees apart: 2 sin 22.5.
     CHECK(result.allowed.displacement == Approx(0.5 + 0.3 * 0.765366865));
 }

@@ -25,8 +25,8 @@ void require_only(const InvariantResult& result, const Expected& expected) {
     for (const InvariantFigure& figure : invariant_figures(result)) {
         if (figure.kind == InvariantFigure::Kind::fact)
             continue;
-        const auto found = std::find_if(expected.begin(), expected.end(),
-                                        [&](const auto& e) { return e.first == figure.name; });
+        const auto found =
+            std::find_if(expected.begin(), expected.end(), [&](const auto& e) { return e.first == figure.name; });
         INFO(figure.name);
         CHECK(figure.value == (found == expected.end() ? 0 : found->second));
     }
@@ -123,8 +123,8 @@ TEST_CASE("triangles that are missing or too many are counted, and the first is 
         other.some_triangle().base = 8;
         InvariantResult result = other.check();
         require_only(result, {{"missing_triangles", 1}, {"extra_triangles", 1}});
-        CHECK(result.first_violation.find(
-                  "base triangle 8: a triangle of a base triangle that does not exist: P (") == 0);
+        CHECK(result.first_violation.find("base triangle 8: a triangle of a base triangle that does not exist: P (") ==
+              0);
         other = plane;
         other.some_triangle().base = 3;
         require_only(other.check(), {{"missing_triangles", 1}, {"extra_triangles", 1}});
@@ -257,8 +257,8 @@ TEST_CASE("each violation counts, what is rounding's or the input's does not; th
     CHECK(result.passed());
     for (std::uint64_t InvariantResult::*const violation :
          {&InvariantResult::t_vertices, &InvariantResult::cracks, &InvariantResult::inconsistent_vertices,
-          &InvariantResult::missing_triangles, &InvariantResult::extra_triangles,
-          &InvariantResult::differing_triangles, &InvariantResult::generation_violations}) {
+          &InvariantResult::missing_triangles, &InvariantResult::extra_triangles, &InvariantResult::differing_triangles,
+          &InvariantResult::generation_violations}) {
         InvariantResult one = result;
         one.*violation = 3;
         CHECK(one.violations() == 3);

@@ -134,24 +134,23 @@ TEST_CASE("lineage: a plane closes") {
 TEST_CASE("lineage: any finished triangle left out, doubled or turned over is found") {
     const MachineSetup setup = setup_of(small_job());
     std::size_t passes = 0;
-    check_broken(setup,
-                 [&](Broken& broken, std::size_t, const TrianglePass& pass, const Lineage::Note& note) {
-                     ++passes;
-                     broken.forward(pass, note);
-                 });
+    check_broken(setup, [&](Broken& broken, std::size_t, const TrianglePass& pass, const Lineage::Note& note) {
+        ++passes;
+        broken.forward(pass, note);
+    });
     std::size_t tried = 0;
     for (std::size_t n = 0; n < passes; n += 5) {
         bool finished = false;
         const auto with = [&](auto change) {
-            return check_broken(setup, [&](Broken& broken, std::size_t number, const TrianglePass& pass,
-                                           const Lineage::Note& note) {
-                if (number == n && pass.split == 0) {
-                    finished = true;
-                    change(broken, pass, note);
-                } else {
-                    broken.forward(pass, note);
-                }
-            });
+            return check_broken(
+                setup, [&](Broken& broken, std::size_t number, const TrianglePass& pass, const Lineage::Note& note) {
+                    if (number == n && pass.split == 0) {
+                        finished = true;
+                        change(broken, pass, note);
+                    } else {
+                        broken.forward(pass, note);
+                    }
+                });
         };
         const LineageResult missing = with([](Broken&, const TrianglePass&, const Lineage::Note&) {});
         if (!finished)
@@ -180,8 +179,7 @@ TEST_CASE("lineage: an edge split by one triangle alone is a T-vertex, but on th
         for (int k = 0; k < 3; ++k) {
             std::optional<bool> border;
             const LineageResult result = check_broken(
-                setup,
-                [&](Broken& broken, std::size_t number, const TrianglePass& pass, const Lineage::Note& note) {
+                setup, [&](Broken& broken, std::size_t number, const TrianglePass& pass, const Lineage::Note& note) {
                     if (number == n && pass.split == 0) {
                         border = is_on_border(setup, pass, k);
                         broken.split_alone(pass, note, k);
@@ -201,17 +199,16 @@ TEST_CASE("lineage: an edge split by one triangle alone is a T-vertex, but on th
 
 TEST_CASE("lineage: a vertex that differs in anything from one triangle to another is found, once") {
     const MachineSetup setup = setup_of(small_job());
-    const std::vector<std::function<void(datapath::Vertex&)>> changes{
-        [](auto& v) { v.position.x += 1; },
-        [](auto& v) { v.normal.y += 1; },
-        [](auto& v) { v.tangent.z += 1; },
-        [](auto& v) { v.texture.u += 1; },
-        [](auto& v) { v.texture.v += 1; },
-        [](auto& v) { v.handedness = static_cast<std::int8_t>(-v.handedness); },
-        [](auto& v) { v.generation ^= 1; },
-        [](auto& v) { v.displaced.x += 1; },
-        [](auto& v) { v.displaced_normal.x += 1; },
-        [](auto& v) { v.screen.w += 1; }};
+    const std::vector<std::function<void(datapath::Vertex&)>> changes{[](auto& v) { v.position.x += 1; },
+                                                                      [](auto& v) { v.normal.y += 1; },
+                                                                      [](auto& v) { v.tangent.z += 1; },
+                                                                      [](auto& v) { v.texture.u += 1; },
+                                                                      [](auto& v) { v.texture.v += 1; },
+                                                                      [](auto& v) { v.handedness = static_cast<std::int8_t>(-v.handedness); },
+                                                                      [](auto& v) { v.generation ^= 1; },
+                                                                      [](auto& v) { v.displaced.x += 1; },
+                                                                      [](auto& v) { v.displaced_normal.x += 1; },
+                                                                      [](auto& v) { v.screen.w += 1; }};
     for (const auto& change : changes)
         for (const std::size_t n : {0U, 3U, 40U, 77U}) {
             std::size_t finished = 0;
@@ -223,8 +220,7 @@ TEST_CASE("lineage: a vertex that differs in anything from one triangle to anoth
                     broken.forward(seen, note);
                 });
             require_faults(result, 0, 0, 1);
-            CHECK(result.first_fault.find(": a vertex differs from one triangle to another: P (") !=
-                  std::string::npos);
+            CHECK(result.first_fault.find(": a vertex differs from one triangle to another: P (") != std::string::npos);
         }
 }
 
@@ -261,8 +257,7 @@ TEST_CASE("lineage: the datapath's own faults between base triangles") {
     const MachineSetup setup = setup_of(small_job());
     // One copy of a shared vertex is of the last generation: its triangles keep their edges whole.
     MachineSetup older = setup;
-    older.base_triangles[1].vertices[1].generation =
-        static_cast<std::uint8_t>(setup.registers.tests.generation_limit);
+    older.base_triangles[1].vertices[1].generation = static_cast<std::uint8_t>(setup.registers.tests.generation_limit);
     const LineageResult result = check(older);
     CHECK(result.unlike_vertices == 1);
     CHECK(result.t_vertices > 0);
@@ -304,8 +299,8 @@ TEST_CASE("lineage: a cylinder's seam") {
         CHECK(result.open_texture_seam_edges == 0);
 
         const std::uint32_t last = setup.registers.map.width << setup.registers.formats.texture.fraction;
-        const LineageResult open = check_broken(
-            setup, [&](Broken& broken, std::size_t, const TrianglePass& pass, const Lineage::Note& note) {
+        const LineageResult open =
+            check_broken(setup, [&](Broken& broken, std::size_t, const TrianglePass& pass, const Lineage::Note& note) {
                 TrianglePass seen = pass;
                 for (datapath::Vertex& v : seen.triangle.vertices)
                     v.displaced.x += v.texture.u == last ? 1 : 0;

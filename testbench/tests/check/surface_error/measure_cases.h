@@ -95,8 +95,7 @@ inline BruteForce brute_force(const BaseMesh& base, const HeightMap& map, const 
     }
     result.reference_rms = std::sqrt(squares / weights);
 
-    const MeshSamples samples(mesh, glm::dvec2(map.width, map.height), texel_length(base, map),
-                              limits.mesh_samples);
+    const MeshSamples samples(mesh, glm::dvec2(map.width, map.height), texel_length(base, map), limits.mesh_samples);
     double mesh_squares = 0, areas = 0;
     for (std::size_t k = 0; k < soup.size(); ++k) {
         const auto& t = soup[k];
@@ -106,8 +105,7 @@ inline BruteForce brute_force(const BaseMesh& base, const HeightMap& map, const 
             result.mesh_max = std::max(result.mesh_max, distance);
             return distance * distance;
         };
-        for (const glm::dvec3& b :
-             {glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1), glm::dvec3(1.0 / 3)})
+        for (const glm::dvec3& b : {glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1), glm::dvec3(1.0 / 3)})
             take(b);
         double sum = 0, count = 0;
         MeshSamples::for_each_part(samples.subdivision(k), [&](const glm::dvec3& b) {

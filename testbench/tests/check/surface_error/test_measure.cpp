@@ -66,13 +66,11 @@ TEST_CASE("a mesh that is the surface has no error, and one shifted by d has the
             CHECK(static_cast<double>(t.max) == Approx(std::abs(d)).epsilon(1e-6).margin(1e-14));
             CHECK(static_cast<double>(t.rms) == Approx(std::abs(d)).epsilon(1e-6).margin(1e-14));
             if (std::abs(d) < 1)
-                CHECK(static_cast<double>(t.reference_max) ==
-                      Approx(std::abs(d)).epsilon(1e-6).margin(1e-14));
+                CHECK(static_cast<double>(t.reference_max) == Approx(std::abs(d)).epsilon(1e-6).margin(1e-14));
         }
     }
     // Sideways only what leaves the other's outline is away from it.
-    const RecordedMesh aside =
-        emitted(base, [](const BaseVertex& v) { return v.position + glm::dvec3(0.25, 0, 2); });
+    const RecordedMesh aside = emitted(base, [](const BaseVertex& v) { return v.position + glm::dvec3(0.25, 0, 2); });
     const SurfaceError error = measured(base, map, heights(2), aside);
     CHECK(error.reference_to_mesh.max == Approx(0.25));
     CHECK(error.mesh_to_reference.max == Approx(0.25));
@@ -172,8 +170,7 @@ TEST_CASE("figures are those of comparing everything with everything") {
             t.base = static_cast<std::uint32_t>(k) % static_cast<std::uint32_t>(base.triangles.size());
             for (std::uint32_t c = 0; c < 3; ++c) {
                 t.vertices[c] = static_cast<std::uint32_t>(mesh.positions.size());
-                mesh.positions.push_back(centre +
-                                         size * glm::dvec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)));
+                mesh.positions.push_back(centre + size * glm::dvec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)));
                 mesh.normals.emplace_back(0, 0, 1);
                 mesh.textures.emplace_back(uniform(0, 1), uniform(0, 1));
             }
@@ -230,9 +227,8 @@ TEST_CASE("mirroring all, turning corners and mixing triangles change no figure"
     const BaseMesh base = make_plane(2, 2, 2, 2);
     const auto value = [](int x, int y) { return (x * 7 + y * 3) % 5 / 4.0; };
     const HeightMap map = make_map(8, 8, value);
-    const RecordedMesh mesh = emitted(base, [](const BaseVertex& v) {
-        return v.position + glm::dvec3(0, 0, 0.3 * v.texture.x + 0.1 * v.texture.y);
-    });
+    const RecordedMesh mesh = emitted(
+        base, [](const BaseVertex& v) { return v.position + glm::dvec3(0, 0, 0.3 * v.texture.x + 0.1 * v.texture.y); });
     const SurfaceError error = measured(base, map, heights(0.5), mesh);
     const auto same = [&](const SurfaceError& other) {
         CHECK(other.reference_to_mesh.max == Approx(error.reference_to_mesh.max).epsilon(1e-12));
@@ -256,8 +252,8 @@ TEST_CASE("mirroring all, turning corners and mixing triangles change no figure"
         mirrored.positions[k].x = -mirrored.positions[k].x;
         mirrored.textures[k].x = 1 - mirrored.textures[k].x;
     }
-    same(measured(mirrored_base, make_map(8, 8, [&](int x, int y) { return value(7 - x, y); }), heights(0.5),
-                  mirrored));
+    same(
+        measured(mirrored_base, make_map(8, 8, [&](int x, int y) { return value(7 - x, y); }), heights(0.5), mirrored));
     // The same question gives the same bits.
     const SurfaceError again = measured(base, map, heights(0.5), mesh);
     CHECK(again.reference_to_mesh.rms == error.reference_to_mesh.rms);
@@ -291,8 +287,7 @@ TEST_CASE("no mesh, one triangle, a collapsed one and one point") {
         RecordedMesh segment = one;
         segment.positions[2] = segment.positions[1];
         CHECK(measured(base, map, heights(1), segment, sampling).reference_to_mesh.max == Approx(2));
-        CHECK(measured(base, map, heights(1), segment, sampling).mesh_to_reference.max ==
-              Approx(0).margin(1e-13));
+        CHECK(measured(base, map, heights(1), segment, sampling).mesh_to_reference.max == Approx(0).margin(1e-13));
         RecordedMesh point = one;
         point.positions = {{0, 0, 5}, {0, 0, 5}, {0, 0, 5}};
         const SurfaceError far = measured(base, map, heights(1), point, sampling);
@@ -368,8 +363,7 @@ TEST_CASE("limits lower the density and say so, to a facet a base triangle at th
     const MeshError error = measure_error(base, map, heights(1), mesh, limits);
     CHECK(error.reference_density < 4);
     CHECK(error.mesh_density < 1);
-    CHECK(error.interpolated.mesh_to_reference.samples <=
-          100 + mesh.positions.size() + mesh.triangles.size());
+    CHECK(error.interpolated.mesh_to_reference.samples <= 100 + mesh.positions.size() + mesh.triangles.size());
     CHECK(error.interpolated.reference_to_mesh.samples <= 10000);
 }
 
@@ -386,8 +380,7 @@ TEST_CASE("the error is the same on any number of threads, and progress ends at 
         const MeshError other = measure(threads);
         for (const auto error : {&MeshError::interpolated, &MeshError::nearest_texel}) {
             const SurfaceError &a = one.*error, &b = other.*error;
-            for (const auto direction :
-                 {&SurfaceError::reference_to_mesh, &SurfaceError::mesh_to_reference}) {
+            for (const auto direction : {&SurfaceError::reference_to_mesh, &SurfaceError::mesh_to_reference}) {
                 CHECK((a.*direction).max == (b.*direction).max);
                 CHECK((a.*direction).rms == (b.*direction).rms);
                 CHECK((a.*direction).samples == (b.*direction).samples);

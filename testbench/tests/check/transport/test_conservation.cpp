@@ -21,16 +21,14 @@ using Equations = std::map<std::string, Sides>;
 Equations sides_of(const Simulation& simulation) {
     Equations sides;
     for (const Conservation& equation : conservation(simulation))
-        sides[equation.name] = {static_cast<std::int64_t>(equation.left),
-                                static_cast<std::int64_t>(equation.right)};
+        sides[equation.name] = {static_cast<std::int64_t>(equation.left), static_cast<std::int64_t>(equation.right)};
     return sides;
 }
 
 /// Does something to a machine that has run, and requires that the sides of all equations change by so much, those of
 /// equations that are not named by nothing.
 template <class Act>
-void expect_change(const std::string& what, const Simulation& simulation, Act&& act,
-                   const Equations& expected) {
+void expect_change(const std::string& what, const Simulation& simulation, Act&& act, const Equations& expected) {
     const Equations before = sides_of(simulation);
     act();
     for (const auto& [name, sides] : sides_of(simulation)) {
@@ -201,8 +199,8 @@ TEST_CASE("conservation: an item too many in a unit breaks its equation and no o
         {&p.off_chip_memory, "requests to off_chip_memory = out and back"},
     };
     for (const auto& [unit, equation] : units)
-        expect_change(unit->name(), simulation,
-                      [&, it = unit] { it->activity().item_in(simulation.cycles()); }, {{equation, {1, 0}}});
+        expect_change(unit->name(), simulation, [&, it = unit] { it->activity().item_in(simulation.cycles()); },
+                      {{equation, {1, 0}}});
 }
 
 TEST_CASE("conservation: an item too many on a stream") {
@@ -226,8 +224,7 @@ TEST_CASE("conservation: an item too many on a stream") {
     expect_change("lighting to the rasteriser", simulation, [&] { give(p.lighting.to_rasteriser, lit); },
                   {{"taken by the rasteriser = finished - culled", {1, 0}}});
     expect_change("a triangle that is emitted twice", simulation,
-                  [&] { simulation.monitor.mesh.triangles.emplace_back(); },
-                  {{"finished = emitted", {0, 1}}});
+                  [&] { simulation.monitor.mesh.triangles.emplace_back(); }, {{"finished = emitted", {0, 1}}});
     expect_change("tessellation to triangle_queue", simulation,
                   [&] { give(p.tessellation.to_triangle_queue, taken.triangle); },
                   {{"children of tessellation = taken by triangle_queue", {0, 1}},
@@ -250,12 +247,10 @@ TEST_CASE("conservation: a read too many") {
                   [&] { p.tessellation_tests[0].normal_test.normal_map.read(r.normal_map.base, delay); },
                   {{"reads of normal_test = vertices and edges", {1, 0}},
                    {"entries of normal_map = read by normal_test", {1, 1}}});
-    expect_change("Summed Height Table", simulation,
-                  [&] {
-                      p.tessellation_tests[0].summed_height_test.summed_height_table.read(
-                          r.summed_height_table.base, delay);
-                  },
-                  {{"entries of summed_height_table = read by summed_height_test", {1, 1}}});
+    expect_change(
+        "Summed Height Table", simulation,
+        [&] { p.tessellation_tests[0].summed_height_test.summed_height_table.read(r.summed_height_table.base, delay); },
+        {{"entries of summed_height_table = read by summed_height_test", {1, 1}}});
     // the same past the units
     expect_change("displacement map, past its unit", simulation,
                   [&] { read_directly(p.displace_vertex.displacement_map, r.displacement_map.base); },
@@ -372,8 +367,7 @@ TEST_CASE("conservation: triangles that are off chip have not come back") {
         sc_core::sc_start(simulation.pipeline.clock.period());
     const Equations halfway = sides_of(simulation);
     const Sides spilled = halfway.at("triangles spilled = come back");
-    CHECK(spilled ==
-          Sides{static_cast<std::int64_t>(queue.spilled()), static_cast<std::int64_t>(queue.refilled())});
+    CHECK(spilled == Sides{static_cast<std::int64_t>(queue.spilled()), static_cast<std::int64_t>(queue.refilled())});
     CHECK(spilled.first > spilled.second);
     const Sides requests = halfway.at("requests to off_chip_memory = out and back");
     CHECK(requests.second == 2 * spilled.first);
@@ -383,9 +377,8 @@ TEST_CASE("conservation: triangles that are off chip have not come back") {
     sc_core::sc_report_handler::set_actions(sc_core::SC_ID_NO_SC_START_ACTIVITY_, sc_core::SC_DO_NOTHING);
     run_timed(simulation);
     const Equations end = sides_of(simulation);
-    for (const char* const name :
-         {"triangles spilled = come back", "requests to off_chip_memory = out and back",
-          "bytes read from off_chip_memory = written"}) {
+    for (const char* const name : {"triangles spilled = come back", "requests to off_chip_memory = out and back",
+                                   "bytes read from off_chip_memory = written"}) {
         INFO(name);
         CHECK(end.at(name).first == end.at(name).second);
         CHECK(end.at(name).first > 0);

@@ -111,8 +111,7 @@ TEST_CASE("work check: whatever changes on a triangle's way is noticed where it 
             INFO(field.name << " of vertex " << k);
             OneTriangle work;
             field.change(work.finished.vertices[k]);
-            CHECK(work.result().first_violation ==
-                  "base triangle 0: as many triangles were finished" + other);
+            CHECK(work.result().first_violation == "base triangle 0: as many triangles were finished" + other);
             work = OneTriangle{};
             field.change(work.base.vertices[k]);
             CHECK(work.result().passed() != field.of_base);
@@ -134,9 +133,9 @@ TEST_CASE("work check: whatever changes on a triangle's way is noticed where it 
               "base triangle 0: a finished triangle's vertex " + std::to_string(k) +
                   " has N's (0, 1, 0); its N' transforms to (0, 0, 0)");
         for (const auto& change : std::vector<std::function<void(LitTriangle::Corner&)>>{
-                 [](auto& c) { ++c.intensity; }, [](auto& c) { ++c.texture.u; },
-                 [](auto& c) { ++c.texture.v; }, [](auto& c) { ++c.screen.x; }, [](auto& c) { ++c.screen.y; },
-                 [](auto& c) { ++c.screen.w; }, [](auto& c) { c.screen.in_front = false; }})
+                 [](auto& c) { ++c.intensity; }, [](auto& c) { ++c.texture.u; }, [](auto& c) { ++c.texture.v; },
+                 [](auto& c) { ++c.screen.x; }, [](auto& c) { ++c.screen.y; }, [](auto& c) { ++c.screen.w; },
+                 [](auto& c) { c.screen.in_front = false; }})
             CHECK(found([&](OneTriangle& w) { change(w.lit.corners[k]); }) ==
                   "all base triangles: as many triangles were lit" + other);
     }
@@ -146,8 +145,7 @@ TEST_CASE("work check: whatever changes on a triangle's way is noticed where it 
     OneTriangle stray;
     TransportCheck check(stray.registers, {});
     check.write(stray.pass);
-    CHECK(check.result().first_violation ==
-          "no base triangle: 1 triangles more were decided than were to be");
+    CHECK(check.result().first_violation == "no base triangle: 1 triangles more were decided than were to be");
     check.write(stray.finished);
     CHECK(check.result().violations == 2);  // decided, and not yet lit
     CHECK(found([](OneTriangle& w) { w.pass.split = 7; }) ==

@@ -61,8 +61,7 @@ struct Ground {
           forest(setup, &errors) {}
 
     Outcome measure(const Job& of) {
-        return forest.measure(make_tests(of.tests, setup.registers.formats), setup.registers.triangulation,
-                              1000000);
+        return forest.measure(make_tests(of.tests, setup.registers.formats), setup.registers.triangulation, 1000000);
     }
 };
 
@@ -102,8 +101,8 @@ TunedPoint brute_force(const Job& job, const TuneGoal& goal) {
         TunedPoint point;
         point.tests = trial.tests;
         point.outcome = ground.measure(trial);
-        const bool meets = goal.triangles > 0 ? point.outcome.triangles <= goal.triangles
-                                              : goal.error_of(point.outcome) <= goal.error;
+        const bool meets =
+            goal.triangles > 0 ? point.outcome.triangles <= goal.triangles : goal.error_of(point.outcome) <= goal.error;
         if (meets && (!found || better(point, best, goal))) {
             best = point;
             found = true;
@@ -169,16 +168,13 @@ TEST_CASE("the forest's mesh is the datapath's, whatever the thresholds") {
             job.hardware.triangulation = static_cast<Triangulation>(round % 3);
             const MachineSetup setup = make_setup(job, ground.base, ground.map);
             std::multiset<Corners> mesh;
-            for (const auto& vertices :
-                 ground.forest.mesh(setup.registers.tests, setup.registers.triangulation))
+            for (const auto& vertices : ground.forest.mesh(setup.registers.tests, setup.registers.triangulation))
                 mesh.insert(corners_of(vertices));
             INFO("round " << round << ", " << mesh.size() << " triangles");
             CHECK((mesh == bare_mesh(setup)));  // not worth printing
-            CHECK(ground.forest.count(setup.registers.tests, setup.registers.triangulation, mesh.size())
-                      .complete);
+            CHECK(ground.forest.count(setup.registers.tests, setup.registers.triangulation, mesh.size()).complete);
             CHECK_FALSE(
-                ground.forest.count(setup.registers.tests, setup.registers.triangulation, mesh.size() - 1)
-                    .complete);
+                ground.forest.count(setup.registers.tests, setup.registers.triangulation, mesh.size() - 1).complete);
         }
     }
 }
@@ -206,18 +202,17 @@ TEST_CASE("no budget is exceeded, and no dense grid of thresholds does better") 
     for (const bool largest : {false, true})
         for (const std::uint64_t budget : {18u, 60u, 200u, 700u, 1500u}) {
             TuneRequest request = request_for(job);
-            request.space.summed_height_unit = request.space.triangulation = request.space.generation_limit =
-                false;
+            request.space.summed_height_unit = request.space.triangulation = request.space.generation_limit = false;
             request.goal.triangles = budget;
             request.goal.largest = largest;
             const TunedPoint point = tuned(request).point;
             const TunedPoint brute = brute_force(job, request.goal);
-            INFO("budget " << budget << ", largest " << largest << ": " << point.outcome.triangles
-                           << " triangles " << request.goal.error_of(point.outcome) << ", brute force "
-                           << brute.outcome.triangles << " triangles " << request.goal.error_of(brute.outcome)
-                           << " at " << brute.tests.normal_threshold << " "
-                           << brute.tests.summed_height_threshold << " against " << point.tests.normal
-                           << point.tests.normal_threshold << " " << point.tests.summed_height_threshold);
+            INFO("budget " << budget << ", largest " << largest << ": " << point.outcome.triangles << " triangles "
+                           << request.goal.error_of(point.outcome) << ", brute force " << brute.outcome.triangles
+                           << " triangles " << request.goal.error_of(brute.outcome) << " at "
+                           << brute.tests.normal_threshold << " " << brute.tests.summed_height_threshold << " against "
+                           << point.tests.normal << point.tests.normal_threshold << " "
+                           << point.tests.summed_height_threshold);
             CHECK(point.outcome.triangles <= budget);
             CHECK(request.goal.error_of(point.outcome) <= 1.03 * request.goal.error_of(brute.outcome));
         }
@@ -234,8 +229,7 @@ TEST_CASE("tuned thresholds stand clear of every edge's own value") {
             const Outcome& outcome = result.point.outcome;
             Ground ground(result.job);
             INFO("budget " << budget << ", both " << both);
-            for (double Job::Tests::*threshold :
-                 {&Job::Tests::normal_threshold, &Job::Tests::summed_height_threshold})
+            for (double Job::Tests::*threshold : {&Job::Tests::normal_threshold, &Job::Tests::summed_height_threshold})
                 if (result.job.tests.*threshold > 0) {
                     const int level = level_of(result.job.tests.*threshold);
                     // levels on one side that give the same mesh
@@ -260,16 +254,14 @@ TEST_CASE("an error's bound is kept with about as few triangles as a dense grid 
     const Job job = small_job();
     for (const double bound : {0.03, 0.015, 0.011}) {
         TuneRequest request = request_for(job);
-        request.space.summed_height_unit = request.space.triangulation = request.space.generation_limit =
-            false;
+        request.space.summed_height_unit = request.space.triangulation = request.space.generation_limit = false;
         request.goal.error = bound;
         const TunedPoint point = tuned(request).point;
         const TunedPoint brute = brute_force(job, request.goal);
         INFO("bound " << bound << ": " << point.outcome.triangles << " triangles, brute force "
                       << brute.outcome.triangles);
         CHECK(point.outcome.rms <= bound);
-        CHECK(static_cast<double>(point.outcome.triangles) <=
-              1.03 * static_cast<double>(brute.outcome.triangles));
+        CHECK(static_cast<double>(point.outcome.triangles) <= 1.03 * static_cast<double>(brute.outcome.triangles));
     }
 }
 

@@ -180,8 +180,7 @@ TEST_CASE("widths: more bits, less error and fewer flips") {
     const WidthTable positions = table_of(sphere_job(), "position", {32, 24, 18, 12});
     for (std::size_t k = 1; k < 4; ++k) {
         INFO(k);
-        CHECK(normals.rows[k].run.flips_of(Decided::normal) >
-              normals.rows[k - 1].run.flips_of(Decided::normal));
+        CHECK(normals.rows[k].run.flips_of(Decided::normal) > normals.rows[k - 1].run.flips_of(Decided::normal));
         CHECK(positions.rows[k].run.position_rms >= positions.rows[k - 1].run.position_rms);
     }
     CHECK(positions.rows[3].run.position_rms > 10 * positions.rows[0].run.position_rms);
@@ -203,8 +202,7 @@ TEST_CASE("widths: refused widths keep their place and say why") {
     CHECK(generations.rows[0].refused.empty());
     CHECK(generations.rows[0].of_the_job);
     CHECK(generations.rows[1].refused.empty());
-    CHECK_THAT(generations.rows[2].refused,
-               Contains("tests.generation_limit") && Contains("formats.generation_bits"));
+    CHECK_THAT(generations.rows[2].refused, Contains("tests.generation_limit") && Contains("formats.generation_bits"));
     const WidthTable texture = table_of(job, "texture", {13, 12, 11});
     CHECK_THAT(texture.rows[2].refused, Contains("formats.texture_fraction") && Contains("-1"));
     const WidthTable normals = table_of(job, "normal", {19, 18, 6, 5});
@@ -214,8 +212,8 @@ TEST_CASE("widths: refused widths keep their place and say why") {
     CHECK(screen.rows[0].refused.empty());
     CHECK(screen.rows[0].fraction == 0);
     CHECK_THAT(screen.rows[1].refused, Contains("formats.screen_bits = 24") &&
-                                           Contains("formats.screen_fraction = 8") &&
-                                           Contains("16 integer bits") && Contains("screen_range"));
+                                           Contains("formats.screen_fraction = 8") && Contains("16 integer bits") &&
+                                           Contains("screen_range"));
     const WidthTable range = table_of(job, "screen_range", {9, 8});
     CHECK_THAT(range.rows[1].refused, Contains("`formats.screen_fraction` = 8 must be less than"));
     const std::string csv = widths_csv({0, {normals, screen}, {}});
@@ -257,8 +255,7 @@ TEST_CASE("widths: the same bytes with any number of threads") {
     CHECK(widths_json(request, one) == widths_json(request, three));
     CHECK(widths_text(request, one) == widths_text(request, three));
     CHECK(one.exact_triangles > 18);
-    CHECK(nlohmann::json::parse(widths_json(request, one)).at("quantities").at("normal").at("rows").size() ==
-          3);
+    CHECK(nlohmann::json::parse(widths_json(request, one)).at("quantities").at("normal").at("rows").size() == 3);
 }
 
 TEST_CASE("widths: the widths of a sweep, widest first, the job's own among them") {

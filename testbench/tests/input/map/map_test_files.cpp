@@ -76,8 +76,7 @@ void write_png(const std::filesystem::path& path, const PngImage& image) {
 }
 
 void write_exr(const std::filesystem::path& path, const ExrImage& image) {
-    const Imath::Box2i window({image.left, image.top},
-                              {image.left + image.width - 1, image.top + image.height - 1});
+    const Imath::Box2i window({image.left, image.top}, {image.left + image.width - 1, image.top + image.height - 1});
     Imf::Header header(Imath::Box2i({0, 0}, {15, 15}), window);
     header.compression() = static_cast<Imf::Compression>(image.compression);
     const Imf::PixelType type = image.pixels == Pixels::uint   ? Imf::UINT
@@ -104,12 +103,10 @@ void write_exr(const std::filesystem::path& path, const ExrImage& image) {
         }
         planes.push_back(std::move(plane));
         header.channels().insert(image.channels[c], Imf::Channel(type));
-        frame.insert(image.channels[c],
-                     Imf::Slice::Make(type, planes.back().data(), window, size, size * width));
+        frame.insert(image.channels[c], Imf::Slice::Make(type, planes.back().data(), window, size, size * width));
     }
     if (image.tiled) {
-        header.setTileDescription(
-            Imf::TileDescription(8, 8, image.mip_map ? Imf::MIPMAP_LEVELS : Imf::ONE_LEVEL));
+        header.setTileDescription(Imf::TileDescription(8, 8, image.mip_map ? Imf::MIPMAP_LEVELS : Imf::ONE_LEVEL));
         Imf::TiledOutputFile file(path.c_str(), header);
         file.setFrameBuffer(frame);
         for (int level = 0; level < file.numLevels(); ++level) {

@@ -65,8 +65,7 @@ TEST_CASE("half donut and ramp agree with the reference maps to one code of 16 b
 }
 
 TEST_CASE("the maps of the project's jobs are those of the shared data") {
-    const std::filesystem::path shared = shared_data("maps"),
-                                ours = TESSERA_SOURCE_DIR "/testbench/examples/jobs";
+    const std::filesystem::path shared = shared_data("maps"), ours = TESSERA_SOURCE_DIR "/testbench/examples/jobs";
     if (shared.empty())
         return;
     const HeightMap crater = read_height_map(ours / "crater_lake_west.png");

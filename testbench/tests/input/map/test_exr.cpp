@@ -130,8 +130,7 @@ TEST_CASE("values that are not finite are repaired and counted, a map of nothing
         CHECK_THAT(map.repairs[2], Contains("1 -infinity texel set to the lowest finite value, 2"));
 
         write_exr(folder / "b.exr", {2, 1, {not_a_number, infinity}, pixels});
-        CHECK_THROWS_WITH(read_height_map(folder / "b.exr"),
-                          Contains("all 2 texels") && Contains("finite heights"));
+        CHECK_THROWS_WITH(read_height_map(folder / "b.exr"), Contains("all 2 texels") && Contains("finite heights"));
     }
 }
 
@@ -152,8 +151,7 @@ TEST_CASE("sides over the limit are refused from the header") {
     write_exr(folder / "limit.exr", {4096, 1, std::vector<float>(4096)});
     CHECK(read_height_map(folder / "limit.exr").width == 4096);
     write_exr(folder / "wide.exr", {4097, 1, std::vector<float>(4097)});
-    CHECK_THROWS_WITH(read_height_map(folder / "wide.exr"),
-                      Contains("4097 x 1 texels; each side must be 1 to 4096"));
+    CHECK_THROWS_WITH(read_height_map(folder / "wide.exr"), Contains("4097 x 1 texels; each side must be 1 to 4096"));
     write_exr(folder / "high.exr", {1, 4097, std::vector<float>(4097)});
     CHECK_THROWS_WITH(read_height_map(folder / "high.exr"), Contains("1 x 4097 texels"));
 }
@@ -213,8 +211,8 @@ TEST_CASE("the OpenEXR project's own test images are read") {
 
 TEST_CASE("an EXR chunk that holds less than its pixels is refused, whatever its compression") {
     const TemporaryFolder folder;
-    const auto [compression, tiled] = GENERATE(
-        table<int, bool>({{0, false}, {0, true}, {1, false}, {1, true}, {2, false}, {3, false}, {3, true}}));
+    const auto [compression, tiled] =
+        GENERATE(table<int, bool>({{0, false}, {0, true}, {1, false}, {1, true}, {2, false}, {3, false}, {3, true}}));
     ExrImage image{16, 16, std::vector<float>(256)};
     for (std::size_t k = 0; k < image.values.size(); ++k)
         image.values[k] = static_cast<float>(k / 2);  // shrinks under every compression
@@ -238,9 +236,8 @@ TEST_CASE("an EXR chunk that holds less than its pixels is refused, whatever its
         bad.replace(chunk + head, std::min(shorter.size(), bad.size() - chunk - head), shorter);
     }
     write_bytes(folder / "bad.exr", bad);
-    CHECK_THROWS_WITH(
-        read_height_map(folder / "bad.exr"),
-        Contains(compression == 0 ? "bytes of pixels of " : "decompress") && Contains("It is damaged"));
+    CHECK_THROWS_WITH(read_height_map(folder / "bad.exr"),
+                      Contains(compression == 0 ? "bytes of pixels of " : "decompress") && Contains("It is damaged"));
 }
 
 TEST_CASE("an EXR file without what its pixels can do without is read with a remark") {
@@ -259,8 +256,7 @@ TEST_CASE("an EXR file without what its pixels can do without is read with a rem
         remark = "offset table is incomplete";
     }
     SECTION("attributes") {
-        const auto name =
-            GENERATE("displayWindow"s, "pixelAspectRatio"s, "screenWindowCenter"s, "screenWindowWidth"s);
+        const auto name = GENERATE("displayWindow"s, "pixelAspectRatio"s, "screenWindowCenter"s, "screenWindowWidth"s);
         bad[bad.find(name)] = 'x';
         remark = "lacks the required attribute " + name;
     }
@@ -326,8 +322,7 @@ TEST_CASE("EXR attributes that are not as long as they say are refused") {
     write_exr(folder / "good.exr", steps());
     std::string bad = read_bytes(folder / "good.exr");
     constexpr std::size_t magic_and_version = 8;
-    bad.insert(magic_and_version,
-               "extra\0"s + type + '\0' + static_cast<char>(value.size()) + "\0\0\0"s + value);
+    bad.insert(magic_and_version, "extra\0"s + type + '\0' + static_cast<char>(value.size()) + "\0\0\0"s + value);
     write_bytes(folder / "bad.exr", bad);
     CHECK_THROWS_WITH(read_height_map(folder / "bad.exr"),
                       Contains("OpenEXR cannot read the file") && Contains("damaged"));

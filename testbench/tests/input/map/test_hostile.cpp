@@ -115,14 +115,12 @@ int refused_damage(const TemporaryFolder& folder, const std::string& good) {
 }  // namespace
 
 TEST_CASE("hostile maps are refused, but for those that can be mended") {
-    const auto [kind, least] =
-        GENERATE(table<std::string, int>({{"exr_crafted", 37}, {"png", 21}, {"pgm", 22}}));
+    const auto [kind, least] = GENERATE(table<std::string, int>({{"exr_crafted", 37}, {"png", 21}, {"pgm", 22}}));
     const auto folder = shared_data("hostile/" + kind);
     if (folder.empty())
         return;
-    const std::set<std::string> mended{
-        "ambig_p2_no_final_newline.pgm", "comment_bomb.pgm",   "denormal_pixels.exr",
-        "missing_displayWindow.exr",     "nan_inf_pixels.exr", "pixel_type_uint.exr"};
+    const std::set<std::string> mended{"ambig_p2_no_final_newline.pgm", "comment_bomb.pgm",   "denormal_pixels.exr",
+                                       "missing_displayWindow.exr",     "nan_inf_pixels.exr", "pixel_type_uint.exr"};
     int count = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
         ++count;
@@ -133,8 +131,7 @@ TEST_CASE("hostile maps are refused, but for those that can be mended") {
         if (mended.count(name) != 0)
             CHECK(outcome.kind == Outcome::Kind::loaded_with_remark);
         else if (name.rfind("ok_", 0) == 0)
-            CHECK(
-                (outcome.kind == Outcome::Kind::loaded || outcome.kind == Outcome::Kind::loaded_with_remark));
+            CHECK((outcome.kind == Outcome::Kind::loaded || outcome.kind == Outcome::Kind::loaded_with_remark));
         else
             check_refusal(outcome, entry.path());
     }
@@ -173,8 +170,8 @@ TEST_CASE("PNG files cut off or with bytes changed are all refused") {
 
 TEST_CASE("PGM files cut off or with bytes changed") {
     const TemporaryFolder folder;
-    const auto good = GENERATE("P5\n# comment\n3 3\n65535\n0123456789abcdefgh"s,
-                               "P2\n3 2 # comment\n100\n10 20 30\n40 50 60\n"s);
+    const auto good =
+        GENERATE("P5\n# comment\n3 3\n65535\n0123456789abcdefgh"s, "P2\n3 2 # comment\n100\n10 20 30\n40 50 60\n"s);
     CHECK(refused_damage(folder, good) > damaged_files / 2);
 }
 
@@ -246,9 +243,8 @@ TEST_CASE("an EXR file with more channels than can be decoded in reasonable memo
         std::string bad = read_bytes(folder / "good.exr") + std::string(padding_for_tables, '\0');
         set_far_corner(bad, 999, 999);
         write_bytes(folder / "bad.exr", bad);
-        CHECK_THAT(
-            outcome_of(folder / "bad.exr").message,
-            Catch::Contains("the image of the EXR file has 1080000000 bytes when decoded, in 270 channels"));
+        CHECK_THAT(outcome_of(folder / "bad.exr").message,
+                   Catch::Contains("the image of the EXR file has 1080000000 bytes when decoded, in 270 channels"));
     }
     CHECK(outcome_of(folder / "bad.exr").kind == Outcome::Kind::refused);
 }

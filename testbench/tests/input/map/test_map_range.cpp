@@ -40,8 +40,7 @@ std::vector<double> machine_displacements(HeightMap map, const MapRange& range, 
     span_values(map, range);
     const BaseMesh mesh = make_plane(1, 1, 20, 20);
     const MachineSetup setup = make_setup(resolve_job(job, mesh, map).job, mesh, map);
-    const double position =
-        std::ldexp(1.0, -setup.registers.formats.position.fraction) / setup.model_scale.scale;
+    const double position = std::ldexp(1.0, -setup.registers.formats.position.fraction) / setup.model_scale.scale;
     std::vector<double> result;
     for (const std::uint16_t code : setup.map.codes)
         result.push_back((setup.registers.displacement.scale * std::ldexp(static_cast<double>(code), -16) +
@@ -68,9 +67,8 @@ TEST_CASE("full: the scale spans what the source can hold") {
     check_equal(machine_displacements(metres(), {}, &setup), expected, 2e-3);
     CHECK(setup.map.codes == std::vector<std::uint16_t>{1000, 1200, 1500, 1600});
     REQUIRE(setup.remarks.size() == 1);
-    CHECK_THAT(setup.remarks.front(),
-               Contains("the map's values, 1000 to 1600, are 0.92 % of the 0 to 65535") &&
-                   Contains("map.range = \"data\""));
+    CHECK_THAT(setup.remarks.front(), Contains("the map's values, 1000 to 1600, are 0.92 % of the 0 to 65535") &&
+                                          Contains("map.range = \"data\""));
 }
 
 TEST_CASE("data: the scale spans the values that occur, and so do the codes") {
@@ -80,8 +78,7 @@ TEST_CASE("data: the scale spans the values that occur, and so do the codes") {
     check_equal(displacements(map), {10, 11, 12.5, 13}, 1e-5);
     MachineSetup setup;
     check_equal(machine_displacements(metres(), range, &setup), {10, 11, 12.5, 13}, 1e-3);
-    CHECK(setup.map.codes ==
-          std::vector<std::uint16_t>{0, 21845, 54613, 65535});  // thirds and sixths of 65535
+    CHECK(setup.map.codes == std::vector<std::uint16_t>{0, 21845, 54613, 65535});  // thirds and sixths of 65535
     CHECK(setup.remarks.empty());
 }
 

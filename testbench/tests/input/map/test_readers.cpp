@@ -31,10 +31,9 @@ float eighth_bit(int sample) {
 TEST_CASE("a PGM map has its top row at the largest y, and sample / maxval") {
     const TemporaryFolder folder;
     for (const std::string& bytes :
-         {"P2\n# top row first\n3 2\n# maxval\n100\n0 25 50\n75 100#c\n1\n"s,
-          "P5 3 2 100\n\0\31\62\113\144\1"s, "P5 3 2 100#c\n\0\31\62\113\144\1"s,
-          "P5 #c\r3 2 100\r\0\31\62\113\144\1"s, "P5\r\n3 2\r\n100\r\n\0\31\62\113\144\1"s,
-          "P2\r\n3 2\r\n100\r\n0 25 50\r\n75 100 1\r\n"s}) {
+         {"P2\n# top row first\n3 2\n# maxval\n100\n0 25 50\n75 100#c\n1\n"s, "P5 3 2 100\n\0\31\62\113\144\1"s,
+          "P5 3 2 100#c\n\0\31\62\113\144\1"s, "P5 #c\r3 2 100\r\0\31\62\113\144\1"s,
+          "P5\r\n3 2\r\n100\r\n\0\31\62\113\144\1"s, "P2\r\n3 2\r\n100\r\n0 25 50\r\n75 100 1\r\n"s}) {
         const HeightMap map = read_text_as(folder, "a.pgm", bytes);
         REQUIRE(map.width == 3);
         REQUIRE(map.height == 2);
@@ -60,15 +59,12 @@ TEST_CASE("a 16-bit P5 is big-endian, and its first sample may look like white s
 
 TEST_CASE("a PGM file with something odd about it is read with a remark") {
     const TemporaryFolder folder;
-    CHECK_THAT(read_text_as(folder, "a.pgm", "P2 1 1 9 1"s).repairs.at(0),
-               Contains("right after its last digit"));
+    CHECK_THAT(read_text_as(folder, "a.pgm", "P2 1 1 9 1"s).repairs.at(0), Contains("right after its last digit"));
     CHECK_THAT(read_text_as(folder, "a.pgm", "P2 1 1 9 1\n2 3\n"s).repairs.at(0), Contains("4 bytes after"));
     CHECK_THAT(read_text_as(folder, "a.pgm", "P5 1 1 9\n\1more"s).repairs.at(0), Contains("4 bytes after"));
     const std::string comments = "P5\n" + std::string(4096, '#') + "\n1 1 9\n\1";
-    CHECK_THAT(read_text_as(folder, "a.pgm", comments).repairs.at(0),
-               Contains("nearly all of them comments"));
-    CHECK_THAT(read_text_as(folder, "a.png", "P5 1 1 9\n\1"s).repairs.at(0),
-               Contains("named .png but is a PGM"));
+    CHECK_THAT(read_text_as(folder, "a.pgm", comments).repairs.at(0), Contains("nearly all of them comments"));
+    CHECK_THAT(read_text_as(folder, "a.png", "P5 1 1 9\n\1"s).repairs.at(0), Contains("named .png but is a PGM"));
 }
 
 TEST_CASE("a wrong PGM file is refused with what is wrong and the value") {
@@ -83,10 +79,8 @@ TEST_CASE("a wrong PGM file is refused with what is wrong and the value") {
         {"P2 4096 4096 255\n1 2", "ends before a sample"},
         {"P5 2 2 0\n\1\1\1\1", "the maximum value at byte 7 of the PGM file is \"0\""},
         {"P5 2 2 65536\n12345678", "is \"65536\"; it must be a number from 1 to 65535"},
-        {"P5 2 1 100\n\1\145",
-         "the sample before byte 13 of the PGM file is 101, more than its maximum value 100"},
-        {"P2 2 1 100 1 101\n",
-         "a sample at byte 13 of the PGM file is \"101\"; it must be a number from 0 to 100"},
+        {"P5 2 1 100\n\1\145", "the sample before byte 13 of the PGM file is 101, more than its maximum value 100"},
+        {"P2 2 1 100 1 101\n", "a sample at byte 13 of the PGM file is \"101\"; it must be a number from 0 to 100"},
         {"P2 2 1 100 1 -1\n", "is \"-1\""},
         {"P2 2 1 100 1 +1\n", "is \"+1\""},
         {"P2 2 1 100 1 1.5\n", "is \"1.5\""},
@@ -126,8 +120,7 @@ TEST_CASE("grey PNG maps of every depth are sample / maximum, top row at the lar
         CHECK(map.range_high == 1);
         CHECK(map.repairs.empty());
 
-        write_png(folder / "16.png",
-                  {2, 1, 16, PNG_COLOR_TYPE_GRAY, {0x12, 0x34, 0xff, 0xff}, {}, interlaced});
+        write_png(folder / "16.png", {2, 1, 16, PNG_COLOR_TYPE_GRAY, {0x12, 0x34, 0xff, 0xff}, {}, interlaced});
         CHECK(read_height_map(folder / "16.png").values ==
               std::vector<float>{static_cast<float>(0x1234 / 65535.0), 1.F});
 
@@ -162,8 +155,7 @@ TEST_CASE("colour and alpha in a PNG map: luma, exact where grey, alpha ignored,
     write_png(folder / "ga16.png", {1, 1, 16, PNG_COLOR_TYPE_GRAY_ALPHA, {0x80, 0, 0xff, 0xff}, {}});
     CHECK(read_height_map(folder / "ga16.png").at(0, 0) == static_cast<float>(0x8000 / 65535.0));
 
-    write_png(folder / "palette.png",
-              {4, 1, 2, PNG_COLOR_TYPE_PALETTE, {0x1b}, {1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4, 4}});
+    write_png(folder / "palette.png", {4, 1, 2, PNG_COLOR_TYPE_PALETTE, {0x1b}, {1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4, 4}});
     CHECK(read_height_map(folder / "palette.png").values ==
           std::vector<float>{eighth_bit(1), eighth_bit(2), eighth_bit(3), eighth_bit(4)});
 }

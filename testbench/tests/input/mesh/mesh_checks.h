@@ -17,10 +17,10 @@ struct EdgeCounts {
     std::size_t border = 0, shared = 0, odd = 0;
 };
 
-inline EdgeCounts count_edges(BaseMesh const& mesh) {
+inline EdgeCounts count_edges(const BaseMesh& mesh) {
     using Edge = std::pair<PositionKey, PositionKey>;
     std::map<Edge, std::pair<int, int>> uses;
-    for (auto const& t : mesh.triangles) {
+    for (const auto& t : mesh.triangles) {
         for (std::size_t k = 0; k < 3; ++k) {
             const PositionKey a = position_key(mesh.vertices[t[k]].position);
             const PositionKey b = position_key(mesh.vertices[t[(k + 1) % 3]].position);
@@ -28,7 +28,7 @@ inline EdgeCounts count_edges(BaseMesh const& mesh) {
         }
     }
     EdgeCounts counts;
-    for (auto const& [edge, use] : uses) {
+    for (const auto& [edge, use] : uses) {
         ++(use.first + use.second == 1         ? counts.border
            : use.first == 1 && use.second == 1 ? counts.shared
                                                : counts.odd);
@@ -37,20 +37,20 @@ inline EdgeCounts count_edges(BaseMesh const& mesh) {
 }
 
 /// What every base mesh promises, whatever it was made from.
-inline void require_complete(BaseMesh const& mesh) {
+inline void require_complete(const BaseMesh& mesh) {
     REQUIRE_FALSE(mesh.triangles.empty());
     std::size_t bad_indices = 0, flat = 0, bad_frames = 0, bad_values = 0;
-    for (auto const& t : mesh.triangles) {
+    for (const auto& t : mesh.triangles) {
         for (std::uint32_t i : t) {
             bad_indices += i >= mesh.vertices.size();
         }
     }
     REQUIRE(bad_indices == 0);
-    for (auto const& t : mesh.triangles) {
+    for (const auto& t : mesh.triangles) {
         flat += triangle_normal(mesh.vertices[t[0]].position, mesh.vertices[t[1]].position,
                                 mesh.vertices[t[2]].position) == glm::dvec3(0);
     }
-    for (BaseVertex const& v : mesh.vertices) {
+    for (const BaseVertex& v : mesh.vertices) {
         bad_frames += !(std::abs(safe_length(v.normal) - 1) < 1e-14) ||
                       !(std::abs(safe_length(v.tangent) - 1) < 1e-14) ||
                       !(std::abs(glm::dot(v.normal, v.tangent)) < 1e-14) || std::abs(v.handedness) != 1;
@@ -59,7 +59,7 @@ inline void require_complete(BaseMesh const& mesh) {
     REQUIRE(flat == 0);
     REQUIRE(bad_frames == 0);
     REQUIRE(bad_values == 0);
-    BaseMesh::TextureScale const& s = mesh.texture_scale;
+    const BaseMesh::TextureScale& s = mesh.texture_scale;
     REQUIRE(std::isfinite(s.largest_u + s.largest_v));
     REQUIRE(s.smallest_u <= s.mean_u * (1 + 1e-12));
     REQUIRE(s.mean_u <= s.largest_u * (1 + 1e-12));

@@ -12,14 +12,14 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-bool same_bits(glm::dvec3 const& a, glm::dvec3 const& b) {
+bool same_bits(const glm::dvec3& a, const glm::dvec3& b) {
     return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
 /// On a mesh around the z axis: every triangle faces away from it or from the origin.
-std::size_t inward(BaseMesh const& mesh, bool from_axis) {
+std::size_t inward(const BaseMesh& mesh, bool from_axis) {
     std::size_t count = 0;
-    for (auto const& t : mesh.triangles) {
+    for (const auto& t : mesh.triangles) {
         const glm::dvec3 a = mesh.vertices[t[0]].position, b = mesh.vertices[t[1]].position,
                          c = mesh.vertices[t[2]].position;
         glm::dvec3 out = (a + b + c) / 3.0;
@@ -40,7 +40,7 @@ TEST_CASE("a plane is flat, centred, and faces up") {
     CHECK(mesh.vertices.front().position == glm::dvec3(-4, -1.5, 0));
     CHECK(mesh.vertices.back().position == glm::dvec3(4, 1.5, 0));
     CHECK(mesh.vertices.back().texture == glm::dvec2(1, 1));
-    for (BaseVertex const& v : mesh.vertices) {
+    for (const BaseVertex& v : mesh.vertices) {
         CHECK(v.normal == glm::dvec3(0, 0, 1));
         CHECK(v.tangent == glm::dvec3(1, 0, 0));
         CHECK(v.handedness == 1);
@@ -61,8 +61,8 @@ TEST_CASE("a cylinder closes at its seam, bit for bit, and faces outward") {
     CHECK(inward(mesh, true) == 0);
     const auto line = static_cast<std::size_t>(columns) + 1;
     for (std::size_t j = 0; j <= 5; ++j) {
-        BaseVertex const& left = mesh.vertices[j * line];
-        BaseVertex const& right = mesh.vertices[j * line + line - 1];
+        const BaseVertex& left = mesh.vertices[j * line];
+        const BaseVertex& right = mesh.vertices[j * line + line - 1];
         CHECK(left.texture.x == 0);
         CHECK(right.texture.x == 1);
         CHECK(same_bits(left.position, right.position));
@@ -75,7 +75,7 @@ TEST_CASE("a cylinder closes at its seam, bit for bit, and faces outward") {
     CHECK(edges.odd == 0);
     CHECK(mesh.texture_scale.mean_v == Approx(3));
     CHECK(mesh.texture_scale.mean_u == Approx(2.0 * columns * 2 * std::sin(3.14159265358979 / columns)));
-    for (BaseVertex const& v : mesh.vertices) {
+    for (const BaseVertex& v : mesh.vertices) {
         CHECK(v.handedness == 1);
         CHECK(v.tangent.z == Approx(0).margin(1e-14));
     }
@@ -100,13 +100,13 @@ TEST_CASE("a sphere is closed, outward, and has no flat triangle") {
     CHECK(edges.shared == mesh.triangles.size() * 3 / 2);
     const auto line = static_cast<std::size_t>(columns) + 1;
     for (std::size_t j = 0; j + 1 < static_cast<std::size_t>(rows); ++j) {
-        BaseVertex const& left = mesh.vertices[j * line];
-        BaseVertex const& right = mesh.vertices[j * line + line - 1];
+        const BaseVertex& left = mesh.vertices[j * line];
+        const BaseVertex& right = mesh.vertices[j * line + line - 1];
         CHECK(same_bits(left.position, right.position));
         CHECK(same_bits(left.normal, right.normal));
         CHECK(same_bits(left.tangent, right.tangent));
     }
-    for (BaseVertex const& v : mesh.vertices) {
+    for (const BaseVertex& v : mesh.vertices) {
         CHECK(safe_length(v.position) == Approx(0.5));
         CHECK(v.handedness == 1);
     }
@@ -115,8 +115,7 @@ TEST_CASE("a sphere is closed, outward, and has no flat triangle") {
 }
 
 TEST_CASE("built-in meshes refuse what they cannot be, naming the key") {
-    const double nan = std::numeric_limits<double>::quiet_NaN(),
-                 infinity = std::numeric_limits<double>::infinity();
+    const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
     CHECK_THROWS_WITH(make_plane(0, 3, 2, 2), Contains("mesh.columns = 0") && Contains("1 to 4096"));
     CHECK_THROWS_WITH(make_plane(3, 4097, 2, 2), Contains("mesh.rows = 4097"));
     CHECK_THROWS_WITH(make_plane(3, 3, nan, 2), Contains("mesh.width"));
@@ -146,7 +145,6 @@ TEST_CASE("the dispatcher makes what the job says") {
     CHECK(make_base_mesh(job, "").triangles.size() == 6);
     job.source = MeshSource::file;
     CHECK_THROWS_AS(make_base_mesh(job, ""), InputError);
-    CHECK_THROWS_WITH(make_base_mesh(job, "nowhere/at_all.obj"),
-                      Contains("nowhere/at_all.obj: no such file"));
+    CHECK_THROWS_WITH(make_base_mesh(job, "nowhere/at_all.obj"), Contains("nowhere/at_all.obj: no such file"));
     CHECK_THROWS_WITH(make_base_mesh(job, "."), Contains("not a regular file"));
 }

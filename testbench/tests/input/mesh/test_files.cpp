@@ -17,27 +17,27 @@ namespace fs = std::filesystem;
 namespace {
 
 /// The files of a folder of the shared data, in order of name; none where it is absent.
-std::vector<fs::path> files_in(char const* folder) {
+std::vector<fs::path> files_in(const char* folder) {
     std::vector<fs::path> files;
     const fs::path path = shared_data(folder);
     if (path.empty()) {
         return files;
     }
-    for (auto const& entry : fs::directory_iterator(path)) {
+    for (const auto& entry : fs::directory_iterator(path)) {
         files.push_back(entry.path());
     }
     std::sort(files.begin(), files.end());
     return files;
 }
 
-bool is_obj(fs::path const& file) {
+bool is_obj(const fs::path& file) {
     return file.extension() == ".obj" || file.filename().string().rfind("tinyobj_", 0) == 0;
 }
 
 }  // namespace
 
 TEST_CASE("the shared meshes load") {
-    for (fs::path const& file : files_in("meshes")) {
+    for (const fs::path& file : files_in("meshes")) {
         if (!is_obj(file)) {
             continue;
         }
@@ -51,7 +51,7 @@ TEST_CASE("the shared meshes load") {
 }
 
 TEST_CASE("the shared meshes are what tinyobjloader reads") {
-    for (fs::path const& file : files_in("meshes")) {
+    for (const fs::path& file : files_in("meshes")) {
         if (!is_obj(file)) {
             continue;
         }
@@ -59,12 +59,12 @@ TEST_CASE("the shared meshes are what tinyobjloader reads") {
         const BaseMesh mesh = read_obj(file.string());
         tinyobj::ObjReader reader;
         REQUIRE(reader.ParseFromFile(file.string()));
-        tinyobj::attrib_t const& attrib = reader.GetAttrib();
+        const tinyobj::attrib_t& attrib = reader.GetAttrib();
         std::size_t at = 0, different = 0;
-        for (tinyobj::shape_t const& shape : reader.GetShapes()) {
-            for (tinyobj::index_t const& index : shape.mesh.indices) {
+        for (const tinyobj::shape_t& shape : reader.GetShapes()) {
+            for (const tinyobj::index_t& index : shape.mesh.indices) {
                 REQUIRE(at / 3 < mesh.triangles.size());
-                BaseVertex const& vertex = mesh.vertices[mesh.triangles[at / 3][at % 3]];
+                const BaseVertex& vertex = mesh.vertices[mesh.triangles[at / 3][at % 3]];
                 ++at;
                 const auto v = static_cast<std::size_t>(index.vertex_index) * 3;
                 const auto t = static_cast<std::size_t>(index.texcoord_index) * 2;
@@ -91,8 +91,8 @@ TEST_CASE("the built-in plane is the shared plane of 18 triangles") {
     REQUIRE(read.triangles.size() == built_in.triangles.size());
     for (std::size_t i = 0; i < read.triangles.size(); ++i) {
         for (std::size_t k = 0; k < 3; ++k) {  // the file numbers its vertices by first use
-            BaseVertex const& a = read.vertices[read.triangles[i][k]];
-            BaseVertex const& b = built_in.vertices[built_in.triangles[i][k]];
+            const BaseVertex& a = read.vertices[read.triangles[i][k]];
+            const BaseVertex& b = built_in.vertices[built_in.triangles[i][k]];
             CHECK(safe_length(a.position - b.position) < 1e-6);
             CHECK(glm::length(a.texture - b.texture) < 1e-6);
             CHECK(a.normal == b.normal);
@@ -106,7 +106,7 @@ TEST_CASE("the shared cylinders close at their seam") {
     if (folder.empty()) {
         return;
     }
-    for (char const* name : {"cylinder_1800.obj", "cylinder_1800_lps.obj"}) {
+    for (const char* name : {"cylinder_1800.obj", "cylinder_1800_lps.obj"}) {
         const BaseMesh mesh = read_obj((folder / name).string());
         CHECK(mesh.vertices.size() == 961);
         CHECK(mesh.repairs.empty());
@@ -114,8 +114,8 @@ TEST_CASE("the shared cylinders close at their seam") {
         CHECK(edges.border == 60);
         CHECK(edges.odd == 0);
         std::size_t open = 0;
-        for (BaseVertex const& v : mesh.vertices) {
-            for (BaseVertex const& w : mesh.vertices) {
+        for (const BaseVertex& v : mesh.vertices) {
+            for (const BaseVertex& w : mesh.vertices) {
                 open += v.position == w.position && (v.normal != w.normal || v.tangent != w.tangent);
             }
         }
@@ -126,10 +126,10 @@ TEST_CASE("the shared cylinders close at their seam") {
 TEST_CASE("hostile files load with a repair or end in one clear error") {
     // The ok_ files give no texture coordinates, which a repair has to say; one holds a face in four
     // spellings.
-    const auto told_of_every_ok = [](std::string const& repair) {
+    const auto told_of_every_ok = [](const std::string& repair) {
         return repair.find("have no texture coordinates") != std::string::npos;
     };
-    for (fs::path const& file : files_in("hostile/obj")) {
+    for (const fs::path& file : files_in("hostile/obj")) {
         if (!is_obj(file)) {
             continue;
         }
@@ -141,15 +141,14 @@ TEST_CASE("hostile files load with a repair or end in one clear error") {
             // that one broke tinyobjloader's triangulation, but is a good mesh with nothing to mend
             CHECK(mesh.repairs.empty() == (name == "tinyobj_issue-295-trianguation-failure.obj"));
             if (name.rfind("ok_", 0) == 0) {
-                const auto others =
-                    std::count_if(mesh.repairs.begin(), mesh.repairs.end(),
-                                  [&](std::string const& repair) { return !told_of_every_ok(repair); });
+                const auto others = std::count_if(mesh.repairs.begin(), mesh.repairs.end(),
+                                                  [&](const std::string& repair) { return !told_of_every_ok(repair); });
                 CHECK(others == (name == "ok_all_forms.obj" ? 1 : 0));
             }
-            for (std::string const& repair : mesh.repairs) {
+            for (const std::string& repair : mesh.repairs) {
                 CHECK(repair.back() == '.');
             }
-        } catch (InputError const& error) {
+        } catch (const InputError& error) {
             CHECK_THAT(error.what(), Contains(name));
             CHECK(name.rfind("ok_", 0) != 0);
         }

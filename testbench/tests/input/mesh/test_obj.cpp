@@ -25,29 +25,29 @@ const std::string square =
     "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
     "vn 0 0 1\n";
 
-BaseMesh parse(std::string const& text) {
+BaseMesh parse(const std::string& text) {
     return parse_obj(text, "test.obj");
 }
 
-std::string all_repairs(BaseMesh const& mesh) {
+std::string all_repairs(const BaseMesh& mesh) {
     std::string all;
-    for (std::string const& repair : mesh.repairs) {
+    for (const std::string& repair : mesh.repairs) {
         all += repair + "\n";
     }
     return all;
 }
 
 /// Area of the mesh in the x,y plane; triangles turned over count negative.
-double signed_area(BaseMesh const& mesh) {
+double signed_area(const BaseMesh& mesh) {
     double area = 0;
-    for (auto const& t : mesh.triangles) {
+    for (const auto& t : mesh.triangles) {
         const glm::dvec3 a = mesh.vertices[t[0]].position;
         area += glm::cross(mesh.vertices[t[1]].position - a, mesh.vertices[t[2]].position - a).z / 2;
     }
     return area;
 }
 
-std::string polygon(std::vector<glm::dvec2> const& outline) {
+std::string polygon(const std::vector<glm::dvec2>& outline) {
     std::string text, face = "f";
     for (std::size_t i = 0; i < outline.size(); ++i) {
         text += fmt::format("v {} {} 0\nvt {} {}\n", outline[i].x, outline[i].y, outline[i].x, outline[i].y);
@@ -72,8 +72,7 @@ TEST_CASE("the forms an OBJ may take all give the same mesh") {
     const std::string forms[] = {
         square + "f -4/-4/-1 -3/-3/-1 -2/-2/-1 -1/-1/-1\n",
         square + "f 1/1 2/2 \\\n 3/3 4/4",
-        "\xef\xbb\xbf" + square +
-            "g a\ns off\nusemtl x\no y # z\nf 1/1/1 2/2/1 3/3/1 4/4/1 # comment\nl 1 2\np 1",
+        "\xef\xbb\xbf" + square + "g a\ns off\nusemtl x\no y # z\nf 1/1/1 2/2/1 3/3/1 4/4/1 # comment\nl 1 2\np 1",
         "f 1/1 2/2 3/3 4/4\n" + square,
         "# C:\\temp\\\n" + square + "fo 1/1 2/2 3/3 4/4",
         "v 0e999 -0.0 +0 1\nv 1E+0 1e-320 .0 1 0 0 1\nv 10e-1 1. 0 1 1 1\nv 1e-400 +1 "
@@ -106,7 +105,7 @@ TEST_CASE("numbers are those of the text, correctly rounded") {
     std::uniform_real_distribution<double> mantissa(-10, 10), exponent(-20, 30);
     for (int i = 0; i < 1000; ++i) {
         const double value = mantissa(random), scaled = value * std::pow(10, exponent(random));
-        for (std::string const& text :
+        for (const std::string& text :
              {fmt::format("{:.17g}", scaled), fmt::format("{:.9g}", scaled), fmt::format("{:.12f}", value)}) {
             INFO(text);
             const BaseMesh mesh = parse(fmt::format("v 0 0 0\nv {} 0 0\nv 0 {} 0\nf 1 2 3\n", text, text));
@@ -140,12 +139,11 @@ TEST_CASE("bad input ends in an error with file and line") {
     using namespace std::string_literals;
     const std::pair<std::string, std::string> bad_files[] = {
         {"", "no face"},
-        {"<!DOCTYPE html><html>404</html>\n",
-         "no face (`f` line) in 1 line(s), but 1 of other words ('<!DOCTYPE'"},
+        {"<!DOCTYPE html><html>404</html>\n", "no face (`f` line) in 1 line(s), but 1 of other words ('<!DOCTYPE'"},
         {"v 0 0 0\nv 1 0\0 0\n"s, "a zero byte"},
         {"\xff\xfev\0 \0"s, "UTF-16"},
     };
-    for (auto const& [text, message] : bad_files) {
+    for (const auto& [text, message] : bad_files) {
         CHECK_THROWS_AS(parse(text), InputError);
         CHECK_THROWS_WITH(parse(text), StartsWith("test.obj: ") && Contains(message));
     }
@@ -154,8 +152,7 @@ TEST_CASE("bad input ends in an error with file and line") {
 TEST_CASE("corners without texture coordinates get the map laid over the mesh, with a repair") {
     const BaseMesh mesh = parse("v 0 0 5\nv 4 0 5\nv 0 2 5\nf 1 2 3\n");
     require_complete(mesh);
-    CHECK_THAT(all_repairs(mesh),
-               StartsWith("3 vertices have no texture coordinates") && Contains("along z"));
+    CHECK_THAT(all_repairs(mesh), StartsWith("3 vertices have no texture coordinates") && Contains("along z"));
     CHECK(mesh.vertices[1].texture == glm::dvec2(1, 0));
     CHECK(mesh.vertices[2].texture == glm::dvec2(0, 1));
     CHECK_THAT(all_repairs(parse(square + "f 1/1 2 3/3\n")),
@@ -168,8 +165,7 @@ TEST_CASE("flat triangles are dropped and counted; nothing left is an error") {
     CHECK(mesh.dropped_degenerate == 3);
     CHECK_THAT(all_repairs(mesh), Contains("3 triangle(s) of zero area") && Contains("line 11"));
     CHECK_THROWS_WITH(parse("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"), Contains("no triangle is left"));
-    CHECK_THROWS_WITH(parse("v 0 0 0\nv 0.1 0.1 0.7\nv 0.3 0.3 2.1\nf 1 2 3\n"),
-                      Contains("no triangle is left"));
+    CHECK_THROWS_WITH(parse("v 0 0 0\nv 0.1 0.1 0.7\nv 0.3 0.3 2.1\nf 1 2 3\n"), Contains("no triangle is left"));
     CHECK_THROWS_WITH(parse("v 0 0 0\nv 1e-200 0 0\nv 0 1e-200 0\nf 1 2 3\n"), Contains("smaller than"));
 }
 
@@ -198,8 +194,7 @@ TEST_CASE("T-junctions, crowded edges and changes of winding are told") {
     const BaseMesh junction =
         parse("v 0 0 0\nv 2 0 0\nv 1 2 0\nv 1 0 0\nv 0 -2 0\nv 2 -2 0\nf 1 2 3\nf 1 5 4\nf 4 5 6\nf 4 6 2\n");
     CHECK_THAT(all_repairs(junction), Contains("1 border edge(s) have another vertex"));
-    const BaseMesh book =
-        parse("v 0 0 0\nv 0 0 1\nv 1 0 0\nv -1 1 0\nv -1 -1 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\n");
+    const BaseMesh book = parse("v 0 0 0\nv 0 0 1\nv 1 0 0\nv -1 1 0\nv -1 -1 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\n");
     CHECK_THAT(all_repairs(book), Contains("1 edge(s) belong to more than two triangles"));
     const BaseMesh twisted = parse(square + "f 1/1 2/2 3/3\nf 1/1 4/4 3/3\n");
     CHECK_THAT(all_repairs(twisted), Contains("Across 1 edge(s) the winding changes"));
@@ -217,8 +212,7 @@ TEST_CASE("given normals are made unit; without length they are computed") {
     CHECK(mesh.vertices[3].normal.y == Approx(0.6));
     CHECK_THAT(all_repairs(mesh),
                Contains("1 vertex normal(s) have no length") && Contains("3 vertex normal(s) are not"));
-    CHECK_THAT(all_repairs(parse(square + "vn 0 0 -1\nf 1/1/2 2/2/2 3/3/2\n")),
-               Contains("against their winding"));
+    CHECK_THAT(all_repairs(parse(square + "vn 0 0 -1\nf 1/1/2 2/2/2 3/3/2\n")), Contains("against their winding"));
 }
 
 TEST_CASE("computed normals are those of the surface, across texture seams, and do not depend on the cut") {
@@ -234,9 +228,9 @@ TEST_CASE("computed normals are those of the surface, across texture seams, and 
     const EdgeCounts edges = count_edges(mesh);
     CHECK(edges.border == 0);
     CHECK(edges.odd == 0);
-    for (BaseVertex const& v : mesh.vertices) {
+    for (const BaseVertex& v : mesh.vertices) {
         CHECK(safe_length(v.normal - unit_or_zero(v.position - glm::dvec3(0.5))) < 1e-15);
-        for (BaseVertex const& w : mesh.vertices) {
+        for (const BaseVertex& w : mesh.vertices) {
             if (v.position == w.position) {
                 CHECK(v.normal == w.normal);
                 CHECK(v.tangent == w.tangent);
@@ -266,9 +260,8 @@ TEST_CASE("a triangle without area in texture space gives perpendicular tangents
 TEST_CASE("a mesh without any area in texture space gets the map laid over it") {
     const BaseMesh mesh = parse(square + "f 1/1 2/1 3/1 4/1\n");
     require_complete(mesh);
-    CHECK_THAT(all_repairs(mesh),
-               Contains("No triangle has an area in texture space: the map was laid over the "
-                        "mesh's bounding box along z."));
+    CHECK_THAT(all_repairs(mesh), Contains("No triangle has an area in texture space: the map was laid over the "
+                                           "mesh's bounding box along z."));
     CHECK(mesh.vertices[2].texture == glm::dvec2(1, 1));
     CHECK(mesh.texture_scale.mean_u == 1);
 }
@@ -293,11 +286,11 @@ TEST_CASE("concave polygons are cut inside their outline") {
         saws.emplace_back(14 - saws.size(), y);
     }
     const std::vector<std::vector<glm::dvec2>> outlines{
-        {{0, 0}, {4, 0}, {4, 4}, {2, 1}, {0, 4}},                          // a notch
-        {{0, 0}, {2, 0}, {1, 0.5}, {1, 2}},                                // a dart
-        {{0, 0}, {1, 0}, {2, 0}, {2, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}},  // corners on straight edges
-        {{0, 0}, {1, 0}, {0, 1}, {0, 0.5}},                                // a triangle with one more
-        {{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}},  // a U
+        {{0, 0}, {4, 0}, {4, 4}, {2, 1}, {0, 4}},                                          // a notch
+        {{0, 0}, {2, 0}, {1, 0.5}, {1, 2}},                                                // a dart
+        {{0, 0}, {1, 0}, {2, 0}, {2, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}},                  // corners on straight edges
+        {{0, 0}, {1, 0}, {0, 1}, {0, 0.5}},                                                // a triangle with one more
+        {{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}},                  // a U
         {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1}},  // a hole, bridged
         saws,
     };
@@ -313,7 +306,7 @@ TEST_CASE("concave polygons are cut inside their outline") {
             CHECK(all_repairs(mesh) == "");
             CHECK(mesh.triangles.size() == outline.size() - 2);
             CHECK(signed_area(mesh) == Approx(reversed ? -areas[i] : areas[i]));
-            for (BaseVertex const& v : mesh.vertices) {
+            for (const BaseVertex& v : mesh.vertices) {
                 CHECK(v.normal.z == (reversed ? -1 : 1));
             }
         }
@@ -351,10 +344,10 @@ TEST_CASE("a large convex polygon is cut without a corner that most of its trian
         }
         const BaseMesh mesh = parse(polygon(outline));
         CHECK(mesh.triangles.size() == n - 2);
-        CHECK(signed_area(mesh) == Approx(static_cast<double>(n) / 2 *
-                                          std::sin(2 * 3.14159265358979323846 / static_cast<double>(n))));
+        CHECK(signed_area(mesh) ==
+              Approx(static_cast<double>(n) / 2 * std::sin(2 * 3.14159265358979323846 / static_cast<double>(n))));
         std::vector<std::size_t> triangles(mesh.vertices.size());
-        for (auto const& t : mesh.triangles) {
+        for (const auto& t : mesh.triangles) {
             for (const std::uint32_t i : t) {
                 ++triangles[i];
             }
@@ -369,7 +362,7 @@ TEST_CASE("a large convex polygon is cut without a corner that most of its trian
 }
 
 TEST_CASE("outlines that cross themselves or are not plane load with a repair") {
-    for (std::string const& text :
+    for (const std::string& text :
          {polygon({{0, 0}, {1, 1}, {1, 0}, {0, 1}}), polygon({{0, 0}, {3, 3}, {3, 0}, {0, 1}}),
           polygon({{0, 1}, {0.59, -0.81}, {-0.95, 0.31}, {0.95, 0.31}, {-0.59, -0.81}})}) {
         const BaseMesh mesh = parse(text);
@@ -410,22 +403,22 @@ TEST_CASE("limits are named") {
 
 TEST_CASE("words that are not read are skipped and told") {
     const BaseMesh mesh = parse("hello\n" + square + "\x01\x02 3\nf 1/1 2/2 3/3\nsurf 0 1 0 1 1 2 3 4\n");
-    CHECK_THAT(all_repairs(mesh), Contains("3 line(s) begin with a word that is not read") &&
-                                      Contains("the first is line 1: 'hello'."));
+    CHECK_THAT(all_repairs(mesh),
+               Contains("3 line(s) begin with a word that is not read") && Contains("the first is line 1: 'hello'."));
 }
 
 namespace {
 
 /// A mesh or one of our two errors in printable words, and never anything else. Tells whether it loaded.
-bool survives(std::string const& text) {
+bool survives(const std::string& text) {
     std::string message;
     try {
         const BaseMesh mesh = parse(text);
         require_complete(mesh);
         return true;
-    } catch (InputError const& error) {
+    } catch (const InputError& error) {
         message = error.what();
-    } catch (ResourceError const& error) {
+    } catch (const ResourceError& error) {
         message = error.what();
     }
     CHECK_THAT(message, StartsWith("test.obj:"));
@@ -484,10 +477,9 @@ TEST_CASE("random triangle soups of all sizes keep the promises of a base mesh")
         std::uniform_int_distribution<int> coordinate(-4, 4);
         std::string text;
         for (int i = 0; i < 12; ++i) {
-            text += fmt::format("v {} {} {}\n", coordinate(random) * scale / 4,
-                                coordinate(random) * scale / 4, coordinate(random) * scale / 4);
-            text += fmt::format("vt {} {}\n", coordinate(random) * texture_scale,
-                                coordinate(random) * texture_scale);
+            text += fmt::format("v {} {} {}\n", coordinate(random) * scale / 4, coordinate(random) * scale / 4,
+                                coordinate(random) * scale / 4);
+            text += fmt::format("vt {} {}\n", coordinate(random) * texture_scale, coordinate(random) * texture_scale);
             text += fmt::format("vn {} {} {}\n", coordinate(random), coordinate(random), coordinate(random));
         }
         for (int f = 0; f < 8; ++f) {
@@ -524,8 +516,7 @@ TEST_CASE("a mesh file of another kind is named, with what to do") {
     };
     for (const auto& [content, kind] : files) {
         INFO(kind);
-        CHECK_THROWS_WITH(parse(content),
-                          StartsWith("test.obj: this is " + kind) && Contains("export it as OBJ"));
+        CHECK_THROWS_WITH(parse(content), StartsWith("test.obj: this is " + kind) && Contains("export it as OBJ"));
     }
     CHECK_NOTHROW(parse("# solid facet ply glTF\n" + square + "f 1/1 2/2 3/3\n"));
 }

@@ -38,26 +38,26 @@ BezierPatches one_patch(At at) {
 }
 
 /// In Newell's format.
-std::string text_of(BezierPatches const& patches) {
+std::string text_of(const BezierPatches& patches) {
     std::string text = fmt::format("{}\n", patches.patches.size());
-    for (auto const& patch : patches.patches) {
+    for (const auto& patch : patches.patches) {
         for (std::size_t k = 0; k < 16; ++k) {
             text += fmt::format("{}{}", patch[k] + 1, k < 15 ? "," : "\n");
         }
     }
     text += fmt::format("{}\n", patches.points.size());
-    for (glm::dvec3 const& p : patches.points) {
+    for (const glm::dvec3& p : patches.points) {
         text += fmt::format("{},{},{}\n", p.x, p.y, p.z);
     }
     return text;
 }
 
-double largest_of(glm::dvec3 const& a) {
+double largest_of(const glm::dvec3& a) {
     return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)});
 }
 
 /// The text with one line, counted from 1, replaced.
-std::string with_line(std::string text, int number, std::string const& line) {
+std::string with_line(std::string text, int number, const std::string& line) {
     std::size_t at = 0;
     for (int k = 1; k < number; ++k) {
         at = text.find('\n', at) + 1;
@@ -65,12 +65,12 @@ std::string with_line(std::string text, int number, std::string const& line) {
     return text.replace(at, text.find('\n', at) - at, line);
 }
 
-std::string parse_error(std::string const& text) {
+std::string parse_error(const std::string& text) {
     try {
         parse_bezier_patches(text, "p.txt");
-    } catch (InputError const& error) {
+    } catch (const InputError& error) {
         return error.what();
-    } catch (ResourceError const& error) {
+    } catch (const ResourceError& error) {
         return std::string("limit: ") + error.what();
     }
     return "";
@@ -93,7 +93,7 @@ TEST_CASE("patches: the teapot has 32 patches and 992 triangles, closed but for 
     CHECK(edges.odd == 0);
     // The body's rim and the lid's, 16 edges round; the spout's two ends and the handle's two, 8 each.
     CHECK(edges.border == 64);
-    for (BaseVertex const& v : mesh.vertices) {
+    for (const BaseVertex& v : mesh.vertices) {
         if (v.position.x == 0 && v.position.y == 0) {
             CHECK(largest_of(v.normal - glm::dvec3(0, 0, v.position.z > 1 ? 1 : -1)) < 1e-15);
         }
@@ -111,7 +111,7 @@ TEST_CASE("patches: the teapot is the one of the shared data") {
     double position = 0, normal = 0, tangent = 0;
     std::size_t texture = 0, handedness = 0;
     for (std::size_t k = 0; k < mesh.vertices.size(); ++k) {
-        BaseVertex const &a = mesh.vertices[k], &b = expected.vertices[k];
+        const BaseVertex &a = mesh.vertices[k], &b = expected.vertices[k];
         position = std::max(position, largest_of(a.position - b.position));
         normal = std::max(normal, largest_of(a.normal - b.normal));
         texture += a.texture != b.texture;
@@ -132,7 +132,7 @@ TEST_CASE("patches: a bilinear patch is evaluated exactly, and more finely on re
     const BaseMesh mesh = make_patch_mesh(patches, 2, 8, "p");
     require_complete(mesh);
     CHECK(mesh.triangles.size() == 32);
-    for (BaseVertex const& v : mesh.vertices) {
+    for (const BaseVertex& v : mesh.vertices) {
         const double u = v.texture.x, w = v.texture.y;
         CHECK(largest_of(v.position - glm::dvec3(9 * u, 18 * w, 9 * u * w)) < 1e-14);
         const glm::dvec3 n = glm::normalize(glm::cross(glm::dvec3(9, 0, 9 * w), glm::dvec3(0, 18, 9 * u)));
@@ -141,9 +141,8 @@ TEST_CASE("patches: a bilinear patch is evaluated exactly, and more finely on re
 }
 
 TEST_CASE("patches: a patch against Bernstein's polynomials") {
-    const BezierPatches patches = one_patch([](int i, int j) {
-        return glm::dvec3(i + 0.3 * j * j, j - 0.2 * i * j, 0.5 * i * i - 0.7 * j * (i - 1));
-    });
+    const BezierPatches patches = one_patch(
+        [](int i, int j) { return glm::dvec3(i + 0.3 * j * j, j - 0.2 * i * j, 0.5 * i * i - 0.7 * j * (i - 1)); });
     const auto bernstein = [](double t) {
         const double s = 1 - t;
         return std::array<double, 4>{s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t};
@@ -152,14 +151,14 @@ TEST_CASE("patches: a patch against Bernstein's polynomials") {
         const double s = 1 - t;
         return std::array<double, 4>{-3 * s * s, 3 * s * s - 6 * s * t, 6 * s * t - 3 * t * t, 3 * t * t};
     };
-    const auto sum = [&](std::array<double, 4> const& u, std::array<double, 4> const& v) {
+    const auto sum = [&](const std::array<double, 4>& u, const std::array<double, 4>& v) {
         glm::dvec3 p(0);
         for (std::size_t k = 0; k < 16; ++k) {
             p += u[k % 4] * v[k / 4] * patches.points[k];
         }
         return p;
     };
-    for (BaseVertex const& v : make_patch_mesh(patches, 7, 5, "p").vertices) {
+    for (const BaseVertex& v : make_patch_mesh(patches, 7, 5, "p").vertices) {
         const double s = v.texture.x, t = v.texture.y;
         CHECK(largest_of(v.position - sum(bernstein(s), bernstein(t))) < 1e-14);
         const glm::dvec3 n = glm::cross(sum(slope(s), bernstein(t)), sum(bernstein(s), slope(t)));
@@ -205,7 +204,7 @@ TEST_CASE("patches: a collapsed border at any of the four sides has the limit's 
         CHECK(mesh.repairs.size() <= 2);  // the triangles, and perhaps a pole
         const double up = mesh.vertices.back().normal.z;
         CHECK(std::abs(up) == 1);
-        for (BaseVertex const& v : mesh.vertices) {
+        for (const BaseVertex& v : mesh.vertices) {
             CHECK(v.normal == glm::dvec3(0, 0, up));
         }
     }
@@ -231,8 +230,7 @@ TEST_CASE("patches: what is no mesh is refused") {
     Job::Mesh job;
     job.source = MeshSource::patches;
     CHECK_THROWS_WITH(make_base_mesh(job, ""), Contains("mesh.file is empty"));
-    CHECK_THROWS_WITH(make_base_mesh(job, "nowhere.txt"),
-                      Contains("nowhere.txt: no such file") && Contains("Bezier"));
+    CHECK_THROWS_WITH(make_base_mesh(job, "nowhere.txt"), Contains("nowhere.txt: no such file") && Contains("Bezier"));
     CHECK_THROWS_WITH(make_base_mesh(job, "."), Contains("not a regular file"));
 }
 
@@ -277,8 +275,7 @@ TEST_CASE("patches: hostile text ends in one message with its line") {
         parse_error);
     for (const std::string last : {"0", "-1", "1.5", "x", "", "1e300", "nan"}) {
         INFO(last);
-        CHECK_THAT(parse_error(with_line(text, 2, row + last)),
-                   Contains("p.txt:2:") && Contains("'" + last + "'"));
+        CHECK_THAT(parse_error(with_line(text, 2, row + last)), Contains("p.txt:2:") && Contains("'" + last + "'"));
     }
     for (const std::string point : {"1,2", "1,2,3,4", "1 2 3"}) {
         CHECK_THAT(parse_error(with_line(text, 7, point)), Contains("p.txt:7: point 4 of 16"));

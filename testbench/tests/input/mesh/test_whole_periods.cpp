@@ -111,8 +111,7 @@ TEST_CASE("a chart wider than the format holds is shifted triangle by triangle")
     const BaseMesh low = bring_down_texture(mesh, {true, false}, {4, 1});
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
         for (std::size_t k = 0; k < 3; ++k) {
-            const BaseVertex &was = mesh.vertices[mesh.triangles[t][k]],
-                             &is = low.vertices[low.triangles[t][k]];
+            const BaseVertex &was = mesh.vertices[mesh.triangles[t][k]], &is = low.vertices[low.triangles[t][k]];
             CHECK(is.position == was.position);
             CHECK((is.texture.x >= 0 && is.texture.x <= 1.0001));
             const double periods = was.texture.x - is.texture.x;

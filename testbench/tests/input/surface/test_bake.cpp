@@ -35,18 +35,16 @@ Job::Map repeat_u() {
 }  // namespace
 
 TEST_CASE("bake: texel centres of the domain, from the bottom row up") {
-    const BakedMap map =
-        bake_heights(surface("[domain]\nx = [0, 4]\ny = [10, 12]\n[quadric]\nshape = \"general\"\n"
-                             "coefficients = [0, 0, 0, 0, 0, 0, 1, 100, -1, 0]\n"),
-                     4, 2);
+    const BakedMap map = bake_heights(surface("[domain]\nx = [0, 4]\ny = [10, 12]\n[quadric]\nshape = \"general\"\n"
+                                              "coefficients = [0, 0, 0, 0, 0, 0, 1, 100, -1, 0]\n"),
+                                      4, 2);
     CHECK(map.values == std::vector<double>{1050.5, 1051.5, 1052.5, 1053.5, 1150.5, 1151.5, 1152.5, 1153.5});
     CHECK(map.absent + map.raised + map.uncovered + map.overlaps == 0);
 }
 
 TEST_CASE("bake: a symmetric surface gives a symmetric map, to the last bit") {
     const BakedMap map = bake_heights(
-        surface("[domain]\nx = [-0.7, 0.7]\ny = [-0.3, 0.3]\n[quadric]\nshape = \"sphere\"\nradius = 0.9\n"),
-        37, 22);
+        surface("[domain]\nx = [-0.7, 0.7]\ny = [-0.3, 0.3]\n[quadric]\nshape = \"sphere\"\nradius = 0.9\n"), 37, 22);
     for (int y = 0; y < 22; ++y)
         for (int x = 0; x < 37; ++x) {
             REQUIRE(at(map, x, y) == at(map, 36 - x, y));
@@ -137,8 +135,7 @@ TEST_CASE("bake: root chooses among the two sides of a quadric") {
     CHECK(centre(Root::nearest) == Approx(-1.5));
 }
 
-TEST_CASE(
-    "bake: texels without a triangle take the nearest covered one's value, round the map where it repeats") {
+TEST_CASE("bake: texels without a triangle take the nearest covered one's value, round the map where it repeats") {
     // One triangle over the lower left; its plane z = 0, texture = position.
     const std::string text =
         "v 0 0 0\nv 0.5 0 0\nv 0 0.5 0\nvt 0 0\nvt 0.5 0\nvt 0 0.5\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n";
@@ -181,8 +178,7 @@ TEST_CASE("bake: meshes that cannot be baked onto are refused") {
     BaseMesh pointlike = make_plane(1, 1, 2, 2);
     for (BaseVertex& v : pointlike.vertices)
         v.texture *= 0.1;
-    CHECK_THROWS_WITH(bake_over_mesh(sphere(9), pointlike, {}, 2, 2),
-                      Contains("no texel's centre lies in a triangle"));
+    CHECK_THROWS_WITH(bake_over_mesh(sphere(9), pointlike, {}, 2, 2), Contains("no texel's centre lies in a triangle"));
     BaseMesh endless = make_plane(1, 1, 2, 2);
     for (BaseVertex& v : endless.vertices)
         v.texture *= 1e6;

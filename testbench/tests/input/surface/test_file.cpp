@@ -38,8 +38,7 @@ std::string nurbs(const std::string& key = "", const std::string& line = "") {
 }  // namespace
 
 TEST_CASE("surface file: the examples are read") {
-    const std::filesystem::path examples =
-        std::filesystem::path(TESSERA_SOURCE_DIR) / "testbench/examples/surfaces";
+    const std::filesystem::path examples = std::filesystem::path(TESSERA_SOURCE_DIR) / "testbench/examples/surfaces";
     const Surface dome = read_surface(examples / "dome.toml");
     const auto& sphere = std::get<QuadricSurface>(dome.shape);
     CHECK(sphere.quadric.centre == glm::dvec3(0, 0, -0.25));
@@ -71,8 +70,7 @@ TEST_CASE("surface file: every key has its meaning") {
     CHECK(shape("shape = \"cone\"\nsemi_axes = [1, 2, 4]\naxis = \"y\"").quadric.form[1][1] == -0.25);
     CHECK(shape("shape = \"sphere\"\nradius = 1\nroot = \"lowest\"").root == Root::lowest);
     CHECK(shape("shape = \"sphere\"\nradius = 1\nroot = \"nearest\"").root == Root::nearest);
-    const Surface wide =
-        parse_surface("[domain]\nx = [-2, 5]\n[bezier]\nheights = [[0, 1], [2, 3]]\n", "s.toml");
+    const Surface wide = parse_surface("[domain]\nx = [-2, 5]\n[bezier]\nheights = [[0, 1], [2, 3]]\n", "s.toml");
     CHECK(wide.low == glm::dvec2(-2, -1));
     CHECK(wide.high == glm::dvec2(5, 1));
     const auto& patch = std::get<NurbsPatch>(wide.shape);
@@ -88,8 +86,8 @@ TEST_CASE("surface file: a long row of numbers is no deep key") {
     for (int k = 0; k < 30; ++k)
         row += ", 0.5, -1.25e-1, 0.75";
     row += "]";
-    const std::string text = "[nurbs]\ndegree_u = 1\ndegree_v = 1\nknots_v = [0, 0, 1, 1]\nheights = [\n" +
-                             row + ",\n" + row + "]\n";
+    const std::string text =
+        "[nurbs]\ndegree_u = 1\ndegree_v = 1\nknots_v = [0, 0, 1, 1]\nheights = [\n" + row + ",\n" + row + "]\n";
     std::string knots = "knots_u = [0.0";
     for (int k = 0; k < 91; ++k)
         knots += ", " + std::to_string(k) + ".0";
@@ -121,8 +119,7 @@ TEST_CASE("surface file: faults of a quadric are told with file and line") {
             {quadric("shape = \"sphere\""), {"[quadric] has no `radius`"}},
             {quadric("shape = \"sphere\"\nradius = -1"),
              {"s.toml:3:10: -1, an integer in `radius`; wanted is a number, 1e-06 .. 1e+06"}},
-            {quadric("shape = \"sphere\"\nradius = 1\nsemi_axes = [1, 1, 1]"),
-             {"s.toml:4:1: unknown key `semi_axes`"}},
+            {quadric("shape = \"sphere\"\nradius = 1\nsemi_axes = [1, 1, 1]"), {"s.toml:4:1: unknown key `semi_axes`"}},
             {quadric("shape = \"ellipsoid\"\nradius = 1\nsemi_axes = [1, 1, 1]"),
              {"s.toml:3:10: `radius` and `semi_axes`"}},
             {quadric("shape = \"ellipsoid\"\nsemi_axes = [1, -1, 1]"), {"s.toml:3:17: -1.0 in `semi_axes`"}},
@@ -130,8 +127,7 @@ TEST_CASE("surface file: faults of a quadric are told with file and line") {
             {quadric("shape = \"paraboloid\"\nsemi_axes = [1, 1, 0]"), {"0.0 in `semi_axes`", "negative"}},
             {quadric("shape = \"ellipsoid\"\nsemi_axes = [1, 1]"), {"an array of 2; wanted is a list of 3"}},
             {quadric("shape = \"sphere\"\nradius = 1\ncentre = [0, 0, 1e7]"), {"`centre`"}},
-            {quadric("shape = \"sphere\"\nradius = 1\ncenter = [0, 0, 1]"),
-             {"s.toml:4:1:", "did you mean `centre`?"}},
+            {quadric("shape = \"sphere\"\nradius = 1\ncenter = [0, 0, 1]"), {"s.toml:4:1:", "did you mean `centre`?"}},
             {quadric("shape = \"cone\"\nradius = 1\naxis = \"w\""), {"wanted is one of x, y, z"}},
             {quadric("shape = \"hyperboloid\"\nradius = 1"), {"has no `sheets`"}},
             {quadric("shape = \"hyperboloid\"\nradius = 1\nsheets = 3"), {"an integer, 1 .. 2"}},
@@ -157,22 +153,17 @@ TEST_CASE("surface file: faults of a NURBS patch are told with file and line") {
             {nurbs("degree_u", ""), {"s.toml:1:1: [nurbs] has no `degree_u`"}},
             {nurbs("degree_u", "degree_u = 0"), {"s.toml:2:12:", "1 .. 32"}},
             {nurbs("degree_u", "degree_u = 33"), {"33, an integer"}},
-            {nurbs("degree_u", "degree_u = 4"),
-             {"s.toml:6:11: `heights` has 4 column(s) and `degree_u` = 4 needs 5"}},
+            {nurbs("degree_u", "degree_u = 4"), {"s.toml:6:11: `heights` has 4 column(s) and `degree_u` = 4 needs 5"}},
             {nurbs("degree_v", "degree_v = 2"), {"`heights` has 2 row(s)"}},
-            {nurbs("knots_u", "knots_u = [0, 0, 0, 1, 1, 1]"),
-             {"s.toml:4:11: `knots_u` has 6 knot(s); wanted are 7"}},
-            {nurbs("knots_u", "knots_u = [0, 0, 0, 2, 1, 2, 2]"),
-             {"s.toml:4:24: `knots_u` falls from 2.0 to 1.0"}},
+            {nurbs("knots_u", "knots_u = [0, 0, 0, 1, 1, 1]"), {"s.toml:4:11: `knots_u` has 6 knot(s); wanted are 7"}},
+            {nurbs("knots_u", "knots_u = [0, 0, 0, 2, 1, 2, 2]"), {"s.toml:4:24: `knots_u` falls from 2.0 to 1.0"}},
             {nurbs("knots_u", "knots_u = [0, 0, 0, 0, 2, 2, 2]"), {"more than 3 times"}},
-            {nurbs("knots_u", "knots_u = [0, 0, 0, 1e-12, 2, 2, 2]"),
-             {"make them the same, or more different"}},
+            {nurbs("knots_u", "knots_u = [0, 0, 0, 1e-12, 2, 2, 2]"), {"make them the same, or more different"}},
             {nurbs("knots_v", "knots_v = [0, 1, 1, 2]"), {"`knots_v` leaves no range"}},
             {nurbs("knots_u", "knots_u = [0, 0, 0, nan, 2, 2, 2]"), {"s.toml:4:21:"}},
             {nurbs("heights", "heights = []"), {"`heights` is an array of 0"}},
             {nurbs("heights", "heights = [1, 2]"), {"row 1 of `heights` is 1, an integer"}},
-            {nurbs("heights", "heights = [[1, 2], [1]]"),
-             {"row 2 of `heights` has 1 number(s) and the first has 2"}},
+            {nurbs("heights", "heights = [[1, 2], [1]]"), {"row 2 of `heights` has 1 number(s) and the first has 2"}},
             {nurbs("heights", "heights = [[0, 1, 2, inf], [4, 5, 6, 7]]"), {"`heights`; wanted is a number"}},
             {nurbs("weights", "weights = [[1, 1, 1, 1]]"), {"s.toml:7:11: `weights` has 1 row(s) of 4"}},
             {nurbs("weights", "wieghts = [[1]]"), {"did you mean `weights`?"}},
@@ -188,8 +179,7 @@ TEST_CASE("surface file: faults of a NURBS patch are told with file and line") {
     CHECK(error_of("[nurbs]\ndegree_u = 1\ndegree_v = 1\nknots_u = [0, 0, 1, 2, 2]\nknots_v = [0, 0, 1, "
                    "1]\nheights = [[0, 1, 2], [0, 1, 2]]\n")
               .empty());
-    CHECK_THAT(
-        error_of("[nurbs]\ndegree_u = 1\ndegree_v = 1\nknots_u = [0, 0, 1, 1, 2, 2]\nknots_v = [0, 0, 1, 1]\n"
-                 "heights = [[0, 1, 2, 3], [0, 1, 2, 3]]\n"),
-        Contains("`knots_u` has the knot 1.0 more than 1 times") && Contains("tear"));
+    CHECK_THAT(error_of("[nurbs]\ndegree_u = 1\ndegree_v = 1\nknots_u = [0, 0, 1, 1, 2, 2]\nknots_v = [0, 0, 1, 1]\n"
+                        "heights = [[0, 1, 2, 3], [0, 1, 2, 3]]\n"),
+               Contains("`knots_u` has the knot 1.0 more than 1 times") && Contains("tear"));
 }

@@ -35,8 +35,7 @@ std::vector<double> random_numbers(std::size_t count, int low, int high) {
 }
 
 /// De Boor's algorithm: no basis functions, the control points themselves are mixed, level by level.
-double de_boor(const std::vector<double>& knots, std::size_t degree, const std::vector<double>& control,
-               double t) {
+double de_boor(const std::vector<double>& knots, std::size_t degree, const std::vector<double>& control, double t) {
     std::size_t span = degree;
     for (std::size_t k = degree; k < control.size(); ++k)
         if (knots[k] < knots[k + 1] && knots[k] <= t)
@@ -69,8 +68,7 @@ double de_boor(const NurbsPatch& patch, double u, double v) {
            de_boor(patch.knots_v, patch.degree_v, denominators, v);
 }
 
-NurbsPatch bezier(std::size_t columns, std::size_t rows, std::vector<double> heights,
-                  std::vector<double> weights) {
+NurbsPatch bezier(std::size_t columns, std::size_t rows, std::vector<double> heights, std::vector<double> weights) {
     NurbsPatch patch;
     patch.columns = columns;
     patch.rows = rows;
@@ -123,8 +121,7 @@ TEST_CASE("nurbs: rational patches of any degree are what de Boor's algorithm ma
         RC_PRE(patch.knots_v[patch.degree_v] < patch.knots_v[patch.rows]);
         patch.heights = random_numbers(patch.columns * patch.rows, -5, 5);
         patch.weights = random_numbers(patch.columns * patch.rows, 1, 9);
-        for (const auto& [u, v] :
-             {std::pair{0.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}, {0.37, 0.5}, {0.123, 0.987}}) {
+        for (const auto& [u, v] : {std::pair{0.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}, {0.37, 0.5}, {0.123, 0.987}}) {
             const double expected = de_boor(patch, parameter_at(patch.knots_u, patch.degree_u, u),
                                             parameter_at(patch.knots_v, patch.degree_v, v));
             RC_ASSERT(std::abs(height_of(patch, u, v) - expected) < 1e-12);
@@ -133,8 +130,7 @@ TEST_CASE("nurbs: rational patches of any degree are what de Boor's algorithm ma
 }
 
 TEST_CASE("nurbs: a Bezier patch is its Bernstein form, and meets its corners") {
-    const NurbsPatch patch =
-        bezier(4, 3, {0, 1, 2, 5, -1, 3, 0, 2, 7, 1, 1, -2}, std::vector<double>(12, 1.0));
+    const NurbsPatch patch = bezier(4, 3, {0, 1, 2, 5, -1, 3, 0, 2, 7, 1, 1, -2}, std::vector<double>(12, 1.0));
     CHECK(height_of(patch, 0, 0) == 0);
     CHECK(height_of(patch, 1, 0) == 5);
     CHECK(height_of(patch, 0, 1) == 7);
@@ -152,8 +148,7 @@ TEST_CASE("nurbs: a Bezier patch is its Bernstein form, and meets its corners") 
 TEST_CASE("nurbs: the two coordinates of a rational quarter circle lie on the circle") {
     const double half = std::sqrt(0.5);
     const std::vector<double> weights{1, half, 1, 1, half, 1};
-    const NurbsPatch x = bezier(3, 2, {1, 1, 0, 1, 1, 0}, weights),
-                     y = bezier(3, 2, {0, 1, 1, 0, 1, 1}, weights);
+    const NurbsPatch x = bezier(3, 2, {1, 1, 0, 1, 1, 0}, weights), y = bezier(3, 2, {0, 1, 1, 0, 1, 1}, weights);
     for (int step = 0; step <= 1000; ++step) {
         const double u = step / 1000.0;
         REQUIRE(std::abs(std::hypot(height_of(x, u, 0.3), height_of(y, u, 0.3)) - 1) < 4e-16);

@@ -22,8 +22,7 @@ glm::dvec3 random_vector(int size) {
 }
 
 /// Height over x, y of a shape with centre (1, 2, 3) and semi-axes (2, 1, 0.5).
-std::optional<double> height(QuadricShape shape, double x, double y, Root root, int axis = 2,
-                             int sheets = 1) {
+std::optional<double> height(QuadricShape shape, double x, double y, Root root, int axis = 2, int sheets = 1) {
     return intersect(make_quadric(shape, {1, 2, 3}, {2, 1, 0.5}, axis, sheets), {x, y, 0}, {0, 0, 1}, root);
 }
 
@@ -32,10 +31,8 @@ std::optional<double> height(QuadricShape shape, double x, double y, Root root, 
 TEST_CASE("quadric: heights of the named shapes are their equations solved by hand") {
     const double x = 1.6, y = 2.3, s = 0.3 * 0.3 + 0.3 * 0.3;  // ((x - 1) / 2)^2 + ((y - 2) / 1)^2
     using Shape = QuadricShape;
-    CHECK(height(Shape::ellipsoid, x, y, Root::highest).value() ==
-          Approx(3 + 0.5 * std::sqrt(1 - s)).epsilon(1e-15));
-    CHECK(height(Shape::ellipsoid, x, y, Root::lowest).value() ==
-          Approx(3 - 0.5 * std::sqrt(1 - s)).epsilon(1e-15));
+    CHECK(height(Shape::ellipsoid, x, y, Root::highest).value() == Approx(3 + 0.5 * std::sqrt(1 - s)).epsilon(1e-15));
+    CHECK(height(Shape::ellipsoid, x, y, Root::lowest).value() == Approx(3 - 0.5 * std::sqrt(1 - s)).epsilon(1e-15));
     CHECK(height(Shape::ellipsoid, x, y, Root::nearest).value() ==
           height(Shape::ellipsoid, x, y, Root::lowest).value());
     for (const Root root : {Root::highest, Root::lowest, Root::nearest})
@@ -59,8 +56,7 @@ TEST_CASE("quadric: what is found lies on the quadric, and what is not is not th
     CHECK(rc::check([] {
         Quadric q;
         const glm::dvec3 diagonal = random_vector(2), mixed = random_vector(1);
-        q.form = glm::dmat3(diagonal.x, mixed.x, mixed.y, mixed.x, diagonal.y, mixed.z, mixed.y, mixed.z,
-                            diagonal.z);
+        q.form = glm::dmat3(diagonal.x, mixed.x, mixed.y, mixed.x, diagonal.y, mixed.z, mixed.y, mixed.z, diagonal.z);
         q.linear = random_vector(2);
         q.centre = random_vector(3);
         q.constant = 0.001 * *rc::gen::inRange(-2000, 2000);

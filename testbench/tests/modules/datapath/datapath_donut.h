@@ -45,8 +45,7 @@ inline Machine half_donut_machine(double normal_threshold, double summed_height_
     registers.displacement.scale = 1 << 14;
     registers.tests.view_test = false;
     registers.tests.normal_threshold = static_cast<std::uint32_t>(std::floor(normal_threshold * 16384));
-    registers.tests.summed_height_threshold =
-        static_cast<std::uint64_t>(std::floor(summed_height_threshold * 4));
+    registers.tests.summed_height_threshold = static_cast<std::uint64_t>(std::floor(summed_height_threshold * 4));
     return Machine(registers, std::move(tables));
 }
 
@@ -64,8 +63,7 @@ inline datapath::Vertex plane_vertex(double u, double v) {
     return vertex;
 }
 
-inline datapath::Triangle triangle_of(const datapath::Vertex& a, const datapath::Vertex& b,
-                                      const datapath::Vertex& c) {
+inline datapath::Triangle triangle_of(const datapath::Vertex& a, const datapath::Vertex& b, const datapath::Vertex& c) {
     datapath::Triangle triangle;
     triangle.vertices = {a, b, c};
     return triangle;
@@ -78,8 +76,7 @@ inline std::vector<datapath::Triangle> plane_of_18() {
     for (int y = 0; y < 3; ++y) {
         for (int x = 0; x < 3; ++x) {
             const datapath::Vertex a = plane_vertex(line(x), line(y)), b = plane_vertex(line(x + 1), line(y));
-            const datapath::Vertex c = plane_vertex(line(x + 1), line(y + 1)),
-                                   d = plane_vertex(line(x), line(y + 1));
+            const datapath::Vertex c = plane_vertex(line(x + 1), line(y + 1)), d = plane_vertex(line(x), line(y + 1));
             base.push_back(triangle_of(a, b, c));
             base.push_back(triangle_of(a, c, d));
         }

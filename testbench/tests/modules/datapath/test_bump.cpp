@@ -67,8 +67,7 @@ TEST_CASE("bump: a flat map's normal gives N back") {
         for (int k = 0; k < 20'000; ++k) {
             const Direction n = unit(random, formats), t = unit(random, formats);
             const Direction bumped = bump(n, t, random.coin() ? 1 : -1, flat, formats, saturations);
-            worst = std::max(
-                {worst, std::abs(bumped.x - n.x), std::abs(bumped.y - n.y), std::abs(bumped.z - n.z)});
+            worst = std::max({worst, std::abs(bumped.x - n.x), std::abs(bumped.y - n.y), std::abs(bumped.z - n.z)});
         }
         // N comes rounded, so normalising it again may move it by its own error of length, sqrt(3)/2 LSB
         CHECK(worst <= 1);
@@ -97,9 +96,9 @@ TEST_CASE("bump: against doubles, every legal normal format") {
             const double bound = 0.5 + 2.8 * before / length + 0.01;
             const double error = off(bump(n, t, handedness, m, formats, saturations), expected, fraction);
             if (error > bound)
-                FAIL("fraction " << fraction << ": off by " << error << " LSB, bound " << bound << ", length "
-                                 << length << "; N " << n.x << " " << n.y << " " << n.z << ", T " << t.x
-                                 << " " << t.y << " " << t.z << ", N_d " << m.x << " " << m.y << " " << m.z);
+                FAIL("fraction " << fraction << ": off by " << error << " LSB, bound " << bound << ", length " << length
+                                 << "; N " << n.x << " " << n.y << " " << n.z << ", T " << t.x << " " << t.y << " "
+                                 << t.z << ", N_d " << m.x << " " << m.y << " " << m.z);
         }
         CHECK(saturations.normal == 0);
     }
@@ -112,15 +111,13 @@ TEST_CASE("bump: a proper frame keeps within 1.5 LSB at the default format") {
     Saturations saturations;
     for (int k = 0; k < 300'000; ++k) {
         const Direction n = unit(random, formats), a = unit(random, formats), m = unit(random, formats);
-        const double dot =
-            (double{1} * n.x * a.x + double{1} * n.y * a.y + double{1} * n.z * a.z) / (1 << 28);
+        const double dot = (double{1} * n.x * a.x + double{1} * n.y * a.y + double{1} * n.z * a.z) / (1 << 28);
         if (std::abs(dot) > 0.9)
             continue;
         const auto across = [&](std::int32_t from, std::int32_t along) {
             return static_cast<std::int64_t>(std::lround(1e4 * (from - dot * along)));
         };
-        const Direction t =
-            normalise(across(a.x, n.x), across(a.y, n.y), across(a.z, n.z), formats, saturations);
+        const Direction t = normalise(across(a.x, n.x), across(a.y, n.y), across(a.z, n.z), formats, saturations);
         double length = 0;
         const Vector expected = reference(real(n, 14), real(t, 14), 1, real(m, 14), length);
         worst = std::max(worst, off(bump(n, t, 1, m, formats, saturations), expected, 14));

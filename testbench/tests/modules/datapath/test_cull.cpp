@@ -33,8 +33,7 @@ TEST_CASE("culling: sign of the exact area, screen positions of 8 to 32 bits") {
         const int bits = static_cast<int>(random.integer(8, 32));
         const std::int64_t limit = std::int64_t{1} << (bits - 1);
         const auto point = [&] {
-            return ScreenPosition{random.integer32(-limit, limit - 1), random.integer32(-limit, limit - 1), 0,
-                                  true};
+            return ScreenPosition{random.integer32(-limit, limit - 1), random.integer32(-limit, limit - 1), 0, true};
         };
         const ScreenPosition a = point(), b = point();
         check(a, b, point());

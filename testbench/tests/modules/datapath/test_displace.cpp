@@ -43,10 +43,9 @@ void check(const Position& p, const Direction& n, std::uint32_t code, const Disp
                 std::ldexp(static_cast<long double>(normal[k]), -formats.normal.fraction);
         const double bound =
             0.5 * (std::abs(std::ldexp(static_cast<double>(normal[k]), -formats.normal.fraction)) + 1) + 1e-6;
-        if (exact == fits &&
-            std::abs(static_cast<double>(ideal - static_cast<long double>(result[k]))) > bound)
-            FAIL("bound: base " << base[k] << ", normal " << normal[k] << ", code " << code << ", scale "
-                                << by.scale << ", bias " << by.bias << " gives " << result[k]);
+        if (exact == fits && std::abs(static_cast<double>(ideal - static_cast<long double>(result[k]))) > bound)
+            FAIL("bound: base " << base[k] << ", normal " << normal[k] << ", code " << code << ", scale " << by.scale
+                                << ", bias " << by.bias << " gives " << result[k]);
     }
     if (saturations.displaced_position != saturated || saturations.total() != saturated)
         FAIL("counted " << saturations.total() << " saturations of " << saturated);
@@ -67,12 +66,8 @@ TEST_CASE("displace: exact against 128 bits, whatever the operands") {
             formats.normal = Format::make_signed(normal, static_cast<int>(random.integer(0, normal - 2)));
             formats.displacement = Format::make_unsigned(codes, codes);
         }
-        const auto position = [&] {
-            return static_cast<std::int32_t>(random.any_size(formats.position.highest));
-        };
-        const auto normal = [&] {
-            return static_cast<std::int32_t>(random.any_size(formats.normal.highest));
-        };
+        const auto position = [&] { return static_cast<std::int32_t>(random.any_size(formats.position.highest)); };
+        const auto normal = [&] { return static_cast<std::int32_t>(random.any_size(formats.normal.highest)); };
         const auto code = static_cast<std::uint32_t>(std::abs(random.any_size(formats.displacement.highest)));
         const Position p{position(), position(), position()};
         const Direction n{normal(), normal(), normal()};
@@ -103,7 +98,6 @@ TEST_CASE("displace: heights to be seen with the naked eye") {
     CHECK(displace({}, up, 32768, {one, 0}, formats, saturations) == Position{0, 0, one / 2});
     CHECK(displace({}, up, 32768, {-one, 0}, formats, saturations) == Position{0, 0, -one / 2});
     CHECK(displace({}, up, 32768, {one, -one}, formats, saturations) == Position{0, 0, -one / 2});
-    CHECK(displace({}, {0, -16384, 0}, 32768, {one, one}, formats, saturations) ==
-          Position{0, -one - one / 2, 0});
+    CHECK(displace({}, {0, -16384, 0}, 32768, {one, one}, formats, saturations) == Position{0, -one - one / 2, 0});
     CHECK(saturations.total() == 0);
 }

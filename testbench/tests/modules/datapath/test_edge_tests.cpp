@@ -32,8 +32,7 @@ TEST_CASE("absolute difference: up to 62 bits") {
     for (int k = 0; k < 300'000; ++k) {
         const std::int64_t a = random.any_size(limit), b = random.any_size(limit);
         const Wide difference = Wide{a} - b;
-        if (absolute_difference(a, b) !=
-            static_cast<std::uint64_t>(difference < 0 ? -difference : difference))
+        if (absolute_difference(a, b) != static_cast<std::uint64_t>(difference < 0 ? -difference : difference))
             FAIL(a << ", " << b);
     }
 }
@@ -50,10 +49,8 @@ TEST_CASE("Normal Test: the largest of six differences against the threshold") {
                     const Direction ij = i;
                     Direction& end = place < 3 ? i : j;
                     (place % 3 == 0 ? end.x : (place % 3 == 1 ? end.y : end.z)) = to;
-                    if (normal_test(i, j, ij, parameters) !=
-                        (std::abs(from - to) > static_cast<double>(threshold)))
-                        FAIL("place " << place << ": " << from << " to " << to << ", threshold "
-                                      << threshold);
+                    if (normal_test(i, j, ij, parameters) != (std::abs(from - to) > static_cast<double>(threshold)))
+                        FAIL("place " << place << ": " << from << " to " << to << ", threshold " << threshold);
                 }
             }
         }
@@ -61,8 +58,7 @@ TEST_CASE("Normal Test: the largest of six differences against the threshold") {
     Random random(21);
     for (int k = 0; k < 500'000; ++k) {
         const auto direction = [&] {
-            return Direction{random.integer32(-300, 300), random.integer32(-300, 300),
-                             random.integer32(-300, 300)};
+            return Direction{random.integer32(-300, 300), random.integer32(-300, 300), random.integer32(-300, 300)};
         };
         const Direction i = direction(), j = direction(), ij = direction();
         parameters.normal_threshold = random.natural(0, 700);
@@ -78,8 +74,8 @@ TEST_CASE("Summed Height Test: |S_ij / 2 - (S_i + S_j) / 4| above the threshold,
     for (std::uint64_t i = 0; i < 32; ++i) {
         for (std::uint64_t j = 0; j < 32; ++j) {
             for (std::uint64_t ij = 0; ij < 32; ++ij) {
-                const double value = std::abs(static_cast<double>(ij) / 2 -
-                                              (static_cast<double>(i) + static_cast<double>(j)) / 4);
+                const double value =
+                    std::abs(static_cast<double>(ij) / 2 - (static_cast<double>(i) + static_cast<double>(j)) / 4);
                 for (std::uint64_t threshold = 0; threshold < 80; ++threshold) {
                     // the register holds four times the paper's threshold, which so has two fraction bits
                     parameters.summed_height_unit = SummedHeightUnit::sum;
@@ -91,8 +87,7 @@ TEST_CASE("Summed Height Test: |S_ij / 2 - (S_i + S_j) / 4| above the threshold,
                 for (std::uint64_t threshold = 0; threshold < 8; ++threshold) {
                     parameters.summed_height_unit = SummedHeightUnit::area;
                     parameters.summed_height_threshold = threshold;
-                    for (const RectangleSize& size :
-                         {RectangleSize{1, 1}, RectangleSize{3, 1}, RectangleSize{2, 5}})
+                    for (const RectangleSize& size : {RectangleSize{1, 1}, RectangleSize{3, 1}, RectangleSize{2, 5}})
                         if (summed_height_test(i, j, ij, size, parameters) !=
                             (4 * value > static_cast<double>(threshold * size.width * size.height)))
                             FAIL(i << ", " << j << ", " << ij << " against " << threshold << " by area");
@@ -127,8 +122,7 @@ TEST_CASE("View Test: Manhattan length above the threshold, every pair of 5-bit 
                 for (std::int32_t jx = -16; jx < 16; ++jx)
                     for (std::int32_t jy = -16; jy < 16; ++jy) {
                         const double length = std::fabs(ix - jx) + std::fabs(iy - jy);
-                        if (view_test({ix, iy, 0, true}, {jx, jy, 99, true}, parameters) !=
-                            (length > threshold))
+                        if (view_test({ix, iy, 0, true}, {jx, jy, 99, true}, parameters) != (length > threshold))
                             FAIL(ix << ", " << iy << " to " << jx << ", " << jy << " against " << threshold);
                     }
     }
@@ -139,8 +133,7 @@ TEST_CASE("View Test: Manhattan length above the threshold, every pair of 5-bit 
     CHECK(view_test({low, high, 0, true}, {high, low, 0, true}, parameters));
 }
 
-TEST_CASE(
-    "View Test: one end behind the near plane counts as long, two as invisible, whatever the positions") {
+TEST_CASE("View Test: one end behind the near plane counts as long, two as invisible, whatever the positions") {
     TestParameters parameters;
     for (const std::uint32_t threshold : {0u, 100u, 0xffffffffu}) {
         parameters.view_threshold = threshold;

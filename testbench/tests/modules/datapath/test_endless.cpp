@@ -21,8 +21,7 @@ constexpr double summed_height_threshold = 5000;
 /// (82.667, 34.667), along which ever thinner triangles split their two other edges in turn, until rounding turns them
 /// over and round they go.
 Triangle endless_triangle() {
-    return triangle_of(plane_vertex(78.667, 36.0), plane_vertex(82.667, 34.667),
-                       plane_vertex(82.667, 35.333));
+    return triangle_of(plane_vertex(78.667, 36.0), plane_vertex(82.667, 34.667), plane_vertex(82.667, 35.333));
 }
 
 bool same_bits(const std::deque<Triangle>& a, const std::deque<Triangle>& b) {
@@ -34,9 +33,7 @@ bool same_bits(const std::deque<Triangle>& a, const std::deque<Triangle>& b) {
 
 std::int64_t doubled_area(const Triangle& t) {
     const auto& v = t.vertices;
-    const auto difference = [](std::uint32_t a, std::uint32_t b) {
-        return std::int64_t{a} - std::int64_t{b};
-    };
+    const auto difference = [](std::uint32_t a, std::uint32_t b) { return std::int64_t{a} - std::int64_t{b}; };
     return difference(v[1].texture.u, v[0].texture.u) * difference(v[2].texture.v, v[0].texture.v) -
            difference(v[1].texture.v, v[0].texture.v) * difference(v[2].texture.u, v[0].texture.u);
 }

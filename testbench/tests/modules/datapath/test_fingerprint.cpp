@@ -75,8 +75,8 @@ TEST_CASE("fingerprint: a hundred thousand random triangles give the recorded bi
             v.handedness = random.coin() ? std::int8_t{1} : std::int8_t{-1};
             v.generation = static_cast<std::uint8_t>(random.integer(0, 12));
             machine.complete(v);
-            v.screen_normal = transform_normal(v.displaced_normal, registers.transform, registers.formats,
-                                               machine.saturations);
+            v.screen_normal =
+                transform_normal(v.displaced_normal, registers.transform, registers.formats, machine.saturations);
             hash.add(v.screen_normal);
             hash.add(light(v.screen_normal, registers.light, registers.formats, machine.saturations));
         }
@@ -85,21 +85,20 @@ TEST_CASE("fingerprint: a hundred thousand random triangles give the recorded bi
         const TrianglePass pass = machine.evaluate(triangle);
         for (std::size_t e = 0; e < 3; ++e)
             hash.add(pass.edges[e].tests);
-        tessellate(pass, Triangulation::shorter, registers.formats, machine.saturations,
-                   [&](const Triangle& child) {
-                       for (const Vertex& c : child.vertices) {
-                           hash.add(c.position);
-                           hash.add(c.normal);
-                           hash.add(c.tangent);
-                           hash.add(c.texture.u);
-                           hash.add(c.texture.v);
-                           hash.add(c.handedness);
-                           hash.add(c.generation);
-                           hash.add(c.displaced);
-                           hash.add(c.displaced_normal);
-                           hash.add(c.screen);
-                       }
-                   });
+        tessellate(pass, Triangulation::shorter, registers.formats, machine.saturations, [&](const Triangle& child) {
+            for (const Vertex& c : child.vertices) {
+                hash.add(c.position);
+                hash.add(c.normal);
+                hash.add(c.tangent);
+                hash.add(c.texture.u);
+                hash.add(c.texture.v);
+                hash.add(c.handedness);
+                hash.add(c.generation);
+                hash.add(c.displaced);
+                hash.add(c.displaced_normal);
+                hash.add(c.screen);
+            }
+        });
     }
     const Saturations& s = machine.saturations;
     for (const std::uint64_t count :

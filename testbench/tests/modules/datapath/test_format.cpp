@@ -23,8 +23,7 @@ TEST_CASE("formats: what the wires hold") {
 }
 
 TEST_CASE("saturate: the nearest value that fits, each miss counted once") {
-    for (const Format& format :
-         {Format::make_signed(8, 4), Format::make_unsigned(8, 0), Format::make_signed(1, 0)}) {
+    for (const Format& format : {Format::make_signed(8, 4), Format::make_unsigned(8, 0), Format::make_signed(1, 0)}) {
         for (std::int64_t value = -1000; value <= 1000; ++value) {
             std::uint64_t count = 7;
             const std::int64_t result = saturate(value, format, count);
@@ -65,8 +64,7 @@ TEST_CASE("round_shift: nearest, a tie upwards") {
             const auto expected =
                 static_cast<std::int64_t>(std::floor(std::ldexp(static_cast<double>(value), -shift) + 0.5));
             if (round_shift(value, shift) != expected)
-                FAIL(value << " by " << shift << " gives " << round_shift(value, shift) << " for "
-                           << expected);
+                FAIL(value << " by " << shift << " gives " << round_shift(value, shift) << " for " << expected);
         }
     }
     Random random(1);

@@ -24,8 +24,7 @@ double real(std::int32_t value) {
 }
 
 /// The definition again, in another arithmetic: doubles hold every number here exactly.
-bool reference(const Direction& i, const Direction& j, const Direction& ij,
-               const TestParameters& parameters) {
+bool reference(const Direction& i, const Direction& j, const Direction& ij, const TestParameters& parameters) {
     const auto cosine = [&](const Direction& n) {
         return real(n.x) * parameters.half_vector[0] + real(n.y) * parameters.half_vector[1] +
                real(n.z) * parameters.half_vector[2];
@@ -70,10 +69,9 @@ TEST_CASE("Highlight Test: every edge of normals of 2 bits, as defined, the same
                 for (const Direction& ij : all) {
                     const bool asks = highlight_test(i, j, ij, parameters);
                     asked += asks ? 1 : 0;
-                    if (asks != highlight_test(j, i, ij, parameters) ||
-                        asks != reference(i, j, ij, parameters))
-                        FAIL(i.x << " " << i.y << " " << i.z << ", " << j.x << " " << j.y << " " << j.z
-                                 << ", " << ij.x << " " << ij.y << " " << ij.z);
+                    if (asks != highlight_test(j, i, ij, parameters) || asks != reference(i, j, ij, parameters))
+                        FAIL(i.x << " " << i.y << " " << i.z << ", " << j.x << " " << j.y << " " << j.z << ", " << ij.x
+                                 << " " << ij.y << " " << ij.z);
                 }
     }
     CHECK(asked > 100'000);
@@ -138,8 +136,7 @@ TEST_CASE("Highlight Test: never where the normals are alike, never without a ha
 TEST_CASE("split decision: (NT or SHT or HT) and VT and TCT and GT, all 64 rows") {
     for (unsigned row = 0; row < 64; ++row) {
         const bool asked = (row & (normal_bit | summed_height_bit | highlight_bit)) != 0;
-        const bool allowed =
-            (row & view_bit) != 0 && (row & tex_coord_bit) != 0 && (row & generation_bit) != 0;
+        const bool allowed = (row & view_bit) != 0 && (row & tex_coord_bit) != 0 && (row & generation_bit) != 0;
         CHECK(split_decision(static_cast<std::uint8_t>(row)) == (asked && allowed));
     }
 }
@@ -191,8 +188,7 @@ TEST_CASE("queue entry: one bit more with a Highlight Test, none without") {
         for (Vertex& v : triangle.vertices)
             v.position = {random.integer32(-99999, 99999), random.integer32(-99999, 99999), k};
         triangle.base = random.natural(0, 0xffffffff);
-        triangle.split_by =
-            static_cast<std::uint8_t>(random.natural(0, 3) | (random.coin() ? highlight_bit : 0));
+        triangle.split_by = static_cast<std::uint8_t>(random.natural(0, 3) | (random.coin() ? highlight_bit : 0));
         triangle.stopped_by = static_cast<std::uint8_t>(random.natural(0, 7) << 2);
         triangle.finished = random.coin();
         std::array<unsigned char, 512> bytes{};

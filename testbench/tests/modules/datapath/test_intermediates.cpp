@@ -59,8 +59,7 @@ std::vector<Formats> formats_to_try() {
 
 /// No width too small; in the default formats, none more than a bit too large.
 void check(const char* function, const Width& width, const Reach& reach, bool tight) {
-    INFO(function << ": " << width.name << " has " << width.bits << " bits, " << reach.bits()
-                  << " are needed");
+    INFO(function << ": " << width.name << " has " << width.bits << " bits, " << reach.bits() << " are needed");
     CHECK(reach.bits() <= width.bits);
     CHECK(width.bits <= width.most);
     if (tight)
@@ -191,8 +190,7 @@ void check_edge_tests(const Formats& f, bool tight) {
     screen.see(absolute_difference(f.screen.lowest, f.screen.highest));
     length.see(2 * Wide{f.screen.highest - f.screen.lowest});
     index.see(integer_part(1u << (f.texture.bits - 1), f));
-    const Wide most = Wide{f.normal.lowest} * f.normal.lowest,
-               least = Wide{f.normal.lowest} * f.normal.highest;
+    const Wide most = Wide{f.normal.lowest} * f.normal.lowest, least = Wide{f.normal.lowest} * f.normal.highest;
     for (const Wide term : {least, most}) {
         product.see(term);
         cosine.see(3 * term);
@@ -331,8 +329,7 @@ TEST_CASE(
     };
     for (int bits = Limits::position_bits.least; bits <= Limits::position_bits.most; ++bits) {
         for (int normal = Limits::normal_bits.least; normal <= Limits::normal_bits.most; ++normal) {
-            for (int fraction = 0; fraction <= std::min(normal - 2, Limits::normal_fraction.most);
-                 ++fraction) {
+            for (int fraction = 0; fraction <= std::min(normal - 2, Limits::normal_fraction.most); ++fraction) {
                 Formats formats;
                 formats.position = formats.view_distance = Format::make_signed(bits, bits - 1);
                 formats.normal = Format::make_signed(normal, fraction);

@@ -23,18 +23,16 @@ TEST_CASE("normal map entry: packed and unpacked, every width from 4 to 21") {
             for (std::int64_t x = low; x <= high; ++x)
                 for (std::int64_t y = low; y <= high; ++y)
                     for (std::int64_t z = low; z <= high; ++z)
-                        check({static_cast<std::int32_t>(x), static_cast<std::int32_t>(y),
-                               static_cast<std::int32_t>(z)});
+                        check(
+                            {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), static_cast<std::int32_t>(z)});
         } else {
             for (int k = 0; k < 20'000; ++k)
-                check(
-                    {random.integer32(low, high), random.integer32(low, high), random.integer32(low, high)});
+                check({random.integer32(low, high), random.integer32(low, high), random.integer32(low, high)});
         }
         for (const std::int64_t x : {low, high})
             for (const std::int64_t y : {low, high})
                 for (const std::int64_t z : {low, high})
-                    check({static_cast<std::int32_t>(x), static_cast<std::int32_t>(y),
-                           static_cast<std::int32_t>(z)});
+                    check({static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), static_cast<std::int32_t>(z)});
     }
 }
 

@@ -25,8 +25,7 @@ bool right(Integer a, Integer b) {
 TEST_CASE("midpoint: floor of the mean, commutative, between its operands; every pair of 8 bits") {
     for (std::int32_t a = -128; a <= 127; ++a) {
         for (std::int32_t b = -128; b <= 127; ++b) {
-            if (!right(a, b) ||
-                !right(static_cast<std::uint32_t>(a + 128), static_cast<std::uint32_t>(b + 128)))
+            if (!right(a, b) || !right(static_cast<std::uint32_t>(a + 128), static_cast<std::uint32_t>(b + 128)))
                 FAIL(a << ", " << b << " gives " << midpoint(a, b));
         }
     }
@@ -38,8 +37,7 @@ TEST_CASE("midpoint: the real widths, limits included") {
     for (int k = 0; k < 1'000'000; ++k) {
         const auto a = static_cast<std::int32_t>(random.any_size(limit)),
                    b = static_cast<std::int32_t>(random.any_size(limit));
-        const auto c = static_cast<std::uint32_t>(random.bits()),
-                   d = static_cast<std::uint32_t>(random.bits());
+        const auto c = static_cast<std::uint32_t>(random.bits()), d = static_cast<std::uint32_t>(random.bits());
         if (!right(a, b) || !right(c, d))
             FAIL(a << ", " << b << " or " << c << ", " << d);
     }

@@ -19,8 +19,7 @@ Formats with_normals(int bits, int fraction) {
 
 /// Largest error of a component in LSB, against long double.
 double error(std::int64_t x, std::int64_t y, std::int64_t z, const Direction& result, int fraction) {
-    const auto a = static_cast<long double>(x), b = static_cast<long double>(y),
-               c = static_cast<long double>(z);
+    const auto a = static_cast<long double>(x), b = static_cast<long double>(y), c = static_cast<long double>(z);
     const long double scale = std::ldexp(1.0L, fraction) / std::sqrt(a * a + b * b + c * c);
     const auto off = [&](long double component, std::int32_t got) {
         return std::abs(static_cast<double>(component * scale - static_cast<long double>(got)));
@@ -38,9 +37,9 @@ void check(std::int64_t x, std::int64_t y, std::int64_t z, const Formats& format
     const Direction result = normalise(x, y, z, formats, saturations);
     const double off = error(x, y, z, result, formats.normal.fraction);
     if (off > bound(formats.normal.fraction) || saturations.total() != 0)
-        FAIL("(" << x << ", " << y << ", " << z << ") at " << formats.normal.fraction
-                 << " fraction bits gives (" << result.x << ", " << result.y << ", " << result.z
-                 << "), off by " << off << " LSB, saturated " << saturations.total());
+        FAIL("(" << x << ", " << y << ", " << z << ") at " << formats.normal.fraction << " fraction bits gives ("
+                 << result.x << ", " << result.y << ", " << result.z << "), off by " << off << " LSB, saturated "
+                 << saturations.total());
 }
 
 }  // namespace
@@ -62,8 +61,7 @@ TEST_CASE("normalise: every legal normal format, any length of vector up to 31 b
         const Formats formats = with_normals(std::max(6, fraction + 2), fraction);
         for (int k = 0; k < 60'000; ++k) {
             const std::int64_t limit = (std::int64_t{1} << random.integer(1, 31)) - 1;
-            const std::int64_t x = random.any_size(limit), y = random.any_size(limit),
-                               z = random.any_size(limit);
+            const std::int64_t x = random.any_size(limit), y = random.any_size(limit), z = random.any_size(limit);
             if (x != 0 || y != 0 || z != 0)
                 check(x, y, z, formats);
         }
@@ -86,8 +84,8 @@ TEST_CASE("normalise: the bound is tight and the result is of unit length") {
         Saturations saturations;
         const Direction n = normalise(x, y, z, formats, saturations);
         worst = std::max(worst, error(x, y, z, n, 16));
-        const double length = std::sqrt(static_cast<double>(n.x) * n.x + static_cast<double>(n.y) * n.y +
-                                        static_cast<double>(n.z) * n.z);
+        const double length =
+            std::sqrt(static_cast<double>(n.x) * n.x + static_cast<double>(n.y) * n.y + static_cast<double>(n.z) * n.z);
         worst_length = std::max(worst_length, std::abs(length - 65536));
     }
     CHECK(worst > 0.49999);

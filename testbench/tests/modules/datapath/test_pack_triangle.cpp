@@ -95,10 +95,10 @@ template <class Vector>
 void add_vector(std::vector<ExpectedField>& fields, const std::string& name, int bits, std::size_t vertex,
                 Vector Vertex::*member) {
     const auto component = [&](const char* letter, std::int32_t Vector::*coordinate) {
-        fields.push_back(number<std::int32_t>(
-            name + letter, bits, [vertex, member, coordinate](Triangle& triangle) -> std::int32_t& {
-                return triangle.vertices[vertex].*member.*coordinate;
-            }));
+        fields.push_back(number<std::int32_t>(name + letter, bits,
+                                              [vertex, member, coordinate](Triangle& triangle) -> std::int32_t& {
+                                                  return triangle.vertices[vertex].*member.*coordinate;
+                                              }));
     };
     component(".x", &Vector::x);
     component(".y", &Vector::y);
@@ -113,15 +113,14 @@ std::vector<ExpectedField> fields_of(const Formats& formats) {
         add_vector(fields, vertex + "P", position, k, &Vertex::position);
         add_vector(fields, vertex + "N", normal, k, &Vertex::normal);
         add_vector(fields, vertex + "T", normal, k, &Vertex::tangent);
-        fields.push_back({vertex + "handedness",
-                          1,
-                          0,
-                          1,
-                          [k](const Triangle& t) { return (1 - t.vertices[k].handedness) / 2; },
-                          [k](Triangle& t, std::int64_t code) {
-                              t.vertices[k].handedness = static_cast<std::int8_t>(1 - 2 * code);
-                          },
-                          {2, -1, 64, -63}});
+        fields.push_back(
+            {vertex + "handedness",
+             1,
+             0,
+             1,
+             [k](const Triangle& t) { return (1 - t.vertices[k].handedness) / 2; },
+             [k](Triangle& t, std::int64_t code) { t.vertices[k].handedness = static_cast<std::int8_t>(1 - 2 * code); },
+             {2, -1, 64, -63}});
         const auto natural = [&](const char* name, auto member) {
             fields.push_back(number<std::uint32_t>(
                 vertex + name, formats.texture.bits,
@@ -129,40 +128,37 @@ std::vector<ExpectedField> fields_of(const Formats& formats) {
         };
         natural("t.u", &TexCoord::u);
         natural("t.v", &TexCoord::v);
-        fields.push_back(
-            number<std::uint8_t>(vertex + "generation", formats.generation_bits,
-                                 [k](Triangle& t) -> std::uint8_t& { return t.vertices[k].generation; }));
+        fields.push_back(number<std::uint8_t>(vertex + "generation", formats.generation_bits,
+                                              [k](Triangle& t) -> std::uint8_t& { return t.vertices[k].generation; }));
         const auto flag = [&](const char* name, auto member) {
-            fields.push_back(number<bool>(
-                vertex + name, 1, [k, member](Triangle& t) -> bool& { return t.vertices[k].*member; }));
+            fields.push_back(
+                number<bool>(vertex + name, 1, [k, member](Triangle& t) -> bool& { return t.vertices[k].*member; }));
         };
         flag("displaced known", &Vertex::displaced_known);
         flag("screen normal known", &Vertex::screen_normal_known);
         add_vector(fields, vertex + "P'", position, k, &Vertex::displaced);
         add_vector(fields, vertex + "N'", normal, k, &Vertex::displaced_normal);
         const auto screen = [&](const char* name, auto member, int bits) {
-            fields.push_back(number<std::int32_t>(
-                vertex + name, bits,
-                [k, member](Triangle& t) -> std::int32_t& { return t.vertices[k].screen.*member; }));
+            fields.push_back(number<std::int32_t>(vertex + name, bits, [k, member](Triangle& t) -> std::int32_t& {
+                return t.vertices[k].screen.*member;
+            }));
         };
         screen("P's.x", &ScreenPosition::x, formats.screen.bits);
         screen("P's.y", &ScreenPosition::y, formats.screen.bits);
         screen("w", &ScreenPosition::w, formats.view_distance.bits);
-        fields.push_back(number<bool>(vertex + "in front", 1,
-                                      [k](Triangle& t) -> bool& { return t.vertices[k].screen.in_front; }));
+        fields.push_back(
+            number<bool>(vertex + "in front", 1, [k](Triangle& t) -> bool& { return t.vertices[k].screen.in_front; }));
         add_vector(fields, vertex + "N's", normal, k, &Vertex::screen_normal);
     }
-    fields.push_back(
-        number<std::uint8_t>("split by", 2, [](Triangle& t) -> std::uint8_t& { return t.split_by; }));
+    fields.push_back(number<std::uint8_t>("split by", 2, [](Triangle& t) -> std::uint8_t& { return t.split_by; }));
     // codes of 3 bits stand for 4, 8, 16: a quarter of the value
-    ExpectedField stopped_by{
-        "stopped by",
-        3,
-        0,
-        7,
-        [](const Triangle& t) { return t.stopped_by / 4; },
-        [](Triangle& t, std::int64_t code) { t.stopped_by = static_cast<std::uint8_t>(4 * code); },
-        {8, 63}};
+    ExpectedField stopped_by{"stopped by",
+                             3,
+                             0,
+                             7,
+                             [](const Triangle& t) { return t.stopped_by / 4; },
+                             [](Triangle& t, std::int64_t code) { t.stopped_by = static_cast<std::uint8_t>(4 * code); },
+                             {8, 63}};
     fields.push_back(stopped_by);
     fields.push_back(number<bool>("finished", 1, [](Triangle& t) -> bool& { return t.finished; }));
     return fields;
@@ -188,8 +184,7 @@ constexpr std::size_t guard_bytes = 16;
 /// A packed triangle between two fences, in memory that was not clean.
 struct Packed {
     explicit Packed(const Formats& formats)
-        : size(packed_triangle_bytes(formats) + packed_triangle_tag_bytes),
-          memory(size + 2 * guard_bytes, guard) {}
+        : size(packed_triangle_bytes(formats) + packed_triangle_tag_bytes), memory(size + 2 * guard_bytes, guard) {}
 
     unsigned char* bytes() { return memory.data() + guard_bytes; }
     bool fenced() const {
@@ -203,9 +198,7 @@ struct Packed {
             text += (bytes()[k / 8] >> (k % 8) & 1) != 0 ? '1' : '0';
         return text;
     }
-    void flip(std::size_t bit) {
-        bytes()[bit / 8] = static_cast<unsigned char>(bytes()[bit / 8] ^ 1 << (bit % 8));
-    }
+    void flip(std::size_t bit) { bytes()[bit / 8] = static_cast<unsigned char>(bytes()[bit / 8] ^ 1 << (bit % 8)); }
 
     std::size_t size;
     std::vector<unsigned char> memory;
@@ -223,16 +216,15 @@ std::string difference(const Triangle& a, const Triangle& b, const std::vector<E
 Triangle random_triangle(Random& random, const std::vector<ExpectedField>& fields) {
     Triangle triangle;
     for (const ExpectedField& field : fields)
-        field.set(triangle, random.coin() ? random.integer(field.lowest, field.highest)
-                                          : std::clamp(random.any_size(field.highest + 1), field.lowest,
-                                                       field.highest));
+        field.set(triangle, random.coin()
+                                ? random.integer(field.lowest, field.highest)
+                                : std::clamp(random.any_size(field.highest + 1), field.lowest, field.highest));
     triangle.base = random.natural(0, 0xffffffffU);
     return triangle;
 }
 
 /// Packed as the reference says, nothing else written, and back again.
-void check_round_trip(const Triangle& triangle, const Formats& formats,
-                      const std::vector<ExpectedField>& fields) {
+void check_round_trip(const Triangle& triangle, const Formats& formats, const std::vector<ExpectedField>& fields) {
     Packed packed(formats);
     if (!pack_triangle(triangle, formats, packed.bytes()))
         FAIL("said not to fit");
@@ -240,9 +232,8 @@ void check_round_trip(const Triangle& triangle, const Formats& formats,
     const std::size_t whole = packed_triangle_bytes(formats) * 8;
     if (packed.bits(0, whole) != expected + std::string(whole - expected.size(), '0'))
         FAIL("bits " << packed.bits(0, whole) << "\nnot  " << expected);
-    if (packed.bits(whole, 32) !=
-        bits_of(triangle, {number<std::uint32_t>(
-                              "base", 32, [](Triangle & t) -> auto& { return t.base; })}))
+    if (packed.bits(whole, 32) != bits_of(triangle, {number<std::uint32_t>(
+                                                        "base", 32, [](Triangle & t) -> auto& { return t.base; })}))
         FAIL("tag");
     if (!packed.fenced())
         FAIL("written outside");

@@ -62,9 +62,9 @@ std::set<std::string> functions() {
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
         if (entry.path().extension() != ".h")
             continue;
-        names.merge(matches(
-            text_of(entry.path()),
-            R"((?:^|\n)(?:\[\[nodiscard\]\] )?(?:inline )?(?:constexpr |int )(?:[\w:<>, *]+? )?&?(\w+)\()"));
+        names.merge(
+            matches(text_of(entry.path()),
+                    R"((?:^|\n)(?:\[\[nodiscard\]\] )?(?:inline )?(?:constexpr |int )(?:[\w:<>, *]+? )?&?(\w+)\()"));
     }
     return names;
 }

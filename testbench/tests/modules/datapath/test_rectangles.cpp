@@ -24,8 +24,7 @@ std::uint32_t wrapped(std::int64_t index, std::uint32_t size, AddressMode mode) 
 }
 
 /// The sum texel by texel.
-std::uint64_t brute_force(const std::vector<std::uint32_t>& codes, const Rectangle& r,
-                          const MapGeometry& map) {
+std::uint64_t brute_force(const std::vector<std::uint32_t>& codes, const Rectangle& r, const MapGeometry& map) {
     std::uint64_t sum = 0;
     for (std::uint32_t y = r.first_row; y < r.last_row; ++y)
         for (std::uint32_t x = r.first_column; x < r.last_column; ++x)
@@ -48,8 +47,7 @@ bool placed_right(std::uint32_t centre, std::uint32_t first, std::uint32_t exten
 bool placed_right(const TexCoord& t, const Rectangle& r, const RectangleSize& size, const MapGeometry& map,
                   const Formats& formats) {
     return r.last_column - r.first_column == size.width && r.last_row - r.first_row == size.height &&
-           placed_right(t.u >> formats.texture.fraction, r.first_column, size.width, map.width,
-                        map.address_u) &&
+           placed_right(t.u >> formats.texture.fraction, r.first_column, size.width, map.width, map.address_u) &&
            placed_right(t.v >> formats.texture.fraction, r.first_row, size.height, map.height, map.address_v);
 }
 
@@ -90,9 +88,9 @@ void check_sums(std::uint32_t width, std::uint32_t height, int bits, const std::
                 if (expected >> bits != 0)
                     return;
                 if (machine.sum_around(t, size) != expected || !placed_right(t, r, size, map, Formats{}))
-                    FAIL(width << " x " << height << " map, " << bits << " bits, rectangle of " << size.width
-                               << " x " << size.height << " about " << x << ", " << y << ": "
-                               << machine.sum_around(t, size) << " for " << expected);
+                    FAIL(width << " x " << height << " map, " << bits << " bits, rectangle of " << size.width << " x "
+                               << size.height << " about " << x << ", " << y << ": " << machine.sum_around(t, size)
+                               << " for " << expected);
             };
             if (width * height <= 256) {
                 for (std::uint32_t h = 1; h <= height; ++h)
@@ -133,20 +131,18 @@ TEST_CASE("rectangles: size by division, at least one texel, at most the map; co
                 std::abs(random.any_size(std::int64_t{1} << random.integer(0, 12 + fraction))));
         };
         const TexCoord a{coordinate(), coordinate()}, b{coordinate(), coordinate()};
-        const RectangleSize size = rectangle_size(a, b, map, formats),
-                            other = rectangle_size(b, a, map, formats);
+        const RectangleSize size = rectangle_size(a, b, map, formats), other = rectangle_size(b, a, map, formats);
         if (size.width != expected_side(a.u, b.u, 2, map.width, formats) ||
             size.height != expected_side(a.v, b.v, 4, map.height, formats) || other.width != size.width ||
             other.height != size.height)
-            FAIL(a.u << ", " << a.v << " to " << b.u << ", " << b.v << " gives " << size.width << " x "
-                     << size.height);
+            FAIL(a.u << ", " << a.v << " to " << b.u << ", " << b.v << " gives " << size.width << " x " << size.height);
         for (const AddressMode mode : both_modes) {
             map.address_u = mode;
             map.address_v = mode;
             for (const TexCoord& t : {a, b, midpoint(a, b)})
                 if (!placed_right(t, centred_rectangle(t, size, map, formats), size, map, formats))
-                    FAIL("rectangle of " << size.width << " x " << size.height << " about " << t.u << ", "
-                                         << t.v << " on " << map.width << " x " << map.height);
+                    FAIL("rectangle of " << size.width << " x " << size.height << " about " << t.u << ", " << t.v
+                                         << " on " << map.width << " x " << map.height);
         }
     }
 }
@@ -176,8 +172,7 @@ TEST_CASE("rectangles: entries that wrap around give the right sum whenever the 
 TEST_CASE("rectangles: four reads inside the map, six across one border, nine across two") {
     Registers registers;
     registers.map = {6, 4, AddressMode::repeat, AddressMode::repeat};
-    const Tables tables =
-        make_tables(registers, std::vector<std::uint32_t>(24, 1), std::vector<Direction>(24));
+    const Tables tables = make_tables(registers, std::vector<std::uint32_t>(24, 1), std::vector<Direction>(24));
     const TableLayout& table = registers.summed_height_table;
     const auto reads = [&](const Rectangle& r) {
         int count = 0;
@@ -221,8 +216,7 @@ TEST_CASE("rectangles: 32-bit entries agree with 64-bit ones on a large map of l
     }
 }
 
-TEST_CASE(
-    "rectangles: a constant map never splits, every edge of small maps, any value, every address mode") {
+TEST_CASE("rectangles: a constant map never splits, every edge of small maps, any value, every address mode") {
     // 1 fraction bit: whole and half texels, every pair of them
     constexpr std::array<std::pair<std::uint32_t, std::uint32_t>, 7> small{
         {{1, 1}, {1, 7}, {7, 1}, {2, 2}, {3, 5}, {8, 4}, {9, 3}}};
@@ -230,17 +224,16 @@ TEST_CASE(
         for (const std::uint32_t value : {0u, 1u, 40000u, 65535u}) {
             for (const AddressMode u : both_modes) {
                 for (const AddressMode v : both_modes) {
-                    Machine machine =
-                        machine_of(width, height, u, v, 32,
-                                   std::vector<std::uint32_t>(std::size_t{width} * height, value));
+                    Machine machine = machine_of(width, height, u, v, 32,
+                                                 std::vector<std::uint32_t>(std::size_t{width} * height, value));
                     machine.registers.formats.texture = Format::make_unsigned(14, 1);
                     for (std::uint32_t iu = 0; iu <= 2 * width; ++iu)
                         for (std::uint32_t iv = 0; iv <= 2 * height; ++iv)
                             for (std::uint32_t ju = 0; ju <= 2 * width; ++ju)
                                 for (std::uint32_t jv = 0; jv <= 2 * height; ++jv)
                                     if (machine.summed_height({iu, iv}, {ju, jv}))
-                                        FAIL(width << " x " << height << " of " << value << ": " << iu << ", "
-                                                   << iv << " to " << ju << ", " << jv);
+                                        FAIL(width << " x " << height << " of " << value << ": " << iu << ", " << iv
+                                                   << " to " << ju << ", " << jv);
                 }
             }
         }
@@ -259,8 +252,8 @@ TEST_CASE("rectangles: a constant map never splits, long edges of odd-sized maps
                         const TexCoord i{random.natural(0, width << 12), random.natural(0, height << 12)};
                         const TexCoord j{random.natural(0, width << 12), random.natural(0, height << 12)};
                         if (machine.summed_height(i, j))
-                            FAIL(width << " x " << height << ", edge " << i.u << ", " << i.v << " to " << j.u
-                                       << ", " << j.v);
+                            FAIL(width << " x " << height << ", edge " << i.u << ", " << i.v << " to " << j.u << ", "
+                                       << j.v);
                     }
                 }
             }

@@ -49,8 +49,8 @@ struct NarrowMap {
         Saturations unused;
         for (std::uint32_t k = 0; k < registers.map.width * registers.map.height; ++k) {
             codes.push_back(k == 0 ? 0 : k == 1 ? 3 : random.natural(0, 3));
-            normals.push_back(normalise(Direction{random.integer32(-9, 9), random.integer32(-9, 9), 8},
-                                        registers.formats, unused));
+            normals.push_back(
+                normalise(Direction{random.integer32(-9, 9), random.integer32(-9, 9), 8}, registers.formats, unused));
         }
     }
 };
@@ -86,8 +86,7 @@ std::vector<Vertex> all_vertices(Machine& machine) {
 
 }  // namespace
 
-TEST_CASE(
-    "reversal: every edge of narrow vertices, six tests, decision, inserted vertex, every address mode") {
+TEST_CASE("reversal: every edge of narrow vertices, six tests, decision, inserted vertex, every address mode") {
     std::array<std::uint64_t, 6> yes{};
     std::uint64_t edges = 0, splits = 0;
     for (const AddressMode u : both_modes) {
@@ -122,8 +121,7 @@ TEST_CASE(
                         !same_bits(inserted, inserted_vertex(pass, 1)))
                         FAIL("vertices " << a << " and " << b << ": unlike from the other end");
                     const char* const fault = direct.fault_of_vertex(i, j, inserted);
-                    if (fault != nullptr ||
-                        decided != direct.tests(i, j, inserted, direct.measure(i, j, inserted)))
+                    if (fault != nullptr || decided != direct.tests(i, j, inserted, direct.measure(i, j, inserted)))
                         FAIL("vertices " << a << " and " << b << ": not as defined, "
                                          << (fault != nullptr ? fault : "tests"));
                     ++edges;
@@ -142,8 +140,7 @@ TEST_CASE(
     CHECK(splits > edges / 100);
 }
 
-TEST_CASE(
-    "reversal: Summed Height Test, every edge on maps of 1 to 4 texels a side, both units, every threshold") {
+TEST_CASE("reversal: Summed Height Test, every edge on maps of 1 to 4 texels a side, both units, every threshold") {
     Random random(62);
     std::uint64_t yes = 0, edges = 0;
     for (std::uint32_t shape = 0; shape < 64; ++shape) {
@@ -186,9 +183,8 @@ TEST_CASE(
                         const bool asks = machine.summed_height(i.texture, j.texture);
                         if (asks != machine.summed_height(j.texture, i.texture) ||
                             asks != (measures.summed_height > threshold * area))
-                            FAIL(width << " x " << height << " map, " << i.texture.u << ", " << i.texture.v
-                                       << " to " << j.texture.u << ", " << j.texture.v << ", threshold "
-                                       << threshold);
+                            FAIL(width << " x " << height << " map, " << i.texture.u << ", " << i.texture.v << " to "
+                                       << j.texture.u << ", " << j.texture.v << ", threshold " << threshold);
                         yes += asks ? 1 : 0;
                         ++edges;
                     }
@@ -208,10 +204,8 @@ TEST_CASE("reversal: handedness and generation of an inserted vertex, every pair
             j.handedness = b < 256 ? std::int8_t{1} : std::int8_t{-1};
             i.generation = static_cast<std::uint8_t>(a & 255);
             j.generation = static_cast<std::uint8_t>(b & 255);
-            if (inserted_handedness(i.handedness, j.handedness) !=
-                    inserted_handedness(j.handedness, i.handedness) ||
-                inserted_generation(i.generation, j.generation) !=
-                    inserted_generation(j.generation, i.generation))
+            if (inserted_handedness(i.handedness, j.handedness) != inserted_handedness(j.handedness, i.handedness) ||
+                inserted_generation(i.generation, j.generation) != inserted_generation(j.generation, i.generation))
                 FAIL(a << ", " << b);
         }
 }

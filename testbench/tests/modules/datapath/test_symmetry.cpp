@@ -24,8 +24,7 @@ Direction unit(Random& random, const Formats& formats) {
     return normalise(any.x, any.y, sign * any.z, formats, unused);
 }
 
-Machine random_machine(std::uint32_t width, std::uint32_t height, AddressMode u, AddressMode v,
-                       Random& random) {
+Machine random_machine(std::uint32_t width, std::uint32_t height, AddressMode u, AddressMode v, Random& random) {
     Registers registers;
     registers.map = {width, height, u, v};
     std::vector<std::uint32_t> codes;
@@ -95,8 +94,7 @@ bool symmetric(const TrianglePass& pass) {
 }  // namespace
 
 TEST_CASE("symmetry: five tests, decision and inserted vertex, a million random edges per address mode") {
-    constexpr std::array<std::pair<std::uint32_t, std::uint32_t>, 4> sizes{
-        {{64, 48}, {1, 6}, {7, 1}, {19, 12}}};
+    constexpr std::array<std::pair<std::uint32_t, std::uint32_t>, 4> sizes{{{64, 48}, {1, 6}, {7, 1}, {19, 12}}};
     for (const AddressMode u : both_modes) {
         for (const AddressMode v : both_modes) {
             Random random(27u + (u == AddressMode::repeat ? 1u : 0u) + (v == AddressMode::repeat ? 2u : 0u));
@@ -109,10 +107,9 @@ TEST_CASE("symmetry: five tests, decision and inserted vertex, a million random 
                     const Vertex j = any_vertex(random, machine, &i);
                     const TrianglePass pass = both_ways(machine, i, j);
                     if (!symmetric(pass))
-                        FAIL(width << " x " << height << " map, edge " << i.texture.u << ", " << i.texture.v
-                                   << " to " << j.texture.u << ", " << j.texture.v << ": tests "
-                                   << int{pass.edges[0].tests} << " one way, " << int{pass.edges[1].tests}
-                                   << " the other");
+                        FAIL(width << " x " << height << " map, edge " << i.texture.u << ", " << i.texture.v << " to "
+                                   << j.texture.u << ", " << j.texture.v << ": tests " << int{pass.edges[0].tests}
+                                   << " one way, " << int{pass.edges[1].tests} << " the other");
                     ++edges;
                     splits += pass.split & 1;
                     for (std::size_t bit = 0; bit < 5; ++bit)
@@ -148,8 +145,7 @@ TEST_CASE(
                     const TexCoord i{a % side, a / side}, j{b % side, b / side};
                     const Formats& formats = machine.registers.formats;
                     if (machine.summed_height(i, j) != machine.summed_height(j, i) ||
-                        tex_coord_test(i, j, midpoint(i, j), formats) !=
-                            tex_coord_test(j, i, midpoint(j, i), formats))
+                        tex_coord_test(i, j, midpoint(i, j), formats) != tex_coord_test(j, i, midpoint(j, i), formats))
                         FAIL(i.u << ", " << i.v << " and " << j.u << ", " << j.v);
                 }
             }
@@ -200,9 +196,7 @@ TEST_CASE("seam: an edge moved by whole periods of a repeated map decides alike"
         const std::uint32_t width = size.first, height = size.second;
         Machine machine = random_machine(width, height, AddressMode::repeat, AddressMode::repeat, random);
         for (int k = 0; k < 60'000; ++k) {
-            const auto at = [&] {
-                return TexCoord{random.natural(0, width << 12), random.natural(0, height << 12)};
-            };
+            const auto at = [&] { return TexCoord{random.natural(0, width << 12), random.natural(0, height << 12)}; };
             Vertex i = any_vertex(random, machine, nullptr), j = i;
             j.generation = 3;
             i.texture = at();
@@ -212,8 +206,7 @@ TEST_CASE("seam: an edge moved by whole periods of a repeated map decides alike"
             machine.complete(i);
             machine.complete(j);
             Vertex moved_i = i, moved_j = j;
-            const std::uint32_t du = random.natural(0, 2) * width << 12,
-                                dv = random.natural(0, 2) * height << 12;
+            const std::uint32_t du = random.natural(0, 2) * width << 12, dv = random.natural(0, 2) * height << 12;
             for (Vertex* v : {&moved_i, &moved_j}) {
                 v->texture.u += du;
                 v->texture.v += dv;

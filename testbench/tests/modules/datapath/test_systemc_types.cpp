@@ -82,8 +82,8 @@ TEST_CASE("SystemC types: displace in sc_fixed") {
             return raw(FixedPosition(position(base) + product));
         };
         if (along(p.x, n.x) != got.x || along(p.y, n.y) != got.y || along(p.z, n.z) != got.z)
-            FAIL("base " << p.x << " " << p.y << " " << p.z << ", code " << code << ", scale " << by.scale
-                         << ", bias " << by.bias);
+            FAIL("base " << p.x << " " << p.y << " " << p.z << ", code " << code << ", scale " << by.scale << ", bias "
+                         << by.bias);
     }
 }
 
@@ -93,17 +93,15 @@ TEST_CASE("SystemC types: transform's rows and culling's products in sc_bigint")
         const auto value = [&] { return static_cast<std::int32_t>(random.any_size(0x7fffffff)); };
         const Position p{value(), value(), value()};
         const std::array<std::int64_t, 4> row{random.any_size(1 << 24), random.any_size(1 << 24),
-                                              random.any_size(1 << 24),
-                                              random.any_size(std::int64_t{1} << 61)};
+                                              random.any_size(1 << 24), random.any_size(std::int64_t{1} << 61)};
         const auto wide = [](std::int64_t bits) { return Wide(static_cast<sc_dt::int64>(bits)); };
         const Wide exact =
             wide(row[0]) * wide(p.x) + wide(row[1]) * wide(p.y) + wide(row[2]) * wide(p.z) + wide(row[3]);
         if (exact != wide(transform_row(row, p)))
             FAIL("row");
-        const ScreenPosition a{value(), value(), 0, true}, b{value(), value(), 0, true},
-            c{value(), value(), 0, true};
-        const Wide area = (wide(b.x) - wide(a.x)) * (wide(c.y) - wide(a.y)) -
-                          (wide(b.y) - wide(a.y)) * (wide(c.x) - wide(a.x));
+        const ScreenPosition a{value(), value(), 0, true}, b{value(), value(), 0, true}, c{value(), value(), 0, true};
+        const Wide area =
+            (wide(b.x) - wide(a.x)) * (wide(c.y) - wide(a.y)) - (wide(b.y) - wide(a.y)) * (wide(c.x) - wide(a.x));
         if ((area <= Wide(0)) != faces_away(a, b, c))
             FAIL("area");
     }

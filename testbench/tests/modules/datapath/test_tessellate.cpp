@@ -18,8 +18,7 @@ Direction any_direction(Random& random) {
     return {random.integer32(-1000, 1000), random.integer32(-1000, 1000), random.integer32(-1000, 1000)};
 }
 ScreenPosition any_screen(Random& random) {
-    return {random.integer32(-1000, 1000), random.integer32(-1000, 1000), random.integer32(-1000, 1000),
-            random.coin()};
+    return {random.integer32(-1000, 1000), random.integer32(-1000, 1000), random.integer32(-1000, 1000), random.coin()};
 }
 TexCoord any_texture(Random& random) {
     return {random.natural(0, 1000), random.natural(0, 1000)};
@@ -47,10 +46,10 @@ TrianglePass any_pass(Random& random) {
     TrianglePass pass;
     for (std::size_t k = 0; k < 3; ++k) {
         pass.triangle.vertices[k] = any_vertex(random);
-        pass.new_vertex[k] = {any_position(random), any_direction(random), any_texture(random),
-                              any_position(random), any_screen(random)};
-        pass.edges[k] = {any_texture(random), any_direction(random), any_direction(random),
-                         any_direction(random), static_cast<std::uint8_t>(random.integer(0, 31))};
+        pass.new_vertex[k] = {any_position(random), any_direction(random), any_texture(random), any_position(random),
+                              any_screen(random)};
+        pass.edges[k] = {any_texture(random), any_direction(random), any_direction(random), any_direction(random),
+                         static_cast<std::uint8_t>(random.integer(0, 31))};
     }
     pass.triangle.base = random.natural(0, 1000);
     pass.triangle.split_by = static_cast<std::uint8_t>(random.integer(1, 3));
@@ -120,10 +119,10 @@ TEST_CASE("tessellate: children carry complete vertices and the parent's tags") 
                 saturated += generation > highest_generation ? 1 : 0;
             }
         }
-        const ChildIndices indices = triangulate(
-            pass.split, choose_second_diagonal(pass.split, choice, [&](std::uint8_t at) -> const Position& {
-                return expected[at].displaced;
-            }));
+        const ChildIndices indices =
+            triangulate(pass.split, choose_second_diagonal(pass.split, choice, [&](std::uint8_t at) -> const Position& {
+                            return expected[at].displaced;
+                        }));
 
         std::vector<Triangle> children;
         CHECK(tessellate(pass, choice, formats, saturations,

@@ -36,14 +36,13 @@ void check(const Position& p, const TransformParameters& parameters, const Forma
     const ScreenPosition got = transform(p, parameters, formats, saturations);
     const Wide w = exact_row(parameters.row_w, p);
     const auto fail = [&](const char* what) {
-        FAIL(what << ": position " << p.x << " " << p.y << " " << p.z << ", w row " << parameters.row_w[0]
-                  << " " << parameters.row_w[1] << " " << parameters.row_w[2] << " " << parameters.row_w[3]
-                  << ", x row " << parameters.row_x[0] << " " << parameters.row_x[1] << " "
-                  << parameters.row_x[2] << " " << parameters.row_x[3] << ", y row " << parameters.row_y[0]
-                  << " " << parameters.row_y[1] << " " << parameters.row_y[2] << " " << parameters.row_y[3]
-                  << ", exponent " << parameters.exponent << ", near plane " << parameters.near_plane
-                  << ", screen " << formats.screen.bits << "." << formats.screen.fraction << " gives "
-                  << got.x << " " << got.y << " " << got.w);
+        FAIL(what << ": position " << p.x << " " << p.y << " " << p.z << ", w row " << parameters.row_w[0] << " "
+                  << parameters.row_w[1] << " " << parameters.row_w[2] << " " << parameters.row_w[3] << ", x row "
+                  << parameters.row_x[0] << " " << parameters.row_x[1] << " " << parameters.row_x[2] << " "
+                  << parameters.row_x[3] << ", y row " << parameters.row_y[0] << " " << parameters.row_y[1] << " "
+                  << parameters.row_y[2] << " " << parameters.row_y[3] << ", exponent " << parameters.exponent
+                  << ", near plane " << parameters.near_plane << ", screen " << formats.screen.bits << "."
+                  << formats.screen.fraction << " gives " << got.x << " " << got.y << " " << got.w);
     };
     if (got.w != clamped(nearest(w, 24), formats.view_distance.lowest, formats.view_distance.highest))
         fail("w");
@@ -57,13 +56,12 @@ void check(const Position& p, const TransformParameters& parameters, const Forma
         return;
     }
     ++worst.in_front;
-    const auto low = static_cast<double>(formats.screen.lowest),
-               high = static_cast<double>(formats.screen.highest);
+    const auto low = static_cast<double>(formats.screen.lowest), high = static_cast<double>(formats.screen.highest);
     std::uint64_t certain = 0, possible = 0;
     const auto coordinate = [&](const Row& row, std::int32_t value) {
-        const long double ideal = std::ldexp(static_cast<long double>(exact_row(row, p)),
-                                             parameters.exponent + formats.screen.fraction) /
-                                  static_cast<long double>(w);
+        const long double ideal =
+            std::ldexp(static_cast<long double>(exact_row(row, p)), parameters.exponent + formats.screen.fraction) /
+            static_cast<long double>(w);
         const double size = std::abs(static_cast<double>(ideal));
         const double bound = 0.5 + size * 0x1p-28;
         if (ideal > high + bound || ideal < low - bound) {
@@ -159,8 +157,7 @@ TEST_CASE("transform: a camera's registers, positions spread over the picture an
         parameters.near_plane = std::llround(distance / 16 * (1 << 24));
         for (int k = 0; k < 5'000; ++k) {
             const auto reach = static_cast<std::int64_t>(distance) - 1;
-            check({random.integer32(-reach, reach), random.integer32(-reach, reach),
-                   random.integer32(-reach, reach)},
+            check({random.integer32(-reach, reach), random.integer32(-reach, reach), random.integer32(-reach, reach)},
                   parameters, Formats{}, worst);
         }
     }
@@ -175,8 +172,7 @@ TEST_CASE("transform: no corner of what the host can set overflows") {
     for (int e = 0; e < 27; ++e) {
         for (int c = 0; c < 27; ++c) {
             const auto digit = [](int number, int place) {
-                return static_cast<std::size_t>(place == 0 ? number % 3
-                                                           : (place == 1 ? number / 3 % 3 : number / 9));
+                return static_cast<std::size_t>(place == 0 ? number % 3 : (place == 1 ? number / 3 % 3 : number / 9));
             };
             const std::array<std::int64_t, 3> corners{low, 1, high};
             const Position p{static_cast<std::int32_t>(corners[digit(c, 0)]),
@@ -236,8 +232,7 @@ TEST_CASE("transform: the distance w is rounded to its own format and saturates"
     parameters.row_w[3] = largest_offset;
     CHECK(transform({0, 0, 0}, parameters, Formats{}, saturations).w == 0x7fffffff);
     parameters.row_w[3] = -largest_offset;
-    CHECK(transform({0, 0, 0}, parameters, Formats{}, saturations).w ==
-          std::numeric_limits<std::int32_t>::min());
+    CHECK(transform({0, 0, 0}, parameters, Formats{}, saturations).w == std::numeric_limits<std::int32_t>::min());
     CHECK(saturations.view_distance == 2);
 
     Formats coarse;
@@ -265,8 +260,8 @@ TEST_CASE("transform_normal: a rotation to the nearest LSB, exact against 128 bi
         const Direction got = transform_normal(n, parameters, formats, saturations);
         std::uint64_t saturated = 0;
         const auto expected = [&](const std::array<std::int32_t, 3>& row) {
-            const Wide exact = nearest(Wide{row[0]} * n.x + Wide{row[1]} * n.y + Wide{row[2]} * n.z,
-                                       formats.normal.fraction);
+            const Wide exact =
+                nearest(Wide{row[0]} * n.x + Wide{row[1]} * n.y + Wide{row[2]} * n.z, formats.normal.fraction);
             const Wide fits = clamped(exact, formats.normal.lowest, formats.normal.highest);
             saturated += exact == fits ? 0 : 1;
             return static_cast<std::int32_t>(fits);

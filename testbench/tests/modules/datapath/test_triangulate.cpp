@@ -48,8 +48,7 @@ constexpr std::array<int, 8> children_of{1, 2, 2, 3, 2, 3, 3, 4};
 
 }  // namespace
 
-TEST_CASE(
-    "triangulate: all eight splits, both diagonals: covers, keeps winding, no edge too many or too few") {
+TEST_CASE("triangulate: all eight splits, both diagonals: covers, keeps winding, no edge too many or too few") {
     for (unsigned split = 0; split < 8; ++split) {
         for (const bool second : {false, true}) {
             const ChildIndices result = triangulate(split, second);
@@ -159,8 +158,7 @@ TEST_CASE("diagonal: rounding does not choose between equal lengths") {
         p[4] = {first_length, 0, 0};
         p[1] = {0, 9, 0};
         p[5] = {second_length, 9, 0};
-        return choose_second_diagonal(6, Triangulation::shorter,
-                                      [&](std::uint8_t index) { return p[index]; });
+        return choose_second_diagonal(6, Triangulation::shorter, [&](std::uint8_t index) { return p[index]; });
     };
     CHECK_FALSE(second(640, 640));
     CHECK_FALSE(second(640, 639));

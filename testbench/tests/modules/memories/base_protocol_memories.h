@@ -62,11 +62,7 @@ struct PipelinedMemory : sc_core::sc_module {
 
     PipelinedMemory(const sc_core::sc_module_name& name, const sc_core::sc_time& cycle, unsigned its_latency,
                     unsigned its_bandwidth = 0, unsigned its_uncounted = 0)
-        : sc_module(name),
-          bandwidth(its_bandwidth),
-          uncounted(its_uncounted),
-          its_period(cycle),
-          latency(its_latency) {
+        : sc_module(name), bandwidth(its_bandwidth), uncounted(its_uncounted), its_period(cycle), latency(its_latency) {
         socket.register_nb_transport_fw(this, &PipelinedMemory::nb_transport_fw);
         socket.register_transport_dbg(this, &PipelinedMemory::transport_dbg);
         SC_HAS_PROCESS(PipelinedMemory);

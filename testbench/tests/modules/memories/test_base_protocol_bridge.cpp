@@ -228,8 +228,7 @@ TEST_CASE("bridge: END_REQ may come later, and its delay counts") {
     bench.reader.reads = gathers(1, 2);
     bench.in_cycle(15, [&] {
         CHECK(bench.memory.come.size() == 1);
-        CHECK(bench.memory.send_back(*bench.memory.come[0], tlm::END_REQ, sc_time(20, SC_PS)) ==
-              tlm::TLM_ACCEPTED);
+        CHECK(bench.memory.send_back(*bench.memory.come[0], tlm::END_REQ, sc_time(20, SC_PS)) == tlm::TLM_ACCEPTED);
     });
     bench.in_cycle(16, [&] { CHECK(bench.memory.come.size() == 1); });
     bench.in_cycle(17, [&] { CHECK(bench.memory.come.size() == 2); });
@@ -296,8 +295,7 @@ TEST_CASE("bridge: an answer before the call returns and another by return is an
     ScriptedBench bench(Way::completed);
     bench.memory.on_request = [&](Payload& payload) { bench.memory.send_back(payload, tlm::BEGIN_RESP); };
     bench.reader.reads = gathers(1, 2);
-    CHECK_THAT(error_of([] { sc_core::sc_start(); }),
-               Contains("bridge.to_memory") && Contains("answered twice"));
+    CHECK_THAT(error_of([] { sc_core::sc_start(); }), Contains("bridge.to_memory") && Contains("answered twice"));
 }
 
 TEST_CASE("bridge: an answer by return that is none is an error") {

@@ -48,8 +48,7 @@ class BridgedUnits : public UnitFactory {
         const std::string name = memory.basename();
         if (bridges_.count(name) == 0) {
             auto* clock = dynamic_cast<CycleScheduler*>(sc_core::sc_find_object("bridged.clock"));
-            bridges_[name] =
-                std::make_unique<BaseProtocolBridge>(("bridge_of_" + name).c_str(), *clock, buffer);
+            bridges_[name] = std::make_unique<BaseProtocolBridge>(("bridge_of_" + name).c_str(), *clock, buffer);
             memories_.push_back(make_(*bridges_[name], name));
         }
         port.bind(*bridges_[name]);
@@ -137,8 +136,7 @@ TEST_CASE("bridged machine: functional mode, the same mesh") {
 }
 
 TEST_CASE("bridged machine: pipelined memories and a queue that spills") {
-    expect_same_cycles(
-        with_settings(full_split_job(3, 3), "hardware.queue_capacity=16 " + every_table("latency", 7)));
+    expect_same_cycles(with_settings(full_split_job(3, 3), "hardware.queue_capacity=16 " + every_table("latency", 7)));
 }
 
 TEST_CASE("bridged machine: three Tessellation Tests units share the bridges") {

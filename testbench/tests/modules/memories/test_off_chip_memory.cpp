@@ -33,8 +33,7 @@ struct OffChipBench : sc_core::sc_module {
     Cycles offered, answered;
     std::vector<int> read_values;
 
-    OffChipBench(const sc_core::sc_module_name& name, const OffChipTiming& timing,
-                 const StallParameters& stalls = {})
+    OffChipBench(const sc_core::sc_module_name& name, const OffChipTiming& timing, const StallParameters& stalls = {})
         : sc_module(name), memory("memory", clock, timing, stalls, 1000, 8) {
         clock.attach(memory);
         port.clocked_by(clock, owner, 16, 1);

@@ -32,8 +32,8 @@ struct Bench {
         : memory("memory", clock, layout, timing, stalls) {
         clock.attach(memory);
         for (unsigned k = 0; k < count; ++k) {
-            readers.push_back(std::make_unique<MemoryReader>(("reader_" + std::to_string(k)).c_str(), clock,
-                                                             most_under_way, false));
+            readers.push_back(
+                std::make_unique<MemoryReader>(("reader_" + std::to_string(k)).c_str(), clock, most_under_way, false));
             readers.back()->base = layout.base;
             readers.back()->entry_bytes = readers.back()->port.entry_bytes();
             readers.back()->port.bind(memory);
@@ -95,8 +95,7 @@ Cycles every(std::uint64_t first, std::uint64_t step, std::size_t count) {
     return cycles;
 }
 
-MemoryTiming timing(unsigned ports, unsigned banks, unsigned latency, unsigned width = 0,
-                    unsigned buffer = 1) {
+MemoryTiming timing(unsigned ports, unsigned banks, unsigned latency, unsigned width = 0, unsigned buffer = 1) {
     return {ports, banks, latency, width, buffer};
 }
 
@@ -113,27 +112,20 @@ const CaseTable answers(
     {
         Row{"one port takes an address a cycle, data come a latency later", timing(1, 1, 1), single_reads(20),
             every(11, 1, 20)},
-        {"latency 0 answers in the cycle of the address", timing(1, 1, 0), single_reads(20),
-         every(10, 1, 20)},
+        {"latency 0 answers in the cycle of the address", timing(1, 1, 0), single_reads(20), every(10, 1, 20)},
         {"latency 100 does not lower the throughput", timing(1, 1, 100), single_reads(60), every(110, 1, 60)},
         {"latency 2000 is beyond the clock's table", timing(1, 1, 2000), single_reads(3), every(2010, 1, 3)},
         // addresses in cycles 10 to 13, 14 to 17 ...; the last one's data is the answer
-        {"a gather of four keeps one port for four cycles", timing(1, 1, 1), gathers(10, 4),
-         every(14, 4, 10)},
+        {"a gather of four keeps one port for four cycles", timing(1, 1, 1), gathers(10, 4), every(14, 4, 10)},
         {"a gather of nine keeps one port for nine cycles", timing(1, 1, 3), gathers(5, 9), every(21, 9, 5)},
         {"two ports halve a gather of four", timing(2, 1, 1), gathers(10, 4), every(12, 2, 10)},
         {"four ports take a gather of four a cycle", timing(4, 1, 1), gathers(10, 4), every(11, 1, 10)},
         // nine slots, four a cycle: gather k ends in slot 9 k + 8, in cycle 10 + floor((9 k + 8) / 4)
-        {"four ports and gathers of nine share cycles",
-         timing(4, 1, 1),
-         gathers(6, 9),
-         {13, 15, 17, 19, 22, 24}},
+        {"four ports and gathers of nine share cycles", timing(4, 1, 1), gathers(6, 9), {13, 15, 17, 19, 22, 24}},
         // 4 bytes at 2 a cycle
-        {"a port narrower than an entry takes it in pieces", timing(1, 1, 1, 2), single_reads(10),
-         every(12, 2, 10)},
+        {"a port narrower than an entry takes it in pieces", timing(1, 1, 1, 2), single_reads(10), every(12, 2, 10)},
         // 2 cycles an entry, 8 a gather
-        {"a width that does not divide the entry rounds up", timing(1, 1, 1, 3), gathers(4, 4),
-         every(18, 8, 4)},
+        {"a width that does not divide the entry rounds up", timing(1, 1, 1, 3), gathers(4, 4), every(18, 8, 4)},
         // 4 bytes at 2 a cycle: entries 0 and 1 in cycles 10 and 11, one on each port
         {"two narrow ports take two entries in pieces, and no entry in one cycle",
          timing(2, 1, 1, 2),
@@ -150,10 +142,7 @@ const CaseTable answers(
          {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 4, 8, 12}, {1, 2, 3, 5}},
          {11, 12, 16, 16}},
         // two in each bank, cycles 10 and 11; {0, 2} bank 0 in 12, 13; {1, 3} as bank 1 is free in 12: 12, 13
-        {"requests wait while every bank is taken",
-         timing(1, 2, 1),
-         {{0, 1, 2, 3}, {0, 2}, {1, 3}},
-         {12, 14, 14}},
+        {"requests wait while every bank is taken", timing(1, 2, 1), {{0, 1, 2, 3}, {0, 2}, {1, 3}}, {12, 14, 14}},
     },
     [](const Row& row) {
         Bench bench(row.timing);

@@ -61,9 +61,8 @@ TEST_CASE("table memory: every response, blocking and non-blocking") {
     const std::uint64_t counted = bench.memory.transactions();
     CHECK(counted == 4);
 
-    for (const std::uint64_t outside :
-         {layout.base - 1, layout.base - 4, layout.base + layout.bytes() - 3, layout.base + layout.bytes(),
-          std::uint64_t{0}, ~std::uint64_t{0} - 2})
+    for (const std::uint64_t outside : {layout.base - 1, layout.base - 4, layout.base + layout.bytes() - 3,
+                                        layout.base + layout.bytes(), std::uint64_t{0}, ~std::uint64_t{0} - 2})
         bench.expect(read_of(bench.data, outside), tlm::TLM_ADDRESS_ERROR_RESPONSE);
     bench.expect(read_of(bench.data, layout.base, static_cast<unsigned>(layout.bytes()) + 1),
                  tlm::TLM_ADDRESS_ERROR_RESPONSE);
@@ -366,8 +365,7 @@ struct DirectTarget : sc_core::sc_module {
 
 }  // namespace
 
-TEST_CASE(
-    "memory port: reads are transactions until direct access is granted, and again after it is withdrawn") {
+TEST_CASE("memory port: reads are transactions until direct access is granted, and again after it is withdrawn") {
     DirectTarget target("target");
     struct Owner : sc_core::sc_module {
         MemoryPort port{"port", 4, true};

@@ -284,8 +284,7 @@ TEST_CASE("stream: every breach of a consumer is an error that names the produce
     CHECK_FALSE(out.send(item));
     for (const tlm::tlm_phase& phase :
          {tlm::tlm_phase(tlm::BEGIN_REQ), tlm::tlm_phase(tlm::BEGIN_RESP), tlm::tlm_phase(tlm::END_RESP)})
-        CHECK_THAT(error_of([&] { target.send_back(item, phase, SC_ZERO_TIME); }),
-                   Contains("END_REQ that was due"));
+        CHECK_THAT(error_of([&] { target.send_back(item, phase, SC_ZERO_TIME); }), Contains("END_REQ that was due"));
     CHECK_FALSE(out.free());
     CHECK_THAT(error_of([&] { out.send(item); }),
                Contains("offerer.out: BEGIN_REQ before END_REQ"));  // exclusion

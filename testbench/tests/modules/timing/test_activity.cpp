@@ -133,9 +133,7 @@ TEST_CASE("fork: an output gets the parts that it is for, and of them what it ne
         explicit Bench(const sc_core::sc_module_name& name) : sc_module(name) {
             fork.add(all);
             fork.add(edges, edge_parts);
-            const auto corner = +[](const ScreenPoint& point) {
-                return ScreenCorner{point.tag, point.screen};
-            };
+            const auto corner = +[](const ScreenPoint& point) { return ScreenCorner{point.tag, point.screen}; };
             fork.add(vertices, corner, vertex_parts);
         }
     } bench("bench");

@@ -67,8 +67,7 @@ TEST_CASE("clock: a unit woken in the present cycle is called in it, an earlier 
 TEST_CASE("clock: cycles nobody asked for are skipped, near and far") {
     Three t;
     // the table covers 1024 cycles from the first on; both sides of its edge, and of the second turn's
-    const std::vector<std::uint64_t> asked{0,    1,    63,   64,   65,   1022,     1023,
-                                           1024, 1025, 2047, 2048, 5000, 1'000'000};
+    const std::vector<std::uint64_t> asked{0, 1, 63, 64, 65, 1022, 1023, 1024, 1025, 2047, 2048, 5000, 1'000'000};
     for (const std::uint64_t cycle : asked)
         t.clock.wake_at(t.a, cycle);
     t.clock.wake_at(t.b, 5000);

@@ -21,8 +21,8 @@ TEST_CASE("time resolution 1 ns: another period is an error that says what to do
     sc_core::sc_set_time_resolution(1, sc_core::SC_NS);
     for (const unsigned picoseconds : {1u, 999u, 2500u, 5001u})
         CHECK_THAT(error_of([&] { clock_period("machine", picoseconds); }),
-                   Contains("machine: ") && Contains(" " + std::to_string(picoseconds) + " ps") &&
-                       Contains("1 ns") && Contains("sc_set_time_resolution"));
+                   Contains("machine: ") && Contains(" " + std::to_string(picoseconds) + " ps") && Contains("1 ns") &&
+                       Contains("sc_set_time_resolution"));
 }
 
 TEST_CASE("time resolution 10 s: no period is a multiple of that") {
@@ -48,8 +48,7 @@ void expect_time(double resolution, sc_core::sc_time_unit unit) {
     CHECK(simulation.run().empty());
     CHECK(simulation.cycles() > 1000);
     // 5000 ps a cycle
-    CHECK(sc_core::sc_time_stamp() ==
-          sc_time(5.0 * static_cast<double>(simulation.cycles() - 1), sc_core::SC_NS));
+    CHECK(sc_core::sc_time_stamp() == sc_time(5.0 * static_cast<double>(simulation.cycles() - 1), sc_core::SC_NS));
 }
 
 }  // namespace

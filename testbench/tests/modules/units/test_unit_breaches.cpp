@@ -47,9 +47,7 @@ struct JoinBench {
                 branch.out->b_transport(item, delay);
         }
     }
-    void bring_geometry(const TakenTriangle& taken) {
-        bring_parts(transform, taken, parts_of(taken.triangle));
-    }
+    void bring_geometry(const TakenTriangle& taken) { bring_parts(transform, taken, parts_of(taken.triangle)); }
     void bring_tests(const TakenTriangle& taken) { bring_parts(tests, taken, edge_parts); }
 };
 

@@ -171,9 +171,7 @@ TEST_CASE("Two renderings are identical") {
     PictureOptions options;
     options.width = 320;
     const auto overview = [&] {
-        return render_views(mesh, look_down(3, 256, 192, 200), {PictureView::overview}, options)
-            .front()
-            .image;
+        return render_views(mesh, look_down(3, 256, 192, 200), {PictureView::overview}, options).front().image;
     };
     const Image first = overview();
     const Image second = overview();

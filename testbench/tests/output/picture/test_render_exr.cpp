@@ -47,9 +47,8 @@ ReadBack read_back(const std::string& file) {
     const char* const names[] = {"R", "G", "B"};
     Imf::FrameBuffer frame;
     for (std::size_t k = 0; k < 3; ++k)
-        frame.insert(names[k],
-                     Imf::Slice::Make(Imf::FLOAT, result.image.values.data() + k, window, 3 * sizeof(float),
-                                      3 * sizeof(float) * static_cast<std::size_t>(result.image.width)));
+        frame.insert(names[k], Imf::Slice::Make(Imf::FLOAT, result.image.values.data() + k, window, 3 * sizeof(float),
+                                                3 * sizeof(float) * static_cast<std::size_t>(result.image.width)));
     input.setFrameBuffer(frame);
     input.readPixels(0, window.max.y);
     return result;
@@ -59,8 +58,7 @@ Picture sample_picture() {
     PictureOptions options;
     options.width = 300;
     options.linear = true;
-    return render_views(make_sphere({0, 0, 0}, 48), look_down(3, 256, 192, 200), {PictureView::generation},
-                        options)
+    return render_views(make_sphere({0, 0, 0}, 48), look_down(3, 256, 192, 200), {PictureView::generation}, options)
         .front();
 }
 

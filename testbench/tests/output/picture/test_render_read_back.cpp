@@ -27,8 +27,7 @@ EmittedMesh some_mesh() {
         const int bump = (x * 7919 + y * 104729) % 99991;
         corner.position = {x * 123457, y * 98765, 0};
         corner.displaced = {x * 123457 + bump, y * 98765 - bump, bump * 3 - 100000};
-        corner.displaced_normal = {static_cast<std::int16_t>(bump % 9000), static_cast<std::int16_t>(x - y),
-                                   14000};
+        corner.displaced_normal = {static_cast<std::int16_t>(bump % 9000), static_cast<std::int16_t>(x - y), 14000};
         corner.texture.u = static_cast<std::uint32_t>(x * 4096);
         corner.texture.v = static_cast<std::uint32_t>(y * 4096);
         corner.generation = static_cast<std::uint8_t>((x + y) % 9);
@@ -55,15 +54,13 @@ EmittedMesh some_mesh() {
 
 TEST_CASE("render: a mesh read back from mesh.ply is the run's own, number for number") {
     const TestFolder here;
-    for (const glm::dvec3& centre :
-         {glm::dvec3(0), glm::dvec3(0.1, -7.3, 1e-3), glm::dvec3(1e6, 1.0 / 3, -12345.678)})
+    for (const glm::dvec3& centre : {glm::dvec3(0), glm::dvec3(0.1, -7.3, 1e-3), glm::dvec3(1e6, 1.0 / 3, -12345.678)})
         for (const double scale : {1.0, 1.0 / 64, 4096.0}) {
             CAPTURE(centre.x, scale);
             const MachineSetup setup = some_setup(centre, scale);
             const EmittedMesh run = some_mesh();
             const RenderMesh made = make_render_mesh(run, setup);
-            write_ply(here.path() / "mesh.ply", run,
-                      {setup.registers.formats, setup.registers.map, scale, centre});
+            write_ply(here.path() / "mesh.ply", run, {setup.registers.formats, setup.registers.map, scale, centre});
             const RenderMesh read = make_render_mesh(read_ply(here.path() / "mesh.ply"));
             CHECK(made.origin == read.origin);
             CHECK((made.positions == read.positions));
@@ -94,8 +91,7 @@ TEST_CASE("render: positions keep single precision's best wherever the model lie
             const glm::dvec3 exact =
                 glm::dvec3(p.x, p.y, p.z) * std::ldexp(1.0, -setup.registers.formats.position.fraction) +
                 setup.model_scale.centre;
-            const glm::dvec3 drawn_at =
-                mesh.origin + glm::dvec3(mesh.positions[mesh.triangles[drawn].vertices[k]]);
+            const glm::dvec3 drawn_at = mesh.origin + glm::dvec3(mesh.positions[mesh.triangles[drawn].vertices[k]]);
             REQUIRE(glm::length(drawn_at - exact) < 1e-5);
         }
         ++drawn;

@@ -25,8 +25,7 @@ PictureOptions as_seen(const View& camera) {
     return options;
 }
 
-Picture one_view(const RenderMesh& mesh, const View& camera, PictureView view,
-                 const PictureOptions& options) {
+Picture one_view(const RenderMesh& mesh, const View& camera, PictureView view, const PictureOptions& options) {
     return render_views(mesh, camera, {view}, options).front();
 }
 
@@ -60,8 +59,7 @@ bool has_colour(const Image& image, const Colour& colour, int from_row) {
 /// Five quads, each stopped by something else.
 RenderMesh stopped_row() {
     RenderMesh mesh = make_row(5);
-    const std::array<std::uint8_t, 5> bits{0, datapath::view_bit, datapath::tex_coord_bit,
-                                           datapath::generation_bit,
+    const std::array<std::uint8_t, 5> bits{0, datapath::view_bit, datapath::tex_coord_bit, datapath::generation_bit,
                                            datapath::view_bit | datapath::tex_coord_bit};
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
         mesh.triangles[i].stopped_by = bits[i / 2];
@@ -195,8 +193,7 @@ TEST_CASE("render: each view has its colours, where they belong") {
         for (int x = 55; x < 445; x += 7)
             for (int y = 35; y < 105; y += 7)
                 seen.insert(nearest_hue(image.at(x, y), paints));
-        CHECK(seen ==
-              std::set<std::size_t>{0, 1});  // add_quad makes a base triangle and one of the Normal Test
+        CHECK(seen == std::set<std::size_t>{0, 1});  // add_quad makes a base triangle and one of the Normal Test
         for (const Colour& paint : paints)
             CHECK(has_colour(image, paint, 120));
     }
@@ -213,14 +210,13 @@ TEST_CASE("render: each view has its colours, where they belong") {
             CHECK(nearest_hue(at_quad(image, quad), paints) == static_cast<std::size_t>(quad));
         }
         CHECK(has_colour(image, generation_colour(12), 120));
-        CHECK_FALSE(has_colour(one_view(mesh, view, PictureView::generation, options).image,
-                               generation_colour(12), 120));  // what the mesh lacks the legend lacks
+        CHECK_FALSE(has_colour(one_view(mesh, view, PictureView::generation, options).image, generation_colour(12),
+                               120));  // what the mesh lacks the legend lacks
     }
     SECTION("shaded and wireframe have none") {
         for (const PictureView plain : {PictureView::shaded, PictureView::wireframe}) {
             const Image image = one_view(mesh, view, plain, options).image;
-            const std::array<Colour, 3> paints{Style{}.surface, stop_colour(Stop::view),
-                                               stop_colour(Stop::generation)};
+            const std::array<Colour, 3> paints{Style{}.surface, stop_colour(Stop::view), stop_colour(Stop::generation)};
             for (int quad = 0; quad < 5; ++quad)
                 CHECK(nearest_hue(at_quad(image, quad), paints) == 0);
             CHECK(image.height == 150);  // 0.3 of the width, and no room for a legend
@@ -240,8 +236,7 @@ TEST_CASE("render: errors of triangles and of vertices get the ramp's colours") 
         const Image image = one_view(mesh, view, PictureView::error, options).image;
         for (int quad = 0; quad < 3; ++quad)
             for (const int x : {10, 40, 70})
-                CHECK(nearest_hue(image.at(80 + 80 * quad + x, 60), paints) ==
-                      static_cast<std::size_t>(quad));
+                CHECK(nearest_hue(image.at(80 + 80 * quad + x, 60), paints) == static_cast<std::size_t>(quad));
         CHECK(has_colour(image, error_colour(1), 120));
     }
     SECTION("unknown: as no error") {
@@ -288,10 +283,8 @@ TEST_CASE("render: a legend names what its colours stand for") {
 
     CHECK(legend_of(PictureView::test).second == Words{"normal", "summed height", "both", "none: base"});
     mesh.triangles[0].deciding_test = DecidingTest::highlight;
-    CHECK(legend_of(PictureView::test).second ==
-          Words{"normal", "summed height", "both", "highlight", "none: base"});
-    CHECK(legend_of(PictureView::stopped).second ==
-          Words{"no test", "view", "tex coord", "generation", "several"});
+    CHECK(legend_of(PictureView::test).second == Words{"normal", "summed height", "both", "highlight", "none: base"});
+    CHECK(legend_of(PictureView::stopped).second == Words{"no test", "view", "tex coord", "generation", "several"});
 
     const auto [title, labels] = legend_of(PictureView::error, {0.08, 0.3, 0.016});
     CHECK(title == "error, model units, largest 0.3 (one texel: 0.016)");

@@ -23,12 +23,10 @@ TEST_CASE("error.txt: every figure below its heading, in both units") {
         name.resize(34, ' ');
         return "\n  " + name + columns + "\n";
     };
-    CHECK_THAT(text,
-               Contains(line("", " max, model units RMS, model units     max, texels     RMS, texels")));
+    CHECK_THAT(text, Contains(line("", " max, model units RMS, model units     max, texels     RMS, texels")));
     CHECK_THAT(text, Contains(line("  reference to mesh",
                                    "                2             0.25               4             0.5")));
-    CHECK_THAT(text,
-               Contains(line("", " max, model units RMS, model units  max, map units  RMS, map units")));
+    CHECK_THAT(text, Contains(line("", " max, model units RMS, model units  max, map units  RMS, map units")));
     CHECK_THAT(text, Contains(line("vertical, at grid points",
                                    "                3                1              24               8")));
 }
@@ -38,12 +36,11 @@ TEST_CASE("error.txt: fewer than one sample a texel is said beside the density")
     error.reference_density = 4;
     error.mesh_density = 1;
     const std::string few = " (fewer than one: what lies between is not measured)";
-    CHECK_THAT(error_text({}, {}, error),
-               Contains("reference 0, 4 per texel and axis; mesh 0, 1 per texel\n"));
+    CHECK_THAT(error_text({}, {}, error), Contains("reference 0, 4 per texel and axis; mesh 0, 1 per texel\n"));
     error.mesh_density = 0.125;
     CHECK_THAT(error_text({}, {}, error),
                Contains("reference 0, 4 per texel and axis; mesh 0, 0.125 per texel" + few + "\n"));
     error.reference_density = 0.75;
-    CHECK_THAT(error_text({}, {}, error), Contains("reference 0, 0.75 per texel and axis" + few +
-                                                   "; mesh 0, 0.125 per texel" + few + "\n"));
+    CHECK_THAT(error_text({}, {}, error),
+               Contains("reference 0, 0.75 per texel and axis" + few + "; mesh 0, 0.125 per texel" + few + "\n"));
 }

@@ -44,8 +44,7 @@ class TestFolder {
     TestFolder& operator=(const TestFolder&) = delete;
 
     std::size_t entries() const {
-        return static_cast<std::size_t>(
-            std::distance(fs::directory_iterator(path), fs::directory_iterator()));
+        return static_cast<std::size_t>(std::distance(fs::directory_iterator(path), fs::directory_iterator()));
     }
     fs::path path;
 };
@@ -151,8 +150,7 @@ TEST_CASE("a PLY file read back holds the mesh, in model units") {
     const std::string header = bytes.substr(0, bytes.find(end) + end.size());
     CHECK(header.find("ply\nformat binary_little_endian 1.0\n") == 0);
     CHECK(header.find("comment split_by: tests that split the parent: 0 none") != std::string::npos);
-    const std::size_t vertices = number_after(header, "element vertex "),
-                      faces = number_after(header, "element face ");
+    const std::size_t vertices = number_after(header, "element vertex "), faces = number_after(header, "element face ");
     CHECK(bytes.size() == header.size() + 52 * vertices + 20 * faces);
     CHECK(vertices == distinct_vertices(sample.mesh));
 
@@ -228,8 +226,7 @@ TEST_CASE("an OBJ file read back holds the mesh, grouped by generation and test"
             const glm::dvec3 p = sample.units.position(c.displaced);
             const glm::vec3 n = sample.units.normal(c.displaced_normal);
             const glm::vec2 uv(sample.units.texture(c.texture));
-            for (const double x :
-                 {p.x, p.y, p.z, double(n.x), double(n.y), double(n.z), double(uv.x), double(uv.y)})
+            for (const double x : {p.x, p.y, p.z, double(n.x), double(n.y), double(n.z), double(uv.x), double(uv.y)})
                 numbers.push_back(x);
         }
         expected.insert({std::string(names[t.split_by]) + "_g" + std::to_string(generation(t)), numbers});
@@ -364,9 +361,9 @@ TEST_CASE("an atomic file appears complete or not at all") {
             ::_exit(0);
         REQUIRE(::waitpid(ended, nullptr, 0) == ended);
         const std::string dead = std::to_string(ended), alive = std::to_string(::getppid());
-        const std::vector<std::string> others{
-            ".tessera-" + alive + "-0.part", ".tessera-" + dead + "-0.party", "x.tessera-" + dead + "-0.part",
-            ".tessera-" + dead + "-.part",   ".tessera-" + dead + "-0",       ".tessera--0.part"};
+        const std::vector<std::string> others{".tessera-" + alive + "-0.part", ".tessera-" + dead + "-0.party",
+                                              "x.tessera-" + dead + "-0.part", ".tessera-" + dead + "-.part",
+                                              ".tessera-" + dead + "-0",       ".tessera--0.part"};
         std::vector<std::string> all = others;
         all.insert(all.end(), {".tessera-" + dead + "-0.part", ".tessera-" + dead + "-12.part"});
         for (const std::string& name : all) {
@@ -410,8 +407,7 @@ TEST_CASE("a full disk leaves nothing, and says so") {
             CHECK(message.find("File too large") != std::string::npos);
         }
     };
-    const fs::path obj = folder.path / "mesh.obj", ply = folder.path / "mesh.ply",
-                   old = folder.path / "old.ply";
+    const fs::path obj = folder.path / "mesh.obj", ply = folder.path / "mesh.ply", old = folder.path / "old.ply";
     require_failure(obj, [&] { write_obj(obj, sample.mesh, sample.units); });
     require_failure(ply, [&] { write_ply(ply, sample.mesh, sample.units); });
     require_failure(old, [&] { write_ply(old, sample.mesh, sample.units); });

@@ -91,10 +91,8 @@ TEST_CASE("statistics: two triangles split once, by hand") {
     run_timed(simulation);
     const Figures f = figures_of(simulation);
     CHECK(f.words.at("run.mode") == "timed");
-    f.require_all("run", {{"edges_tested", 30},
-                          {"edges_split", 6},
-                          {"triangles_finished", 8},
-                          {"edges_per_triangle", 30.0 / 8}});
+    f.require_all(
+        "run", {{"edges_tested", 30}, {"edges_split", 6}, {"triangles_finished", 8}, {"edges_per_triangle", 30.0 / 8}});
     // 16 edges of the mesh and the 5 of the base mesh, all split
     f.require_all("useful_work", {{"vertices", 9},
                                   {"vertices_made", 6 + 30},
@@ -114,16 +112,12 @@ TEST_CASE("statistics: two triangles split once, by hand") {
     f.require_all("lighting", {{"triangles", 8}});
     // a byte or two a code; three components of 16 bits; 9 x 9 sums
     const std::uint64_t sum = setup.registers.summed_height_table.entry_bytes;
-    f.require_all("displacement_map", {{"size", 8 * 8 * 2},
-                                       {"entry", 2},
-                                       {"reads", 36},
-                                       {"bytes_read", 36 * 2},
-                                       {"reads_per_edge", 36.0 / 30}});
-    f.require_all("normal_map", {{"size", 8 * 8 * 6},
-                                 {"entry", 6},
-                                 {"reads", 36},
-                                 {"bytes_read", 36 * 6},
-                                 {"reads_per_edge", 36.0 / 30}});
+    f.require_all(
+        "displacement_map",
+        {{"size", 8 * 8 * 2}, {"entry", 2}, {"reads", 36}, {"bytes_read", 36 * 2}, {"reads_per_edge", 36.0 / 30}});
+    f.require_all(
+        "normal_map",
+        {{"size", 8 * 8 * 6}, {"entry", 6}, {"reads", 36}, {"bytes_read", 36 * 6}, {"reads_per_edge", 36.0 / 30}});
     f.require_all("summed_height_table", {{"size", 9.0 * 9 * static_cast<double>(sum)},
                                           {"entry", static_cast<double>(sum)},
                                           {"reads", 360},
@@ -149,24 +143,22 @@ TEST_CASE("statistics: two triangles split once, by hand") {
                            {"frames_to_pay_for_tables", tables / (whole - base)}});
     f.require("formats", {{"queue_entry", widths.triangle}, {"lighting_vertex", widths.emitted_vertex}});
     const datapath::Formats& formats = setup.registers.formats;
-    f.require("streams", {{"tag", 6},
-                          {"triangle", widths.triangle},
-                          {"triangle_to_light", 3 * widths.emitted_vertex},
-                          {"view_result", 6 + 4 + 1},
-                          {"base_point", 6 + 4 + 3 * formats.position.bits + 3 * formats.normal.bits +
-                                             2 * formats.texture.bits}});
+    f.require("streams",
+              {{"tag", 6},
+               {"triangle", widths.triangle},
+               {"triangle_to_light", 3 * widths.emitted_vertex},
+               {"view_result", 6 + 4 + 1},
+               {"base_point", 6 + 4 + 3 * formats.position.bits + 3 * formats.normal.bits + 2 * formats.texture.bits}});
 }
 
 TEST_CASE("statistics: each counter of the machine in its own figure") {
     HandMadeRun run;
     const Figures f = figures_of(run.simulation);
     CHECK(f.words.at("run.mode") == "functional");
-    f.require_all("run", {{"edges_tested", 33},
-                          {"edges_split", 17},
-                          {"triangles_finished", 9},
-                          {"edges_per_triangle", 33.0 / 9}});
-    f.require("useful_work",
-              {{"vertices_made", 33}, {"vertices_thrown_away", 16}, {"normals_transformed", 15}});
+    f.require_all(
+        "run",
+        {{"edges_tested", 33}, {"edges_split", 17}, {"triangles_finished", 9}, {"edges_per_triangle", 33.0 / 9}});
+    f.require("useful_work", {{"vertices_made", 33}, {"vertices_thrown_away", 16}, {"normals_transformed", 15}});
     f.require("pass_or_tessellate", {{"passes", 11},
                                      {"normal_passes", 5},
                                      {"split_by_normal", 10},
@@ -258,17 +250,16 @@ TEST_CASE("statistics: one triangle's cycles, unit by unit, by hand") {
                                                     {"utilisation", b.occupied / 86},
                                                     {"throughput", b.items / 86}});
         if (b.item_cycles > 0)
-            f.require("timing." + std::string(b.unit), {{"occupancy", b.item_cycles / 86},
-                                                        {"latency", b.item_cycles / b.items},
-                                                        {"high_water_mark", b.most}});
+            f.require(
+                "timing." + std::string(b.unit),
+                {{"occupancy", b.item_cycles / 86}, {"latency", b.item_cycles / b.items}, {"high_water_mark", b.most}});
     }
     f.require("timing.tessellation_tests_0.calculate_new_u",
               {{"blocked", 31 - 6}, {"blocked_by_tessellation_tests_0.view_test", 31 - 6}});
     f.require("timing.displace_vertex", {{"waiting_for_displacement_map", 1}});
     // queues and wires have a rate and a level: one triangle for a cycle, and three edges of which two wait
     // for the third
-    f.require("timing.tessellation_tests_0.collect_tests",
-              {{"items", 3}, {"items_out", 3}, {"throughput", 3.0 / 86}});
+    f.require("timing.tessellation_tests_0.collect_tests", {{"items", 3}, {"items_out", 3}, {"throughput", 3.0 / 86}});
     for (const char* const name : {"triangle_queue", "tessellation_tests_0.collect_tests"})
         for (const char* const figure : {"busy", "starved", "waiting_for_memory", "blocked", "utilisation"})
             CHECK(f.numbers.count(std::string("timing.") + name + "." + figure) == 0);
@@ -304,11 +295,10 @@ TEST_CASE("statistics: what is spilled comes back, in whole records") {
 }
 
 TEST_CASE("statistics as text: JSON by group, CSV a row a figure") {
-    const std::vector<Figure> figures{
-        {"run", "mode", std::string("timed"), "", "to the cycle, or not"},
-        {"run", "edges", std::uint64_t{18446744073709551615u}, "edge", "tested"},
-        {"a.b", "change", std::int64_t{-3}, "", "a \"signed\" one"},
-        {"a.b", "share", 0.25, "edge/triangle", "real"}};
+    const std::vector<Figure> figures{{"run", "mode", std::string("timed"), "", "to the cycle, or not"},
+                                      {"run", "edges", std::uint64_t{18446744073709551615u}, "edge", "tested"},
+                                      {"a.b", "change", std::int64_t{-3}, "", "a \"signed\" one"},
+                                      {"a.b", "share", 0.25, "edge/triangle", "real"}};
     CHECK(statistics_csv(figures) ==
           "name,value,unit,description\n"
           "run.mode,timed,,\"to the cycle, or not\"\n"
@@ -317,8 +307,7 @@ TEST_CASE("statistics as text: JSON by group, CSV a row a figure") {
           "a.b.share,0.25,edge/triangle,real\n");
     const auto json = nlohmann::json::parse(statistics_json(figures));
     CHECK(json["run"]["edges"]["value"] == 18446744073709551615u);
-    CHECK(json["a.b"]["change"] ==
-          nlohmann::json{{"value", -3}, {"unit", ""}, {"description", "a \"signed\" one"}});
+    CHECK(json["a.b"]["change"] == nlohmann::json{{"value", -3}, {"unit", ""}, {"description", "a \"signed\" one"}});
     CHECK(json["a.b"]["share"]["value"] == 0.25);
 }
 

@@ -60,9 +60,8 @@ TEST_CASE("timing tables: each column of a unit") {
     a.set(410, State::starved);
     a.finish(cycles);
     const std::string text = timing_tables(m.pipeline, cycles);
-    CHECK_THAT(text,
-               StartsWith("unit                                         items     busy  memory  blocked  "
-                          "starved  utilisation  items/kcyc   occup.  most  by whom\n"));
+    CHECK_THAT(text, StartsWith("unit                                         items     busy  memory  blocked  "
+                                "starved  utilisation  items/kcyc   occup.  most  by whom\n"));
     // (2 * 10 + 3 * 100) / 1000 items in it on average
     CHECK(line_of(text, "tessellation_tests_0.normal_test") ==
           "tessellation_tests_0.normal_test                 3     7.00    4.00    20.00    69.00         0.30"
@@ -100,11 +99,10 @@ TEST_CASE("timing tables: queues and wires have a rate and a level, and no state
     queue.finish(cycles);
     work_on(m.tests.collect_tests, 20);
     const std::string text = timing_tables(m.pipeline, cycles);
-    CHECK_THAT(
-        text,
-        EndsWith("queue or wire                                items  items/kcyc  mean level      most\n"
-                 "tessellation_tests_0.collect_tests              20       20.00       0.020         1\n"
-                 "triangle_queue                                   5        5.00       2.500         5\n"));
+    CHECK_THAT(text,
+               EndsWith("queue or wire                                items  items/kcyc  mean level      most\n"
+                        "tessellation_tests_0.collect_tests              20       20.00       0.020         1\n"
+                        "triangle_queue                                   5        5.00       2.500         5\n"));
     CHECK(text.find("triangle_queue") == text.rfind("triangle_queue"));
     CHECK(text.find("collect_tests") == text.rfind("collect_tests"));
 }
@@ -239,10 +237,9 @@ TEST_CASE("timing.txt of one triangle: latency binds") {
     const std::string text = timing_text(simulation.pipeline, simulation.cycles());
     CHECK_THAT(text, StartsWith("86 cycles. "));
     CHECK_THAT(text, Contains(timing_tables(simulation.pipeline, 86)));
-    CHECK_THAT(
-        text,
-        Contains("\nbottleneck: none: bound by latency; of the busiest (summed_height_table) 41.9 % of the "
-                 "throughput is used; at most 2.4 times faster "));
+    CHECK_THAT(text,
+               Contains("\nbottleneck: none: bound by latency; of the busiest (summed_height_table) 41.9 % of the "
+                        "throughput is used; at most 2.4 times faster "));
     CHECK_THAT(text, EndsWith("(an item stays 20.0 cycles in transform)\n"));
 }
 

@@ -157,8 +157,7 @@ TEST_CASE("Timeline: tracks keep their order, states their colours, and any name
     for (int i = 0; i < 5000; ++i) {
         const auto cycle = static_cast<std::uint64_t>(i);
         writer.interval(tracks[static_cast<std::size_t>(i) % names.size()],
-                        states[static_cast<std::size_t>(i) % states.size()].c_str(), "\"who\"", cycle,
-                        cycle + 1);
+                        states[static_cast<std::size_t>(i) % states.size()].c_str(), "\"who\"", cycle, cycle + 1);
     }
     CHECK_THROWS_AS(writer.interval(4, "busy", "", 0, 1), std::logic_error);
     writer.finish();

@@ -18,10 +18,8 @@ namespace {
 constexpr std::uint64_t period = 5;  // ns a cycle, VCD time unit 1 ns
 
 /// A timed run of a smaller half donut into the folder "out", with these arguments besides.
-ProgramEnd run_small(const TestFolder& here, const std::vector<std::string>& more,
-                     const ProgramLimits& limits = {}) {
-    std::vector<std::string> arguments{"run", "--set", "tests.generation_limit=4", "--set",
-                                       "output.folder=out"};
+ProgramEnd run_small(const TestFolder& here, const std::vector<std::string>& more, const ProgramLimits& limits = {}) {
+    std::vector<std::string> arguments{"run", "--set", "tests.generation_limit=4", "--set", "output.folder=out"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_tessera(arguments, here.path(), limits);
 }
@@ -70,16 +68,14 @@ struct Timeline {
             }
         }
         for (auto& [triangle, steps] : flows)
-            std::stable_sort(steps.begin(), steps.end(),
-                             [](const Step& a, const Step& b) { return a.time < b.time; });
+            std::stable_sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) { return a.time < b.time; });
         for (const Slice& slice : slices)
             by_begin[slice.track].emplace(slice.begin, &slice);
     }
     const Slice* slice_at(const std::string& track, double time) const {
         const auto& its = by_begin.at(track);
         const auto after = its.upper_bound(time);
-        return after == its.begin() || std::prev(after)->second->end <= time ? nullptr
-                                                                             : std::prev(after)->second;
+        return after == its.begin() || std::prev(after)->second->end <= time ? nullptr : std::prev(after)->second;
     }
 
     std::map<int, std::string> tracks;
@@ -113,9 +109,9 @@ TEST_CASE("tracing changes nothing but its own files, and those are the same eve
 TEST_CASE("a window shows the cycles it names, with the values they have in the whole run") {
     const TestFolder here;
     // Also with items held back at random, and with three Tessellation Tests units.
-    const auto design = GENERATE(
-        std::vector<std::string>{},
-        std::vector<std::string>{"--set", "timing.stalls_per_mille=200", "--set", "hardware.tests_units=3"});
+    const auto design =
+        GENERATE(std::vector<std::string>{},
+                 std::vector<std::string>{"--set", "timing.stalls_per_mille=200", "--set", "hardware.tests_units=3"});
     const auto trace = [&](std::vector<std::string> arguments) {
         arguments.insert(arguments.end(), design.begin(), design.end());
         const ProgramEnd end = run_small(here, arguments);
@@ -150,8 +146,8 @@ TEST_CASE("a window shows the cycles it names, with the values they have in the 
             }
             CHECK(signal.initial == 0);
             for (const char* const exact :
-                 {"state", "blocked_by", "occupancy", "valid", "ready", "stalled", "waiting", "level",
-                  "request", "requests", "reads", "under_way", "served", "held_up", "threshold"})
+                 {"state", "blocked_by", "occupancy", "valid", "ready", "stalled", "waiting", "level", "request",
+                  "requests", "reads", "under_way", "served", "held_up", "threshold"})
                 CHECK_FALSE(name.substr(name.rfind('.') + 1) == exact);
         }
     }
@@ -170,13 +166,10 @@ TEST_CASE("a window that the run does not reach shows how the run ends") {
 
 TEST_CASE("waveforms count what the statistics count") {
     const TestFolder here;
-    require_fine(
-        run_small(here, {"--vcd", "--trace", "0:1000000", "--set", "timing.summed_height_table_ports=4"}));
+    require_fine(run_small(here, {"--vcd", "--trace", "0:1000000", "--set", "timing.summed_height_table_ports=4"}));
     const VcdFile vcd(here.path() / "out/trace.vcd");
     const nlohmann::json statistics = statistics_of(here);
-    const auto high = [&](const std::string& name) {
-        return vcd["tessera." + name].high_cycles(period, vcd.end);
-    };
+    const auto high = [&](const std::string& name) { return vcd["tessera." + name].high_cycles(period, vcd.end); };
     const auto cycles_in = [&](const std::string& unit, std::uint64_t state) {
         const VcdFile::Signal& signal = vcd["tessera." + unit + ".state"];
         VcdFile::Signal is{1, signal.initial == state, {}};
@@ -186,8 +179,8 @@ TEST_CASE("waveforms count what the statistics count") {
     };
     CHECK(high("triangle_queue.ready") == count(statistics, "triangle_queue", "taken"));
     CHECK(high("tessellation_tests_0.collect_tests.edge") == count(statistics, "run", "edges_tested"));
-    CHECK(high("pass_or_tessellate.decided") == count(statistics, "pass_or_tessellate", "passes") +
-                                                    count(statistics, "pass_or_tessellate", "normal_passes"));
+    CHECK(high("pass_or_tessellate.decided") ==
+          count(statistics, "pass_or_tessellate", "passes") + count(statistics, "pass_or_tessellate", "normal_passes"));
     CHECK(high("calculate_new_p.ready") == count(statistics, "timing.calculate_new_p", "items"));
     CHECK(high("displace_vertex.request") == count(statistics, "displacement_map", "reads"));
     const char* const names[] = {"starved", "busy", "waiting_for_memory", "blocked"};
@@ -225,8 +218,7 @@ TEST_CASE("every read request can be counted in the waveforms") {
         return value;
     };
     for (const auto& [unit, memory] :
-         {std::pair{"displace_vertex", "displacement_map"},
-          std::pair{"tessellation_tests_0.normal_test", "normal_map"},
+         {std::pair{"displace_vertex", "displacement_map"}, std::pair{"tessellation_tests_0.normal_test", "normal_map"},
           std::pair{"tessellation_tests_0.summed_height_test", "summed_height_table"}}) {
         const std::string its = unit, of_memory = memory;
         INFO(its);
@@ -236,8 +228,7 @@ TEST_CASE("every read request can be counted in the waveforms") {
         CHECK(counted(of_memory + ".reads") == reads);
         CHECK(counted(of_memory + ".requests") == requests);
         // A rectangle of the Summed Height Table is one request.
-        CHECK(requests ==
-              (of_memory == "summed_height_table" ? 3 * count(statistics, "run", "edges_tested") : reads));
+        CHECK(requests == (of_memory == "summed_height_table" ? 3 * count(statistics, "run", "edges_tested") : reads));
         CHECK(vcd["tessera." + its + ".requests"].changes.size() ==
               vcd["tessera." + its + ".request"].high_cycles(period, vcd.end));
     }
@@ -246,9 +237,8 @@ TEST_CASE("every read request can be counted in the waveforms") {
 TEST_CASE("waveforms show what each test compares, and with what") {
     const TestFolder here;
     const std::string unit = GENERATE("sum", "area");
-    require_fine(run_small(
-        here, {"--vcd", "--trace", "0:1000000", "--set", "tests.summed_height_unit=" + unit, "--set",
-               "tests.summed_height_threshold=" + std::string(unit == "sum" ? "1" : "0.01")}));
+    require_fine(run_small(here, {"--vcd", "--trace", "0:1000000", "--set", "tests.summed_height_unit=" + unit, "--set",
+                                  "tests.summed_height_threshold=" + std::string(unit == "sum" ? "1" : "0.01")}));
     const VcdFile vcd(here.path() / "out/trace.vcd");
     const auto signal = [&](const std::string& test, const std::string& name) -> const VcdFile::Signal& {
         return vcd["tessera.tessellation_tests_0." + test + "." + name];
@@ -256,9 +246,7 @@ TEST_CASE("waveforms show what each test compares, and with what") {
     const auto sign_extended = [](std::uint64_t value, unsigned bits) {
         return static_cast<std::int64_t>(value << (64 - bits)) >> (64 - bits);
     };
-    const auto distance = [](std::int64_t a, std::int64_t b) {
-        return static_cast<std::uint64_t>(std::abs(a - b));
-    };
+    const auto distance = [](std::int64_t a, std::int64_t b) { return static_cast<std::uint64_t>(std::abs(a - b)); };
     std::uint64_t time = 0;
     const auto at = [&](const std::string& test, const std::string& name) {
         const VcdFile::Signal& its = signal(test, name);
@@ -305,9 +293,8 @@ TEST_CASE("waveforms show what each test compares, and with what") {
     }
     for (const auto& change : signal("tex_coord_test", "generation_ij").changes) {
         time = change.first;
-        CHECK(change.second ==
-              1 + static_cast<std::uint64_t>(std::max(at("tex_coord_test", "in.generation_i"),
-                                                      at("tex_coord_test", "in.generation_j"))));
+        CHECK(change.second == 1 + static_cast<std::uint64_t>(std::max(at("tex_coord_test", "in.generation_i"),
+                                                                       at("tex_coord_test", "in.generation_j"))));
         const bool allowed = change.second <= signal("tex_coord_test", "generation_limit").at(time);
         CHECK(allowed == (at("tex_coord_test", "out.generation") == 1));
         generation.insert(allowed);
@@ -340,12 +327,11 @@ TEST_CASE("waveforms of off-chip memory show what a queue of four triangles spil
 
     // A window that begins when memory has been at work begins with the request it served last.
     const std::uint64_t middle = of_memory("address").changes[addresses.size()].first / period + 1;
-    require_fine(run_small(here, {"--vcd", "--trace", std::to_string(middle) + ":1000000", "--set",
-                                  "hardware.queue_capacity=4"}));
+    require_fine(run_small(
+        here, {"--vcd", "--trace", std::to_string(middle) + ":1000000", "--set", "hardware.queue_capacity=4"}));
     const VcdFile rest(here.path() / "out/trace.vcd");
     for (const char* name : {"address", "write", "bytes_written"})
-        CHECK(rest["tessera.off_chip_memory." + std::string(name)].initial ==
-              of_memory(name).at(middle * period));
+        CHECK(rest["tessera.off_chip_memory." + std::string(name)].initial == of_memory(name).at(middle * period));
 }
 
 TEST_CASE("only the units named are traced") {
@@ -363,8 +349,7 @@ TEST_CASE("the timeline's stretches tile the window and agree with the statistic
     const TestFolder here;
     const auto [first, last] = GENERATE(std::pair<std::uint64_t, std::uint64_t>{0, 1000000},
                                         std::pair<std::uint64_t, std::uint64_t>{500, 2000});
-    require_fine(
-        run_small(here, {"--timeline", "--trace", std::to_string(first) + ":" + std::to_string(last)}));
+    require_fine(run_small(here, {"--timeline", "--trace", std::to_string(first) + ":" + std::to_string(last)}));
     const nlohmann::json timeline = nlohmann::json::parse(read_all(here.path() / "out/timeline.json"));
     const nlohmann::json statistics = statistics_of(here);
     const std::uint64_t cycles = count(statistics, "timing", "cycles");
@@ -408,16 +393,15 @@ TEST_CASE("the timeline's stretches tile the window and agree with the statistic
                                                 {"blocked", "blocked"}})
             CHECK((spent[{name, state}]) == count(statistics, "timing." + name, figure));
     }
-    CHECK(with_states ==
-          (first > 0 ? 0 : tracks.size() - 2));  // all but queue and results, which have no states
+    CHECK(with_states == (first > 0 ? 0 : tracks.size() - 2));  // all but queue and results, which have no states
 }
 
 TEST_CASE("a triangle can be followed through the timeline") {
     const TestFolder here;
-    const auto design = GENERATE(
-        std::vector<std::string>{},
-        std::vector<std::string>{"--set", "timing.stalls_per_mille=200", "--set", "hardware.tests_units=3"},
-        std::vector<std::string>{"--set", "hardware.culling=back", "--set", "displacement.scale=0.6"});
+    const auto design =
+        GENERATE(std::vector<std::string>{},
+                 std::vector<std::string>{"--set", "timing.stalls_per_mille=200", "--set", "hardware.tests_units=3"},
+                 std::vector<std::string>{"--set", "hardware.culling=back", "--set", "displacement.scale=0.6"});
     const bool whole = GENERATE(true, false);
     std::vector<std::string> arguments{"--timeline", "--trace", whole ? "0:1000000" : "500:2000"};
     arguments.insert(arguments.end(), design.begin(), design.end());
@@ -449,8 +433,8 @@ TEST_CASE("a triangle can be followed through the timeline") {
     CHECK(std::max_element(base_of.begin(), base_of.end(), [](const auto& a, const auto& b) {
               return a.second < b.second;
           })->second > 0);
-    const std::set<std::string> without{"triangle_queue", "displacement_map", "normal_map",
-                                        "summed_height_table", "off_chip_memory"};
+    const std::set<std::string> without{"triangle_queue", "displacement_map", "normal_map", "summed_height_table",
+                                        "off_chip_memory"};
     const std::set<std::string> take_all{"get_triangle", "pass_or_tessellate", "tessellation", "lighting"};
     for (const auto& [number, unit] : timeline.tracks) {
         INFO(unit);
@@ -459,8 +443,7 @@ TEST_CASE("a triangle can be followed through the timeline") {
         if (whole && last != "collect_tests" && without.count(unit) == 0)  // it may let several by in a cycle
             CHECK(items[unit].size() == count(statistics, "timing." + unit, "items"));
         for (const auto& [triangle, part] : items[unit])
-            require_each(part.empty() == (take_all.count(unit) == 1),
-                         "a part is named where parts are taken");
+            require_each(part.empty() == (take_all.count(unit) == 1), "a part is named where parts are taken");
     }
 
     // Steps lie in their triangle's slices. A flow begins once, in Get Triangle; ends once, in its last unit.
@@ -475,8 +458,7 @@ TEST_CASE("a triangle can be followed through the timeline") {
             require_each(slice != nullptr && slice->arguments.value("triangle", UINT64_MAX) == triangle,
                          "a step stands in a slice of its triangle");
             require_each((step.phase == "s") == (k == 0), "a flow begins once");
-            require_each((step.phase == "s") == (step.track == "get_triangle"),
-                         "a flow begins in Get Triangle");
+            require_each((step.phase == "s") == (step.track == "get_triangle"), "a flow begins in Get Triangle");
             require_each(step.phase != "f" || k + 1 == steps.size(), "a flow ends once");
             require_each(k == 0 || steps[k - 1].time <= step.time, "a flow goes forward");
         }
@@ -485,8 +467,7 @@ TEST_CASE("a triangle can be followed through the timeline") {
             continue;
         }
         ++ends[steps.back().track];
-        for (const char* const unit :
-             {"calculate_new_p", "displace_vertex", "transform", "pass_or_tessellate"})
+        for (const char* const unit : {"calculate_new_p", "displace_vertex", "transform", "pass_or_tessellate"})
             require_each(units.count(unit) == 1, "a flow that ends has been everywhere before");
     }
     CHECK(broken == std::map<std::string, std::size_t>{});
@@ -502,9 +483,8 @@ TEST_CASE("a triangle can be followed through the timeline") {
 
 TEST_CASE("a deadlock leaves its traces, and nothing of a run before it") {
     const TestFolder here;
-    const std::vector<std::string> stall{"--set", "hardware.queue_capacity=4",
-                                         "--set", "hardware.queue_overflow=stall",
-                                         "--vcd", "--timeline"};
+    const std::vector<std::string> stall{
+        "--set", "hardware.queue_capacity=4", "--set", "hardware.queue_overflow=stall", "--vcd", "--timeline"};
     require_fine(run_small(here, {}));
     const ProgramEnd end = run_small(here, stall);
     INFO(end.text());
@@ -522,8 +502,7 @@ TEST_CASE("a deadlock leaves its traces, and nothing of a run before it") {
 
 TEST_CASE("traces that cannot be are refused, and leave nothing") {
     const TestFolder here;
-    const auto refused = [&](const std::vector<std::string>& arguments,
-                             const std::vector<std::string>& words) {
+    const auto refused = [&](const std::vector<std::string>& arguments, const std::vector<std::string>& words) {
         std::vector<std::string> all{"run", "--set", "output.folder=out/of/it"};
         all.insert(all.end(), arguments.begin(), arguments.end());
         const ProgramEnd end = run_tessera(all, here.path());
@@ -538,8 +517,7 @@ TEST_CASE("traces that cannot be are refused, and leave nothing") {
     for (const auto& [option, key] : std::vector<std::pair<std::string, std::string>>{
              {"--vcd", "output.vcd"}, {"--timeline", "output.timeline"}, {"--fst", "output.vcd"}})
         refused({option, "--set", "mode=functional"}, {key, "mode = \"timed\""});
-    const auto refused_timed = [&](std::vector<std::string> arguments,
-                                   const std::vector<std::string>& words) {
+    const auto refused_timed = [&](std::vector<std::string> arguments, const std::vector<std::string>& words) {
         arguments.insert(arguments.begin(), "--vcd");
         refused(arguments, words);
     };
@@ -548,9 +526,8 @@ TEST_CASE("traces that cannot be are refused, and leave nothing") {
     refused_timed({"--trace", ":20"}, {"FROM:TO"});
     refused_timed({"--trace", "1:2:3"}, {"output.trace_to"});
     refused_timed({"--trace", "-1:3"}, {"output.trace_from"});
-    refused_timed(
-        {"--trace-units", "transform queue_level"},
-        {"output.trace_units", "\"queue_level\"", "triangle_queue", "tessellation_tests_0.view_test"});
+    refused_timed({"--trace-units", "transform queue_level"},
+                  {"output.trace_units", "\"queue_level\"", "triangle_queue", "tessellation_tests_0.view_test"});
 }
 
 TEST_CASE("a limit that ends a traced run leaves no trace") {
@@ -575,9 +552,9 @@ TEST_CASE("trace.fst: --fst compresses the waveforms, or says which package is m
     const TestFolder here;
     fs::create_directory(here.path() / "tools");
     const auto run = [&] {
-        return run_program({TESSERA_PROGRAM, "run", "--fst", "--set", "tests.generation_limit=2", "--set",
-                            "output.folder=out"},
-                           here.path(), {}, {{"PATH", (here.path() / "tools").string()}});
+        return run_program(
+            {TESSERA_PROGRAM, "run", "--fst", "--set", "tests.generation_limit=2", "--set", "output.folder=out"},
+            here.path(), {}, {{"PATH", (here.path() / "tools").string()}});
     };
     const ProgramEnd without = run();
     require_fine(without);

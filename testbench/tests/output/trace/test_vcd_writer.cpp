@@ -105,8 +105,7 @@ struct VcdReading {
         }
     }
 
-    void read_value(std::istream& words, const std::string& word,
-                    const std::map<std::string, std::string>& names) {
+    void read_value(std::istream& words, const std::string& word, const std::map<std::string, std::string>& names) {
         std::string digits = word.substr(0, 1), code = word.substr(1);
         if (word[0] == 'b') {
             digits = code;
@@ -221,8 +220,8 @@ class StimulusMaker {
         constexpr unsigned widths[] = {1, 1, 1, 2, 7, 8, 9, 16, 33, 63, 64};
         const std::size_t count = 1 + below(12);
         for (std::size_t s = 0; s < count; ++s)
-            stimulus.signals.push_back({below(2) != 0 ? "top.a" : "top.a.b", "s" + std::to_string(s),
-                                        widths[below(std::size(widths))]});
+            stimulus.signals.push_back(
+                {below(2) != 0 ? "top.a" : "top.a.b", "s" + std::to_string(s), widths[below(std::size(widths))]});
         const std::uint64_t longest_gap = 1 + below(below(2) != 0 ? 2 : 8);
         std::uint64_t cycle = below(2) * below(10);
         for (std::size_t c = 0; c < cycles; ++c, cycle += 1 + below(longest_gap)) {

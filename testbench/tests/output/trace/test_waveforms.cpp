@@ -59,14 +59,13 @@ std::vector<std::pair<std::string, unsigned>> signals_in(const fs::path& save_fi
 
 }  // namespace
 
-TEST_CASE(
-    "every signal a save file shows is in the default job's waveforms and changes, but for thresholds") {
+TEST_CASE("every signal a save file shows is in the default job's waveforms and changes, but for thresholds") {
     const TestFolder here;
-    const ProgramEnd end = run_tessera(
-        {"run", "--vcd", "--set", "output.folder=out", "--set", "check.golden=false", "--set",
-         "check.end_to_end=false", "--set", "output.picture=false", "--set", "tests.normal_threshold=0.125",
-         "--set", "tests.view_threshold=5", "--set", "tests.generation_limit=7"},
-        here.path());
+    const ProgramEnd end =
+        run_tessera({"run", "--vcd", "--set", "output.folder=out", "--set", "check.golden=false", "--set",
+                     "check.end_to_end=false", "--set", "output.picture=false", "--set", "tests.normal_threshold=0.125",
+                     "--set", "tests.view_threshold=5", "--set", "tests.generation_limit=7"},
+                    here.path());
     INFO(end.text());
     REQUIRE(end.exit_code == 0);
     const VcdFile vcd(here.path() / "out/trace.vcd");
@@ -172,8 +171,7 @@ TEST_CASE("every unit of both designs has a number of its own") {
         const std::string list = found[1];
         const std::regex word("[\\w.]+");
         std::size_t count = 0;
-        for (std::sregex_iterator it(list.begin(), list.end(), word); it != std::sregex_iterator();
-             ++it, ++count) {
+        for (std::sregex_iterator it(list.begin(), list.end(), word); it != std::sregex_iterator(); ++it, ++count) {
             INFO(it->str());
             CHECK(numbered.count(it->str()) == 1);
         }

@@ -66,8 +66,7 @@ VcdFile::VcdFile(const std::filesystem::path& file) {
                 code = first.substr(1);
             if (names.count(code) == 0)
                 FAIL("a value of no signal: " << line);
-            const std::uint64_t value =
-                std::stoull(vector ? first.substr(1) : first.substr(0, 1), nullptr, 2);
+            const std::uint64_t value = std::stoull(vector ? first.substr(1) : first.substr(0, 1), nullptr, 2);
             Signal& signal = signals[names[code]];
             if (dumping)
                 signal.initial = value;

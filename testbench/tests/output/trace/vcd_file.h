@@ -13,8 +13,7 @@ struct VcdFile {
     struct Signal {
         unsigned bits = 0;
         std::uint64_t initial = 0;
-        std::vector<std::pair<std::uint64_t, std::uint64_t>>
-            changes;  ///< time and value, after the first time stamp
+        std::vector<std::pair<std::uint64_t, std::uint64_t>> changes;  ///< time and value, after the first time stamp
 
         std::uint64_t at(std::uint64_t time) const;
         /// Of a signal of one bit: the cycles in which it is 1.

@@ -182,13 +182,10 @@ struct Place {
     bool has_two = false;  ///< transactions: the second has none to change places with
 
     Place(const char* its_name, std::uint64_t its_transaction, std::uint64_t its_bit, bool two = false)
-        : name(its_name),
-          transaction(its_transaction),
-          bit([its_bit](Mode) { return its_bit; }),
-          has_two(two) {}
+        : name(its_name), transaction(its_transaction), bit([its_bit](Mode) { return its_bit; }), has_two(two) {}
     template <class Item>
-    Place(const char* its_name, std::uint64_t its_transaction, const Item*, const char* field,
-          const char* component, std::uint64_t bit_of_field = 0)
+    Place(const char* its_name, std::uint64_t its_transaction, const Item*, const char* field, const char* component,
+          std::uint64_t bit_of_field = 0)
         : name(its_name),
           transaction(its_transaction),
           bit([=](Mode mode) { return bit_of<Item>(field, component, mode) + bit_of_field; }) {}
@@ -262,9 +259,8 @@ const std::vector<Kind> memory_kinds = {
 /// One mode's table: a row a place, a column a kind.
 std::string table(Mode mode, const std::vector<Place>& places, std::vector<Kind> kinds) {
     if (mode == Mode::functional)
-        kinds.erase(
-            std::remove_if(kinds.begin(), kinds.end(), [](const Kind& k) { return !k.without_cycles; }),
-            kinds.end());
+        kinds.erase(std::remove_if(kinds.begin(), kinds.end(), [](const Kind& k) { return !k.without_cycles; }),
+                    kinds.end());
     std::string text = "| place |";
     std::string rule = "\n| --- |";
     for (const Kind& kind : kinds) {
@@ -339,8 +335,7 @@ TEST_CASE("faults at memories, timed mode: who catches which") {
 TEST_CASE("read checks compare every entry of a rectangle, and name the address of the wrong one") {
     std::vector<std::uint64_t> wrong;
     for (const std::uint64_t corner : {0U, 1U, 2U, 3U}) {
-        const Outcome outcome =
-            run(Mode::timed, Fault{FaultKind::bit_flip, summed_height_table, 1, 32 * corner});
+        const Outcome outcome = run(Mode::timed, Fault{FaultKind::bit_flip, summed_height_table, 1, 32 * corner});
         INFO(outcome.text);
         CHECK(outcome.catchers == "R");
         const std::string before = "a read at address ";

@@ -34,8 +34,8 @@ std::string bytes_of(const fs::path& path) {
 
 void run_corpus(std::string_view name) {
     const auto& targets = fuzz::fuzz_targets();
-    const auto target = std::find_if(targets.begin(), targets.end(),
-                                     [&](const fuzz::FuzzTarget& each) { return each.name == name; });
+    const auto target =
+        std::find_if(targets.begin(), targets.end(), [&](const fuzz::FuzzTarget& each) { return each.name == name; });
     REQUIRE(target != targets.end());
     const std::vector<fs::path> files = files_of(*target);
     REQUIRE_FALSE(files.empty());

@@ -18,8 +18,8 @@ using Catch::Contains;
 namespace {
 
 bool same(const datapath::Vertex& a, const datapath::Vertex& b) {
-    return a.position == b.position && a.normal == b.normal && a.tangent == b.tangent &&
-           a.texture == b.texture && a.handedness == b.handedness;
+    return a.position == b.position && a.normal == b.normal && a.tangent == b.tangent && a.texture == b.texture &&
+           a.handedness == b.handedness;
 }
 
 ProgramEnd run_cases(const std::vector<std::string>& arguments, const std::filesystem::path& folder) {
@@ -40,14 +40,12 @@ TEST_CASE("random case: from its files it is the same as from memory") {
         INFO("seed " << seed);
         CHECK(job.mode == Mode::functional);
         CHECK(written.map.codes == kept.map.codes);
-        CHECK(written.registers.tests.summed_height_threshold ==
-              kept.registers.tests.summed_height_threshold);
+        CHECK(written.registers.tests.summed_height_threshold == kept.registers.tests.summed_height_threshold);
         CHECK(written.registers.transform.row_w == kept.registers.transform.row_w);
         REQUIRE(written.base_triangles.size() == kept.base_triangles.size());
         for (std::size_t k = 0; k < kept.base_triangles.size(); ++k)
             for (std::size_t corner = 0; corner < 3; ++corner)
-                REQUIRE(same(written.base_triangles[k].vertices[corner],
-                             kept.base_triangles[k].vertices[corner]));
+                REQUIRE(same(written.base_triangles[k].vertices[corner], kept.base_triangles[k].vertices[corner]));
     }
 }
 
@@ -72,15 +70,14 @@ TEST_CASE("random cases: meshes of every kind, most of them split") {
         CHECK(BareRecursion(setup).run(mesh) < RandomCase::most_edges);
         split += mesh.triangles.size() > 2 * setup.base_triangles.size() ? 1U : 0U;
     }
-    CHECK(kinds == std::set<std::string>{"book", "cylinder", "fan", "grid", "mirrored pair", "slivers",
-                                         "solid", "soup", "sphere", "torus"});
+    CHECK(kinds == std::set<std::string>{"book", "cylinder", "fan", "grid", "mirrored pair", "slivers", "solid", "soup",
+                                         "sphere", "torus"});
     CHECK(split > cases / 2);
 }
 
 TEST_CASE("invariants: what narrow formats put into one place of a folded patch is no crack") {
     std::uint64_t folded = 0;
-    for (const std::uint64_t seed :
-         {141U, 149U, 240U, 403U, 610U, 673U, 729U, 791U, 809U, 898U, 940U, 978U, 987U}) {
+    for (const std::uint64_t seed : {141U, 149U, 240U, 403U, 610U, 673U, 729U, 791U, 809U, 898U, 940U, 978U, 987U}) {
         const MachineSetup setup = make_random_case(seed).setup();
         EmittedMesh mesh;
         BareRecursion(setup).run(mesh);
@@ -105,11 +102,9 @@ TEST_CASE("the program leaves a case that tessera runs, and says of a line what 
     const ProgramEnd listed = run_cases({"--seed", "5", "--count", "1", "--list"}, here.path());
     INFO(listed.text());
     CHECK(listed.exit_code == 0);
-    const std::string triangles =
-        std::to_string(statistics["run"]["triangles_finished"]["value"].get<std::uint64_t>());
+    const std::string triangles = std::to_string(statistics["run"]["triangles_finished"]["value"].get<std::uint64_t>());
     CHECK_THAT(listed.out, Contains("seed 5: " + triangles + " triangles from "));
-    CHECK_THAT(listed.out,
-               Contains("1 cases: 0 cracks, 0 T-vertices, 0 other violations, 0 mismatches, 0 failed"));
+    CHECK_THAT(listed.out, Contains("1 cases: 0 cracks, 0 T-vertices, 0 other violations, 0 mismatches, 0 failed"));
 }
 
 TEST_CASE("the program of random cases refuses wrong usage") {
