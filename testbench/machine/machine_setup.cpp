@@ -110,7 +110,7 @@ MachineSetup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& m
         summed_height_bits(job.formats.summed_height_bits, setup.largest_rectangle_sum), 0);
     lay_out_tables(registers);
 
-    const View view = make_view(job.camera);
+    const ViewAxes view = view_axes(job.camera);
     registers.tests = make_tests(job.tests, formats);
     formats.highlight_tag = job.tests.highlight;
     if (job.tests.highlight &&

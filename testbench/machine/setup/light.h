@@ -12,7 +12,7 @@ namespace tessera {
 glm::dvec3 towards_light(const Job::Hardware& hardware);
 
 /// Lighting's registers: the direction in view space, in the normal's format; ambient light in 256ths.
-datapath::LightParameters make_light(const Job::Hardware& hardware, const View& view, const datapath::Format& normal,
-                                     std::uint64_t& saturated);
+datapath::LightParameters make_light(const Job::Hardware& hardware, const ViewAxes& view,
+                                     const datapath::Format& normal, std::uint64_t& saturated);
 
 }  // namespace tessera

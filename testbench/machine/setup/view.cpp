@@ -14,9 +14,9 @@ namespace tessera {
 
 using datapath::Format;
 
-View make_view(const Job::Camera& camera) {
+ViewAxes view_axes(const Job::Camera& camera) {
     const auto vector = [](const std::array<double, 3>& a) { return glm::dvec3(a[0], a[1], a[2]); };
-    View view;
+    ViewAxes view;
     view.backward = unit_vector(vector(camera.eye) - vector(camera.target));
     view.right = unit_vector(glm::cross(brought_near_one(vector(camera.up)), view.backward));
     view.up = glm::cross(view.backward, view.right);
@@ -26,7 +26,7 @@ View make_view(const Job::Camera& camera) {
 datapath::TransformParameters make_transform(const Job::Camera& camera, const ModelScale& model_scale,
                                              const datapath::Formats& formats, std::uint64_t& saturated) {
     constexpr double pi = 3.14159265358979323846;
-    const View view = make_view(camera);
+    const ViewAxes view = view_axes(camera);
     const glm::dvec3 eye = model_scale.to_world(glm::dvec3(camera.eye[0], camera.eye[1], camera.eye[2]));
     const double width = static_cast<double>(camera.viewport_width);
     const double height = static_cast<double>(camera.viewport_height);

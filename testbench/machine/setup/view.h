@@ -8,12 +8,12 @@
 
 namespace tessera {
 
-/// View space's axes in world space, unit length: x right, y up, z towards the viewer.
-struct View {
+/// ViewAxes space's axes in world space, unit length: x right, y up, z towards the viewer.
+struct ViewAxes {
     glm::dvec3 right, up, backward;
 };
 
-View make_view(const Job::Camera& camera);
+ViewAxes view_axes(const Job::Camera& camera);
 
 /// In: a camera in model units, resolved. Out: Transform's registers: world to pixels (x right, y up, (0, 0) the
 /// viewport's lower left corner), the near plane, and the rotation of normals to view space; saturated entries of the
