@@ -8,7 +8,7 @@
 
 namespace tessera {
 
-/// ViewAxes space's axes in world space, unit length: x right, y up, z towards the viewer.
+/// View space's axes in world space, unit length: x right, y up, z towards the viewer.
 struct ViewAxes {
     glm::dvec3 right, up, backward;
 };
