@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The job to bake a map for: the base mesh's, or the default one on a plane of the surface's size.
-Job base_job(const BakeRequest& request, const Surface& surface) {
+Job base_job(const BakeRequest& request, const Surface& surface, const fs::path& data_folder) {
     Job job;
     if (request.mesh_job.empty()) {
         job.mesh.width = surface.high.x - surface.low.x;

@@ -122,7 +122,10 @@ InvariantResult check_invariants(const EmittedMesh& mesh, const MachineSetup& se
     BareRecursion bare(setup);
     Walk walk{Lineage(setup, bare), EmittedDifference(mesh, setup.base_triangles.size(), setup.registers.formats)};
     InvariantResult result;
-    result.edges = bare.walk(walk);
+    // A mesh of N triangles takes fewer than 2 N passes of three edges: beyond that the machine's is not the datapath's,
+    // whose recursion need not end.
+    const std::uint64_t most_edges = 6 * mesh.triangles.size() + 3;
+    result.edges = bare.walk(walk, most_edges);
     walk.end();
     const LineageResult lineage = walk.lineage.finish();
     result.triangles = mesh.triangles.size();
@@ -140,7 +143,8 @@ InvariantResult check_invariants(const EmittedMesh& mesh, const MachineSetup& se
     result.differing_triangles = walk.difference.differing();
     result.open_texture_seam_edges = lineage.open_texture_seam_edges;
     result.open_crease_edges = lineage.open_crease_edges;
-    result.first_violation = lineage.first_fault.empty() ? walk.difference.first() : lineage.first_fault;
+    result.first_violation =
+        lineage.first_fault.empty() || result.edges >= most_edges ? walk.difference.first() : lineage.first_fault;
     judge_triangles(mesh, setup, result);
     return result;
 }

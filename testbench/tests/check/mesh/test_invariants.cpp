@@ -210,6 +210,17 @@ TEST_CASE("a triangle that differs in anything is found") {
     }
 }
 
+TEST_CASE("the check ends where the datapath's recursion does not") {
+    Plane plane;
+    datapath::TestParameters& tests = plane.setup.registers.tests;
+    tests.generation_test = tests.tex_coord_test = false;
+    tests.normal_threshold = 0;  // every edge across a border of the noise's texels splits
+    const InvariantResult result = plane.check();
+    CHECK(result.edges <= 6 * result.triangles + 6);
+    CHECK(result.extra_triangles > 0);
+    CHECK_FALSE(result.first_violation.empty());
+}
+
 TEST_CASE("figures of single triangles") {
     const Plane plane;
     SECTION("collapsed, in t and in P'") {
