@@ -177,7 +177,7 @@ TEST_CASE("the run's verdict: one part that fails fails it") {
     }
 }
 
-// 86 cycles (test_timed_pipeline.cpp), of 5 ns; one pass of three edges.
+// 86 cycles (modules/test_one_triangle.cpp), of 5 ns; one pass of three edges.
 TEST_CASE("summary: a timed run of one triangle") {
     Job job = timed_job();
     job.mesh.columns = job.mesh.rows = 1;

@@ -136,7 +136,7 @@ TEST_CASE("mistyped names are reported with place and suggestion") {
             {"camera = {eye = [1, 2, 3]}\n", {}},
             {"\"\" = 1\n", {"unknown key `\"\"`"}},
             {"folder = \"x\"\n", {"unknown key `folder`"}},
-            {"[mesh]\n\n[fault]\nkind = \"none\"\n", {"job.toml:3:1: unknown table `fault`"}},
+            {"[mesh]\n\n[fault]\nkind = \"none\"\n", {"job.toml:3:2: unknown table `fault`"}},
         },
         parse_error_of);
     CHECK(nearest_name("mesh.file", {"mesh.file"}) == "mesh.file");
@@ -234,7 +234,7 @@ TEST_CASE("keys that contradict each other") {
             {"hardware.light=[0, 0, 0]", {"`hardware.light`"}},
 
             {"map.fingerprint=0123456789abcdef", {"`map.file` is empty"}},
-            {"map.source=file; map.file=a.exr; map.fingerprint=0123456789ABCDEF", {"wanted are 16 hexadecimal digits"}},
+            {"map.source=file; map.file=a.exr; map.fingerprint=0123456789ABCDEF", {"expected 16 hexadecimal digits"}},
             {"map.source=file; map.file=a.exr; map.fingerprint=0123456789abcdef", {}},
         },
         settings_error_of);

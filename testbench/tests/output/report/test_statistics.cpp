@@ -62,15 +62,6 @@ Figures figures_of(const Simulation& simulation) {
     return Figures(collect_statistics(simulation.setup, simulation, count_mesh(simulation.monitor.mesh)));
 }
 
-MachineSetup one_triangle() {
-    Job job = timed_job();
-    job.mesh.columns = job.mesh.rows = 1;
-    job.map.source = MapSource::constant;
-    MachineSetup setup = setup_of(job);
-    setup.base_triangles.resize(1);
-    return setup;
-}
-
 EmittedTriangle::Corner corner(std::uint32_t u, std::uint32_t v, std::int32_t z, std::uint8_t generation) {
     EmittedTriangle::Corner c;
     c.texture = {u, v};
@@ -197,7 +188,7 @@ TEST_CASE("statistics: what every test stopped stands in the emitted triangle, t
                                              {datapath::generation_bit, 1}});
 }
 
-// The schedule of test_timed_pipeline.cpp. First round: parts leave Get Triangle in cycles 1 to 6; vertices
+// The schedule of modules/test_one_triangle.cpp. First round: parts leave Get Triangle in cycles 1 to 6; vertices
 // enter Displace Vertex in 2, 3, 4 (+ map 1), Transform in 9, 10, 11, edges in 12, 13, 14; joined in 47.
 // Second round: taken in 50, three normals, which read nothing, in Displace Vertex from 52, in Transform from
 // 58; joined in 80, lit in 81, out in 85.

@@ -5,6 +5,7 @@
 
 #include "testbench/check/mesh/invariants.h"
 #include "testbench/common/hash.h"
+#include "testbench/job/job_paths.h"
 #include "testbench/job/read_job.h"
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/inputs.h"
@@ -35,7 +36,8 @@ TEST_CASE("random case: from its files it is the same as from memory") {
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {
         const RandomCase made = make_random_case(seed);
         made.write(here.path(), Mode::functional);
-        const Job job = read_job((here.path() / "job.toml").string());
+        Job job = read_job((here.path() / "job.toml").string());
+        resolve_paths(job, {});
         const MachineSetup written = make_setup(job, load_mesh(job), load_map(job)), kept = made.setup();
         INFO("seed " << seed);
         CHECK(job.mode == Mode::functional);
