@@ -420,7 +420,8 @@ struct ItemTypes {
         (each(ItemType<Items>{}), ...);
     }
 };
-/// The item of every stream: `StreamItems::for_each([](auto type) { using Item = typename decltype(type)::Item; ... })`.
+/// The item of every stream: `StreamItems::for_each([](auto type) { using Item = typename decltype(type)::Item; ...
+/// })`.
 using StreamItems = ItemTypes<datapath::Triangle, QueueLevel, TakenTriangle, GeometryOperands, BasePoint,
                               DisplacedPoint, ScreenPoint, ScreenCorner, TestOperands, TexCoordOperands, HeightOperands,
                               NormalOperands, ViewOperands, TexCoordResult, HeightResult, NormalResult, ViewResult,

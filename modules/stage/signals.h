@@ -31,9 +31,9 @@ class UnitNumbers {
     std::unordered_map<const sc_core::sc_object*, unsigned> known_;
 };
 
-/// One unit's signals in a waveform file. Unit::trace_signals is called once to declare them, then at the end of each traced
-/// cycle in which the unit was called, to show their values. A signal is found by its name and scope, and keeps its
-/// value where a call is omitted; an undeclared one is an SC_ERROR.
+/// One unit's signals in a waveform file. Unit::trace_signals is called once to declare them, then at the end of each
+/// traced cycle in which the unit was called, to show their values. A signal is found by its name and scope, and keeps
+/// its value where a call is omitted; an undeclared one is an SC_ERROR.
 ///
 /// Signals stand in the unit's own scope unless a scope within it is given.
 class Signals {

@@ -18,8 +18,8 @@ class MemoryPort;
 ///
 /// Timed mode: an item starts when the interval is over, a register stage is free and the memory has accepted the
 /// requests of the item before. It is finished a latency after its start or, if it reads, after its last answer, and
-/// leaves in order. Register stages: ceil((latency + the memory's latency) / interval), so that neither holds anything up.
-/// Functional mode: reads, works on the item, adds the latency, and hands the result on.
+/// leaves in order. Register stages: ceil((latency + the memory's latency) / interval), so that neither holds anything
+/// up. Functional mode: reads, works on the item, adds the latency, and hands the result on.
 template <class In, class Out>
 class Stage : public Unit {
   public:

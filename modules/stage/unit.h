@@ -31,8 +31,8 @@ class Unit : public CycleProcess, public sc_core::sc_module {
     /// unit: its state, who blocks it or is waited for, and the items in it.
     virtual void trace_signals(Signals& signals) const;
 
-    /// Valid in a cycle in which the unit begins an item, and while it holds any. Memories and the Triangle Queue, which
-    /// hold many triangles at once, name none.
+    /// Valid in a cycle in which the unit begins an item, and while it holds any. Memories and the Triangle Queue,
+    /// which hold many triangles at once, name none.
     virtual Begun begun() const { return {}; }
 
   protected:

@@ -43,7 +43,7 @@ struct Timing {
     UnitTiming normal_test{9, 1, 1};         ///< normalise, bump, normalise, compare; the map read comes on top
     unsigned highlight_test_latency = 1;     ///< N'.H: on top of the Normal Test's, in a design with a Highlight Test
     UnitTiming view_test{1, 1, 1};
-    UnitTiming pass_or_tessellate{1, 1, 8};  ///< buffer: triangles of which one branch has arrived
+    UnitTiming pass_or_tessellate{1, 1, 8};  ///< buffer: triangles that are not complete
     UnitTiming tessellation{1, 1, 1};
     UnitTiming triangle_queue{1, 1, 1};
     UnitTiming lighting{4, 1, 1};

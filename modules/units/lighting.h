@@ -6,7 +6,7 @@
 
 namespace tessera {
 
-/// Lighting (paper figure 7): per-vertex lighting, after Transform so that re-meshing happens in world space.
+/// Lighting (paper figure 7): per-vertex lighting, after Transform, so that tessellation works on world-space data.
 ///
 /// In:   TriangleToLight: P's, N's, t. Out: LitTriangle: P's, t, intensity, to the rasteriser.
 /// Arithmetic: three multiplications and a maximum per vertex, one multiplication; truncated to 8 bits, saturates

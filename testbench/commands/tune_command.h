@@ -9,7 +9,7 @@
 
 namespace tessera {
 
-/// Of one tuned mesh: some gigabytes of a forest.
+/// Largest mesh that tune accepts; its RefinementForest takes some gigabytes.
 inline constexpr std::uint64_t most_tuned_triangles = std::uint64_t{1} << 22;
 
 /// The arguments of `tessera tune`.
@@ -27,9 +27,9 @@ struct TuneOrder {
     unsigned jobs = 1;
 };
 
-/// Searches (tune/tune.h), runs functional mode with what was found, measures its mesh as `tessera compare` does,
-/// writes the tuned job, a .json of the same name and, for a lattice, the base mesh as .obj. Nothing is written when it
-/// fails. Throws InputError on wrong usage and on goals that cannot be met.
+/// Searches (explore/thresholds/tune.h), runs functional mode with what was found, measures its mesh as `tessera
+/// compare` does, writes the tuned job, a .json of the same name and, for a lattice, the base mesh as .obj. Nothing is
+/// written when it fails. Throws InputError on wrong usage and on goals that cannot be met.
 ExitCode tune_command(const TuneOrder& order, const std::filesystem::path& data_folder);
 
 }  // namespace tessera

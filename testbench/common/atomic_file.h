@@ -8,8 +8,8 @@
 
 namespace tessera {
 
-/// A file that appears under its name complete, or not at all: with the AtomicSet that lives, else when commit() has put
-/// every byte on the disk. An older file of the name stays as it was until then.
+/// A file that appears under its name complete, or not at all: with the AtomicSet that lives, else when commit() has
+/// put every byte on the disk. An older file of the name stays as it was until then.
 ///
 /// A program that wants to live with `ulimit -f` must ignore SIGXFSZ. A link is replaced, never followed; a folder or a
 /// device is refused. Errors, with file and the system's reason, as of AtomicSet::open().

@@ -18,8 +18,8 @@ namespace tessera {
 ///
 /// A process that is killed leaves its staging folder, which the next set in the folder removes. Killed within commit()
 /// it can leave a part of the files as well: first of those taken away, with none new; then of the new ones. job.toml
-/// appears first and goes last: a folder with any of a run's files has it. Of a file that is replaced, and not taken
-/// away, the old or the new one is there at any time.
+/// appears first and goes last: a folder with any of a run's files has it. A file that is only replaced is never
+/// missing: its name holds the old or the new version.
 class AtomicSet {
   public:
     /// is_current: this is the set that AtomicFile joins. One at a time.

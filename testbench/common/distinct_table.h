@@ -11,7 +11,8 @@ namespace tessera {
 /// bytes a slot, at most half of them taken. Fewer than 2^32 - 1 items.
 class DistinctTable {
   public:
-    /// The number of an item of this hash: of the known one for which same(number) holds, else the next, size() before.
+    /// The number of the known item with this hash for which same(number) is true. If there is none, adds one and
+    /// returns its number, the previous size().
     /// hash_of(number): the hash of a known item.
     template <class Same, class HashOf>
     std::uint32_t number_of(std::uint64_t hash, const Same& same, const HashOf& hash_of) {

@@ -17,7 +17,8 @@ class Interruption {
     /// What the line will say of the work.
     static void note(std::string_view progress);
 
-    /// While one lives, a signal waits: for what must not be left half done. One at a time in a thread.
+    /// While one lives, a signal waits: for what must not be left half done. Not recursive: a second one in the same
+    /// thread deadlocks.
     class Delay {
       public:
         Delay();

@@ -21,7 +21,7 @@ using NextChunk = std::function<bool(std::size_t& chunk)>;
 
 /// Calls work(next) once on each of at most that many threads, the caller's among them, and returns when all have
 /// returned. Which thread gets which chunk is a matter of chance: a result must be put where the chunk says, and sums
-/// over chunks made afterwards in their order. Work shared out within that of several threads stays on its thread. An
+/// over chunks made afterwards in their order. A nested call runs on the calling thread alone. An
 /// exception ends the handing out of chunks; that of the lowest chunk is thrown again.
 void share_chunks(std::size_t chunks, const std::function<void(const NextChunk& next)>& work,
                   std::size_t threads = thread_count());

@@ -25,7 +25,8 @@ constexpr bool reads_file(MeshSource source) {
     return source == MeshSource::file || source == MeshSource::patches || source == MeshSource::run;
 }
 
-/// A number, or vector, that the job leaves to the program ("auto"): machine/resolve_job.h finds it from mesh and map.
+/// A number, or vector, that the job leaves to the program ("auto"): testbench/machine/resolve_job.h finds it from mesh
+/// and map.
 inline constexpr double automatic = std::numeric_limits<double>::quiet_NaN();
 inline constexpr std::array<double, 3> automatic_vector{automatic, automatic, automatic};
 
@@ -50,7 +51,7 @@ struct Job {
     struct Mesh {
         MeshSource source = MeshSource::plane;
         std::string file;          // OBJ, Bezier patches or a run's folder, by the source
-        std::string fingerprint;   // of the file, see machine/fingerprint.h; empty: any
+        std::string fingerprint;   // of the file, see testbench/machine/fingerprint.h; empty: any
         std::int64_t columns = 0;  // quads along u; 0: the source's own (job_keys.cpp)
         std::int64_t rows = 0;     // quads along v; 0: likewise
         double width = 2;          // plane: size along x

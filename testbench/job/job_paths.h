@@ -17,8 +17,8 @@ namespace tessera {
 //  * An absolute path stays as it is, everywhere.
 //  * output.folder is relative to the current directory, everywhere.
 
-/// Sets mesh.path and map.path, the paths to open; empty where mesh.file or map.file is. To be called once, when a job is
-/// read and its --set settings are applied. Throws InputError for a `data:` path that leaves the data folder.
+/// Sets mesh.path and map.path, the paths to open; empty where mesh.file or map.file is. To be called once, when a job
+/// is read and its --set settings are applied. Throws InputError for a `data:` path that leaves the data folder.
 void resolve_paths(Job& job, const std::filesystem::path& data_folder);
 
 /// The text that means from `to_folder` what `text` means from `from_folder`.

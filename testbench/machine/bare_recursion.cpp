@@ -20,7 +20,8 @@ TableLayout as_indices(const TableLayout& layout) {
     return {0, layout.columns, layout.rows, 1};
 }
 
-/// Apart from evaluate_edge and not inline, as in the unit (normal_test.h): a design without it pays for no register.
+/// Apart from evaluate_edge and not inline, as in the unit (modules/units/edge_tests/normal.h): a design without it
+/// pays for no register.
 [[gnu::noinline]] void test_for_highlight(TrianglePass& pass, int k, const TestParameters& tests) {
     EdgeTests& edge = pass.edges[static_cast<std::size_t>(k)];
     if (highlight_test(pass.edge_begin(k).displaced_normal, pass.edge_end(k).displaced_normal, edge.displaced_normal,

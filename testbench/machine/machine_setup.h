@@ -14,8 +14,7 @@
 
 namespace tessera {
 
-/// What of the host's own values did not fit its format and was set to the nearest value that does. fit_model()
-/// leaves room, so that nothing should.
+/// Host values that did not fit their format and were saturated. fit_model() leaves room, so that none should.
 struct InputSaturations {
     std::uint64_t position = 0;   ///< components of base vertices
     std::uint64_t normal = 0;     ///< components of base vertices' normals and tangents

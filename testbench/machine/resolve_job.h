@@ -23,7 +23,7 @@ struct ResolvedJob {
 
 /// Finds camera and displacement's scale from mesh and map, by the rules that job_keys.cpp states, where the job leaves
 /// them automatic. Numbers are rounded to six digits. Throws InputError if a value lies beyond its key's
-/// range; whether the camera can be, if some of it was set, validate() says.
+/// range. An impossible camera is found later, by validate().
 ResolvedJob resolve_job(const Job& job, const BaseMesh& mesh, const HeightMap& map);
 
 /// Throws std::logic_error that names `user` if the job has an `automatic` value left.

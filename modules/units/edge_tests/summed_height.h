@@ -17,8 +17,8 @@ namespace tessera {
 /// Memory: three rectangles an edge on the Summed Height Table, four reads each; up to nine where a rectangle wraps
 ///         around a repeated map. A rectangle is one request.
 /// Arithmetic: subtract, shift, add, compare; sums modulo 2^n. With the area threshold two multiplications.
-/// Timing: one edge per interval, latency 3, interval 1 by default, plus the table reads: with one port a rectangle
-///         takes four cycles, an edge 12, a triangle 36.
+/// Timing: latency 3 after the last table entry; interval 1 by default, or the table reads' if that is longer: with one
+///         port a rectangle takes four cycles, an edge 12, a triangle 36.
 /// Waits for Calculate New U and the Summed Height Table; held back by the collection of the tests.
 class SummedHeightTest : public Stage<HeightOperands, HeightResult> {
   public:

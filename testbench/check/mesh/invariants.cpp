@@ -122,7 +122,8 @@ InvariantResult check_invariants(const EmittedMesh& mesh, const MachineSetup& se
     BareRecursion bare(setup);
     Walk walk{Lineage(setup, bare), EmittedDifference(mesh, setup.base_triangles.size(), setup.registers.formats)};
     InvariantResult result;
-    // A machine's N triangles take fewer than 6 N edges. The datapath's recursion need not end if the mesh is not its own.
+    // A machine's N triangles take fewer than 6 N edges. The datapath's recursion need not end if the mesh is not its
+    // own.
     const std::uint64_t most_edges = 24 * mesh.triangles.size() + 3'000'000;
     result.edges = bare.walk(walk, most_edges);
     walk.end();

@@ -39,11 +39,12 @@ struct InvariantResult {
     std::uint64_t turned_over = 0;          ///< the texture area's sign is not the base triangle's
     std::uint64_t displaced_collapsed = 0;  ///< two corners at one P'
 
-    // The input's doing: pieces of texture seams and creases that do not meet. On the finer side.
+    // Caused by the input: pieces of texture seams and creases that do not meet, counted on the finer side.
     std::uint64_t open_texture_seam_edges = 0;
     std::uint64_t open_crease_edges = 0;
 
-    /// What, where, P, P', N' in LSB, t in LSB and texels. Of the datapath's own mesh if that has one. Empty: none.
+    /// The first violation, as text: one in the datapath's own mesh before a difference of the emitted one. Empty:
+    /// none.
     std::string first_violation;
 
     bool passed() const { return violations() == 0; }
@@ -66,6 +67,8 @@ std::vector<InvariantFigure> invariant_figures(const InvariantResult& result);
 
 /// Checks a whole emitted mesh, in any order, against the setup it was made of, whose base triangles are numbered in
 /// their order (make_setup does).
+/// Where the datapath's own recursion is far longer than the mesh explains, it is cut off: the triangles are then
+/// wrong, and cracks are not known.
 /// Memory beyond the mesh: 4 bytes a triangle, 150 a triangle of the base triangle that has most, 200 a base triangle,
 /// 12 a texel. ResourceError beyond 2^32 - 2 triangles.
 InvariantResult check_invariants(const EmittedMesh& mesh, const MachineSetup& setup);

@@ -88,7 +88,7 @@ void Lineage::name_base_mesh(BareRecursion& bare) {
             static_cast<std::uint64_t>(way.v));
     };
     const auto number_edge = [&](Edge edge, Way way) {
-        // Of two ends with one number, periods apart, the way in t decides which comes first.
+        // If both ends have the same number (whole periods apart), the sign of the change in t gives the direction.
         const bool along = std::make_tuple(edge.from, -way.u, -way.v) < std::make_tuple(edge.to, way.u, way.v);
         if (!along) {
             std::swap(edge.from, edge.to);
@@ -283,7 +283,7 @@ void Lineage::compare_base_edges() {
     for (auto begin = placed.begin(); begin != placed.end();) {
         std::uint64_t triangles = 0;
         bool seam = false, crease = false;
-        std::optional<Side> lone;  // the last that had no partner among its joined sides
+        std::optional<Side> lone;  // the last edge here with an odd number of triangles
         auto end = begin;
         for (; end != placed.end() && end->low == begin->low && end->high == begin->high; ++end) {
             const Side side = end->side;

@@ -26,11 +26,13 @@ struct LineageResult {
     std::string first_fault;                    ///< empty: none
 };
 
-/// Whether a tessellation is closed, decided by descent, without looking at places: a visitor of BareRecursion::walk.
+/// Decides whether a tessellation is closed: a visitor of BareRecursion::walk. It follows each edge from the base edge
+/// it descends from; positions are not compared.
 ///
-/// A vertex is known by the edge it was inserted on, so two that rounding puts on one place remain two. Base vertices
-/// are one if they agree in P, N, T, handedness, and in t but for whole periods of a repeated axis; base edges are one
-/// (*joined* sides) if their two ends are, and the way in t from one to the other. Then
+/// A vertex is identified by the edge it was inserted on, so two that rounding puts in one place remain two. Base
+/// vertices are the same if they agree in P, N, T, handedness, and in t up to whole periods of a repeated axis. Two
+/// sides are *joined* into one base edge if both ends are the same vertices and t changes by the same amount along
+/// both. Then
 ///   - a piece of a base edge must have the triangles on either side that its base edge has; an edge inside a base
 ///     triangle one on each: else a crack;
 ///   - no edge may be split by one of its triangles and whole in another: a T-vertex;

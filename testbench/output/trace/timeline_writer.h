@@ -15,16 +15,17 @@ namespace tessera {
 /// Use: add_track(), interval() and counter() in any order, each counter's cycles never decreasing; finish().
 /// Window: intervals are cut to it, flow steps outside it left out; a counter has at its beginning the value it came in
 /// with.
-/// Time: microseconds, the format's unit, exact to the picosecond. Viewers add them in floating point: unless a cycle is a
-/// whole number of microseconds, neighbours overlap by a rounding error, and are shown as nested or not at all.
-/// Colours: hints; some viewers colour by name instead. So a state, always in the same words, is the name, and the detail
-/// an argument. The file holds nothing that differs between equal runs.
+/// Time: microseconds, the format's unit, exact to the picosecond. Viewers add them in floating point: unless a cycle
+/// is a whole number of microseconds, neighbours overlap by a rounding error, and are shown as nested or not at all.
+/// Colours: hints; some viewers colour by name instead. So a state, always in the same words, is the name, and the
+/// detail an argument. The file holds nothing that differs between equal runs.
 /// Whether the stream took the bytes is the caller's to check. Misuse is a std::logic_error.
 class TimelineWriter {
   public:
     using Track = std::uint32_t;
 
-    /// What an interval is about: a triangle, the base triangle it descends from, and which part of it if not the whole.
+    /// What an interval is about: a triangle, the base triangle it descends from, and which part of it if not the
+    /// whole.
     struct Item {
         std::uint64_t triangle = 0;
         std::uint64_t base = 0;

@@ -112,7 +112,8 @@ struct Traces::Files {
         }
         if (job.output.timeline) {
             // A cycle is a microsecond there, the format's unit: viewers add times in floating point, and whole numbers
-            // alone stay exact. Otherwise intervals overlap by a rounding error, which they show as nested or not at all.
+            // alone stay exact. Otherwise intervals overlap by a rounding error, which they show as nested or not at
+            // all.
             constexpr std::uint64_t shown_cycle = 1'000'000;
             timeline_file.emplace(folder / "timeline.json");
             timeline.emplace(*timeline_file, shown_cycle, window_of(job));

@@ -205,8 +205,8 @@ TEST_CASE("a base triangle's View Test waits for its corners' screen positions")
     Simulation simulation(setup, 1'000'000);
     REQUIRE(simulation.run().empty());
     // The host's time, one base triangle's first pass: Get Triangle 1, Calculate New P 1, Displace Vertex 6 and a
-    // read of the map (a triangle's parts go side by side), Transform, the View Test 1, Pass or Tessellate 1, Tessellation 1, Triangle Queue 1. The
-    // second pass, for the normals, is shorter and starts with the first.
+    // read of the map (a triangle's parts go side by side), Transform, the View Test 1, Pass or Tessellate 1,
+    // Tessellation 1, Triangle Queue 1. The second pass, for the normals, is shorter and starts with the first.
     const std::uint64_t expected = 1 + 1 + 6 + 1 + 500 + 1 + 1 + 1 + 1;
     CHECK(sc_core::sc_time_stamp().value() == expected * setup.design.timing.cycle_picoseconds);
 }

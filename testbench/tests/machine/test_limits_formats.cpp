@@ -91,7 +91,8 @@ const CaseTable meshes("formats: ",
                            CHECK(run.setup.input_saturations.position == 0);
                            CHECK(run.setup.input_saturations.normal == 0);
                            const datapath::Saturations counted = run.pipeline.saturations();
-                           // by validation: 1.0 fits a normal, the farthest corner fits w, the model fits half of the position's range
+                           // by validation: 1.0 fits a normal, the farthest corner fits w, the model fits half of the
+                           // position's range
                            CHECK(counted.normal == 0);
                            CHECK(counted.screen_normal == 0);
                            CHECK(counted.view_distance == 0);

@@ -14,7 +14,8 @@
 
 namespace tessera::testing {
 
-/// A machine with all that surrounds it under a name of its own: several stand in one simulation, which the test starts.
+/// A machine with all that surrounds it under a name of its own: several stand in one simulation, which the test
+/// starts.
 struct NamedMachine : sc_core::sc_module {
     const MachineSetup& setup;
     Pipeline pipeline;

@@ -41,9 +41,9 @@ class Wires {
     std::vector<bool> bits_;
 };
 
-/// Displace Vertex as another language would have it: wires in, wires out, an address and a code, one call a clock edge. It
-/// knows the tables of modules/sockets/README.md and the registers, but no item, no stream and no SystemC. The arithmetic is the
-/// datapath's.
+/// Displace Vertex as another language would have it: wires in, wires out, an address and a code, one call a clock
+/// edge. It knows the tables of modules/sockets/README.md and the registers, but no item, no stream and no SystemC. The
+/// arithmetic is the datapath's.
 class RtlDisplaceVertex {
   public:
     /// latency: cycles from the map's answer to the result; stages: items in it at a time.

@@ -17,16 +17,16 @@
 #include "testbench/tests/support/timed_checks.h"
 #include "testbench/tests/support/timed_modules.h"
 
-// Units replaced from outside modules/ (modules/README.md, "How to replace a unit"): by another formula, by a model that sees
-// packed items alone, by the same unit in another context.
+// Units replaced from outside modules/ (modules/README.md, "How to replace a unit"): by another formula, by a model
+// that sees packed items alone, by the same unit in another context.
 
 using namespace tessera;
 using namespace tessera::testing;
 
 namespace {
 
-/// Compares half the difference: a comparator one bit narrower. The machine's own unit decides so with twice the threshold
-/// and one more.
+/// Compares half the difference: a comparator one bit narrower. The machine's own unit decides so with twice the
+/// threshold and one more.
 class HalvedHeightTest : public SummedHeightTest {
   public:
     using SummedHeightTest::SummedHeightTest;

@@ -7,7 +7,8 @@
 #include "testbench/check/transport/conservation.h"
 #include "testbench/tests/support/timed_checks.h"
 
-// The work check over whole runs: nothing is lost, doubled or altered, down to what the rasteriser gets.
+// The transport check (key check.work) over whole runs: nothing is lost, doubled or altered, down to what the
+// rasteriser gets.
 
 using namespace tessera;
 using namespace tessera::testing;

@@ -1,5 +1,5 @@
 // PGM and PNG reading, and what read_height_map() itself decides. EXR, hostile files, built-in maps:
-// test_maps_*.cpp.
+// the other files of this folder.
 #include <png.h>
 
 #include <catch2/catch.hpp>

@@ -8,7 +8,8 @@
 
 namespace tessera::testing {
 
-/// A unit that makes each of its reads as soon as it may, from a cycle on, and notes when they were offered and answered.
+/// A unit that makes each of its reads as soon as it may, from a cycle on, and notes when they were offered and
+/// answered.
 struct MemoryReader : sc_core::sc_module {
     MemoryPort port;
     std::vector<std::vector<std::uint32_t>> reads;  ///< entries of each request

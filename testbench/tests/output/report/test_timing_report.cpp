@@ -224,8 +224,8 @@ TEST_CASE("bottleneck: a machine that did nothing has none") {
     CHECK(find_bottleneck(m.pipeline, cycles).bound() == 0);
 }
 
-// 12 entries an edge through one port: 36 of the 86 cycles (modules/test_one_triangle.cpp); the bound is the nine parts that
-// four units pass on, a cycle each.
+// 12 entries an edge through one port: 36 of the 86 cycles (modules/test_one_triangle.cpp); the bound is the nine parts
+// that four units pass on, a cycle each.
 TEST_CASE("timing.txt of one triangle: latency binds") {
     Job job = timed_job();
     job.mesh.columns = job.mesh.rows = 1;

@@ -293,7 +293,8 @@ std::string table(Mode mode, const std::vector<Place>& places, std::vector<Kind>
     return text;
 }
 
-/// The part of testbench/prove/faults/FAULT_COVERAGE.md under a heading. TESSERA_WRITE_FAULT_COVERAGE: written anew instead.
+/// The part of testbench/prove/faults/FAULT_COVERAGE.md under a heading. TESSERA_WRITE_FAULT_COVERAGE: written anew
+/// instead.
 void compare_with_document(const std::string& heading, const std::string& found) {
     const std::string path = TESSERA_SOURCE_DIR "/testbench/prove/faults/FAULT_COVERAGE.md";
     std::stringstream stream;
