@@ -109,7 +109,7 @@ ExitCode bake_command(const BakeRequest& request, const fs::path& data_folder) {
         job, folder, fmt::format("Written by `tessera bake` from {}.", printable(request.surface.filename().string())));
 
     AtomicSet files;
-    files.make_folder(folder);
+    files.make_folder(folder, "--output");
     write_file(request.output, file.bytes);
     write_file(job_file, job_text);
     files.commit();

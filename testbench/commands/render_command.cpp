@@ -137,7 +137,7 @@ ExitCode render_command(const RenderRequest& asked, const fs::path& data_folder)
     progress.show("rendering", 0);
     const std::vector<Picture> pictures = render_views(mesh, camera, request.views, request.picture);
     AtomicSet files;
-    files.make_folder(output.folder);
+    files.make_folder(output.folder, "--output");
     for (std::size_t i = 0; i < pictures.size(); ++i)
         write(output.path_of(request.views[i]), pictures[i], output.exr);
     files.commit();

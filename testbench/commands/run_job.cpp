@@ -166,7 +166,7 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
     std::optional<Traces> traces;
     if (Traces::wanted(job)) {
         const std::vector<const Unit*> units = units_to_trace(job.output.trace_units, simulation.pipeline);
-        files.make_folder(folder);
+        files.make_folder(folder, "output.folder");
         traces.emplace(job, folder, simulation, units);
     }
 
@@ -218,7 +218,7 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
             judged ? job.check.allowed_triangles : std::numeric_limits<double>::infinity(),
             [&](double part) { progress.show("golden model's own run and distances", 0.65 + 0.2 * part); });
     }
-    files.make_folder(folder);
+    files.make_folder(folder, "output.folder");
     const MeshCounts counts = count_mesh(mesh);
     write_run_folder(folder, job, setup, simulation, counts, checks, progress);
     replace_run(replaced, files);

@@ -143,7 +143,7 @@ ExitCode widths_command(const WidthsOrder& order, const fs::path& data_folder) {
     progress.clear();
 
     AtomicSet files;
-    files.make_folder(output.folder);
+    files.make_folder(output.folder, "--output");
     write_file(output.csv, widths_csv(sweep));
     write_file(output.json, widths_json(request, sweep));
     files.commit();

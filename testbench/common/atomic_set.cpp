@@ -124,7 +124,7 @@ void AtomicSet::discard() {
     made_.clear();
 }
 
-void AtomicSet::make_folder(const fs::path& folder) {
+void AtomicSet::make_folder(const fs::path& folder, const std::string& key) {
     const Interruption::Delay delay;
     std::vector<fs::path> missing;
     std::error_code absent;
@@ -134,7 +134,7 @@ void AtomicSet::make_folder(const fs::path& folder) {
         if (::mkdir(path->c_str(), 0777) == 0)
             made_.push_back(*path);
         else if (errno != EEXIST)
-            throw_file_error(folder, "cannot be made", errno);
+            throw_file_error(folder, (key + " cannot be made").c_str(), errno);
 }
 
 /// Where the new or the old file of this path lies in the staging folder, which is made if need be. Empty, with errno:

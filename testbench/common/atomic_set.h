@@ -32,8 +32,8 @@ class AtomicSet {
     static AtomicSet* current();
 
     /// A folder for the files, with those above it. Those that were not there go away again without commit(). Throws
-    /// like open().
-    void make_folder(const std::filesystem::path& folder);
+    /// like open(); `key`: what names the folder in the message.
+    void make_folder(const std::filesystem::path& folder, const std::string& key);
 
     /// Where the file is written that will be `path`.
     std::filesystem::path staged(const std::filesystem::path& path);
