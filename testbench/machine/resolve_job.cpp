@@ -12,7 +12,7 @@
 #include "testbench/input/map/map_displacement.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/job/toml_text.h"
-#include "testbench/machine/unit_vector.h"
+#include "testbench/machine/setup/unit_vector.h"
 
 namespace tessera {
 

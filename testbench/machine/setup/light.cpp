@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "testbench/machine/setup/rounding.h"
-#include "testbench/machine/unit_vector.h"
+#include "testbench/machine/setup/unit_vector.h"
 
 namespace tessera {
 

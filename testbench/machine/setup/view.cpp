@@ -8,7 +8,7 @@
 
 #include "testbench/common/error.h"
 #include "testbench/machine/setup/rounding.h"
-#include "testbench/machine/unit_vector.h"
+#include "testbench/machine/setup/unit_vector.h"
 
 namespace tessera {
 
