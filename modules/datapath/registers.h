@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 
+#include "modules/datapath/edge_tests.h"
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/transform.h"
 

@@ -30,6 +30,7 @@
 #include "testbench/job/toml_text.h"
 #include "testbench/job/validate_job.h"
 #include "testbench/tests/job/job_cases.h"
+#include "testbench/tests/support/count_members.h"
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -72,26 +73,6 @@ JobValue another_value(const Key& key) {
             return std::string("a \"quoted\" \\ b\xc3\xa4r\n\t\x01\x7f # = ]");
     }
     return given;
-}
-
-/// Converts to any member, to count an aggregate's members.
-struct Anything {
-    template <typename T>
-    operator T() const;
-};
-
-template <typename Aggregate, typename Members, typename = void>
-struct CanHold : std::false_type {};
-template <typename Aggregate, typename... Members>
-struct CanHold<Aggregate, std::tuple<Members...>, std::void_t<decltype(Aggregate{Members{}...})>> : std::true_type {};
-
-template <typename Aggregate, typename... Members>
-constexpr std::size_t count_members() {
-    if constexpr (CanHold<Aggregate, std::tuple<Members..., Anything>>::value) {
-        return count_members<Aggregate, Members..., Anything>();
-    } else {
-        return sizeof...(Members);
-    }
 }
 
 }  // namespace

@@ -5,10 +5,13 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
+#include <map>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "modules/datapath/map_entry.h"
+#include "modules/datapath/registers.h"
 #include "testbench/check/conformance/end_to_end.h"
 #include "testbench/check/conformance/setup_check.h"
 #include "testbench/machine/inputs.h"
@@ -295,6 +298,23 @@ TEST_CASE("one wrong register, base vertex or table entry fails the default job"
     every("normal map", host.normal_map, registers.normal_map, ".z", 4);
     every("summed height table", host.summed_height_table, registers.summed_height_table);
     CHECK(run.check().passed());
+}
+
+TEST_CASE("a mistake of every register is tried") {
+    std::set<std::string> tried;
+    for (const Mistake& mistake : register_mistakes())
+        tried.insert(mistake.name.substr(0, mistake.name.find('[')));
+    const std::map<std::string, std::string> under{
+        {"displacement_map.base", "overlap"},          {"normal_map.base", "overlap"},
+        {"summed_height_table.base", "overlap"},       {"transform.row_x.offset", "transform.row_x"},
+        {"transform.row_y.offset", "transform.row_y"}, {"transform.row_w.offset", "transform.row_w"},
+        {"transform.exponent", "transform."},          {"transform.view_distance_shift", "formats.view_distance"}};
+    datapath::Registers registers;
+    registers.formats.highlight_tag = true;
+    datapath::visit_registers(registers, [&](const datapath::Register& field, const auto&) {
+        const auto other = under.find(field.name);
+        CHECK(tried.count(other == under.end() ? field.name : other->second) == 1);
+    });
 }
 
 TEST_CASE("the set-up of a job of other formats, with bias, highlight and a map that repeats, is right") {

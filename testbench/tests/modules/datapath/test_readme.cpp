@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -11,8 +12,10 @@
 
 #include "modules/datapath/all_intermediates.h"
 #include "modules/datapath/registers.h"
+#include "testbench/tests/support/count_members.h"
 
 using namespace tessera::datapath;
+using tessera::testing::count_members;
 
 namespace {
 
@@ -125,6 +128,22 @@ TEST_CASE("the README's registers are those of the code, with their widths in th
     REQUIRE(rows.size() == expected.size());
     for (std::size_t k = 0; k < rows.size(); ++k)
         CHECK(std::vector<std::string>{rows[k].at(0), rows[k].at(2), rows[k].at(3)} == expected[k]);
+}
+
+TEST_CASE("registers: the table has every parameter") {
+    Registers registers;
+    registers.formats.highlight_tag = true;
+    std::map<std::string, std::size_t> found;  // by the group before the first dot
+    visit_registers(registers, [&](const Register& field, const auto&) {
+        const std::string name = field.name;
+        if (name.find(".offset") == std::string::npos && name != "transform.view_distance_shift")
+            ++found[name.substr(0, name.find('.'))];
+    });
+    CHECK(found["tests"] == count_members<TestParameters>());
+    CHECK(found["displacement"] == count_members<DisplacementParameters>());
+    CHECK(found["transform"] == count_members<TransformParameters>());
+    CHECK(found["light"] == count_members<LightParameters>());
+    CHECK(found["map"] == count_members<MapGeometry>());
 }
 
 TEST_CASE("registers: only a design with a Highlight Test has those of the test") {
