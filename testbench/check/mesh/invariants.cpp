@@ -80,7 +80,7 @@ struct Walk {
 }  // namespace
 
 std::uint64_t InvariantResult::violations() const {
-    return t_vertices + cracks + inconsistent_vertices + wrong_triangles() + generation_violations;
+    return t_vertices + cracks + inconsistent_vertices + wrong_triangles() + generation_violations + unfinished;
 }
 
 std::vector<InvariantFigure> invariant_figures(const InvariantResult& r) {
@@ -107,6 +107,8 @@ std::vector<InvariantFigure> invariant_figures(const InvariantResult& r) {
          "emitted in their place, but not bit for bit"},
         {"generation_violations", Kind::violation, r.generation_violations, "triangle",
          "with a vertex beyond the generation limit"},
+        {"unfinished", Kind::violation, r.unfinished, "run",
+         "1: the datapath by itself went on splitting far beyond this mesh, and was stopped"},
         {"collapsed", Kind::rounding, r.collapsed, "triangle", "no area in texture space"},
         {"turned_over", Kind::rounding, r.turned_over, "triangle", "turned over in texture space"},
         {"displaced_collapsed", Kind::rounding, r.displaced_collapsed, "triangle",
@@ -127,7 +129,8 @@ InvariantResult check_invariants(const EmittedMesh& mesh, const MachineSetup& se
     const std::uint64_t most_edges = 24 * mesh.triangles.size() + 3'000'000;
     result.edges = bare.walk(walk, most_edges);
     walk.end();
-    const LineageResult lineage = result.edges < most_edges ? walk.lineage.finish() : LineageResult{};
+    result.unfinished = result.edges < most_edges ? 0 : 1;
+    const LineageResult lineage = result.unfinished == 0 ? walk.lineage.finish() : LineageResult{};
     result.triangles = mesh.triangles.size();
     result.base_triangles = setup.base_triangles.size();
     result.base_edges = lineage.base_edges;
@@ -143,8 +146,9 @@ InvariantResult check_invariants(const EmittedMesh& mesh, const MachineSetup& se
     result.differing_triangles = walk.difference.differing();
     result.open_texture_seam_edges = lineage.open_texture_seam_edges;
     result.open_crease_edges = lineage.open_crease_edges;
-    result.first_violation =
-        lineage.first_fault.empty() || result.edges >= most_edges ? walk.difference.first() : lineage.first_fault;
+    result.first_violation = lineage.first_fault.empty() ? walk.difference.first() : lineage.first_fault;
+    if (result.unfinished != 0 && result.first_violation.empty())
+        result.first_violation = fmt::format("the datapath by itself had not finished after {} edges", result.edges);
     judge_triangles(mesh, setup, result);
     return result;
 }

@@ -33,6 +33,7 @@ struct InvariantResult {
     std::uint64_t extra_triangles = 0;
     std::uint64_t differing_triangles = 0;    ///< one missing and one extra at the same three (P, t)
     std::uint64_t generation_violations = 0;  ///< triangles with a vertex beyond the generation limit
+    std::uint64_t unfinished = 0;  ///< 1: the datapath's own recursion went on far beyond this mesh, and was cut off
 
     // Rounding's doing, to thin triangles: it opens nothing.
     std::uint64_t collapsed = 0;            ///< no area in texture space
@@ -67,8 +68,8 @@ std::vector<InvariantFigure> invariant_figures(const InvariantResult& result);
 
 /// Checks a whole emitted mesh, in any order, against the setup it was made of, whose base triangles are numbered in
 /// their order (make_setup does).
-/// Where the datapath's own recursion is far longer than the mesh explains, it is cut off: the triangles are then
-/// wrong, and cracks are not known.
+/// Where the datapath's own recursion is far longer than the mesh explains, it is cut off: a violation; cracks are then
+/// not known.
 /// Memory beyond the mesh: 4 bytes a triangle, 150 a triangle of the base triangle that has most, 200 a base triangle,
 /// 12 a texel. ResourceError beyond 2^32 - 2 triangles.
 InvariantResult check_invariants(const EmittedMesh& mesh, const MachineSetup& setup);

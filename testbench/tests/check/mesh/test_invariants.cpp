@@ -219,6 +219,8 @@ TEST_CASE("the check ends where the datapath's recursion does not") {
     CHECK(result.edges > 3'000'000);
     CHECK(result.edges <= 24 * result.triangles + 3'000'003);
     CHECK(result.cracks == 0);  // not known
+    CHECK(result.unfinished == 1);
+    CHECK(result.violations() == 1 + result.wrong_triangles() + result.generation_violations);
     CHECK(result.missing_triangles > 0);
     CHECK_FALSE(result.first_violation.empty());
 }
@@ -271,7 +273,7 @@ TEST_CASE("each violation counts, what is rounding's or the input's does not; th
     for (std::uint64_t InvariantResult::*const violation :
          {&InvariantResult::t_vertices, &InvariantResult::cracks, &InvariantResult::inconsistent_vertices,
           &InvariantResult::missing_triangles, &InvariantResult::extra_triangles, &InvariantResult::differing_triangles,
-          &InvariantResult::generation_violations}) {
+          &InvariantResult::generation_violations, &InvariantResult::unfinished}) {
         InvariantResult one = result;
         one.*violation = 3;
         CHECK(one.violations() == 3);
