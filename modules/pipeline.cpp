@@ -79,7 +79,7 @@ void Pipeline::wire(UnitFactory& factory) {
         TessellationTests& tests = tessellation_tests[k];
         get_triangle.to_tessellation_tests[k].bind(tests.calculate_new_u.input);
         transform.to_view_test[k].bind(tests.view_test.from_transform);
-        tests.collect_tests.to_pass_or_tessellate.bind(pass_or_tessellate.from_tessellation_tests[k]);
+        tests.to_pass_or_tessellate().bind(pass_or_tessellate.from_tessellation_tests[k]);
         factory.join(tests.summed_height_test.summed_height_table, summed_height_table);
         factory.join(tests.normal_test.normal_map, normal_map);
     }
@@ -107,7 +107,7 @@ void Pipeline::attach() {
     clock.attach(tessellation);
     clock.attach(pass_or_tessellate);
     for (TessellationTests& tests : tessellation_tests) {
-        clock.attach(tests.collect_tests);
+        clock.attach(tests.collector());
         clock.attach(tests.view_test);
         clock.attach(tests.normal_test);
         clock.attach(tests.summed_height_test);

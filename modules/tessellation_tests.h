@@ -11,12 +11,20 @@ namespace tessera {
 /// Tessellation Tests (paper figures 7 and 8): decides for each edge, from its two ends alone.
 ///
 ///     edge ──> Calculate New U ──┬──> Tex Coord Test ───────┐
-///                                ├──> Summed Height Test ───┼──> Pass or Tessellate
+///                                ├──> Summed Height Test ───┼──> Collect Tests ──> Pass or Tessellate
 ///                                ├──> Normal Test ──────────┤
 ///              P's ──────────────┴──> View Test ────────────┘
 ///
+/// With the tests evaluated cheapest first (Design::test_order):
+///
+///     edge ──> Calculate New U ──┬──> Tex Coord Test ──┐
+///              P's ──────────────┼──> View Test ───────┤
+///                                └─────────────────────┴──> Sequence Tests ──> Pass or Tessellate
+///                                                             ↕         ↕
+///                                                   Normal Test     Summed Height Test
+///
 /// In:   calculate_new_u.input: edges; vertices of a base triangle. view_test.from_transform: their screen positions.
-/// Out:  collect_tests.to_pass_or_tessellate: TestedEdge.
+/// Out:  to_pass_or_tessellate(): TestedEdge.
 /// Of three units, each takes one edge of a triangle and, of a base triangle, the two vertices it joins
 /// (parts_for_tests).
 /// Timing: edges go one after another through one pipeline; bound by the Summed Height Test's table reads. A design has
@@ -29,7 +37,8 @@ class TessellationTests : public sc_core::sc_module {
         std::unique_ptr<SummedHeightTest> summed_height_test;
         std::unique_ptr<NormalTest> normal_test;
         std::unique_ptr<ViewTest> view_test;
-        std::unique_ptr<CollectTests> collect_tests;
+        std::unique_ptr<CollectTests> collect_tests;    // or
+        std::unique_ptr<SequenceTests> sequence_tests;  // the other is null
     };
     const Units made_;
 
@@ -39,7 +48,8 @@ class TessellationTests : public sc_core::sc_module {
     SummedHeightTest& summed_height_test = *made_.summed_height_test;
     NormalTest& normal_test = *made_.normal_test;
     ViewTest& view_test = *made_.view_test;
-    CollectTests& collect_tests = *made_.collect_tests;
+    CollectTests* const collect_tests = made_.collect_tests.get();     ///< null: cheapest first
+    SequenceTests* const sequence_tests = made_.sequence_tests.get();  ///< null: in parallel
 
     /// number: of the unit, from 0.
     TessellationTests(const sc_core::sc_module_name& name, const UnitContext& context, UnitFactory& factory,
@@ -48,12 +58,20 @@ class TessellationTests : public sc_core::sc_module {
     /// Binds the units inside to one another. To be called once.
     void wire();
 
+    /// Where an edge's results come together.
+    Unit& collector() const { return sequence_tests == nullptr ? static_cast<Unit&>(*collect_tests) : *sequence_tests; }
+    StreamOutput<TestedEdge>& to_pass_or_tessellate() const {
+        return sequence_tests == nullptr ? collect_tests->to_pass_or_tessellate : sequence_tests->to_pass_or_tessellate;
+    }
+
     /// In the order of figure 8.
     std::array<Unit*, 6> units() {
-        return {&calculate_new_u, &tex_coord_test, &summed_height_test, &normal_test, &view_test, &collect_tests};
+        return {&calculate_new_u, &tex_coord_test, &summed_height_test, &normal_test, &view_test, &collector()};
     }
 
   private:
+    template <class Collector>
+    void take_results(Collector& collector);
     static Units make(const UnitContext& context, UnitFactory& factory, unsigned number);
 };
 

@@ -10,6 +10,7 @@
 #include "modules/units/edge_tests/calculate_new_u.h"
 #include "modules/units/edge_tests/collect_tests.h"
 #include "modules/units/edge_tests/normal.h"
+#include "modules/units/edge_tests/sequence_tests.h"
 #include "modules/units/edge_tests/summed_height.h"
 #include "modules/units/edge_tests/tex_coord.h"
 #include "modules/units/edge_tests/view.h"
@@ -62,6 +63,9 @@ class UnitFactory {
     }
     virtual std::unique_ptr<CollectTests> collect_tests(Name name, const UnitContext& context) {
         return std::make_unique<CollectTests>(name, context);
+    }
+    virtual std::unique_ptr<SequenceTests> sequence_tests(Name name, const UnitContext& context) {
+        return std::make_unique<SequenceTests>(name, context);
     }
     virtual std::unique_ptr<PassOrTessellate> pass_or_tessellate(Name name, const UnitContext& context) {
         return std::make_unique<PassOrTessellate>(name, context);

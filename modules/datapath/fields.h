@@ -77,6 +77,12 @@ class Fields {
         if (formats_.highlight_tag)
             flag(name, value, meaning);
     }
+    /// Only in a design that keeps them.
+    template <class N>
+    constexpr void final_edges(const char* name, N& value, const char* meaning) {
+        if (formats_.final_edges)
+            number(name, value, 3, meaning);
+    }
     /// 1 or -1; the bit is set for -1.
     template <class H>
     constexpr void handedness(const char* name, H& value, const char* meaning) {
@@ -117,7 +123,7 @@ class Fields {
     constexpr void annotation(const char* name, N& value) {
         const std::uint32_t read = codec_.annotation(name, value);
         if constexpr (!std::is_const_v<N>)
-            value = read;
+            value = static_cast<N>(read);
     }
 
   private:
@@ -176,7 +182,9 @@ constexpr void describe_triangle(Fields<Codec>& fields, AnyTriangle& triangle) {
     fields.requesting("split_by", triangle.split_by, "tests that split its parent");
     fields.gating("stopped_by", triangle.stopped_by, "tests that kept an edge whole");
     fields.flag("finished", triangle.finished, "no edge splits");
+    fields.final_edges("final_edges", triangle.final_edges, "bit k: edge k was tested before and does not split");
     fields.annotation("base", triangle.base);
+    fields.annotation("parent", triangle.parent);
 }
 
 /// Adds up the widths of an item's fields.

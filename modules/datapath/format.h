@@ -36,6 +36,7 @@ struct Formats {
     Format screen = Format::make_signed(24, 8);           ///< P's in pixels
     int generation_bits = 4;
     bool highlight_tag = false;  ///< with a Highlight Test: split_by in a queue entry has a bit for it
+    bool final_edges = false;    ///< a queue entry says which of its edges are final
 };
 
 /// Ranges of the widths that a job may set. The functions of this folder are asserted to work within them. A fraction

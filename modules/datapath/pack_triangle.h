@@ -19,8 +19,9 @@ constexpr std::size_t packed_triangle_bytes(const Formats& formats) {
     return (std::size_t{stream_widths(formats).triangle} + 7) / 8;
 }
 
-/// Triangle::base follows the entry in bytes of its own. It is a tag of the model only and not counted as traffic.
-constexpr std::size_t packed_triangle_tag_bytes = 4;
+/// Triangle::base and parent follow the entry in bytes of their own. They are tags of the model only and not counted as
+/// traffic.
+constexpr std::size_t packed_triangle_tag_bytes = 8;
 
 constexpr void store_word(std::uint32_t word, unsigned char* bytes) {
     for (int k = 0; k < 4; ++k)
@@ -108,6 +109,7 @@ class FieldReader {
     describe_triangle(fields, triangle);
     writer.finish();
     store_word(triangle.base, bytes + packed_triangle_bytes(formats));
+    store_word(triangle.parent, bytes + packed_triangle_bytes(formats) + 4);
     return writer.fits();
 }
 
@@ -118,6 +120,7 @@ constexpr Triangle unpack_triangle(const unsigned char* bytes, const Formats& fo
     Fields<FieldReader> fields(reader, formats);
     describe_triangle(fields, triangle);
     triangle.base = load_word(bytes + packed_triangle_bytes(formats));
+    triangle.parent = load_word(bytes + packed_triangle_bytes(formats) + 4);
     return triangle;
 }
 

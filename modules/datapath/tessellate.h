@@ -13,6 +13,15 @@ constexpr std::uint8_t kept_generation(std::uint8_t generation, const Formats& f
         saturate(generation, Format::make_unsigned(formats.generation_bits, 0), saturations.generation));
 }
 
+/// A child's final edges: an edge between two corners of its parent is an edge of the parent that was not split.
+/// `corners`: of the child, as triangulate() gives them.
+constexpr std::uint8_t final_edges_of(const std::array<std::uint8_t, 3>& corners) {
+    unsigned edges = 0;
+    for (unsigned k = 0; k < 3; ++k)
+        edges |= corners[k] < 3 && corners[(k + 1) % 3] < 3 ? 1u << k : 0u;
+    return static_cast<std::uint8_t>(edges);
+}
+
 /// Calls child(triangle) for each child of a pass whose edges are decided, with all known values of its vertices.
 /// Returns the number of children.
 template <class Child>
@@ -37,12 +46,14 @@ int tessellate(const TrianglePass& pass, Triangulation choice, const Formats& fo
     const ChildIndices indices = triangulate(pass.split, second);
     Triangle triangle;
     triangle.base = pass.triangle.base;
+    triangle.parent = pass.split != 0 ? pass.number : pass.triangle.parent;
     triangle.finished = pass.triangle.finished;
     triangle.stopped_by = pass.triangle.finished ? pass.triangle.stopped_by : std::uint8_t{0};
     triangle.split_by = pass.split != 0 ? split_by : pass.triangle.split_by;
     for (int k = 0; k < indices.count; ++k) {
         const auto& corners = indices.children[static_cast<std::size_t>(k)];
         triangle.vertices = {*vertices[corners[0]], *vertices[corners[1]], *vertices[corners[2]]};
+        triangle.final_edges = formats.final_edges ? final_edges_of(corners) : std::uint8_t{0};
         child(triangle);
     }
     return indices.count;

@@ -24,11 +24,13 @@ struct EdgeTests {
     Direction tangent;           ///< T_ij    (Normal Test)
     Direction displaced_normal;  ///< N'_ij   (Normal Test)
     std::uint8_t tests = 0;      ///< TestBits
+    std::uint8_t evaluated = 0;  ///< TestBits: the tests that were evaluated; 0: the edge is final and was not tested
 };
 
 /// One pass of one triangle through the machine, joined by Pass or Tessellate from the triangle and its parts. Edge k
 /// runs from vertex k to vertex (k + 1) mod 3.
 struct TrianglePass {
+    std::uint32_t number = 0;  ///< the model's name of the pass
     Triangle triangle;
     std::uint8_t new_vertices = 0;  ///< bit k: vertex k has no P', P's, N' yet (a base triangle's first pass)
     std::uint8_t new_normals = 0;   ///< bit k: vertex k has N' but not yet N's

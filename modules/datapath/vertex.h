@@ -65,6 +65,7 @@ enum TestBits : std::uint8_t {
 /// The requesting tests; the others are gating tests.
 constexpr std::uint8_t requesting_tests = normal_bit | summed_height_bit | highlight_bit;
 constexpr std::uint8_t gating_tests = view_bit | tex_coord_bit | generation_bit;
+constexpr std::uint8_t all_tests = requesting_tests | gating_tests;
 
 /// A triangle in the Triangle Queue. Edge k runs from vertex k to vertex (k + 1) mod 3.
 struct Triangle {
@@ -74,6 +75,9 @@ struct Triangle {
     /// VT, TCT, GT bits: the tests that prevented a split requested by NT, SHT or HT.
     std::uint8_t stopped_by = 0;
     bool finished = false;  ///< no edge splits; one more pass calculates its normals in screen space
+    /// Bit k: edge k was tested with the parent and not split; so it never will be. 0 unless Formats::final_edges.
+    std::uint8_t final_edges = 0;
+    std::uint32_t parent = 0;  ///< the pass in which its parent was split: a tag without effect
 };
 
 }  // namespace tessera::datapath

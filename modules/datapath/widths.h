@@ -7,9 +7,9 @@ namespace tessera::datapath {
 
 /// Bits per item of each stream, the cost of a design's buses and buffers.
 struct Widths {
-    std::uint32_t base_vertex = 0;      ///< host to Get Triangle: P, N, T, handedness, t
-    std::uint32_t vertex = 0;           ///< in the Triangle Queue: all fields of a vertex
-    std::uint32_t triangle = 0;         ///< Triangle Queue entry: three vertices, split_by, stopped_by, finished
+    std::uint32_t base_vertex = 0;  ///< host to Get Triangle: P, N, T, handedness, t
+    std::uint32_t vertex = 0;       ///< in the Triangle Queue: all fields of a vertex
+    std::uint32_t triangle = 0;  ///< Triangle Queue entry: three vertices, split_by, stopped_by, finished, final_edges
     std::uint32_t emitted_vertex = 0;   ///< to Lighting: P's, N's, t
     std::uint32_t finished_vertex = 0;  ///< a vertex of the tessellated mesh, if the host sent it: P', N', t
 };
@@ -25,7 +25,7 @@ constexpr Widths stream_widths(const Formats& f) {
     Widths widths;
     widths.base_vertex = position + 2 * direction + handedness + texture;
     widths.vertex = widths.base_vertex + bits(f.generation_bits) + known + position + 2 * direction + screen;
-    widths.triangle = 3 * widths.vertex + (f.highlight_tag ? 3 : 2) + 3 + 1;
+    widths.triangle = 3 * widths.vertex + (f.highlight_tag ? 3 : 2) + 3 + 1 + (f.final_edges ? 3 : 0);
     widths.emitted_vertex = screen + direction + texture;
     widths.finished_vertex = position + direction + texture;
     return widths;

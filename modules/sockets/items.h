@@ -280,6 +280,7 @@ struct TestedEdge {
         fields.direction("displaced_n", item.found.displaced_normal, "N'_ij");
         fields.tests("tests", item.found.tests, "NT, SHT, VT, TCT, GT, HT");
         fields.direction("displaced_n_i", item.displaced_n_i, "N' of the first end");
+        fields.annotation("evaluated", item.found.evaluated);
     }
 };
 
@@ -308,6 +309,8 @@ struct DecidedTriangle {
     template <class Codec, class Any>
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
         describe_origin(fields, item.origin);
+        if constexpr (!std::is_const_v<Any>)
+            item.pass.number = item.origin.pass;
         describe_triangle(fields, item.pass.triangle);
         fields.number("split", item.pass.split, 3, "bit k: edge k is split");
         for (int k = 0; k < 3; ++k) {

@@ -12,7 +12,7 @@ namespace tessera {
 /// unit written in another language sees.
 struct PackedItem {
     static constexpr std::size_t most_bytes = 416;
-    static constexpr std::size_t most_annotations = 3;  // of a triangle with its origin
+    static constexpr std::size_t most_annotations = 4;  // of a triangle with its origin
 
     std::array<unsigned char, most_bytes> bytes{};
     std::array<std::uint32_t, most_annotations> annotations{};

@@ -18,10 +18,10 @@ constexpr Parts normal_parts = 0070;
 constexpr Parts edge_parts = 0700;
 constexpr Parts all_parts = 0777;
 
-/// The parts of a triangle that go down the branch of Calculate New P: what is not known yet, and its edges unless it
-/// is finished.
+/// The parts of a triangle that go down the branch of Calculate New P: what is not known yet, and, unless it is
+/// finished, its edges that are not final.
 constexpr Parts parts_of(const datapath::Triangle& triangle) {
-    unsigned parts = triangle.finished ? 0 : edge_parts;
+    unsigned parts = triangle.finished ? 0 : edge_parts & ~(unsigned{triangle.final_edges} << first_edge_part);
     for (unsigned k = 0; k < 3; ++k) {
         const datapath::Vertex& vertex = triangle.vertices[k];
         if (!vertex.displaced_known)

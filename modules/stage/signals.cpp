@@ -42,6 +42,9 @@ const std::vector<UnitNumbers::Entry>& UnitNumbers::all() {
         {30, "tessellation_tests_2.normal_test"},
         {31, "tessellation_tests_2.view_test"},
         {32, "tessellation_tests_2.collect_tests"},
+        {33, "tessellation_tests_0.sequence_tests"},
+        {34, "tessellation_tests_1.sequence_tests"},
+        {35, "tessellation_tests_2.sequence_tests"},
     };
     return entries;
 }

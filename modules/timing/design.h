@@ -5,6 +5,7 @@
 
 #include "modules/datapath/parameters.h"
 #include "modules/timing/cycle_scheduler.h"
+#include "modules/timing/test_order.h"
 #include "modules/timing/timing.h"
 
 namespace tessera {
@@ -42,6 +43,7 @@ struct Design {
     Timing timing;
     QueueDesign queue;
     unsigned tests_units = 1;  ///< Tessellation Tests units: 1 or 3
+    TestOrder test_order = TestOrder::parallel;
     unsigned transform_pipelines = 1;
     bool direct_memory = true;  ///< units read memories through DMI in functional mode
 #ifdef NDEBUG

@@ -47,7 +47,8 @@ struct Timing {
     UnitTiming tessellation{1, 1, 1};
     UnitTiming triangle_queue{1, 1, 1};
     UnitTiming lighting{4, 1, 1};
-    unsigned results_buffer = 4;  ///< finished tests of an edge that wait for its other tests
+    unsigned results_buffer = 4;      ///< finished tests of an edge that wait for its other tests
+    unsigned edges_in_sequence = 32;  ///< tests cheapest first: edges that wait for the Normal or Summed Height Test
     MemoryTiming displacement_map;
     MemoryTiming normal_map;
     MemoryTiming summed_height_table;

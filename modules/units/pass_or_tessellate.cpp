@@ -41,13 +41,14 @@ void PassOrTessellate::open(const TakenTriangle& taken) {
     const Parts parts = parts_of(taken.triangle);
     datapath::TrianglePass& pass = place.triangle.pass;
     place.triangle.origin = taken.origin;
+    pass.number = taken.origin.pass;
     pass.triangle = taken.triangle;
     pass.new_vertices = static_cast<std::uint8_t>(parts & vertex_parts);
     pass.new_normals = static_cast<std::uint8_t>((parts & normal_parts) >> first_normal_part);
     pass.tested = (parts & edge_parts) != 0;
     pass.split = 0;
     for (datapath::EdgeTests& edge : pass.edges)
-        edge.tests = 0;
+        edge.tests = edge.evaluated = 0;
     place.geometry_left = parts;
     place.tests_left = static_cast<Parts>(parts & edge_parts);
     place.latest = sc_core::SC_ZERO_TIME;
@@ -290,28 +291,16 @@ void PassOrTessellate::decide_edges(datapath::TrianglePass& pass) {
     unsigned stopped_by = 0;
     for (unsigned k = 0; k < 3; ++k) {
         const datapath::EdgeTests& edge = pass.edges[k];
+        if ((pass.triangle.final_edges >> k & 1u) != 0)
+            continue;
+        ++counts_.edges_tested;
         if (!(edge.texture == pass.new_vertex[k].texture))
             SC_REPORT_ERROR("tessera/pass_or_tessellate", "the two branches disagree on the midpoint of an edge");
-        const unsigned wanted = edge.tests & datapath::requesting_tests;
         if (datapath::split_decision(edge.tests)) {
             split |= 1u << k;
             ++counts_.edges_split;
-            const unsigned by = wanted & (datapath::normal_bit | datapath::summed_height_bit);
-            counts_.split_by_normal += by == datapath::normal_bit;
-            counts_.split_by_summed_height += by == datapath::summed_height_bit;
-            counts_.split_by_both += by == (datapath::normal_bit | datapath::summed_height_bit);
-            counts_.split_by_highlight += by == 0;
-            counts_.split_in_highlight += (wanted & datapath::highlight_bit) != 0;
-        } else if (wanted != 0) {
-            const unsigned missing = ~edge.tests & datapath::gating_tests;
-            stopped_by |= missing;
-            counts_.stopped_by_view += (missing & datapath::view_bit) != 0;
-            counts_.stopped_by_tex_coord += (missing & datapath::tex_coord_bit) != 0;
-            counts_.stopped_by_generation += (missing & datapath::generation_bit) != 0;
-            counts_.stopped_by_view_alone += missing == datapath::view_bit;
-            counts_.stopped_by_tex_coord_alone += missing == datapath::tex_coord_bit;
-            counts_.stopped_by_generation_alone += missing == datapath::generation_bit;
-            counts_.stopped_by_several += (missing & (missing - 1)) != 0;
+        } else if ((edge.tests & datapath::requesting_tests) != 0) {
+            stopped_by |= ~edge.tests & datapath::gating_tests;
         }
     }
     pass.split = static_cast<std::uint8_t>(split);

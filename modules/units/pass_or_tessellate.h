@@ -45,19 +45,8 @@ class PassOrTessellate : public Unit {
     struct Counts {
         std::uint64_t passes = 0;         ///< triangles that went through the tests
         std::uint64_t normal_passes = 0;  ///< finished triangles that went round once more for N's
+        std::uint64_t edges_tested = 0;   ///< of these triangles; final edges are not
         std::uint64_t edges_split = 0;
-        std::uint64_t split_by_normal = 0;         ///< NT, not SHT
-        std::uint64_t split_by_summed_height = 0;  ///< SHT, not NT
-        std::uint64_t split_by_both = 0;           ///< NT and SHT
-        std::uint64_t split_by_highlight = 0;      ///< neither: HT alone
-        std::uint64_t split_in_highlight = 0;      ///< HT, whatever NT and SHT say
-        std::uint64_t stopped_by_view = 0;         ///< NT, SHT or HT would split, VT is false
-        std::uint64_t stopped_by_tex_coord = 0;    ///< likewise TCT
-        std::uint64_t stopped_by_generation = 0;   ///< likewise GT
-        std::uint64_t stopped_by_view_alone = 0;   ///< of these: TCT and GT are true
-        std::uint64_t stopped_by_tex_coord_alone = 0;
-        std::uint64_t stopped_by_generation_alone = 0;
-        std::uint64_t stopped_by_several = 0;
         std::uint64_t finished = 0;
         std::uint64_t culled = 0;
     };

@@ -11,7 +11,8 @@
 namespace tessera {
 
 /// Tessellation (paper figures 6 and 7): builds the two, three or four children of a triangle from its vertices and
-/// the new ones. Winding order is kept.
+/// the new ones. Winding order is kept. A child's edge from corner to corner of its parent was tested with it and is
+/// final (Formats::final_edges).
 ///
 /// In:   DecidedTriangle. Out: its children, one after another; for a finished triangle on its way to fetch normals,
 ///       the triangle itself.

@@ -68,7 +68,8 @@ std::string checks_rows(const Checks& checks) {
     if (checks.invariants) {
         const InvariantResult& i = *checks.invariants;
         const std::string wrong =
-            i.wrong_triangles() == 0 ? "" : fmt::format(", {} triangles wrong", count(i.wrong_triangles()));
+            (i.wrong_triangles() == 0 ? "" : fmt::format(", {} triangles wrong", count(i.wrong_triangles()))) +
+            (i.unfinished == 0 ? "" : ", the datapath's own recursion does not end");
         text += check_row("invariants", i.passed(),
                           fmt::format("{} cracks, {} T-vertices{}; in texture space {} collapsed, {} turned over",
                                       i.cracks, i.t_vertices, wrong, i.collapsed, i.turned_over));
@@ -95,7 +96,12 @@ std::string work_rows(const Simulation& simulation, const MeshCounts& mesh) {
     const Pipeline& p = simulation.pipeline;
     const double tests =
         mesh.tested_edges() == 0 ? 0 : static_cast<double>(p.edges_tested()) / static_cast<double>(mesh.tested_edges());
-    return row("distinct edges",
+    const Decisions::Evaluated& evaluated = simulation.decisions.evaluated();
+    const bool all = evaluated.normal == p.edges_tested() && evaluated.summed_height == p.edges_tested();
+    return (all ? ""
+                : row("tests evaluated", fmt::format("normal {}, summed height {}", count(evaluated.normal),
+                                                     count(evaluated.summed_height)))) +
+           row("distinct edges",
                fmt::format("{}, each tested {:.1f} times on average", count(mesh.tested_edges()), tests)) +
            row("distinct vertices", fmt::format("{}; {} computed, {} of them discarded, and {} normals transformed",
                                                 count(mesh.vertices), count(p.transform.positions()),
@@ -134,6 +140,7 @@ std::string summary(const MachineSetup& setup, const Simulation& simulation, con
                     const Checks& checks, double seconds) {
     const Pipeline& p = simulation.pipeline;
     const auto& counts = p.pass_or_tessellate.counts();
+    const Decisions::Counts& decided = simulation.decisions.counts();
     const std::uint64_t edges = p.edges_tested();
     const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
     const std::uint64_t table_reads = p.summed_height_table_reads();
@@ -145,15 +152,15 @@ std::string summary(const MachineSetup& setup, const Simulation& simulation, con
     text += row("edges", fmt::format("{} tested, {} split ({:.1f} %)", count(edges), count(counts.edges_split),
                                      percent(counts.edges_split, edges)));
     text += row("  split by",
-                fmt::format("normal alone {}, summed height alone {}, both {}{}", count(counts.split_by_normal),
-                            count(counts.split_by_summed_height), count(counts.split_by_both),
+                fmt::format("normal alone {}, summed height alone {}, both {}{}", count(decided.split_by_normal),
+                            count(decided.split_by_summed_height), count(decided.split_by_both),
                             setup.registers.tests.highlight_test
-                                ? fmt::format(", highlight alone {}", count(counts.split_by_highlight))
+                                ? fmt::format(", highlight alone {}", count(decided.split_by_highlight))
                                 : ""));
     text += row("  wanted, but stopped by",
                 fmt::format("view alone {}, tex coord alone {}, generation alone {}, several {}",
-                            count(counts.stopped_by_view_alone), count(counts.stopped_by_tex_coord_alone),
-                            count(counts.stopped_by_generation_alone), count(counts.stopped_by_several)));
+                            count(decided.stopped_by_view_alone), count(decided.stopped_by_tex_coord_alone),
+                            count(decided.stopped_by_generation_alone), count(decided.stopped_by_several)));
     text += work_rows(simulation, mesh);
     text += row("triangle queue", fmt::format("at most {} triangles waiting, {} bits each",
                                               count(p.triangle_queue.high_water_mark()), widths.triangle));

@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "modules/timing/test_order.h"
 #include "modules/timing/timing.h"
 
 namespace tessera {
@@ -134,6 +135,8 @@ struct Job {
         std::int64_t off_chip_triangles = 1 << 20;  // that may be spilled at a time
         Overflow queue_overflow = Overflow::spill;
         std::int64_t tests_units = 1;  // Tessellation Tests units: 1 or 3
+        TestOrder test_order = TestOrder::parallel;
+        bool final_edges = false;  // are not tested again
         std::int64_t transform_pipelines = 1;
         bool direct_memory = true;                      // functional mode reads memories through DMI
         std::array<double, 3> light{0.3, -0.4, 0.866};  // direction towards the light, world space

@@ -67,6 +67,16 @@ constexpr std::string_view name_of(Triangulation value) {
     return {};
 }
 
+constexpr std::string_view name_of(TestOrder value) {
+    switch (value) {
+        case TestOrder::parallel:
+            return "parallel";
+        case TestOrder::cheap_first:
+            return "cheap_first";
+    }
+    return {};
+}
+
 constexpr std::string_view name_of(QueueOrder value) {
     switch (value) {
         case QueueOrder::fifo:

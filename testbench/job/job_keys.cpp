@@ -257,6 +257,9 @@ void add_timing(const Writer& key) {
     key.add_deep(
         "results_buffer", [](auto& t) -> auto& { return t.results_buffer; }, "edges", between(1, most_places),
         "Edges decided by one test that may wait for the other three");
+    key.add_deep(
+        "edges_in_sequence", [](auto& t) -> auto& { return t.edges_in_sequence; }, "edges", between(1, most_places),
+        "With hardware.test_order = \"cheap_first\": edges whose Normal or Summed Height Test is not decided");
     add_unit(
         key, "pass_or_tessellate", "Pass or Tessellate", [](auto& t) -> auto& { return t.pass_or_tessellate; }, "",
         "triangles of which not all parts have come from both branches");
@@ -388,6 +391,8 @@ std::vector<KeyTable> declare_keys() {
         key.add("off_chip_triangles", &Hardware::off_chip_triangles, "triangles", between(1, 1000000000), "Timed mode: places for spilled triangles in off-chip memory; a run that needs more ends with exit code 4");
         key.add("queue_overflow", &Hardware::queue_overflow, "Timed mode: a full queue spills to off-chip memory, stalls the pipeline, or ends the run with exit code 4");
         key.add("tests_units", &Hardware::tests_units, "-", between(1, 3), "Timed mode: Tessellation Tests units, 1 or 3 (one for each edge of a triangle)");
+        key.add("test_order", &Hardware::test_order, "All tests of an edge at once (the paper's), or those that read no table first and the others only if the decision still depends on them; the mesh is the same");
+        key.add("final_edges", &Hardware::final_edges, "A child's edge that was tested with its parent and not split is not tested again; off: the paper's; the mesh is the same");
         key.add("transform_pipelines", &Hardware::transform_pipelines, "-", between(1, 16), "Timed mode: Transform pipelines that take turns");
         key.add("direct_memory", &Hardware::direct_memory, "Functional mode reads the memories through DMI");
         key.add("light", &Hardware::light, "-", coordinate_range, "Direction towards the light, world space, of any length");

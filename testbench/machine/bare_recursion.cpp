@@ -119,6 +119,7 @@ void BareRecursion::evaluate_edge(TrianglePass& pass, int k) {
     if (!r.tests.generation_test || generation_test(i.generation, j.generation, r.tests))
         tests |= generation_bit;
     edge.tests = static_cast<std::uint8_t>(tests);
+    edge.evaluated = all_tests;
 }
 
 void BareRecursion::evaluate(TrianglePass& pass) {

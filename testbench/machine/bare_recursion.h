@@ -39,12 +39,12 @@ class BareRecursion {
     void complete_base(datapath::Triangle& triangle);
     /// All that a pass finds out about edge k, and decides by the setup's registers; the Highlight Test is not in it.
     void evaluate_edge(datapath::TrianglePass& pass, int k);
+    /// All three edges with every test, pass.split, and the tests that kept edges whole (Triangle::stopped_by).
+    void evaluate(datapath::TrianglePass& pass);
     /// The Summed Height Test's sum of the map's codes.
     std::uint64_t sum_around(const datapath::TexCoord& t, const datapath::RectangleSize& size) const;
 
   private:
-    /// All three edges with every test, pass.split, and the tests that kept edges whole (Triangle::stopped_by).
-    void evaluate(datapath::TrianglePass& pass);
     datapath::ChildIndices children_of(const datapath::TrianglePass& pass) const;
     void transform_normals(datapath::Triangle& triangle);
     datapath::Direction map_normal_at(const datapath::TexCoord& t) const;

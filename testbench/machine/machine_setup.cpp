@@ -43,6 +43,7 @@ Design make_design(const Job& job) {
                                                                              : QueueOverflow::error;
     design.tests_units = static_cast<unsigned>(job.hardware.tests_units);
     design.transform_pipelines = static_cast<unsigned>(job.hardware.transform_pipelines);
+    design.test_order = job.hardware.test_order;
     design.direct_memory = job.hardware.direct_memory;
     return design;
 }
@@ -113,6 +114,7 @@ MachineSetup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& m
     const ViewAxes view = view_axes(job.camera);
     registers.tests = make_tests(job.tests, formats);
     formats.highlight_tag = job.tests.highlight;
+    formats.final_edges = job.hardware.final_edges;
     if (job.tests.highlight &&
         !set_highlight_test(job.tests, towards_light(job.hardware), view.backward, formats, registers.tests, saturated))
         setup.remarks.emplace_back(

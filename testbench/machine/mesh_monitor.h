@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "modules/datapath/cull.h"
+#include "testbench/machine/decisions.h"
 #include "testbench/machine/emitted_mesh.h"
 
 namespace tessera {
@@ -27,7 +28,12 @@ class MeshMonitor : public sc_core::sc_object, public tlm::tlm_analysis_if<datap
             progress_(mesh.triangles.size());
         mesh.triangles.push_back(EmittedTriangle::from(
             triangle, back_face_culling_ && datapath::faces_away(v[0].screen, v[1].screen, v[2].screen)));
+        if (decisions_ != nullptr)
+            decisions_->complete_tags(triangle, mesh.triangles.back());
     }
+
+    /// For the triangles' tags; without it they are the machine's own. `decisions` must outlive this.
+    void tags_from(const Decisions& decisions) { decisions_ = &decisions; }
 
     /// `progress` is called occasionally with the number of triangles so far.
     void on_progress(std::function<void(std::size_t)> progress) { progress_ = std::move(progress); }
@@ -40,6 +46,7 @@ class MeshMonitor : public sc_core::sc_object, public tlm::tlm_analysis_if<datap
     static constexpr std::size_t progress_step = 16384;
 
     std::function<void(std::size_t)> progress_;
+    const Decisions* decisions_ = nullptr;
     bool back_face_culling_;
     std::uint64_t limit_;
     bool limit_reached_ = false;

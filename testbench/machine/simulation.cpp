@@ -15,6 +15,7 @@ Simulation::Simulation(const MachineSetup& its_setup, std::uint64_t triangle_lim
       pipeline("tessera", setup.registers, setup.design, units),
       host("host", setup, pipeline.clock),
       rasteriser("rasteriser", pipeline.clock, setup.design.timing.stalls),
+      decisions(setup),
       monitor("mesh_monitor", setup.registers.back_face_culling, triangle_limit) {
     if (units != nullptr)
         units->made(host);
@@ -23,7 +24,9 @@ Simulation::Simulation(const MachineSetup& its_setup, std::uint64_t triangle_lim
     host.normal_map.bind(pipeline.normal_map.host);
     host.summed_height_table.bind(pipeline.summed_height_table.host);
     pipeline.lighting.to_rasteriser.bind(rasteriser.from_lighting);
+    pipeline.pass_or_tessellate.decided.bind(decisions);
     pipeline.pass_or_tessellate.finished.bind(monitor);
+    monitor.tags_from(decisions);
     pipeline.clock.halt_without_progress_for(cycles_without_progress);
 }
 

@@ -28,6 +28,7 @@ struct Simulation {
     Pipeline pipeline;
     Host host;
     Rasteriser rasteriser;
+    Decisions decisions;
     MeshMonitor monitor;
 
   private:

@@ -2,38 +2,9 @@
 
 #include <algorithm>
 
-#include "modules/datapath/edge_tests.h"
-#include "modules/stage/signals.h"
+#include "modules/units/edge_tests/test_results.h"
 
 namespace tessera {
-namespace {
-
-void set(std::uint8_t& tests, bool decided, datapath::TestBits bit) {
-    if (decided)
-        tests = static_cast<std::uint8_t>(tests | bit);
-}
-
-void add(TestedEdge& edge, const NormalResult& result) {
-    edge.found.normal = result.n;
-    edge.found.tangent = result.tangent;
-    edge.found.displaced_normal = result.displaced_n;
-    edge.displaced_n_i = result.displaced_n_i;
-    set(edge.found.tests, result.normal, datapath::normal_bit);
-    set(edge.found.tests, result.highlight, datapath::highlight_bit);
-}
-void add(TestedEdge& edge, const TexCoordResult& result) {
-    edge.found.texture = result.t_ij;
-    set(edge.found.tests, result.tex_coord, datapath::tex_coord_bit);
-    set(edge.found.tests, result.generation, datapath::generation_bit);
-}
-void add(TestedEdge& edge, const HeightResult& result) {
-    set(edge.found.tests, result.summed_height, datapath::summed_height_bit);
-}
-void add(TestedEdge& edge, const ViewResult& result) {
-    set(edge.found.tests, result.view, datapath::view_bit);
-}
-
-}  // namespace
 
 CollectTests::CollectTests(const sc_core::sc_module_name& name, const UnitContext& context)
     : Unit(name, context.clock), registers_(context.registers) {
@@ -55,7 +26,7 @@ template <class Result>
 void CollectTests::b_transport(Result& result, sc_core::sc_time& delay) {
     Decided& decided = decided_.find_or_open(result.tag.triangle);
     decided.edge.tag = result.tag;
-    add(decided.edge, result);
+    add_result(decided.edge, result);
     decided.latest = std::max(decided.latest, delay);
     if (++decided.tests < 4)
         return;
@@ -71,7 +42,7 @@ void CollectTests::take(StreamInput<Result>& input) {
     const PartTag& tag = input.front().tag;
     if (tag.triangle != leaving_.tag.triangle || tag.part != leaving_.tag.part)
         SC_REPORT_ERROR("tessera/collect_tests", "the tests decided different edges");
-    add(leaving_, input.front());
+    add_result(leaving_, input.front());
     input.pop();
 }
 
@@ -119,18 +90,8 @@ void CollectTests::trace_signals(Signals& signals) const {
     signals.input(from_tex_coord_test, "from_tex_coord_test");
     signals.input(from_summed_height_test, "from_summed_height_test");
     signals.input(from_view_test, "from_view_test");
-    if (signals.when(signals.changed("collected", activity_.items_in()) && (leaves_ || signals.running()))) {
-        const unsigned tests = leaving_.found.tests;
-        signals.item("out", leaving_);
-        signals.flag("normal", (tests & datapath::normal_bit) != 0);
-        signals.flag("summed_height", (tests & datapath::summed_height_bit) != 0);
-        signals.flag("view", (tests & datapath::view_bit) != 0);
-        signals.flag("tex_coord", (tests & datapath::tex_coord_bit) != 0);
-        signals.flag("generation", (tests & datapath::generation_bit) != 0);
-        if (registers_.tests.highlight_test)
-            signals.flag("highlight", (tests & datapath::highlight_bit) != 0);
-        signals.flag("split", datapath::split_decision(static_cast<std::uint8_t>(tests)));
-    }
+    if (signals.when(signals.changed("collected", activity_.items_in()) && (leaves_ || signals.running())))
+        show_tested_edge(signals, leaving_, registers_.tests);
     signals.pulse("edge", activity_.items_in());
 }
 

@@ -106,7 +106,6 @@ void Scoreboard::compare_base_vertex(const datapath::TrianglePass& pass, int k, 
 
 void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const golden::Vertex& i,
                               const golden::Vertex& j) {
-    ++edges_;
     const datapath::NewVertex& made = pass.new_vertex[static_cast<std::size_t>(k)];
     const datapath::EdgeTests& tested = pass.edges[static_cast<std::size_t>(k)];
     const golden::EdgeEvaluation golden = golden::evaluate_edge(i, j, inputs_.map, inputs_.parameters);
@@ -115,6 +114,26 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
     const Context context{&pass, k, -1, &golden, &m};
     const datapath::Formats& formats = registers_.formats;
 
+    const glm::dvec3 mean_normal = (i.normal + j.normal) / 2.0;
+    const glm::dvec3 n_bound = bounds_.inserted_direction(mean_normal, m.normal, inserted.mean_normal_length);
+    const glm::dvec3 t_bound =
+        bounds_.inserted_direction((i.tangent + j.tangent) / 2.0, m.tangent, inserted.mean_tangent_length);
+    const std::size_t texel = inputs_.map.texel(m.texture);
+    const glm::dvec3 bumped_bound = bounds_.displaced_normal(
+        m.normal, n_bound, m.tangent, t_bound, inputs_.map.normal(texel), m.displaced_normal, inserted.bump_length);
+    // Each of the six differences has N'_ij's error, plus the rounding of the subtraction in double precision.
+    const double leeway = std::max({bumped_bound.x, bumped_bound.y, bumped_bound.z}) + 0x1p-50;
+    const bool near_threshold = inputs_.parameters.enabled.normal &&
+                                std::abs(golden.normal_difference - inputs_.parameters.normal_threshold) <= leeway;
+    if (tested.evaluated == 0) {
+        // Tested with the parent, from the same ends. Without those tests that may flip, would golden split it?
+        const bool asked = (golden.normal_test && !near_threshold) || golden.summed_height_test ||
+                           (golden.highlight_test && !highlight_may_flip(golden, bumped_bound, leeway));
+        decide(split_decision, false, golden.split, !asked, context);
+        return;
+    }
+    ++edges_;
+
     const auto midpoint = [&](std::int64_t hardware, double value, char component) {
         compare(inserted_position, hardware, value, bounds_.position_midpoint(), formats.position, per_position_,
                 component, context);
@@ -122,7 +141,6 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
     midpoint(made.position.x, m.position.x, 'x');
     midpoint(made.position.y, m.position.y, 'y');
     midpoint(made.position.z, m.position.z, 'z');
-    const glm::dvec3 mean_normal = (i.normal + j.normal) / 2.0;
     const auto mean = [&](std::int64_t hardware, double value, char component) {
         compare(inserted_mean_normal, hardware, value, bounds_.direction_midpoint(), formats.normal, per_normal_,
                 component, context);
@@ -140,15 +158,12 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
     texture(made.texture);
     texture(tested.texture);
 
-    const glm::dvec3 n_bound = bounds_.inserted_direction(mean_normal, m.normal, inserted.mean_normal_length);
-    const glm::dvec3 t_bound =
-        bounds_.inserted_direction((i.tangent + j.tangent) / 2.0, m.tangent, inserted.mean_tangent_length);
-    const std::size_t texel = inputs_.map.texel(m.texture);
-    const glm::dvec3 bumped_bound = bounds_.displaced_normal(
-        m.normal, n_bound, m.tangent, t_bound, inputs_.map.normal(texel), m.displaced_normal, inserted.bump_length);
-    compare_vector(inserted_normal, tested.normal, m.normal, n_bound, context);
-    compare_vector(inserted_tangent, tested.tangent, m.tangent, t_bound, context);
-    compare_vector(inserted_displaced_normal, tested.displaced_normal, m.displaced_normal, bumped_bound, context);
+    const auto evaluated = [&](datapath::TestBits bit) { return (tested.evaluated & bit) != 0; };
+    if (evaluated(datapath::normal_bit)) {
+        compare_vector(inserted_normal, tested.normal, m.normal, n_bound, context);
+        compare_vector(inserted_tangent, tested.tangent, m.tangent, t_bound, context);
+        compare_vector(inserted_displaced_normal, tested.displaced_normal, m.displaced_normal, bumped_bound, context);
+    }
 
     const double height = inputs_.parameters.scale * inputs_.map.code(texel) + inputs_.parameters.bias;
     const glm::dvec3 displaced_bound =
@@ -157,18 +172,14 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
                                      displaced_bound, context);
 
     const auto says = [&](datapath::TestBits bit) { return (tested.tests & bit) != 0; };
-    // Each of the six differences has N'_ij's error, plus the rounding of the subtraction in double precision.
-    const double leeway = std::max({bumped_bound.x, bumped_bound.y, bumped_bound.z}) + 0x1p-50;
-    const bool near_threshold = inputs_.parameters.enabled.normal &&
-                                std::abs(golden.normal_difference - inputs_.parameters.normal_threshold) <= leeway;
-    const bool normal_flipped =
-        decide(normal_decision, says(datapath::normal_bit), golden.normal_test, near_threshold, context);
-    const bool highlight_flipped =
-        inputs_.parameters.enabled.highlight
-            ? compare_highlight(says(datapath::highlight_bit), golden, bumped_bound, leeway, context)
-            : false;
+    const bool normal_flipped = evaluated(datapath::normal_bit) && decide(normal_decision, says(datapath::normal_bit),
+                                                                          golden.normal_test, near_threshold, context);
+    const bool highlight_flipped = evaluated(datapath::highlight_bit) && inputs_.parameters.enabled.highlight &&
+                                   decide(highlight_decision, says(datapath::highlight_bit), golden.highlight_test,
+                                          highlight_may_flip(golden, bumped_bound, leeway), context);
     flipped = flipped || normal_flipped || highlight_flipped;
-    decide(summed_height_decision, says(datapath::summed_height_bit), golden.summed_height_test, false, context);
+    if (evaluated(datapath::summed_height_bit))
+        decide(summed_height_decision, says(datapath::summed_height_bit), golden.summed_height_test, false, context);
     decide(view_decision, says(datapath::view_bit), golden.view_test, false, context);
     decide(tex_coord_decision, says(datapath::tex_coord_bit), golden.tex_coord_test, false, context);
     decide(generation_decision, says(datapath::generation_bit), golden.generation_test, false, context);
@@ -182,8 +193,8 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
     flipped_edges_ += flipped ? 1 : 0;
 }
 
-bool Scoreboard::compare_highlight(bool hardware, const golden::EdgeEvaluation& golden, const glm::dvec3& normal_bound,
-                                   double difference_leeway, const Context& context) {
+bool Scoreboard::highlight_may_flip(const golden::EdgeEvaluation& golden, const glm::dvec3& normal_bound,
+                                    double difference_leeway) const {
     const golden::Parameters& parameters = inputs_.parameters;
     const double leeway = bounds_.cosine(golden.inserted.vertex.displaced_normal, normal_bound, parameters.half_vector);
     // `must`: true even for the least values within the error bounds; `may`: true for the greatest.
@@ -195,7 +206,7 @@ bool Scoreboard::compare_highlight(bool hardware, const golden::EdgeEvaluation& 
         in_highlight(golden.midpoint_cosine - leeway) && differ(golden.normal_difference - difference_leeway);
     const bool may =
         in_highlight(golden.midpoint_cosine + leeway) && differ(golden.normal_difference + difference_leeway);
-    return decide(highlight_decision, hardware, golden.highlight_test, may && !must, context);
+    return may && !must;
 }
 
 void Scoreboard::compare_diagonal(const datapath::TrianglePass& pass, const std::array<golden::Vertex, 3>& given) {

@@ -26,6 +26,9 @@ namespace tessera {
 /// HT, compared if the design has it, may differ as NT does (with its own threshold), and if golden's N'_ij . H
 /// lies within its bound of the cosine and neither end is in the highlight; the ends' own products are exact.
 ///
+/// Only what the machine has evaluated is compared: N_ij, T_ij, N'_ij and NT, HT if the Normal Test was; SHT likewise;
+/// of a final edge nothing but that golden does not split it.
+///
 /// Any other difference is a mismatch: counted, the first kept with all operands. The diagonal is calculated by the
 /// datapath's function (triangulate.h), which Tessellation applies later, from the pass's P'.
 ///
@@ -89,9 +92,9 @@ class Scoreboard : public tlm::tlm_analysis_if<datapath::TrianglePass> {
 
     void compare_base_vertex(const datapath::TrianglePass& pass, int k, const golden::Vertex& given);
     void compare_edge(const datapath::TrianglePass& pass, int k, const golden::Vertex& i, const golden::Vertex& j);
-    /// Returns whether HT flipped as allowed. `difference_leeway`: error bound of golden's normal_difference.
-    bool compare_highlight(bool hardware, const golden::EdgeEvaluation& golden, const glm::dvec3& normal_bound,
-                           double difference_leeway, const Context& context);
+    /// Whether HT may differ. `difference_leeway`: error bound of golden's normal_difference.
+    bool highlight_may_flip(const golden::EdgeEvaluation& golden, const glm::dvec3& normal_bound,
+                            double difference_leeway) const;
     void compare_diagonal(const datapath::TrianglePass& pass, const std::array<golden::Vertex, 3>& given);
     /// Returns whether in_front flipped as allowed.
     bool compare_displaced(Value position, Value screen, Value w, const datapath::Position& displaced,

@@ -58,13 +58,23 @@ std::uint64_t bumps(const Pipeline& p, std::uint64_t vertices) {
     return p.tessellation_tests.size() == 1 ? vertices : 2 * vertices;
 }
 
-void add_reads(Equations& list, const Pipeline& p, std::uint64_t vertices, std::uint64_t edges) {
+/// Each edge's tests: `normal` and `summed_height` of `edges` edges are evaluated.
+struct Tested {
+    std::uint64_t vertices;
+    std::uint64_t edges;
+    std::uint64_t normal;
+    std::uint64_t summed_height;
+};
+
+void add_reads(Equations& list, const Pipeline& p, const Tested& tested) {
+    const auto& [vertices, edges, normal, summed_height] = tested;
     list.add("reads of displace_vertex = vertices and edges", p.displacement_map_reads(), vertices + edges);
-    list.add("reads of normal_test = vertices and edges", p.normal_map_reads(), bumps(p, vertices) + edges);
+    list.add("reads of normal_test = vertices and its edges", p.normal_map_reads(), bumps(p, vertices) + normal);
     list.add("positions of transform = vertices and edges", p.transform.positions(), vertices + edges);
 }
 
-void add_timed(Equations& list, const Simulation& simulation, std::uint64_t vertices, std::uint64_t edges) {
+void add_timed(Equations& list, const Simulation& simulation, const Tested& tested) {
+    const auto& [vertices, edges, normal, summed_height] = tested;
     const Pipeline& p = simulation.pipeline;
     const auto& counts = p.pass_or_tessellate.counts();
     const std::uint64_t rounds = counts.passes + counts.normal_passes;
@@ -85,11 +95,11 @@ void add_timed(Equations& list, const Simulation& simulation, std::uint64_t vert
     const auto tests = [&](auto figure) { return sum_over_tests(p, figure); };
     list.add("parts in calculate_new_u = vertices and edges",
              tests([](const auto& t) { return items(t.calculate_new_u); }), bumps(p, vertices) + edges);
-    list.add("parts in normal_test = vertices and edges", tests([](const auto& t) { return items(t.normal_test); }),
-             bumps(p, vertices) + edges);
+    list.add("parts in normal_test = vertices and its edges", tests([](const auto& t) { return items(t.normal_test); }),
+             bumps(p, vertices) + normal);
     list.add("edges in tex_coord_test = edges", tests([](const auto& t) { return items(t.tex_coord_test); }), edges);
-    list.add("edges in summed_height_test = edges", tests([](const auto& t) { return items(t.summed_height_test); }),
-             edges);
+    list.add("edges in summed_height_test = its edges",
+             tests([](const auto& t) { return items(t.summed_height_test); }), summed_height);
     list.add("edges in view_test = edges", tests([](const auto& t) { return items(t.view_test); }), edges);
     list.add("vertices taken by view_test = vertices, once a unit",
              tests([](const auto& t) { return t.view_test.from_transform.taken(); }),
@@ -97,8 +107,8 @@ void add_timed(Equations& list, const Simulation& simulation, std::uint64_t vert
     std::uint64_t joined = 0;
     for (const StreamInput<TestedEdge>& input : p.pass_or_tessellate.from_tessellation_tests)
         joined += input.taken();
-    list.add("edges taken from collect_tests = edges", joined, edges);
-    list.add("edges in collect_tests = edges", tests([](const auto& t) { return items(t.collect_tests); }), edges);
+    list.add("edges taken from tessellation_tests = edges", joined, edges);
+    list.add("edges collected = edges", tests([](const auto& t) { return items(t.collector()); }), edges);
 
     list.add("entries of displacement_map = read by displace_vertex", p.displacement_map.transactions(),
              p.displacement_map_reads());
@@ -106,9 +116,10 @@ void add_timed(Equations& list, const Simulation& simulation, std::uint64_t vert
     list.add("entries of summed_height_table = read by summed_height_test", p.summed_height_table.transactions(),
              p.summed_height_table_reads());
     list.add("requests to displacement_map = vertices and edges", items(p.displacement_map), vertices + edges);
-    list.add("requests to normal_map = vertices and edges", items(p.normal_map), bumps(p, vertices) + edges);
+    list.add("requests to normal_map = vertices and edges of normal_test", items(p.normal_map),
+             bumps(p, vertices) + normal);
     list.add("requests to summed_height_table = three an edge, if it tests", items(p.summed_height_table),
-             simulation.setup.registers.tests.summed_height_test ? 3 * edges : 0);
+             simulation.setup.registers.tests.summed_height_test ? 3 * summed_height : 0);
 
     list.add("triangles spilled = come back", p.triangle_queue.spilled(), p.triangle_queue.refilled());
     list.add("requests to off_chip_memory = out and back", items(p.off_chip_memory), 2 * p.triangle_queue.spilled());
@@ -121,12 +132,20 @@ void add_timed(Equations& list, const Simulation& simulation, std::uint64_t vert
 std::vector<Conservation> conservation(const Simulation& simulation) {
     Equations list;
     const Pipeline& p = simulation.pipeline;
-    const std::uint64_t edges = 3 * p.pass_or_tessellate.counts().passes;
-    const std::uint64_t vertices = 3 * p.get_triangle.host_triangles();
+    const PassOrTessellate::Counts& counts = p.pass_or_tessellate.counts();
+    const std::uint64_t base = p.get_triangle.host_triangles();
+    // A triangle with k split edges has k + 1 children with 4 k new edges, which alone are not final.
+    const std::uint64_t edges =
+        simulation.setup.registers.formats.final_edges ? 3 * base + 4 * counts.edges_split : 3 * counts.passes;
+    const Decisions::Evaluated& evaluated = simulation.decisions.evaluated();
+    const Tested tested{3 * base, edges, evaluated.normal, evaluated.summed_height};
     add_triangles(list, simulation);
-    add_reads(list, p, vertices, edges);
+    list.add(simulation.setup.registers.formats.final_edges ? "edges tested = 3 a base triangle, 4 a split"
+                                                            : "edges tested = 3 a pass",
+             counts.edges_tested, edges);
+    add_reads(list, p, tested);
     if (simulation.setup.design.transport == Transport::non_blocking)
-        add_timed(list, simulation, vertices, edges);
+        add_timed(list, simulation, tested);
     return list.take();
 }
 

@@ -52,7 +52,7 @@ std::uint64_t hash_to_decide(const datapath::Triangle& triangle, unsigned unknow
     for (unsigned k = 0; k < 3; ++k)
         add_vertex(hash, triangle.vertices[k], (unknown_vertices >> k & 1u) == 0);
     hash.add(triangle.base);
-    hash.add(triangle.split_by);
+    hash.add(std::uint64_t{triangle.split_by} << 8 | triangle.final_edges);
     return hash.value();
 }
 

@@ -126,7 +126,8 @@ Collector host_figures(const MachineSetup& setup, std::uint64_t finished, std::u
 }
 
 /// Repeated work of the machine, beside what the mesh needs.
-Collector useful_work_figures(const Pipeline& p, std::uint64_t base_triangles, const MeshCounts& mesh) {
+Collector useful_work_figures(const Pipeline& p, const Decisions::Evaluated& evaluated, std::uint64_t base_triangles,
+                              const MeshCounts& mesh) {
     const std::uint64_t made = p.transform.positions(), normals = p.transform.normals(), tested = p.edges_tested();
     const auto per = [](std::uint64_t done, std::uint64_t needed) {
         return ratio(static_cast<double>(done), static_cast<double>(needed));
@@ -145,7 +146,9 @@ Collector useful_work_figures(const Pipeline& p, std::uint64_t base_triangles, c
     c.add("edges", mesh.tested_edges(), "edge",
           "distinct edges that were tested, by their two vertices: those of the finished mesh, and those that "
           "were split");
-    c.add("edge_tests", tested, "edge", "edges tested: one of a triangle, in each pass");
+    c.add("edge_tests", tested, "edge", "edges tested: one of a triangle, in each pass; final edges are not");
+    c.add("normal_tests", evaluated.normal, "edge", "of these, edges whose Normal Test was evaluated");
+    c.add("summed_height_tests", evaluated.summed_height, "edge", "likewise the Summed Height Test");
     c.add("tests_per_edge", per(tested, mesh.tested_edges()), "times", "edge tests per distinct edge");
     return c;
 }
@@ -177,6 +180,7 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
                                        const MeshCounts& mesh) {
     const Pipeline& p = simulation.pipeline;
     const PassOrTessellate::Counts& counts = p.pass_or_tessellate.counts();
+    const Decisions::Counts& decided = simulation.decisions.counts();
     const std::uint64_t edges = p.edges_tested();
     const auto edges_real = static_cast<double>(edges);
     std::vector<Figure> all;
@@ -197,7 +201,7 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     take(std::move(run));
     take(format_figures(setup));
     take(stream_figures(setup));
-    take(useful_work_figures(p, setup.base_triangles.size(), mesh));
+    take(useful_work_figures(p, simulation.decisions.evaluated(), setup.base_triangles.size(), mesh));
     take(host_figures(setup, counts.finished, mesh.vertices));
 
     Collector get("get_triangle");
@@ -213,25 +217,26 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     Collector decide("pass_or_tessellate");
     decide.add("passes", counts.passes, "triangle", "triangles that went through the tests");
     decide.add("normal_passes", counts.normal_passes, "triangle", "went round once more for screen normals");
-    decide.add("split_by_normal", counts.split_by_normal, "edge",
+    decide.add("split_by_normal", decided.split_by_normal, "edge",
                "split by the Normal Test, while the Summed Height Test was false");
-    decide.add("split_by_summed_height", counts.split_by_summed_height, "edge",
+    decide.add("split_by_summed_height", decided.split_by_summed_height, "edge",
                "split by the Summed Height Test, while the Normal Test was false");
-    decide.add("split_by_both", counts.split_by_both, "edge", "split by both");
+    decide.add("split_by_both", decided.split_by_both, "edge", "split by both");
     if (setup.registers.tests.highlight_test) {
-        decide.add("split_by_highlight", counts.split_by_highlight, "edge",
+        decide.add("split_by_highlight", decided.split_by_highlight, "edge",
                    "split by neither, but by the Highlight Test alone");
-        decide.add("split_in_highlight", counts.split_in_highlight, "edge",
+        decide.add("split_in_highlight", decided.split_in_highlight, "edge",
                    "split while the Highlight Test was true, whatever the others said");
     }
-    decide.add("stopped_by_view", counts.stopped_by_view, "edge", "kept whole by the View Test (perhaps among others)");
-    decide.add("stopped_by_tex_coord", counts.stopped_by_tex_coord, "edge", "likewise the Tex Coord Test");
-    decide.add("stopped_by_generation", counts.stopped_by_generation, "edge", "likewise the Generation Test");
+    decide.add("stopped_by_view", decided.stopped_by_view, "edge",
+               "kept whole by the View Test (perhaps among others)");
+    decide.add("stopped_by_tex_coord", decided.stopped_by_tex_coord, "edge", "likewise the Tex Coord Test");
+    decide.add("stopped_by_generation", decided.stopped_by_generation, "edge", "likewise the Generation Test");
     const char* const alone = "kept whole by this test alone: had it been true, the edge would have been split";
-    decide.add("stopped_by_view_alone", counts.stopped_by_view_alone, "edge", alone);
-    decide.add("stopped_by_tex_coord_alone", counts.stopped_by_tex_coord_alone, "edge", alone);
-    decide.add("stopped_by_generation_alone", counts.stopped_by_generation_alone, "edge", alone);
-    decide.add("stopped_by_several", counts.stopped_by_several, "edge",
+    decide.add("stopped_by_view_alone", decided.stopped_by_view_alone, "edge", alone);
+    decide.add("stopped_by_tex_coord_alone", decided.stopped_by_tex_coord_alone, "edge", alone);
+    decide.add("stopped_by_generation_alone", decided.stopped_by_generation_alone, "edge", alone);
+    decide.add("stopped_by_several", decided.stopped_by_several, "edge",
                "kept whole by two or three of these tests, so that none of them decided");
     decide.add("culled", counts.culled, "triangle", "finished triangles that face away");
     take(std::move(decide));

@@ -61,7 +61,8 @@ double utilisation(const Unit& unit, std::uint64_t cycles) {
 }
 
 bool is_queue_or_wire(const Unit& unit) {
-    return dynamic_cast<const TriangleQueue*>(&unit) != nullptr || dynamic_cast<const CollectTests*>(&unit) != nullptr;
+    return dynamic_cast<const TriangleQueue*>(&unit) != nullptr ||
+           dynamic_cast<const CollectTests*>(&unit) != nullptr || dynamic_cast<const SequenceTests*>(&unit) != nullptr;
 }
 
 std::string Limit::names() const {

@@ -146,6 +146,7 @@ class Machine {
                 datapath::tex_coord_bit) |
             bit(!parameters.generation_test || datapath::generation_test(i.generation, j.generation, parameters),
                 datapath::generation_bit));
+        edge.evaluated = datapath::all_tests;
         if (datapath::split_decision(edge.tests))
             pass.split = static_cast<std::uint8_t>(pass.split | 1 << k);
     }

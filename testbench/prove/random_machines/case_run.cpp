@@ -5,6 +5,7 @@
 #include "testbench/check/conformance/scoreboard.h"
 #include "testbench/check/conformance/setup_check.h"
 #include "testbench/check/mesh/invariants.h"
+#include "testbench/check/transport/conservation.h"
 #include "testbench/common/hash.h"
 #include "testbench/common/random.h"
 #include "testbench/machine/simulation.h"
@@ -83,9 +84,15 @@ CaseResult run_case(const RandomCase& random_case, Mode mode) {
         fail(fmt::format("{} mismatches: {}", conformance.mismatches, conformance.first_mismatch));
 
     result.mesh_digest = digest_of(mesh);
-    if (simulation.pipeline.edges_tested() != invariants.edges || conformance.edges != invariants.edges)
-        fail(fmt::format("the machine tested {} edges, the scoreboard saw {}, the datapath by itself needs {}",
-                         simulation.pipeline.edges_tested(), conformance.edges, invariants.edges));
+    const std::uint64_t passes = simulation.pipeline.pass_or_tessellate.counts().passes;
+    if (conformance.edges != simulation.pipeline.edges_tested() || 3 * passes != invariants.edges)
+        fail(
+            fmt::format("the machine tested {} edges in {} passes, the scoreboard saw {}, the datapath by itself "
+                        "evaluates {}",
+                        simulation.pipeline.edges_tested(), passes, conformance.edges, invariants.edges));
+    for (const Conservation& equation : conservation(simulation))
+        if (!equation.holds())
+            fail(fmt::format("{}: {} and {}", equation.name, equation.left, equation.right));
 
     CaseFigures& figures = result.figures;
     figures.runs = 1;

@@ -155,6 +155,7 @@ RandomCase make_random_case(std::uint64_t seed) {
             // Without a Generation Test a generation may be wider than the wires of a spilled triangle: an error.
             if (!made.job.tests.generation)
                 made.job.hardware.queue_capacity = 0;
+            choose_evaluations(random, made.job);
             return made;
         } catch (const InputError&) {
             // The host refuses it, as it should: another draw.

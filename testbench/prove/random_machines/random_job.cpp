@@ -120,4 +120,10 @@ void make_random_job(Random& random, const JobContext& context, Job& job) {
     job.limits.cycles_without_progress = 200000;
 }
 
+void choose_evaluations(Random& random, Job& job) {
+    job.hardware.test_order = random.coin() ? TestOrder::parallel : TestOrder::cheap_first;
+    job.hardware.final_edges = random.coin();
+    job.timing.edges_in_sequence = random.natural(1, 40);
+}
+
 }  // namespace tessera

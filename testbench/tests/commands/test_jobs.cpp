@@ -46,7 +46,7 @@ void run_job_well(const std::string& name) {
     CHECK(run.conformance["conformance"]["mismatches"] == 0);
     for (const char* const figure :
          {"cracks", "t_vertices", "collapsed", "turned_over", "missing_triangles", "extra_triangles",
-          "differing_triangles", "generation_violations", "inconsistent_vertices"}) {
+          "differing_triangles", "generation_violations", "inconsistent_vertices", "unfinished"}) {
         INFO(figure);
         CHECK(run.invariant(figure) == 0);
     }

@@ -48,12 +48,12 @@ const CaseTable meshes(
     [](const Row& row) {
         const CheckedRun run(with_settings(with_highlight({}), row.settings));
         CHECK(run.conformance.passed(0.5));
-        const auto& counts = run.counts;
+        const auto& counts = run.simulation.decisions.counts();
         CHECK(counts.split_by_highlight > 100);
         CHECK(counts.split_by_highlight <= counts.split_in_highlight);
         CHECK(counts.split_by_normal + counts.split_by_summed_height + counts.split_by_both +
                   counts.split_by_highlight ==
-              counts.edges_split);
+              run.counts.edges_split);
     });
 
 struct Timed {
@@ -91,7 +91,7 @@ TEST_CASE("Highlight Test: the paper's design is as fast with it") {
     Simulation simulation(setup, 1'000'000);
     run_timed(simulation);
     CHECK(simulation.pipeline.pass_or_tessellate.counts().passes == 6138);
-    CHECK(simulation.pipeline.pass_or_tessellate.counts().split_in_highlight > 50);
+    CHECK(simulation.decisions.counts().split_in_highlight > 50);
     CHECK(simulation.cycles() == 5 + 3 + 36 * 6138 + 9);
 }
 

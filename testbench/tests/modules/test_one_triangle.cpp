@@ -125,6 +125,11 @@ const CaseTable designs(
         // V; edges in 41, 45, 49. W = 38, S = 38, J = max(49, 38 + 15) = 53. Second round: normals enter Transform 4
         // apart: 2 normals later 8 instead of 2: 38 + 6.
         {"Transform every 4 cycles", "timing.transform_interval=4", 53 + 44 + 1},
+        // The View Test's edges are through in 32, 33, 34; each then takes the Normal Test's 10 cycles, so that the
+        // first asks the Summed Height Test in 42. Its 36 addresses go out in 42 to 77: data 78, test 81 = J.
+        {"cheap tests first: 120 cycles", "hardware.test_order=cheap_first", 81 + 38 + 1},
+        // A base triangle has no final edge.
+        {"final edges: 86 cycles", "hardware.final_edges=true", 86},
         // The two take turns, each every 4 cycles: starts in 9, 10, 13: V = 33, W = 34, edges 34, 37, 38. J = 34 + 15.
         // Normals: the third starts 4 after the first: 38 + 2.
         {"two Transform pipelines every 4 cycles", "timing.transform_interval=4 hardware.transform_pipelines=2",

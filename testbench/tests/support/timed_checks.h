@@ -97,7 +97,7 @@ inline void require_conservation(const Simulation& simulation) {
     const auto& made = p.tessellation.made_into();
     CHECK(p.tessellation.activity().items_in() == made[1] + made[2] + made[3] + made[4]);
     if (simulation.setup.registers.tests.summed_height_test)
-        CHECK(p.summed_height_table_reads() >= 12 * p.edges_tested());
+        CHECK(p.summed_height_table_reads() >= 12 * simulation.decisions.evaluated().summed_height);
 }
 
 /// Call after a timed run that drained.

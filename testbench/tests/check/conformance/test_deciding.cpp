@@ -29,23 +29,24 @@ Job one_quad() {
     return job;
 }
 
-PassOrTessellate::Counts counts_of(const Job& job) {
+Decisions::Counts counts_of(const Job& job) {
     const MachineSetup setup = setup_of(job);
     Simulation simulation(setup, 1'000'000);
     REQUIRE(simulation.run().empty());
-    return simulation.pipeline.pass_or_tessellate.counts();
+    const Decisions::Counts& counts = simulation.decisions.counts();
+    CHECK(counts.split_by_normal + counts.split_by_summed_height + counts.split_by_both + counts.split_by_highlight ==
+          simulation.pipeline.pass_or_tessellate.counts().edges_split);
+    return counts;
 }
 
-void expect_split(const PassOrTessellate::Counts& c, std::uint64_t normal, std::uint64_t summed_height,
-                  std::uint64_t both) {
-    CHECK(c.edges_split == normal + summed_height + both + c.split_by_highlight);
+void expect_split(const Decisions::Counts& c, std::uint64_t normal, std::uint64_t summed_height, std::uint64_t both) {
     CHECK(c.split_by_normal == normal);
     CHECK(c.split_by_summed_height == summed_height);
     CHECK(c.split_by_both == both);
 }
 
-void expect_stopped(const PassOrTessellate::Counts& c, std::uint64_t view, std::uint64_t tex_coord,
-                    std::uint64_t generation, std::uint64_t several) {
+void expect_stopped(const Decisions::Counts& c, std::uint64_t view, std::uint64_t tex_coord, std::uint64_t generation,
+                    std::uint64_t several) {
     CHECK(c.stopped_by_view_alone == view);
     CHECK(c.stopped_by_tex_coord_alone == tex_coord);
     CHECK(c.stopped_by_generation_alone == generation);
@@ -63,7 +64,6 @@ class GoldenCount : public tlm::tlm_analysis_if<datapath::TrianglePass> {
                 golden::evaluate_edge(dequantise_.vertex(pass.edge_begin(k)), dequantise_.vertex(pass.edge_end(k)),
                                       inputs_.map, inputs_.parameters);
             if (e.split) {
-                ++counts.edges_split;
                 counts.split_by_normal += e.normal_test && !e.summed_height_test ? 1u : 0u;
                 counts.split_by_summed_height += e.summed_height_test && !e.normal_test ? 1u : 0u;
                 counts.split_by_both += e.normal_test && e.summed_height_test ? 1u : 0u;
@@ -78,7 +78,7 @@ class GoldenCount : public tlm::tlm_analysis_if<datapath::TrianglePass> {
         }
     }
 
-    PassOrTessellate::Counts counts;
+    Decisions::Counts counts;
 
   private:
     GoldenInputs inputs_;
@@ -91,6 +91,7 @@ datapath::TrianglePass pass_at(const std::array<datapath::TexCoord, 6>& t) {
     for (std::size_t k = 0; k < 3; ++k) {
         pass.triangle.vertices[k].texture = t[k];
         pass.new_vertex[k].texture = t[3 + k];
+        pass.edges[k].evaluated = datapath::all_tests;
     }
     return pass;
 }
@@ -164,7 +165,7 @@ TEST_CASE("deciding: the counters are those of the golden model's evaluations") 
     REQUIRE(simulation.run().empty());
     REQUIRE(scoreboard.result().flipped_edges == 0);
 
-    const auto& counts = simulation.pipeline.pass_or_tessellate.counts();
+    const auto& counts = simulation.decisions.counts();
     expect_split(golden.counts, counts.split_by_normal, counts.split_by_summed_height, counts.split_by_both);
     CHECK(golden.counts.split_by_highlight == counts.split_by_highlight);
     expect_stopped(golden.counts, counts.stopped_by_view_alone, counts.stopped_by_tex_coord_alone,
@@ -196,6 +197,13 @@ TEST_CASE("texel borders: edges with an end or a midpoint one LSB below a border
     CHECK(below({corner, on, on, on, on, on}) == 2);  // an end of two edges
     CHECK(below({corner, on, on, left, on, on}) == 2);
     CHECK(below({on, on, on, two_below, on, on}) == 0);
+
+    datapath::TrianglePass pass = pass_at({on, on, on, left, left, on});
+    pass.edges[0].evaluated = 0;  // a final edge: not tested
+    TexelBorders borders(formats);
+    borders.write(pass);
+    CHECK(borders.count().edges == 2);
+    CHECK(borders.count().below == 1);
 }
 
 TEST_CASE("texel borders: many are more than a hundredth and twice what chance gives") {

@@ -131,3 +131,63 @@ TEST_CASE("each wrong decision of each edge is one mismatch of its name") {
     CHECK(behind > 20);
     CHECK(excused * 100 < wrong);
 }
+
+TEST_CASE("a final edge: nothing of it is compared but that golden does not split it") {
+    Random random(11);
+    int whole = 0, split = 0;
+    for (int design = 0; design < 60; ++design) {
+        Case c(random, datapath::Formats{}, Manner::tame);
+        for (int k = 0; k < 50; ++k) {
+            datapath::TrianglePass pass = c.pass(random);
+            pass.new_vertices = 0;
+            const datapath::EdgeTests tested = pass.edges[0];
+            const bool splits = (pass.split & 1) != 0;
+            // The others' decision would change the diagonal.
+            if (splits && ((tested.tests & datapath::summed_height_bit) == 0 || pass.split != 1))
+                continue;
+            pass.edges[0] = {};
+            pass.new_vertex[0] = {};
+            pass.split = static_cast<std::uint8_t>(pass.split & ~1);
+            Scoreboard scoreboard(c.setup.registers, c.inputs);
+            scoreboard.write(pass);
+            const ConformanceResult result = scoreboard.result();
+            INFO(result.first_mismatch);
+            CHECK(result.edges == 2);
+            CHECK(result.mismatches == (splits ? 1 : 0));  // the Summed Height Test alone would split it, exactly
+            CHECK(test(result, "split").mismatches == (splits ? 1 : 0));
+            ++(splits ? split : whole);
+        }
+    }
+    CHECK(whole > 100);
+    CHECK(split > 20);
+}
+
+TEST_CASE("a test that was not evaluated is not compared, and what follows from the others is") {
+    Random random(12);
+    int left_out = 0;
+    for (int design = 0; design < 60; ++design) {
+        Case c(random, datapath::Formats{}, Manner::tame);
+        for (int k = 0; k < 50; ++k) {
+            datapath::TrianglePass pass = c.pass(random);
+            datapath::EdgeTests& edge = pass.edges[0];
+            const unsigned tests = edge.tests;
+            if ((tests & datapath::gating_tests) == datapath::gating_tests)
+                continue;
+            // As Sequence Tests does: the gates decide, the two others are left out.
+            edge = {};
+            edge.texture = pass.new_vertex[0].texture;
+            edge.evaluated = datapath::gating_tests;
+            edge.tests = static_cast<std::uint8_t>(tests & datapath::gating_tests);
+            Scoreboard scoreboard(c.setup.registers, c.inputs);
+            scoreboard.write(pass);
+            const ConformanceResult result = scoreboard.result();
+            INFO(result.first_mismatch);
+            CHECK(result.mismatches == 0);
+            CHECK(test(result, "NT").compared == 2);
+            CHECK(test(result, "SHT").compared == 2);
+            CHECK(test(result, "VT").compared == 3);
+            ++left_out;
+        }
+    }
+    CHECK(left_out > 100);
+}

@@ -46,6 +46,8 @@ std::vector<Formats> many_formats() {
     const auto width = [&random](int most) { return static_cast<int>(random.integer(1, most)); };
     for (int k = 0; k < 40; ++k)
         all.push_back(make_formats({width(32), width(32), width(32), width(32), width(32), width(8)}));
+    for (std::size_t k = 1; k < all.size(); k += 2)
+        all[k].final_edges = true;
     return all;
 }
 
@@ -161,6 +163,9 @@ std::vector<ExpectedField> fields_of(const Formats& formats) {
                              {8, 63}};
     fields.push_back(stopped_by);
     fields.push_back(number<bool>("finished", 1, [](Triangle& t) -> bool& { return t.finished; }));
+    if (formats.final_edges)
+        fields.push_back(
+            number<std::uint8_t>("final edges", 3, [](Triangle& t) -> std::uint8_t& { return t.final_edges; }));
     return fields;
 }
 
@@ -207,6 +212,7 @@ struct Packed {
 /// Names of the fields in which two triangles differ, each followed by a semicolon.
 std::string difference(const Triangle& a, const Triangle& b, const std::vector<ExpectedField>& fields) {
     std::string names = a.base == b.base ? "" : "base;";
+    names += a.parent == b.parent ? "" : "parent;";
     for (const ExpectedField& field : fields)
         if (field.get(a) != field.get(b))
             names += field.name + ";";
@@ -220,6 +226,7 @@ Triangle random_triangle(Random& random, const std::vector<ExpectedField>& field
                                 ? random.integer(field.lowest, field.highest)
                                 : std::clamp(random.any_size(field.highest + 1), field.lowest, field.highest));
     triangle.base = random.natural(0, 0xffffffffU);
+    triangle.parent = random.natural(0, 0xffffffffU);
     return triangle;
 }
 
@@ -234,7 +241,11 @@ void check_round_trip(const Triangle& triangle, const Formats& formats, const st
         FAIL("bits " << packed.bits(0, whole) << "\nnot  " << expected);
     if (packed.bits(whole, 32) != bits_of(triangle, {number<std::uint32_t>(
                                                         "base", 32, [](Triangle & t) -> auto& { return t.base; })}))
-        FAIL("tag");
+        FAIL("base");
+    if (packed.bits(whole + 32, 32) !=
+        bits_of(triangle, {number<std::uint32_t>(
+                              "parent", 32, [](Triangle & t) -> auto& { return t.parent; })}))
+        FAIL("parent");
     if (!packed.fenced())
         FAIL("written outside");
     const Triangle back = unpack_triangle(packed.bytes(), formats);
@@ -279,8 +290,9 @@ TEST_CASE("pack triangle: places by hand in the default formats") {
     triangle.stopped_by = view_bit | generation_bit;
     triangle.finished = true;
     triangle.base = 0xfedcba98U;
+    triangle.parent = 0x01020304U;
     REQUIRE(pack_triangle(triangle, formats, packed.bytes()));
-    std::vector<unsigned char> expected(201, 0);
+    std::vector<unsigned char> expected(205, 0);
     expected[0] = 0x78;
     expected[1] = 0x56;
     expected[2] = 0x34;
@@ -294,6 +306,10 @@ TEST_CASE("pack triangle: places by hand in the default formats") {
     expected[198] = 0xba;
     expected[199] = 0xdc;
     expected[200] = 0xfe;
+    expected[201] = 0x04;
+    expected[202] = 0x03;
+    expected[203] = 0x02;
+    expected[204] = 0x01;
     CHECK(std::vector<unsigned char>(packed.bytes(), packed.bytes() + packed.size) == expected);
 }
 
@@ -347,8 +363,10 @@ TEST_CASE("pack triangle: every bit up to the width is one field's, none beyond 
         REQUIRE(bit == stream_widths(formats).triangle);
         while (bit < packed_triangle_bytes(formats) * 8)
             check_flip("");
-        while (bit < packed.size * 8)
+        while (bit < (packed_triangle_bytes(formats) + 4) * 8)
             check_flip("base;");
+        while (bit < packed.size * 8)
+            check_flip("parent;");
     }
 }
 

@@ -51,6 +51,8 @@ TrianglePass any_pass(Random& random) {
         pass.edges[k] = {any_texture(random), any_direction(random), any_direction(random), any_direction(random),
                          static_cast<std::uint8_t>(random.integer(0, 31))};
     }
+    pass.number = random.natural(0, 1000);
+    pass.triangle.parent = random.natural(0, 1000);
     pass.triangle.base = random.natural(0, 1000);
     pass.triangle.split_by = static_cast<std::uint8_t>(random.integer(1, 3));
     pass.triangle.stopped_by = static_cast<std::uint8_t>(random.integer(0, 7) << 2);
@@ -93,6 +95,7 @@ TEST_CASE("tessellate: children carry complete vertices and the parent's tags") 
     for (int k = 0; k < 20'000; ++k) {
         const TrianglePass pass = any_pass(random);
         formats.generation_bits = static_cast<int>(random.integer(1, 4));
+        formats.final_edges = random.coin();
         const int highest_generation = (1 << formats.generation_bits) - 1;
         const auto choice = static_cast<Triangulation>(random.integer(0, 2));
 
@@ -134,6 +137,15 @@ TEST_CASE("tessellate: children carry complete vertices and the parent's tags") 
             for (std::size_t v = 0; v < 3; ++v)
                 if (!same_bits(child.vertices[v], expected[indices.children[c][v]]))
                     FAIL("split " << int{pass.split} << ", child " << c << ", vertex " << v);
+            // Final: the parent's own edges that are not split, whichever of the child's they are.
+            unsigned final_edges = 0;
+            for (unsigned e = 0; e < 3; ++e)
+                for (unsigned of_parent = 0; of_parent < 3; ++of_parent)
+                    if ((pass.split >> of_parent & 1) == 0 && indices.children[c][e] == of_parent &&
+                        indices.children[c][(e + 1) % 3] == (of_parent + 1) % 3)
+                        final_edges |= 1u << e;
+            CHECK(child.final_edges == (formats.final_edges ? final_edges : 0));
+            CHECK(child.parent == (pass.split == 0 ? pass.triangle.parent : pass.number));
             const bool whole = pass.split == 0;
             if (child.base != pass.triangle.base || child.finished != whole ||
                 child.split_by != (whole ? int{pass.triangle.split_by} : split_by) ||

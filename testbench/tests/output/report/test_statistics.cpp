@@ -93,6 +93,8 @@ TEST_CASE("statistics: two triangles split once, by hand") {
                                   {"normals_per_vertex", 24.0 / 9},
                                   {"edges", 16 + 5},
                                   {"edge_tests", 30},
+                                  {"normal_tests", 30},
+                                  {"summed_height_tests", 30},
                                   {"tests_per_edge", 30.0 / 21}});
     f.require_all("get_triangle", {{"host_triangles", 2}, {"queue_triangles", 8}});
     f.require_all("transform", {{"positions", 36}, {"normals", 24}});

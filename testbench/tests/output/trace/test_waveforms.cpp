@@ -61,14 +61,18 @@ std::vector<std::pair<std::string, unsigned>> signals_in(const fs::path& save_fi
 
 TEST_CASE("every signal a save file shows is in the default job's waveforms and changes, but for thresholds") {
     const TestFolder here;
-    const ProgramEnd end =
-        run_tessera({"run", "--vcd", "--set", "output.folder=out", "--set", "check.golden=false", "--set",
-                     "check.end_to_end=false", "--set", "output.picture=false", "--set", "tests.normal_threshold=0.125",
-                     "--set", "tests.view_threshold=5", "--set", "tests.generation_limit=7"},
-                    here.path());
-    INFO(end.text());
-    REQUIRE(end.exit_code == 0);
-    const VcdFile vcd(here.path() / "out/trace.vcd");
+    const auto traced = [&](const std::string& test_order) {
+        const ProgramEnd end =
+            run_tessera({"run", "--vcd", "--set", "output.folder=" + test_order, "--set", "check.golden=false", "--set",
+                         "check.end_to_end=false", "--set", "output.picture=false", "--set",
+                         "tests.normal_threshold=0.125", "--set", "tests.view_threshold=5", "--set",
+                         "tests.generation_limit=7", "--set", "hardware.test_order=" + test_order},
+                        here.path());
+        INFO(end.text());
+        REQUIRE(end.exit_code == 0);
+        return VcdFile(here.path() / test_order / "trace.vcd");
+    };
+    const VcdFile parallel = traced("parallel"), cheap_first = traced("cheap_first");
     const std::vector<fs::path> views = files_ending_in(".gtkw");
     std::set<std::string> names;
     // Thresholds chosen such that their registers are exact: 14 fraction bits, and 8.
@@ -80,6 +84,7 @@ TEST_CASE("every signal a save file shows is in the default job's waveforms and 
     for (const fs::path& view : views) {
         INFO(view);
         names.insert(view.stem());
+        const VcdFile& vcd = view.stem() == "sequence" ? cheap_first : parallel;
         const auto signals = signals_in(view);
         CHECK(signals.size() >= 20);
         for (const auto& [name, bits] : signals) {
@@ -94,8 +99,8 @@ TEST_CASE("every signal a save file shows is in the default job's waveforms and 
             ++constants;
         }
     }
-    CHECK(names == std::set<std::string>{"memories", "overview", "queue", "tests"});
-    CHECK(constants == constant.size());
+    CHECK(names == std::set<std::string>{"memories", "overview", "queue", "sequence", "tests"});
+    CHECK(constants == 2 * constant.size());
 }
 
 TEST_CASE("save files depend on no machine and on no file beside them but filters") {
@@ -205,7 +210,7 @@ TEST_CASE("scripts/waves opens a run in a view, from where the filters are") {
     CHECK_THAT(waves({"run"}).out, Contains("run/trace.fst\noverview.gtkw\n"));
     for (const auto& [arguments, words] : std::vector<std::pair<std::vector<std::string>, std::string>>{
              {{}, "run's folder"},
-             {{"run", "quewe"}, "memories overview queue tests"},
+             {{"run", "quewe"}, "memories overview queue sequence tests"},
              {{"absent"}, "absent"},
              {{"tools"}, "--vcd"}}) {
         const ProgramEnd refused = waves(arguments);

@@ -1,0 +1,73 @@
+#include "testbench/machine/decisions.h"
+
+#include "modules/datapath/edge_tests.h"
+
+namespace tessera {
+
+using datapath::TestBits;
+
+Decisions::Decisions(const MachineSetup& setup) {
+    if (setup.design.test_order != TestOrder::parallel || setup.registers.formats.final_edges)
+        bare_.emplace(setup);
+}
+
+void Decisions::count(std::uint8_t tests) {
+    const unsigned requested = tests & datapath::requesting_tests;
+    if (datapath::split_decision(tests)) {
+        const unsigned by = requested & (datapath::normal_bit | datapath::summed_height_bit);
+        counts_.split_by_normal += by == datapath::normal_bit;
+        counts_.split_by_summed_height += by == datapath::summed_height_bit;
+        counts_.split_by_both += by == (datapath::normal_bit | datapath::summed_height_bit);
+        counts_.split_by_highlight += by == 0;
+        counts_.split_in_highlight += (requested & datapath::highlight_bit) != 0;
+    } else if (requested != 0) {
+        const unsigned missing = ~tests & datapath::gating_tests;
+        counts_.stopped_by_view += (missing & datapath::view_bit) != 0;
+        counts_.stopped_by_tex_coord += (missing & datapath::tex_coord_bit) != 0;
+        counts_.stopped_by_generation += (missing & datapath::generation_bit) != 0;
+        counts_.stopped_by_view_alone += missing == datapath::view_bit;
+        counts_.stopped_by_tex_coord_alone += missing == datapath::tex_coord_bit;
+        counts_.stopped_by_generation_alone += missing == datapath::generation_bit;
+        counts_.stopped_by_several += (missing & (missing - 1)) != 0;
+    }
+}
+
+void Decisions::write(const datapath::TrianglePass& pass) {
+    for (const datapath::EdgeTests& edge : pass.edges) {
+        evaluated_.normal += (edge.evaluated & datapath::normal_bit) != 0;
+        evaluated_.summed_height += (edge.evaluated & datapath::summed_height_bit) != 0;
+    }
+    if (!bare_) {
+        for (const datapath::EdgeTests& edge : pass.edges)
+            count(edge.tests);
+        return;
+    }
+    datapath::TrianglePass all;
+    all.triangle = pass.triangle;
+    bare_->evaluate(all);
+    unsigned split_by = 0;
+    for (unsigned k = 0; k < 3; ++k) {
+        const std::uint8_t tests = all.edges[k].tests;
+        count(tests);
+        if ((pass.split >> k & 1u) != 0)
+            split_by |= tests & datapath::requesting_tests;
+    }
+    if (split_by == 0)
+        return;
+    if (pass.number >= split_by_.size())
+        split_by_.resize(std::size_t{pass.number} + 1);
+    split_by_[pass.number] = static_cast<std::uint8_t>(split_by);
+}
+
+void Decisions::complete_tags(const datapath::Triangle& finished, EmittedTriangle& emitted) const {
+    if (!bare_)
+        return;
+    if (finished.split_by != 0 && finished.parent < split_by_.size())
+        emitted.split_by = split_by_[finished.parent];
+    datapath::TrianglePass all;
+    all.triangle = finished;
+    bare_->evaluate(all);
+    emitted.stopped_by = all.triangle.stopped_by;
+}
+
+}  // namespace tessera

@@ -1,0 +1,61 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <systemc>
+#include <tlm>
+#include <vector>
+
+#include "modules/datapath/triangle_pass.h"
+#include "testbench/machine/bare_recursion.h"
+#include "testbench/machine/emitted_mesh.h"
+#include "testbench/machine/machine_setup.h"
+
+namespace tessera {
+
+/// What every test says of every edge of a pass, for reports and the mesh file: the same in all designs. Where the
+/// machine does not evaluate a test (Design::test_order, Formats::final_edges), the datapath is called here, at no
+/// cycles.
+class Decisions : public tlm::tlm_analysis_if<datapath::TrianglePass> {
+  public:
+    struct Counts {
+        std::uint64_t split_by_normal = 0;         ///< NT, not SHT
+        std::uint64_t split_by_summed_height = 0;  ///< SHT, not NT
+        std::uint64_t split_by_both = 0;           ///< NT and SHT
+        std::uint64_t split_by_highlight = 0;      ///< neither: HT alone
+        std::uint64_t split_in_highlight = 0;      ///< HT, whatever NT and SHT say
+        std::uint64_t stopped_by_view = 0;         ///< NT, SHT or HT would split, VT is false
+        std::uint64_t stopped_by_tex_coord = 0;    ///< likewise TCT
+        std::uint64_t stopped_by_generation = 0;   ///< likewise GT
+        std::uint64_t stopped_by_view_alone = 0;   ///< of these: TCT and GT are true
+        std::uint64_t stopped_by_tex_coord_alone = 0;
+        std::uint64_t stopped_by_generation_alone = 0;
+        std::uint64_t stopped_by_several = 0;
+    };
+    /// Edges for which the machine evaluated a test.
+    struct Evaluated {
+        std::uint64_t normal = 0;
+        std::uint64_t summed_height = 0;
+    };
+
+    /// `setup` must outlive it.
+    explicit Decisions(const MachineSetup& setup);
+
+    /// To be called for every decided pass (PassOrTessellate::decided).
+    void write(const datapath::TrianglePass& pass) override;
+
+    const Counts& counts() const { return counts_; }
+    const Evaluated& evaluated() const { return evaluated_; }
+
+    /// Completes split_by and stopped_by of an emitted triangle.
+    void complete_tags(const datapath::Triangle& finished, EmittedTriangle& emitted) const;
+
+  private:
+    void count(std::uint8_t tests);
+
+    mutable std::optional<BareRecursion> bare_;  // none: the machine evaluates every test of every edge
+    std::vector<std::uint8_t> split_by_;         // of each pass that split its triangle, by number
+    Counts counts_;
+    Evaluated evaluated_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,122 @@
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <string>
+
+#include "testbench/tests/support/case_table.h"
+#include "testbench/tests/support/checked_run.h"
+#include "testbench/tests/support/job_settings.h"
+
+// Designs that leave out tests which cannot change a decision: the mesh, with its tags, and the reports' counts are
+// those of the paper's design; what is evaluated is what the rules of modules/README.md ask for, and no more.
+
+using namespace tessera;
+using namespace tessera::testing;
+
+namespace {
+
+/// What a design has to evaluate, from a recursion that evaluates everything.
+struct Expected {
+    struct Note {
+        bool base = false;
+        unsigned final_edges = 0;
+    };
+    bool cheap_first;
+    bool final_edges;
+
+    std::uint64_t edges = 0, normal = 0, summed_height = 0;
+    std::uint64_t split_by_both = 0, stopped_by_view_alone = 0, stopped_by_several = 0;
+
+    static Note begin(const datapath::Triangle&) { return {true, 0}; }
+    void decided(const datapath::TrianglePass& pass, const datapath::ChildIndices&, const Note& note) {
+        for (unsigned k = 0; k < 3; ++k) {
+            const unsigned tests = pass.edges[k].tests;
+            add_to_report(tests, (pass.split >> k & 1u) != 0);
+            if (final_edges && (note.final_edges >> k & 1u) != 0)
+                continue;
+            ++edges;
+            const bool gates = (tests & datapath::gating_tests) == datapath::gating_tests;
+            const bool splits = (tests & (datapath::normal_bit | datapath::highlight_bit)) != 0;
+            normal += !cheap_first || gates || note.base ? 1u : 0u;
+            summed_height += !cheap_first || (gates && !splits) ? 1u : 0u;
+        }
+    }
+    /// An edge of a child is final if it is a whole edge of the parent, from corner to corner.
+    static Note child(const std::array<std::uint8_t, 3>& corners) {
+        Note note;
+        for (unsigned k = 0; k < 3; ++k)
+            if (corners[k] <= 2 && corners[k == 2 ? 0 : k + 1] <= 2)
+                note.final_edges |= 1u << k;
+        return note;
+    }
+    void finished(const datapath::Triangle&, bool) {}
+
+  private:
+    void add_to_report(unsigned tests, bool split) {
+        const bool normal_test = (tests & datapath::normal_bit) != 0;
+        const bool summed_height_test = (tests & datapath::summed_height_bit) != 0;
+        split_by_both += split && normal_test && summed_height_test ? 1u : 0u;
+        if (split || (tests & datapath::requesting_tests) == 0)
+            return;
+        const bool view = (tests & datapath::view_bit) != 0, tex_coord = (tests & datapath::tex_coord_bit) != 0,
+                   generation = (tests & datapath::generation_bit) != 0;
+        stopped_by_view_alone += !view && tex_coord && generation ? 1u : 0u;
+        stopped_by_several += int{view} + int{tex_coord} + int{generation} < 2 ? 1u : 0u;
+    }
+};
+
+struct Row {
+    std::string name;
+    std::string settings;
+};
+
+const CaseTable designs(
+    "the paper's mesh with ",
+    {
+        Row{"final edges", "hardware.final_edges=true"},
+        {"final edges, functional", "hardware.final_edges=true mode=functional"},
+        {"cheap tests first", "hardware.test_order=cheap_first"},
+        {"cheap tests first, functional", "hardware.test_order=cheap_first mode=functional"},
+        {"both", "hardware.test_order=cheap_first hardware.final_edges=true"},
+        {"both, functional", "hardware.test_order=cheap_first hardware.final_edges=true mode=functional"},
+        {"both, three tests units", "hardware.test_order=cheap_first hardware.final_edges=true hardware.tests_units=3"},
+        {"both, last in first out, places for one",
+         "hardware.test_order=cheap_first hardware.final_edges=true hardware.queue_order=lifo "
+         "timing.edges_in_sequence=1 timing.results_buffer=1 timing.pass_or_tessellate_buffer=1"},
+        {"both, a queue of one place that spills",
+         "hardware.test_order=cheap_first hardware.final_edges=true hardware.queue_capacity=1"},
+        {"both, random stalls",
+         "hardware.test_order=cheap_first hardware.final_edges=true timing.stalls_seed=3 "
+         "timing.stalls_per_mille=300 timing.stalls_longest=20"},
+        {"both, Highlight Test and culling",
+         "hardware.test_order=cheap_first hardware.final_edges=true tests.highlight=true hardware.culling=back"},
+        {"both, no Normal Test", "hardware.test_order=cheap_first hardware.final_edges=true tests.normal=false"},
+        {"both, no Summed Height Test",
+         "hardware.test_order=cheap_first hardware.final_edges=true tests.summed_height=false"},
+    },
+    [](const Row& row) {
+        const CheckedRun run(with_settings(timed_job(), row.settings));
+        const Pipeline& p = run.pipeline;
+        REQUIRE(run.counts.edges_split > 1000);
+        for (const Conservation& equation : conservation(run.simulation)) {
+            INFO(equation.name);
+            CHECK(equation.left == equation.right);
+        }
+
+        BareRecursion bare(run.setup);
+        Expected expected{run.setup.design.test_order == TestOrder::cheap_first,
+                          run.setup.registers.formats.final_edges};
+        bare.walk(expected);
+        const bool summed_height = run.setup.registers.tests.summed_height_test;
+        CHECK(p.edges_tested() == expected.edges);
+        CHECK(p.summed_height_table_reads() == (summed_height ? 12 * expected.summed_height : 0));
+        const std::uint64_t corners = (run.setup.design.tests_units == 1 ? 3 : 6) * run.setup.base_triangles.size();
+        CHECK(p.normal_map_reads() == corners + expected.normal);
+        const Decisions::Counts& counts = run.simulation.decisions.counts();
+        CHECK(counts.split_by_both == expected.split_by_both);
+        CHECK(counts.stopped_by_view_alone == expected.stopped_by_view_alone);
+        CHECK(counts.stopped_by_several == expected.stopped_by_several);
+        if (run.setup.registers.formats.final_edges)
+            CHECK(p.edges_tested() == 3 * run.setup.base_triangles.size() + 4 * run.counts.edges_split);
+    });
+
+}  // namespace
