@@ -1,0 +1,51 @@
+"""Designs that leave out tests which cannot change a decision: the same mesh in fewer cycles."""
+from section import Chart, Claim, Experiment, Section, Table, MEASURED, FAILED
+from .tests_units import QUIET
+import charts
+
+JOBS = ("half_donut", "crater_lake_24", "crater_lake_704", "head", "teapot")
+DESIGNS = {
+    "the paper's": {},
+    "final edges": {"hardware.final_edges": True},
+    "cheap tests first": {"hardware.test_order": "cheap_first"},
+    "both": {"hardware.test_order": "cheap_first", "hardware.final_edges": True},
+}
+
+
+def measure(study):
+    section, rows, cycles, different = Section(), [], {}, []
+    for job in JOBS:
+        meshes = set()
+        for number, (design, settings) in enumerate(DESIGNS.items()):
+            run = study.run(f"{job}_{number}", job=job, settings={**QUIET, **settings, "output.ply": True})
+            meshes.add((run.folder / "mesh.ply").read_bytes())
+            figures = run.figures
+            triangles = figures["mesh.triangles"]
+            cycles[job, design] = figures["timing.cycles_per_triangle"]
+            rows.append([job, design, figures["timing.cycles"], cycles[job, design],
+                         figures["useful_work.edge_tests"] / triangles, figures["useful_work.normal_tests"] / triangles,
+                         figures["useful_work.summed_height_tests"] / triangles,
+                         figures["summed_height_table.reads"] / triangles, figures["formats.queue_entry"],
+                         figures["timing.bottleneck"]])
+        if len(meshes) != 1:
+            different.append(job)
+    section.claims.append(Claim(
+        "A decision depends on the edge alone.", "section 2",
+        f"the mesh files of {', '.join(different)} differ between designs" if different else
+        "so tests that cannot change it may be left out: the mesh files of all designs are the same, byte for byte. Cycles per "
+        "finished triangle, the paper's design and the last: "
+        + "; ".join(f"{job}: {cycles[job, next(iter(DESIGNS))]:.1f} and {cycles[job, 'both']:.1f}" for job in JOBS),
+        FAILED if different else MEASURED))
+    section.charts.append(Chart(
+        charts.bars([f"{job}, {design}" for job in JOBS for design in DESIGNS],
+                    [cycles[job, design] for job in JOBS for design in DESIGNS], "cycles per finished triangle"),
+        "Cycles per finished triangle"))
+    section.tables.append(Table(
+        "ladder", "Per finished triangle, with one port to the Summed Height Table",
+        [("job", ""), ("design", ""), ("cycles", ""), ("a triangle", "cycles"), ("edges tested", ""), ("Normal Tests", ""),
+         ("Summed Height Tests", ""), ("table reads", ""), ("triangle's record", "bits"), ("bottleneck", "")], rows))
+    return section
+
+
+EXPERIMENT = Experiment("ladder", "Leaving out tests", "Sections 2 and 3",
+                        "What a design gains that evaluates only the tests its decisions depend on.", measure)
