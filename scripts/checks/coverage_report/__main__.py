@@ -149,7 +149,7 @@ def main():
     text, unexplained, lines, branches = report(count(root, folder), reasons)
     (folder / "coverage.txt").write_text(text)
     print(text, end="")
-    faults = [f"{what}: {value:.2f} %, wanted are {WANTED} %" for what, value in (("lines", lines), ("branches", branches))
+    faults = [f"{what}: {value:.2f} %, expected {WANTED} %" for what, value in (("lines", lines), ("branches", branches))
               if value < WANTED]
     if unexplained:
         faults.append(f"{len(unexplained)} lines are not wholly reached, and scripts/checks/coverage_report/unreached.toml does "

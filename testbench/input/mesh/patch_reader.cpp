@@ -83,7 +83,7 @@ class Reader {
             row.remove_prefix(more ? comma + 1 : row.size());
         }
         if (numbers_.size() != wanted) {
-            fail(fmt::format("{} is {} with {} number(s): wanted are {}, separated by commas", what, quoted(words_),
+            fail(fmt::format("{} is {} with {} number(s): expected {}, separated by commas", what, quoted(words_),
                              numbers_.size(), wanted));
         }
     }
@@ -91,7 +91,7 @@ class Reader {
     std::size_t whole_number(std::string_view word, const char* what, std::size_t most) {
         const std::optional<double> number = to_number(word);
         if (!number || !(*number >= 1) || std::floor(*number) != *number) {
-            fail(fmt::format("{} is no number of {}: wanted is a whole number from 1", quoted(word), what));
+            fail(fmt::format("{} is no number of {}: expected a whole number from 1", quoted(word), what));
         }
         if (*number > static_cast<double>(most)) {
             throw ResourceError(fmt::format("{}:{}: {} {}, the limit is {}: take a part of the model", name_, line_,
@@ -117,7 +117,7 @@ class Reader {
     double coordinate(std::string_view word) {
         const std::optional<double> number = to_number(word);
         if (!number || !(std::abs(*number) <= largest_coordinate)) {
-            fail(fmt::format("{} is no coordinate: wanted is a number of at most {:g}", quoted(word),
+            fail(fmt::format("{} is no coordinate: expected a number of at most {:g}", quoted(word),
                              largest_coordinate));
         }
         return *number;

@@ -52,7 +52,7 @@ glm::dvec3 semi_axes(TomlFields& fields, bool round, int may_be_negative) {
         if (!(size >= length.low))
             fields.fail(
                 "semi_axes", static_cast<std::size_t>(k),
-                fmt::format("{} in `semi_axes`; wanted is a length, {:g} .. {:g}{}", toml_number(given[k]), length.low,
+                fmt::format("{} in `semi_axes`; expected a length, {:g} .. {:g}{}", toml_number(given[k]), length.low,
                             length.high, k == may_be_negative ? ", or negative, to open the other way" : ""));
     }
     return given;
@@ -92,7 +92,7 @@ QuadricSurface read_quadric(TomlFields& fields) {
 void check_knots(TomlFields& fields, const char* key, const std::vector<double>& knots, std::size_t degree,
                  std::size_t count, const char* of) {
     if (knots.size() != count + degree + 1)
-        fields.fail(key, fmt::format("`{}` has {} knot(s); wanted are {}: {} {} of heights, degree {}, and 1", key,
+        fields.fail(key, fmt::format("`{}` has {} knot(s); expected {}: {} {} of heights, degree {}, and 1", key,
                                      knots.size(), count + degree + 1, count, of, degree));
     std::size_t alike = 1;
     const double range = knots.back() - knots.front();
@@ -162,7 +162,7 @@ NurbsPatch read_bezier(TomlFields& fields) {
     for (const auto& [count, of] : {std::pair{patch.columns, "columns"}, {patch.rows, "rows"}})
         if (count < 2 || count > most)
             fields.fail("heights",
-                        fmt::format("`heights` of a Bezier patch has {} {}; wanted are 2 .. {}", count, of, most));
+                        fmt::format("`heights` of a Bezier patch has {} {}; expected 2 .. {}", count, of, most));
     patch.degree_u = patch.columns - 1;
     patch.degree_v = patch.rows - 1;
     patch.knots_u = bezier_knots(patch.degree_u);
@@ -177,7 +177,7 @@ void read_domain(TomlFields& fields, Surface& surface) {
             continue;
         const std::vector<double> ends = fields.numbers(key, 2, coordinate);
         if (!(ends[1] - ends[0] >= length.low && ends[1] - ends[0] <= length.high))
-            fields.fail(key, fmt::format("`{}` goes from {} to {}; wanted are two ends, the lower first, {:g} .. {:g} "
+            fields.fail(key, fmt::format("`{}` goes from {} to {}; expected two ends, the lower first, {:g} .. {:g} "
                                          "apart",
                                          key, toml_number(ends[0]), toml_number(ends[1]), length.low, length.high));
         surface.low[k] = ends[0];

@@ -39,7 +39,7 @@ std::int64_t TomlFields::integer(const char* key, std::int64_t low, std::int64_t
     const toml::node& node = wanted(key, "an integer");
     const auto* const value = node.as_integer();
     if (value == nullptr || value->get() < low || value->get() > high)
-        fail(key, fmt::format("`{}` is {}; wanted is an integer, {} .. {}", key, found_text(node), low, high));
+        fail(key, fmt::format("`{}` is {}; expected an integer, {} .. {}", key, found_text(node), low, high));
     return value->get();
 }
 
@@ -48,7 +48,7 @@ std::string TomlFields::choice(const char* key, const std::vector<std::string>& 
     const auto* const value = node.as_string();
     if (value == nullptr || std::find(choices.begin(), choices.end(), value->get()) == choices.end()) {
         const std::string near = value == nullptr ? "" : nearest_name(value->get(), choices);
-        fail(key, fmt::format("`{}` is {}; wanted is one of {}{}", key, found_text(node), listed(choices),
+        fail(key, fmt::format("`{}` is {}; expected one of {}{}", key, found_text(node), listed(choices),
                               near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near)));
     }
     return value->get();
@@ -58,7 +58,7 @@ std::vector<double> TomlFields::numbers(const char* key, std::size_t count, cons
     const toml::node& node = wanted(key, "a list of numbers");
     const toml::array* const array = node.as_array();
     if (array == nullptr || array->empty() || (count > 0 && array->size() != count))
-        fail(key, fmt::format("`{}` is {}; wanted is a list of {} number(s)", key, found_text(node),
+        fail(key, fmt::format("`{}` is {}; expected a list of {} number(s)", key, found_text(node),
                               count > 0 ? std::to_string(count) : "1 or more"));
     std::vector<double> numbers;
     for (const toml::node& element : *array)
@@ -70,12 +70,12 @@ TomlFields::Rows TomlFields::rows(const char* key, const Range& range) {
     const toml::node& node = wanted(key, "a list of rows");
     const toml::array* const array = node.as_array();
     if (array == nullptr || array->empty())
-        fail(key, fmt::format("`{}` is {}; wanted is a list of rows, each a list of numbers", key, found_text(node)));
+        fail(key, fmt::format("`{}` is {}; expected a list of rows, each a list of numbers", key, found_text(node)));
     Rows rows;
     for (const toml::node& element : *array) {
         const toml::array* const row = element.as_array();
         if (row == nullptr || row->empty())
-            fail_at(element.source(), fmt::format("row {} of `{}` is {}; wanted is a list of numbers", rows.rows + 1,
+            fail_at(element.source(), fmt::format("row {} of `{}` is {}; expected a list of numbers", rows.rows + 1,
                                                   key, found_text(element)));
         if (rows.rows > 0 && row->size() != rows.columns)
             fail_at(element.source(), fmt::format("row {} of `{}` has {} number(s) and the first has {}: make them "
@@ -130,7 +130,7 @@ void TomlFields::fail_at(const toml::source_region& place, const std::string& wh
 double TomlFields::number_of(const toml::node& node, const char* key, const Range& range) const {
     const std::optional<double> number = to_number(node);
     if (!number || !(*number >= range.low && *number <= range.high))
-        fail_at(node.source(), fmt::format("{} in `{}`; wanted is a number, {:g} .. {:g}", found_text(node), key,
+        fail_at(node.source(), fmt::format("{} in `{}`; expected a number, {:g} .. {:g}", found_text(node), key,
                                            range.low, range.high));
     return *number;
 }
