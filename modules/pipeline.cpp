@@ -81,6 +81,8 @@ void Pipeline::wire(UnitFactory& factory) {
         transform.to_view_test[k].bind(tests.view_test.from_transform);
         tests.to_pass_or_tessellate().bind(pass_or_tessellate.from_tessellation_tests[k]);
         factory.join(tests.summed_height_test.summed_height_table, summed_height_table);
+        if (tests.summed_height_test.displacement_map)
+            factory.join(*tests.summed_height_test.displacement_map, displacement_map);
         factory.join(tests.normal_test.normal_map, normal_map);
     }
     pass_or_tessellate.to_tessellation.bind(tessellation.from_pass_or_tessellate);
@@ -130,6 +132,15 @@ bool Pipeline::idle() const {
 std::uint64_t Pipeline::passes_under_way() const {
     return get_triangle.activity().items_in() + tessellation.from_pass_or_tessellate.size() -
            pass_or_tessellate.activity().items_out();
+}
+
+std::uint64_t Pipeline::displacement_map_reads() const {
+    std::uint64_t reads = displace_vertex.displacement_map.reads();
+    for (const TessellationTests& tests : tessellation_tests) {
+        if (tests.summed_height_test.displacement_map)
+            reads += tests.summed_height_test.displacement_map->reads();
+    }
+    return reads;
 }
 
 std::uint64_t Pipeline::normal_map_reads() const {

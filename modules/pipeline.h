@@ -75,7 +75,7 @@ class Pipeline : public sc_core::sc_module {
     /// Triangles between Get Triangle and the end of their pass, in Tessellation or on the way to Lighting.
     std::uint64_t passes_under_way() const;
     std::uint64_t edges_tested() const { return pass_or_tessellate.counts().edges_tested; }
-    std::uint64_t displacement_map_reads() const { return displace_vertex.displacement_map.reads(); }
+    std::uint64_t displacement_map_reads() const;
     std::uint64_t normal_map_reads() const;
     std::uint64_t summed_height_table_reads() const;
     datapath::Saturations saturations() const;

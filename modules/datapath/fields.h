@@ -83,6 +83,17 @@ class Fields {
         if (formats_.final_edges)
             number(name, value, 3, meaning);
     }
+    template <class N>
+    constexpr void code(const char* name, N& value, const char* meaning) {
+        if (formats_.codes)
+            pass(named(name, "", formats_.displacement.bits, 16, false, meaning), value);
+    }
+    /// Whether codes are known: likewise.
+    template <class B>
+    constexpr void code_flag(const char* name, B& value, const char* meaning) {
+        if (formats_.codes)
+            flag(name, value, meaning);
+    }
     /// 1 or -1; the bit is set for -1.
     template <class H>
     constexpr void handedness(const char* name, H& value, const char* meaning) {
@@ -165,6 +176,7 @@ constexpr void describe_vertex(Fields<Codec>& fields, AnyVertex& vertex) {
     fields.generation("generation", vertex.generation, "generation");
     fields.flag("displaced_known", vertex.displaced_known, "P', P's, N' are known");
     fields.flag("screen_normal_known", vertex.screen_normal_known, "N's is known");
+    fields.code("code", vertex.code, "d");
     fields.position("displaced", vertex.displaced, "P'");
     fields.direction("displaced_n", vertex.displaced_normal, "N'");
     fields.screen("screen", vertex.screen, "P's");

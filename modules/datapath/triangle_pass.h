@@ -10,11 +10,12 @@ namespace tessera::datapath {
 
 /// Results of Calculate New P, Displace Vertex and Transform for the midpoint of one edge.
 struct NewVertex {
-    Position position;      ///< P_ij                             (Calculate New P)
-    Direction mean_normal;  ///< (N_i + N_j) / 2, not yet unit    (Calculate New P)
-    TexCoord texture;       ///< t_ij                             (Calculate New P)
-    Position displaced;     ///< P'_ij                            (Displace Vertex)
-    ScreenPosition screen;  ///< P's_ij                           (Transform)
+    Position position;       ///< P_ij                             (Calculate New P)
+    Direction mean_normal;   ///< (N_i + N_j) / 2, not yet unit    (Calculate New P)
+    TexCoord texture;        ///< t_ij                             (Calculate New P)
+    std::uint16_t code = 0;  ///< d_ij, 0 unless Formats::codes    (Displace Vertex)
+    Position displaced;      ///< P'_ij                            (Displace Vertex)
+    ScreenPosition screen;   ///< P's_ij                           (Transform)
 };
 
 /// Results of Tessellation Tests for one edge.
@@ -59,6 +60,7 @@ constexpr Vertex inserted_vertex(const TrianglePass& pass, int k) {
     vertex.handedness = inserted_handedness(i.handedness, j.handedness);
     vertex.generation = inserted_generation(i.generation, j.generation);
     vertex.displaced_known = true;
+    vertex.code = made.code;
     vertex.displaced = made.displaced;
     vertex.displaced_normal = tested.displaced_normal;
     vertex.screen = made.screen;

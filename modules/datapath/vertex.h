@@ -46,6 +46,7 @@ struct Vertex {
     std::uint8_t generation = 0;
     bool displaced_known = false;      ///< P', P's and N' have been calculated
     bool screen_normal_known = false;  ///< N's has been calculated
+    std::uint16_t code = 0;            ///< d at t; 0 unless Formats::codes
     Position displaced;                ///< P'
     Direction displaced_normal;        ///< N', of the displaced surface, world space
     ScreenPosition screen;             ///< P's

@@ -24,7 +24,8 @@ constexpr Widths stream_widths(const Formats& f) {
     constexpr std::uint32_t known = 2;  // P', P's, N' known; N's known
     Widths widths;
     widths.base_vertex = position + 2 * direction + handedness + texture;
-    widths.vertex = widths.base_vertex + bits(f.generation_bits) + known + position + 2 * direction + screen;
+    widths.vertex = widths.base_vertex + bits(f.generation_bits) + known + position + 2 * direction + screen +
+                    bits(f.codes ? f.displacement.bits : 0);
     widths.triangle = 3 * widths.vertex + (f.highlight_tag ? 3 : 2) + 3 + 1 + (f.final_edges ? 3 : 0);
     widths.emitted_vertex = screen + direction + texture;
     widths.finished_vertex = position + direction + texture;

@@ -5,36 +5,40 @@
 #include <vector>
 
 #include "modules/datapath/parameters.h"
+#include "modules/memories/interleave.h"
 #include "modules/timing/timing.h"
 
 namespace tessera {
 
 /// When a table's entries are read: its banks and their ports.
 ///
-/// Banks:     entry k of the table lies in bank k mod `banks`.
+/// Banks:     interleave.h.
 /// Interval:  each bank has `ports` ports; a port takes an entry's address every ceil(entry bytes / width) cycles.
 /// Latency:   an entry's data arrive `latency` cycles after the last of these; a request's with its last entry.
-/// Order:     order of the calls. A request starts when each bank it reads has a free port; its further entries take
-///            ports as these become free, and can delay the requests after it.
+/// Order:     order of the calls. Without a window a request starts when each bank it reads has a free port. With a
+///            window of n it starts when the n-th request before it has sent its last address: reads of up to n
+///            requests overlap. Addresses wait for a port of their bank in order, and can delay later requests.
 class BankedPorts {
   public:
     BankedPorts(const MemoryTiming& timing, const datapath::TableLayout& layout)
-        : base_(layout.base),
-          entry_bytes_(layout.entry_bytes),
+        : bank_of_(timing, layout),
           ports_(timing.ports),
           banks_(timing.banks),
           latency_(timing.latency),
           slots_per_entry_(timing.width == 0 ? 1 : (layout.entry_bytes + timing.width - 1) / timing.width),
           port_free_(std::size_t{timing.banks} * timing.ports),
-          bank_slots_(timing.banks) {}
+          bank_slots_(timing.banks),
+          window_(timing.window) {}
 
     /// The first cycle in which the entries at these addresses can be read; a past cycle: at once.
     std::uint64_t ready(const std::uint64_t* addresses, unsigned count) const {
+        if (!window_.empty())
+            return window_[oldest_];
         if (banks_ == 1)
             return port_free_[first_free_port(0)];
         std::uint64_t cycle = 0;
         for (unsigned k = 0; k < count; ++k)
-            cycle = std::max(cycle, port_free_[first_free_port(bank_of(addresses[k]))]);
+            cycle = std::max(cycle, port_free_[first_free_port(bank_of_(addresses[k]))]);
         return cycle;
     }
 
@@ -42,13 +46,17 @@ class BankedPorts {
     std::uint64_t serve(const std::uint64_t* addresses, unsigned count, std::uint64_t cycle) {
         std::uint64_t last = cycle;
         for (unsigned k = 0; k < count; ++k) {
-            const std::size_t bank = bank_of(addresses[k]);
+            const std::size_t bank = bank_of_(addresses[k]);
             std::uint64_t& free = port_free_[first_free_port(bank)];
             free = std::max(free, cycle) + slots_per_entry_;
             bank_slots_[bank] += slots_per_entry_;
             last = std::max(last, free - 1);
         }
         slots_taken_ += std::uint64_t{count} * slots_per_entry_;
+        if (!window_.empty()) {
+            window_[oldest_] = last + 1;
+            oldest_ = oldest_ + 1 == window_.size() ? 0 : oldest_ + 1;
+        }
         return last + latency_;
     }
 
@@ -61,16 +69,12 @@ class BankedPorts {
     std::uint64_t occupied_cycles() const { return *std::max_element(bank_slots_.begin(), bank_slots_.end()) / ports_; }
 
   private:
-    std::size_t bank_of(std::uint64_t address) const {
-        return banks_ == 1 ? 0 : (address - base_) / entry_bytes_ % banks_;
-    }
     std::size_t first_free_port(std::size_t bank) const {
         const auto first = port_free_.begin() + static_cast<std::ptrdiff_t>(bank * ports_);
         return static_cast<std::size_t>(std::min_element(first, first + ports_) - port_free_.begin());
     }
 
-    std::uint64_t base_;
-    unsigned entry_bytes_;
+    BankOfEntry bank_of_;
     unsigned ports_;
     unsigned banks_;
     unsigned latency_;
@@ -78,6 +82,8 @@ class BankedPorts {
     std::vector<std::uint64_t> port_free_;   // bank by bank: the cycle from which the port is free
     std::vector<std::uint64_t> bank_slots_;  // taken so far
     std::uint64_t slots_taken_ = 0;
+    std::vector<std::uint64_t> window_;  // of the last so many requests: the cycle after their last address
+    std::size_t oldest_ = 0;             // of these
 };
 
 }  // namespace tessera

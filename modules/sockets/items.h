@@ -53,11 +53,13 @@ struct BasePoint {
 struct DisplacedPoint : BasePoint {
     static constexpr const char* name = "displaced point";
     datapath::Position displaced;
+    std::uint16_t code = 0;
 
     template <class Codec, class Any>
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
         BasePoint::describe(fields, item);
         fields.position("displaced", item.displaced, "P'");
+        fields.code("code", item.code, "d, in a design whose vertices carry it");
     }
 };
 
@@ -94,6 +96,7 @@ struct EdgeEnd {
     datapath::Direction displaced_n;
     datapath::ScreenPosition screen;
     std::uint8_t generation = 0;
+    std::uint16_t code = 0;
 
     template <class Codec, class Any>
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& end) {
@@ -104,6 +107,7 @@ struct EdgeEnd {
         fields.direction("displaced_n", end.displaced_n, "N', if known");
         fields.screen("screen", end.screen, "P's, if known");
         fields.generation("generation", end.generation, "generation");
+        fields.code("code", end.code, "d, if known, in a design whose vertices carry it");
     }
 };
 
@@ -149,6 +153,8 @@ struct HeightOperands {
     static constexpr const char* name = "height operands";
     PartTag tag;
     datapath::TexCoord t_i, t_j, t_ij;
+    bool codes_known = false;
+    std::uint16_t code_i = 0, code_j = 0;
 
     template <class Codec, class Any>
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
@@ -156,6 +162,9 @@ struct HeightOperands {
         fields.texture("t_i", item.t_i, "t of the first end");
         fields.texture("t_j", item.t_j, "t of the second end");
         fields.texture("t_ij", item.t_ij, "t of the midpoint");
+        fields.code_flag("codes_known", item.codes_known, "in a design whose vertices carry d: it is known of both");
+        fields.code("code_i", item.code_i, "d of the first end");
+        fields.code("code_j", item.code_j, "d of the second end");
     }
 };
 
@@ -319,6 +328,7 @@ struct DecidedTriangle {
             auto& edge = item.pass.edges[static_cast<std::size_t>(k)];
             fields.position("inserted_p", made.position, "P_ij");
             fields.texture("inserted_t", made.texture, "t_ij");
+            fields.code("inserted_code", made.code, "d_ij, in a design whose vertices carry it");
             fields.position("inserted_displaced", made.displaced, "P'_ij");
             fields.screen("inserted_screen", made.screen, "P's_ij");
             fields.direction("inserted_n", edge.normal, "N_ij");

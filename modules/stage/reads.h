@@ -4,13 +4,15 @@
 
 namespace tessera {
 
-/// The table entries that an item needs: byte addresses, grouped in requests that a memory serves one after another.
-/// Filled in by the unit; empty: none.
+/// The table entries that an item needs of one memory: byte addresses, grouped in requests that it serves one after
+/// another. Filled in by the unit; empty: none.
 class Reads {
   public:
     static constexpr unsigned most_requests = 3;
     static constexpr unsigned most_entries = 27;
 
+    /// Which of the unit's ports they are read through, in the order of reads_through(); 0 unless this is called.
+    void through(unsigned port) { port_ = port; }
     /// One more request, for one entry.
     void add(std::uint64_t address) {
         add_request();
@@ -19,8 +21,9 @@ class Reads {
     /// One more request, for the 1 to 9 entries that are added next (a gather).
     void add_request() { first_[requests_++] = entries_; }
     void add_entry(std::uint64_t address) { address_[entries_++] = address; }
-    void clear() { requests_ = entries_ = 0; }
+    void clear() { port_ = requests_ = entries_ = 0; }
 
+    unsigned port() const { return port_; }
     unsigned requests() const { return requests_; }
     unsigned entries() const { return entries_; }
     /// Entries of a request; of all, their addresses in order.
@@ -30,6 +33,7 @@ class Reads {
     const std::uint64_t* addresses() const { return address_.data(); }
 
   private:
+    unsigned port_ = 0;
     unsigned requests_ = 0;
     unsigned entries_ = 0;
     std::array<unsigned, most_requests> first_;  // entry of each request

@@ -18,10 +18,12 @@ namespace tessera {
 /// What a stage is made of.
 template <class In, class Out>
 struct Stage<In, Out>::Machinery {
-    /// An item under way: its requests, how many of them have been answered, and the entries that each asks for.
+    /// An item under way: its requests and their port, how many of them have been answered, and the entries that each
+    /// asks for.
     struct Slot {
         In item{};
         Out result{};
+        std::uint8_t port = 0;
         std::uint8_t requests = 0;
         std::uint8_t answered = 0;
         std::array<std::uint8_t, Reads::most_requests> count;
@@ -94,7 +96,7 @@ void Stage<In, Out>::delivers_to(const UnitContext& context, StreamOutput<Payloa
 
 template <class In, class Out>
 void Stage<In, Out>::reads_through(MemoryPort& port, unsigned most_requests) {
-    port_ = &port;
+    ports_[reads_tables() ? 1 : 0] = &port;
     port.clocked_by(clock_, *this, machinery_->pipeline.capacity() * most_requests);
 }
 
@@ -113,10 +115,10 @@ void Stage<In, Out>::b_transport(In& item, sc_core::sc_time& delay) {
 template <class In, class Out>
 Out Stage<In, Out>::read_and_process(const In& item, sc_core::sc_time& delay) {
     Entries entries;
-    if (port_ != nullptr) {
+    if (reads_tables()) {
         Reads needed;
         reads(item, needed);
-        MemoryPort::Burst burst(*port_, delay);
+        MemoryPort::Burst burst(*ports_[needed.port()], delay);
         for (unsigned k = 0; k < needed.entries(); ++k)
             entries[k] = burst.read(needed.addresses()[k]);
     }
@@ -130,10 +132,11 @@ void Stage<In, Out>::start(std::uint64_t cycle) {
     slot.item = input_->front();
     slot.requests = slot.answered = 0;
     activity_.item_in(cycle);
-    if (port_ != nullptr) {
+    if (reads_tables()) {
         m.reads.clear();
         m.asked = m.asked_entries = 0;
         reads(slot.item, m.reads);
+        slot.port = static_cast<std::uint8_t>(m.reads.port());
         slot.requests = static_cast<std::uint8_t>(m.reads.requests());
         for (unsigned k = 0; k < m.reads.requests(); ++k)
             slot.count[k] = static_cast<std::uint8_t>(m.reads.count(k));
@@ -145,50 +148,52 @@ void Stage<In, Out>::start(std::uint64_t cycle) {
     input_->pop();
 }
 
+/// In the order of the items, whichever port an item reads through.
 template <class In, class Out>
 void Stage<In, Out>::take_answers(std::uint64_t cycle) {
     Machinery& m = *machinery_;
-    while (port_->answered()) {
-        m.skip_processed();
+    for (m.skip_processed(); m.waiting < m.pipeline.size(); m.skip_processed()) {
         typename Machinery::Slot& slot = m.pipeline.at(m.waiting);
+        MemoryPort& port = *ports_[slot.port];
+        if (!port.answered())
+            break;
         const unsigned count = slot.count[slot.answered++];
-        port_->copy_entries(0, count, &m.entries[m.come]);
+        port.copy_entries(0, count, &m.entries[m.come]);
         m.come += count;
-        port_->pop_answer();
+        port.pop_answer();
         if (slot.processed()) {
             m.come = 0;
             slot.result = process(slot.item, m.entries);
             m.pipeline.finish(m.waiting, cycle + m.pipeline.latency());
         }
     }
-    m.skip_processed();
 }
 
 template <class In, class Out>
 void Stage<In, Out>::step() {
     const std::uint64_t cycle = clock_.last_cycle();
     Machinery& m = *machinery_;
-    if (port_ != nullptr)
+    if (reads_tables())
         take_answers(cycle);
     while (m.pipeline.front_finished(cycle) && m.fork.deliver(m.pipeline.front().result)) {
         m.pipeline.pop();
-        if (port_ != nullptr)
+        if (reads_tables())
             --m.waiting;
         activity_.item_out(cycle);
     }
     bool lacking = false;
-    while ((port_ == nullptr || m.ask(*port_)) && !input_->empty() && m.pipeline.may_start(cycle)) {
+    while ((!reads_tables() || m.ask(*ports_[m.reads.port()])) && !input_->empty() && m.pipeline.may_start(cycle)) {
         lacking = may_wait_ && !may_start(input_->front());
         if (lacking)
             break;
         start(cycle);
     }
-    if (port_ != nullptr)
+    if (reads_tables())
         m.skip_processed();
     if (m.pipeline.front_finished(cycle))
         activity_.set(cycle, State::blocked, m.fork.blocked_by());
-    else if (port_ != nullptr && m.waiting == 0 && port_->under_way())
-        activity_.set(cycle, State::waiting_for_memory, port_->memory());
+    else if (reads_tables() && m.waiting == 0 && !m.pipeline.empty())
+        activity_.set(cycle, State::waiting_for_memory, ports_[m.pipeline.front().port]->memory());
     else if (!m.pipeline.empty() || (!lacking && !input_->empty()))
         activity_.set(cycle, State::busy);
     else
@@ -203,10 +208,22 @@ std::uint64_t Stage<In, Out>::occupied_cycles() const {
     return activity_.items_in() * timing_.interval / machinery_->servers;
 }
 
+/// The sum of a figure of each port.
+template <class In, class Out>
+template <class Figure>
+std::uint64_t Stage<In, Out>::over_ports(Figure figure) const {
+    std::uint64_t sum = 0;
+    for (const MemoryPort* port : ports_) {
+        if (port != nullptr)
+            sum += static_cast<std::uint64_t>(figure(*port));
+    }
+    return sum;
+}
+
 template <class In, class Out>
 std::string Stage<In, Out>::describe_contents() const {
     std::string text = count_of(machinery_->pipeline.size() + input_->size(), "item");
-    if (port_ != nullptr && port_->on_offer())
+    if (over_ports([](const MemoryPort& port) { return port.on_offer(); }) > 0)
         text = listed(text, "a request its memory does not take");
     return listed(text, input_->holds_back() ? "one waiting at the input" : "");
 }
@@ -225,18 +242,21 @@ void Stage<In, Out>::trace_signals(Signals& signals) const {
     if (signals.when(signals.changed("started", activity_.items_in()) && !m.pipeline.empty())) {
         signals.item("in", m.pipeline.newest().item);
         trace_started(signals, m.pipeline.newest().item);
-        if (port_ == nullptr)
+        if (!reads_tables())
             show_result(m.pipeline.newest());
     }
-    if (port_ == nullptr)
+    if (!reads_tables())
         return;
-    signals.pulse("request", port_->requests());
-    signals.value("requests", 32, port_->requests());
-    signals.value("reads", 32, port_->reads());
-    signals.flag("request_held", port_->on_offer());
-    signals.value("requests_under_way", 16, port_->requests_under_way());
-    if (signals.when(signals.changed("asked", port_->reads()) && port_->under_way()))
-        signals.value("address", 32, port_->last_address());
+    const std::uint64_t requests = over_ports([](const MemoryPort& port) { return port.requests(); });
+    const std::uint64_t read = over_ports([](const MemoryPort& port) { return port.reads(); });
+    const std::uint64_t under_way = over_ports([](const MemoryPort& port) { return port.requests_under_way(); });
+    signals.pulse("request", requests);
+    signals.value("requests", 32, requests);
+    signals.value("reads", 32, read);
+    signals.flag("request_held", over_ports([](const MemoryPort& port) { return port.on_offer(); }) > 0);
+    signals.value("requests_under_way", 16, under_way);
+    if (signals.when(signals.changed("asked", read) && under_way > 0))
+        signals.value("address", 32, ports_[m.reads.port()]->last_address());
     if (signals.when(signals.changed("processed", activity_.items_out() + m.waiting) && m.waiting > 0))
         show_result(m.waiting > 0 ? m.pipeline.at(m.waiting - 1) : m.pipeline.newest());
 }

@@ -12,13 +12,21 @@ struct UnitTiming {
     unsigned buffer = 1;    ///< items that may wait at its input, at least 1
 };
 
+/// Which bank an entry of a table lies in (memories/interleave.h).
+enum class Interleave {
+    entry,         ///< one entry after another
+    exclusive_or,  ///< exclusive ORs of bits of its column and row; banks: a power of two
+};
+
 /// A memory's ports, in cycles.
 struct MemoryTiming {
     unsigned ports = 1;    ///< entries a cycle, from each bank
-    unsigned banks = 1;    ///< interleaved entry by entry
+    unsigned banks = 1;    ///< at most 64
     unsigned latency = 1;  ///< from an entry's address to its data
     unsigned width = 0;    ///< bytes a port moves in a cycle; 0: a whole entry
     unsigned buffer = 1;   ///< requests that may wait, at least 1
+    Interleave interleave = Interleave::entry;
+    unsigned window = 0;  ///< requests whose reads may overlap; 0: those that find each of their banks free
 };
 
 /// Off-chip memory, as the Triangle Queue sees it.

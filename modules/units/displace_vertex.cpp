@@ -24,12 +24,13 @@ void DisplaceVertex::reads(const BasePoint& point, Reads& reads) const {
 
 DisplacedPoint DisplaceVertex::process(const BasePoint& point, const Entries& codes) {
     const datapath::Formats& formats = registers_.formats;
-    DisplacedPoint displaced{point, {}};
+    DisplacedPoint displaced{point, {}, 0};
     if (point.tag.is_normal())
         return displaced;
     const datapath::Direction normal = point.tag.is_edge() ? normalise(point.n, formats, saturations_) : point.n;
-    displaced.displaced =
-        displace(point.p, normal, static_cast<std::uint32_t>(codes[0]), registers_.displacement, formats, saturations_);
+    const auto code = static_cast<std::uint16_t>(codes[0]);
+    displaced.displaced = displace(point.p, normal, code, registers_.displacement, formats, saturations_);
+    displaced.code = formats.codes ? code : std::uint16_t{0};
     return displaced;
 }
 

@@ -8,8 +8,8 @@ namespace tessera {
 namespace {
 
 EdgeEnd edge_end(const datapath::Vertex& vertex) {
-    return {vertex.texture,          vertex.normal, vertex.tangent,   vertex.handedness,
-            vertex.displaced_normal, vertex.screen, vertex.generation};
+    return {vertex.texture,          vertex.normal, vertex.tangent,    vertex.handedness,
+            vertex.displaced_normal, vertex.screen, vertex.generation, vertex.code};
 }
 
 PartTag tag_of(const TakenTriangle& taken, Parts part) {

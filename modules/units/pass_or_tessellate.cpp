@@ -62,10 +62,11 @@ void PassOrTessellate::take(Incomplete& place, const ScreenPoint& part) {
     const unsigned k = part.tag.index();
     datapath::Vertex& vertex = pass.triangle.vertices[k];
     if (part.tag.is_edge()) {
-        pass.new_vertex[k] = {part.p, part.n, part.t, part.displaced, part.screen};
+        pass.new_vertex[k] = {part.p, part.n, part.t, part.code, part.displaced, part.screen};
     } else if (part.tag.is_normal()) {
         vertex.screen_normal = part.n;
     } else {
+        vertex.code = part.code;
         vertex.displaced = part.displaced;
         vertex.screen = part.screen;
     }

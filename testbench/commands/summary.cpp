@@ -6,6 +6,7 @@
 
 #include "modules/datapath/widths.h"
 #include "testbench/common/grouped_digits.h"
+#include "testbench/output/report/area.h"
 #include "testbench/output/report/saturation_figures.h"
 #include "testbench/output/report/timing_report.h"
 
@@ -115,12 +116,17 @@ std::string timing_rows(const Simulation& simulation) {
         return count == 0 ? 0.0 : static_cast<double>(simulation.cycles()) / static_cast<double>(count);
     };
     const double period = simulation.setup.design.timing.cycle_picoseconds * 1e-12;
-    std::string text = row(
-        "cycles", fmt::format("{}: {:.1f} a finished triangle, {:.1f} a pass, {:.1f} an edge; {:.3g} ms at {:.4g} MHz",
-                              count(simulation.cycles()), per(p.pass_or_tessellate.counts().finished),
-                              per(p.pass_or_tessellate.counts().passes), per(p.edges_tested()),
-                              static_cast<double>(simulation.cycles()) * period * 1e3, 1e-6 / period));
+    std::string text =
+        row("cycles",
+            fmt::format("{}: {:.1f} per finished triangle, {:.1f} per pass, {:.1f} per edge; {:.3g} ms at {:.4g} MHz",
+                        count(simulation.cycles()), per(p.pass_or_tessellate.counts().finished),
+                        per(p.pass_or_tessellate.counts().passes), per(p.edges_tested()),
+                        static_cast<double>(simulation.cycles()) * period * 1e3, 1e-6 / period));
     text += row("bottleneck", bottleneck_text(p, simulation.cycles()));
+    const UnitArea area = total_area(area_of(simulation));
+    text += row("hardware", fmt::format("{} multipliers, {} bits of registers, {} bits of memory with {} table ports",
+                                        count(area.multipliers), count(area.register_bits), count(area.memory_bits),
+                                        count(area.ports)));
     if (p.triangle_queue.spilled() > 0)
         text += row("spilled", fmt::format("{} triangles, at most {} on chip", count(p.triangle_queue.spilled()),
                                            count(p.triangle_queue.on_chip_high_water_mark())));
@@ -166,7 +172,7 @@ std::string summary(const MachineSetup& setup, const Simulation& simulation, con
                                               count(p.triangle_queue.high_water_mark()), widths.triangle));
     text +=
         row("summed height table",
-            fmt::format("{} bytes, {} bit entries{}; {} reads, {:.1f} an edge",
+            fmt::format("{} bytes, {} bit entries{}; {} reads, {:.1f} per edge",
                         count(setup.registers.summed_height_table.bytes()), setup.registers.formats.summed_height.bits,
                         setup.summed_height_bits_chosen ? " (chosen)" : "", count(table_reads),
                         edges == 0 ? 0.0 : static_cast<double>(table_reads) / static_cast<double>(edges)));

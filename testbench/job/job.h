@@ -136,7 +136,8 @@ struct Job {
         Overflow queue_overflow = Overflow::spill;
         std::int64_t tests_units = 1;  // Tessellation Tests units: 1 or 3
         TestOrder test_order = TestOrder::parallel;
-        bool final_edges = false;  // are not tested again
+        bool final_edges = false;         // are not tested again
+        bool one_texel_from_map = false;  // the sum over one texel is its code
         std::int64_t transform_pipelines = 1;
         bool direct_memory = true;                      // functional mode reads memories through DMI
         std::array<double, 3> light{0.3, -0.4, 0.866};  // direction towards the light, world space

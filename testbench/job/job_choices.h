@@ -77,6 +77,16 @@ constexpr std::string_view name_of(TestOrder value) {
     return {};
 }
 
+constexpr std::string_view name_of(Interleave value) {
+    switch (value) {
+        case Interleave::entry:
+            return "entry";
+        case Interleave::exclusive_or:
+            return "xor";
+    }
+    return {};
+}
+
 constexpr std::string_view name_of(QueueOrder value) {
     switch (value) {
         case QueueOrder::fifo:

@@ -106,13 +106,20 @@ class TableWriter {
     }
     template <typename Enum, typename = std::enable_if_t<std::is_enum_v<Enum>>>
     void add(const char* leaf, Enum Group::*member, const char* description) const {
+        add_choice<Enum>(
+            leaf, [member](auto& group) -> auto& { return group.*member; }, description);
+    }
+
+    /// One of an enumeration's values: `member(group)` is a reference to it.
+    template <typename Enum, typename Member>
+    void add_choice(const std::string& leaf, Member member, const std::string& description) const {
         Key& key = push(leaf, KeyKind::choice, "-", description);
         key.choices = names_of<Enum>();
-        key.get = [select = select_, member](const Job& job) { return std::string(name_of(select(job).*member)); };
+        key.get = [select = select_, member](const Job& job) { return std::string(name_of(member(select(job)))); };
         key.set = [select = select_, member](Job& job, const JobValue& value) {
             const std::vector<std::string_view> names = names_of<Enum>();
             const auto found = std::find(names.begin(), names.end(), std::get<std::string>(value));
-            select(job).*member = static_cast<Enum>(found - names.begin());
+            member(select(job)) = static_cast<Enum>(found - names.begin());
         };
     }
 
@@ -213,8 +220,7 @@ void add_memory(const Writer& key, const std::string& leaf, const std::string& n
         leaf + "_ports", [memory](auto& t) -> auto& { return memory(t).ports; }, "entries a cycle", between(1, 64),
         name + ": ports of each bank");
     key.add_deep(
-        leaf + "_banks", [memory](auto& t) -> auto& { return memory(t).banks; }, "-", between(1, 64),
-        name + ": banks, interleaved entry by entry");
+        leaf + "_banks", [memory](auto& t) -> auto& { return memory(t).banks; }, "-", between(1, 64), name + ": banks");
     key.add_deep(
         leaf + "_latency", [memory](auto& t) -> auto& { return memory(t).latency; }, "cycles", between(0, most_places),
         name + ": from an entry's address to its data");
@@ -275,6 +281,14 @@ void add_timing(const Writer& key) {
         key, "normal_map", "Normal map", [](auto& t) -> auto& { return t.normal_map; });
     add_memory(
         key, "summed_height_table", "Summed Height Table", [](auto& t) -> auto& { return t.summed_height_table; });
+    key.template add_choice<Interleave>(
+        "summed_height_table_interleave", [](auto& t) -> auto& { return t.summed_height_table.interleave; },
+        "Summed Height Table: the bank of an entry, entry by entry or by exclusive ORs of bits of its column and row "
+        "(banks: a power of two)");
+    key.add_deep(
+        "summed_height_table_window", [](auto& t) -> auto& { return t.summed_height_table.window; }, "rectangles",
+        between(0, most_places),
+        "Summed Height Table: rectangles whose reads may overlap; 0: those that find each of their banks free");
     key.add_deep(
         "off_chip_latency", [](auto& t) -> auto& { return t.off_chip_memory.latency; }, "cycles",
         between(0, most_places), "Off-chip memory: from a request's last byte to its answer");
@@ -393,6 +407,7 @@ std::vector<KeyTable> declare_keys() {
         key.add("tests_units", &Hardware::tests_units, "-", between(1, 3), "Timed mode: Tessellation Tests units, 1 or 3 (one for each edge of a triangle)");
         key.add("test_order", &Hardware::test_order, "All tests of an edge at once (the paper's), or those that read no table first and the others only if the decision still depends on them; the mesh is the same");
         key.add("final_edges", &Hardware::final_edges, "A child's edge that was tested with its parent and not split is not tested again; off: the paper's; the mesh is the same");
+        key.add("one_texel_from_map", &Hardware::one_texel_from_map, "Vertices carry their displacement codes, and the Summed Height Test takes the sum over a rectangle of one texel from them and from the displacement map; off: the paper's, from the Summed Height Table; the mesh is the same");
         key.add("transform_pipelines", &Hardware::transform_pipelines, "-", between(1, 16), "Timed mode: Transform pipelines that take turns");
         key.add("direct_memory", &Hardware::direct_memory, "Functional mode reads the memories through DMI");
         key.add("light", &Hardware::light, "-", coordinate_range, "Direction towards the light, world space, of any length");

@@ -185,6 +185,15 @@ void check_hardware(const Job::Hardware& hardware, Faults& faults) {
                   "`hardware.tests_units` = 2: a design has 1 Tessellation Tests unit, or 3, one for each edge");
 }
 
+void check_timing(const Timing& timing, Faults& faults) {
+    const MemoryTiming& table = timing.summed_height_table;
+    faults.unless(
+        table.interleave == Interleave::entry || (table.banks & (table.banks - 1)) == 0,
+        "`timing.summed_height_table_banks` = {}, but `timing.summed_height_table_interleave` = \"xor\" needs "
+        "a power of two: set it to 4, 8 or 16, or the interleave to \"entry\"",
+        table.banks);
+}
+
 void check_traces(const Job& job, Faults& faults) {
     const Job::Output& output = job.output;
     const char* const wanted = output.vcd ? "vcd" : output.timeline ? "timeline" : nullptr;
@@ -210,6 +219,7 @@ void validate(const Job& job) {
     check_formats(job, faults);
     check_light(job.hardware, faults);
     check_hardware(job.hardware, faults);
+    check_timing(job.timing, faults);
     check_traces(job, faults);
     faults.raise();
 }

@@ -6,7 +6,7 @@ namespace tessera {
 
 using datapath::TestBits;
 
-Decisions::Decisions(const MachineSetup& setup) {
+Decisions::Decisions(const MachineSetup& setup) : registers_(setup.registers) {
     if (setup.design.test_order != TestOrder::parallel || setup.registers.formats.final_edges)
         bare_.emplace(setup);
 }
@@ -32,10 +32,21 @@ void Decisions::count(std::uint8_t tests) {
     }
 }
 
+/// Rectangles of one texel, and vertices that have been displaced before this pass.
+bool Decisions::by_codes(const datapath::TrianglePass& pass, int edge) const {
+    if (!registers_.formats.codes || !registers_.tests.summed_height_test || pass.new_vertices != 0)
+        return false;
+    const datapath::RectangleSize size =
+        rectangle_size(pass.edge_begin(edge).texture, pass.edge_end(edge).texture, registers_.map, registers_.formats);
+    return size.width == 1 && size.height == 1;
+}
+
 void Decisions::write(const datapath::TrianglePass& pass) {
-    for (const datapath::EdgeTests& edge : pass.edges) {
-        evaluated_.normal += (edge.evaluated & datapath::normal_bit) != 0;
-        evaluated_.summed_height += (edge.evaluated & datapath::summed_height_bit) != 0;
+    for (int k = 0; k < 3; ++k) {
+        const unsigned evaluated = pass.edges[static_cast<std::size_t>(k)].evaluated;
+        evaluated_.normal += (evaluated & datapath::normal_bit) != 0;
+        evaluated_.summed_height += (evaluated & datapath::summed_height_bit) != 0;
+        evaluated_.summed_height_by_codes += (evaluated & datapath::summed_height_bit) != 0 && by_codes(pass, k);
     }
     if (!bare_) {
         for (const datapath::EdgeTests& edge : pass.edges)

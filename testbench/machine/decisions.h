@@ -35,6 +35,7 @@ class Decisions : public tlm::tlm_analysis_if<datapath::TrianglePass> {
     struct Evaluated {
         std::uint64_t normal = 0;
         std::uint64_t summed_height = 0;
+        std::uint64_t summed_height_by_codes = 0;  ///< of these: without the Summed Height Table (Formats::codes)
     };
 
     /// `setup` must outlive it.
@@ -51,7 +52,9 @@ class Decisions : public tlm::tlm_analysis_if<datapath::TrianglePass> {
 
   private:
     void count(std::uint8_t tests);
+    bool by_codes(const datapath::TrianglePass& pass, int edge) const;
 
+    const datapath::Registers& registers_;
     mutable std::optional<BareRecursion> bare_;  // none: the machine evaluates every test of every edge
     std::vector<std::uint8_t> split_by_;         // of each pass that split its triangle, by number
     Counts counts_;

@@ -115,6 +115,7 @@ MachineSetup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& m
     registers.tests = make_tests(job.tests, formats);
     formats.highlight_tag = job.tests.highlight;
     formats.final_edges = job.hardware.final_edges;
+    formats.codes = job.hardware.one_texel_from_map;
     if (job.tests.highlight &&
         !set_highlight_test(job.tests, towards_light(job.hardware), view.backward, formats, registers.tests, saturated))
         setup.remarks.emplace_back(

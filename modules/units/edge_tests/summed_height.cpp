@@ -1,18 +1,33 @@
 #include "modules/units/edge_tests/summed_height.h"
 
+#include <algorithm>
+
 #include "modules/datapath/edge_tests.h"
 #include "modules/stage/stage_steps.h"
 
 namespace tessera {
+namespace {
+
+unsigned memory_latency(const UnitContext& context) {
+    const unsigned table = context.timing().summed_height_table.latency;
+    return context.registers.formats.codes ? std::max(table, context.timing().displacement_map.latency) : table;
+}
+
+}  // namespace
 
 SummedHeightTest::SummedHeightTest(const sc_core::sc_module_name& name, const UnitContext& context)
-    : Stage(name, context, context.timing().summed_height_test, 1, context.timing().summed_height_table.latency),
+    : Stage(name, context, context.timing().summed_height_test, 1, memory_latency(context)),
       summed_height_table("summed_height_table", context.registers.summed_height_table.entry_bytes,
                           context.design.direct_memory),
       registers_(context.registers) {
     takes_from(context, input);
     delivers_to(context, output);
     reads_through(summed_height_table, 3);
+    if (registers_.formats.codes) {
+        displacement_map.emplace("displacement_map", registers_.displacement_map.entry_bytes,
+                                 context.design.direct_memory);
+        reads_through(*displacement_map, 1);
+    }
 }
 
 /// Of the edge's three rectangles.
@@ -20,9 +35,22 @@ datapath::RectangleSize SummedHeightTest::size(const HeightOperands& edge) const
     return rectangle_size(edge.t_i, edge.t_j, registers_.map, registers_.formats);
 }
 
+/// The sums around its ends are their codes, and around its midpoint the code there.
+bool SummedHeightTest::has_codes(const HeightOperands& edge) const {
+    if (!displacement_map || !edge.codes_known)
+        return false;
+    const datapath::RectangleSize its_size = size(edge);
+    return its_size.width == 1 && its_size.height == 1;
+}
+
 void SummedHeightTest::reads(const HeightOperands& edge, Reads& reads) const {
     if (!registers_.tests.summed_height_test)
         return;
+    if (has_codes(edge)) {
+        reads.through(1);
+        reads.add(texel_address(edge.t_ij, registers_.displacement_map, registers_.map, registers_.formats));
+        return;
+    }
     const datapath::RectangleSize its_size = size(edge);
     for (const datapath::TexCoord& centre : {edge.t_i, edge.t_j, edge.t_ij}) {
         reads.add_request();
@@ -38,10 +66,15 @@ HeightResult SummedHeightTest::process(const HeightOperands& edge, const Entries
     const datapath::RectangleSize its_size = size(edge);
     unsigned sum = 0;
     unsigned next = 0;
-    for (const datapath::TexCoord& centre : {edge.t_i, edge.t_j, edge.t_ij})
-        sums_[sum++] = rectangle_sum(centred_rectangle(centre, its_size, registers_.map, registers_.formats),
-                                     registers_.map, registers_.summed_height_table, registers_.formats,
-                                     [&](std::uint64_t) { return entries[next++]; });
+    if (has_codes(edge)) {
+        for (const std::uint64_t code : {std::uint64_t{edge.code_i}, std::uint64_t{edge.code_j}, entries[0]})
+            sums_[sum++] = code & static_cast<std::uint64_t>(registers_.formats.summed_height.highest);
+    } else {
+        for (const datapath::TexCoord& centre : {edge.t_i, edge.t_j, edge.t_ij})
+            sums_[sum++] = rectangle_sum(centred_rectangle(centre, its_size, registers_.map, registers_.formats),
+                                         registers_.map, registers_.summed_height_table, registers_.formats,
+                                         [&](std::uint64_t) { return entries[next++]; });
+    }
     return {edge.tag, summed_height_test(sums_[0], sums_[1], sums_[2], its_size, registers_.tests)};
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <systemc>
 
 #include "modules/datapath/rectangle.h"
@@ -16,6 +17,9 @@ namespace tessera {
 /// In:   HeightOperands. Out: HeightResult.
 /// Memory: three rectangles an edge on the Summed Height Table, four reads each; up to nine where a rectangle wraps
 ///         around a repeated map. A rectangle is one request.
+///         In a design whose vertices carry their displacement codes (Formats::codes) the sums of an edge with
+///         rectangles of one texel are codes: those of its ends, and one read of the displacement map for its
+///         midpoint. Edges of a base triangle, whose vertices have no codes yet, read the table.
 /// Arithmetic: subtract, shift, add, compare; sums modulo 2^n. With the area threshold two multiplications.
 /// Timing: latency 3 after the last table entry; interval 1 by default, or the table reads' if that is longer: with one
 ///         port a rectangle takes four cycles, an edge 12, a triangle 36.
@@ -25,6 +29,7 @@ class SummedHeightTest : public Stage<HeightOperands, HeightResult> {
     StreamInput<HeightOperands> input{"input"};
     StreamOutput<HeightResult> output{"output"};
     MemoryPort summed_height_table;
+    std::optional<MemoryPort> displacement_map;  ///< if Formats::codes
 
     SummedHeightTest(const sc_core::sc_module_name& name, const UnitContext& context);
 
@@ -37,6 +42,7 @@ class SummedHeightTest : public Stage<HeightOperands, HeightResult> {
     void trace_processed(Signals& signals, const HeightOperands& edge, const HeightResult& result) const override;
 
     datapath::RectangleSize size(const HeightOperands& edge) const;
+    bool has_codes(const HeightOperands& edge) const;
 
     const datapath::Registers& registers_;
     std::array<std::uint64_t, 3> sums_{};  // around t_i, t_j, t_ij of the edge decided last

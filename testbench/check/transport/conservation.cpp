@@ -58,23 +58,28 @@ std::uint64_t bumps(const Pipeline& p, std::uint64_t vertices) {
     return p.tessellation_tests.size() == 1 ? vertices : 2 * vertices;
 }
 
-/// Each edge's tests: `normal` and `summed_height` of `edges` edges are evaluated.
+/// Each edge's tests: `normal` and `summed_height` of `edges` edges are evaluated, `by_codes` of the latter without the
+/// Summed Height Table.
 struct Tested {
     std::uint64_t vertices;
     std::uint64_t edges;
     std::uint64_t normal;
     std::uint64_t summed_height;
+    std::uint64_t by_codes;
 };
 
 void add_reads(Equations& list, const Pipeline& p, const Tested& tested) {
-    const auto& [vertices, edges, normal, summed_height] = tested;
-    list.add("reads of displace_vertex = vertices and edges", p.displacement_map_reads(), vertices + edges);
+    const auto& [vertices, edges, normal, summed_height, by_codes] = tested;
+    list.add("reads of displace_vertex = vertices and edges", p.displace_vertex.displacement_map.reads(),
+             vertices + edges);
+    list.add("reads of displacement_map = vertices, edges and texels", p.displacement_map_reads(),
+             vertices + edges + by_codes);
     list.add("reads of normal_test = vertices and its edges", p.normal_map_reads(), bumps(p, vertices) + normal);
     list.add("positions of transform = vertices and edges", p.transform.positions(), vertices + edges);
 }
 
 void add_timed(Equations& list, const Simulation& simulation, const Tested& tested) {
-    const auto& [vertices, edges, normal, summed_height] = tested;
+    const auto& [vertices, edges, normal, summed_height, by_codes] = tested;
     const Pipeline& p = simulation.pipeline;
     const auto& counts = p.pass_or_tessellate.counts();
     const std::uint64_t rounds = counts.passes + counts.normal_passes;
@@ -110,16 +115,16 @@ void add_timed(Equations& list, const Simulation& simulation, const Tested& test
     list.add("edges taken from tessellation_tests = edges", joined, edges);
     list.add("edges collected = edges", tests([](const auto& t) { return items(t.collector()); }), edges);
 
-    list.add("entries of displacement_map = read by displace_vertex", p.displacement_map.transactions(),
-             p.displacement_map_reads());
+    list.add("entries of displacement_map = read", p.displacement_map.transactions(), p.displacement_map_reads());
     list.add("entries of normal_map = read by normal_test", p.normal_map.transactions(), p.normal_map_reads());
     list.add("entries of summed_height_table = read by summed_height_test", p.summed_height_table.transactions(),
              p.summed_height_table_reads());
-    list.add("requests to displacement_map = vertices and edges", items(p.displacement_map), vertices + edges);
+    list.add("requests to displacement_map = vertices, edges and texels", items(p.displacement_map),
+             vertices + edges + by_codes);
     list.add("requests to normal_map = vertices and edges of normal_test", items(p.normal_map),
              bumps(p, vertices) + normal);
     list.add("requests to summed_height_table = three an edge, if it tests", items(p.summed_height_table),
-             simulation.setup.registers.tests.summed_height_test ? 3 * summed_height : 0);
+             simulation.setup.registers.tests.summed_height_test ? 3 * (summed_height - by_codes) : 0);
 
     list.add("triangles spilled = come back", p.triangle_queue.spilled(), p.triangle_queue.refilled());
     list.add("requests to off_chip_memory = out and back", items(p.off_chip_memory), 2 * p.triangle_queue.spilled());
@@ -138,7 +143,7 @@ std::vector<Conservation> conservation(const Simulation& simulation) {
     const std::uint64_t edges =
         simulation.setup.registers.formats.final_edges ? 3 * base + 4 * counts.edges_split : 3 * counts.passes;
     const Decisions::Evaluated& evaluated = simulation.decisions.evaluated();
-    const Tested tested{3 * base, edges, evaluated.normal, evaluated.summed_height};
+    const Tested tested{3 * base, edges, evaluated.normal, evaluated.summed_height, evaluated.summed_height_by_codes};
     add_triangles(list, simulation);
     list.add(simulation.setup.registers.formats.final_edges ? "edges tested = 3 a base triangle, 4 a split"
                                                             : "edges tested = 3 a pass",

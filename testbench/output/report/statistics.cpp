@@ -9,6 +9,7 @@
 #include "modules/datapath/reciprocal.h"
 #include "modules/datapath/widths.h"
 #include "testbench/machine/host_traffic.h"
+#include "testbench/output/report/area.h"
 #include "testbench/output/report/saturation_figures.h"
 #include "testbench/output/report/timing_statistics.h"
 
@@ -125,6 +126,25 @@ Collector host_figures(const MachineSetup& setup, std::uint64_t finished, std::u
     return c;
 }
 
+Collector area_figures(const Simulation& simulation) {
+    const std::vector<UnitArea> units = area_of(simulation);
+    Collector c("area");
+    const auto add = [&](const UnitArea& unit) {
+        const auto part = [&](const char* what, std::uint64_t value, const char* figure_unit, const char* description) {
+            if (value > 0)
+                c.add((unit.name + what).c_str(), value, figure_unit, description);
+        };
+        part("_multipliers", unit.multipliers, "multiplier", "that give a result every initiation interval");
+        part("_register_bits", unit.register_bits, "bit", "input buffers, pipeline registers, state");
+        part("_memory_bits", unit.memory_bits, "bit", "a table, or the triangles that waited on chip");
+        part("_ports", unit.ports, "port", "entries a cycle, all banks together");
+    };
+    for (const UnitArea& unit : units)
+        add(unit);
+    add(total_area(units));
+    return c;
+}
+
 /// Repeated work of the machine, beside what the mesh needs.
 Collector useful_work_figures(const Pipeline& p, const Decisions::Evaluated& evaluated, std::uint64_t base_triangles,
                               const MeshCounts& mesh) {
@@ -149,6 +169,8 @@ Collector useful_work_figures(const Pipeline& p, const Decisions::Evaluated& eva
     c.add("edge_tests", tested, "edge", "edges tested: one of a triangle, in each pass; final edges are not");
     c.add("normal_tests", evaluated.normal, "edge", "of these, edges whose Normal Test was evaluated");
     c.add("summed_height_tests", evaluated.summed_height, "edge", "likewise the Summed Height Test");
+    c.add("summed_height_tests_by_codes", evaluated.summed_height_by_codes, "edge",
+          "of these, edges whose rectangles are single texels, with hardware.one_texel_from_map");
     c.add("tests_per_edge", per(tested, mesh.tested_edges()), "times", "edge tests per distinct edge");
     return c;
 }
@@ -271,6 +293,7 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
         saturated.add(figure.name, figure.count, figure.unit, figure.description);
     take(std::move(saturated));
 
+    take(area_figures(simulation));
     take(mesh_figures(simulation.monitor.mesh));
     if (timed) {
         std::vector<Figure> figures = timing_figures(simulation);

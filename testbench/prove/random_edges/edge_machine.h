@@ -166,7 +166,7 @@ class Machine {
 inline bool same_bits(const datapath::Vertex& a, const datapath::Vertex& b) {
     return a.position == b.position && a.normal == b.normal && a.tangent == b.tangent && a.texture == b.texture &&
            a.handedness == b.handedness && a.generation == b.generation && a.displaced_known == b.displaced_known &&
-           a.screen_normal_known == b.screen_normal_known && a.displaced == b.displaced &&
+           a.screen_normal_known == b.screen_normal_known && a.code == b.code && a.displaced == b.displaced &&
            a.displaced_normal == b.displaced_normal && a.screen == b.screen && a.screen_normal == b.screen_normal;
 }
 

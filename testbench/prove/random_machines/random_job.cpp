@@ -124,6 +124,13 @@ void choose_evaluations(Random& random, Job& job) {
     job.hardware.test_order = random.coin() ? TestOrder::parallel : TestOrder::cheap_first;
     job.hardware.final_edges = random.coin();
     job.timing.edges_in_sequence = random.natural(1, 40);
+    MemoryTiming& table = job.timing.summed_height_table;
+    table.window = random.one_of({0U, 1U, 2U, 5U, 12U});
+    if (random.coin()) {
+        table.interleave = Interleave::exclusive_or;
+        table.banks = 1U << random.natural(0, 6);
+    }
+    job.hardware.one_texel_from_map = random.coin();
 }
 
 }  // namespace tessera

@@ -41,7 +41,7 @@ TEST_CASE("summary: counts of the machine, each in its place") {
     CHECK(value_of(text, "distinct vertices") == "6; 33 computed, 16 of them discarded, and 15 normals transformed");
     // the default design's entry, and a bit for the Highlight Test
     CHECK(value_of(text, "triangle queue") == "at most 24 triangles waiting, 1573 bits each");
-    CHECK_THAT(value_of(text, "summed height table"), Contains("0 reads, 0.0 an edge"));
+    CHECK_THAT(value_of(text, "summed height table"), Contains("0 reads, 0.0 per edge"));
     CHECK(value_of(text, "functional mode") ==
           "simulated in 0.50 s, 0.00 million edges a second, with the checks of each edge");
     CHECK_THAT(text, Contains("  note: a remark\n"));
@@ -193,9 +193,12 @@ TEST_CASE("summary: a timed run of one triangle") {
     CHECK(value_of(text, "distinct edges") == "3, each tested 1.0 times on average");
     CHECK(value_of(text, "distinct vertices") == "3; 6 computed, 3 of them discarded, and 3 normals transformed");
     CHECK_THAT(value_of(text, "triangle queue"), Catch::StartsWith("at most 1 triangles waiting, "));
-    CHECK_THAT(value_of(text, "summed height table"), Contains("; 36 reads, 12.0 an edge"));
-    CHECK(value_of(text, "cycles") == "86: 86.0 a finished triangle, 86.0 a pass, 28.7 an edge; 0.00043 ms at 200 MHz");
+    CHECK_THAT(value_of(text, "summed height table"), Contains("; 36 reads, 12.0 per edge"));
+    CHECK(value_of(text, "cycles") ==
+          "86: 86.0 per finished triangle, 86.0 per pass, 28.7 per edge; 0.00043 ms at 200 MHz");
     CHECK_THAT(value_of(text, "bottleneck"), Catch::StartsWith("none: bound by latency; "));
+    CHECK_THAT(value_of(text, "hardware"),
+               Catch::StartsWith("103 multipliers, ") && Catch::EndsWith(" bits of memory with 3 table ports"));
     CHECK(value_of(text, "timed mode") ==
           "simulated in 1.00 s, 0.00 million edges a second, with the checks of each edge");
     CHECK(value_of(text, "spilled") == "no such row");

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <cstdint>
+#include <cstdlib>
 #include <string>
 
 #include "testbench/tests/support/case_table.h"
@@ -20,10 +21,12 @@ struct Expected {
         bool base = false;
         unsigned final_edges = 0;
     };
-    bool cheap_first;
-    bool final_edges;
+    const MachineSetup& setup;
+    bool cheap_first = setup.design.test_order == TestOrder::cheap_first;
+    bool final_edges = setup.registers.formats.final_edges;
+    bool from_map = setup.registers.formats.codes;
 
-    std::uint64_t edges = 0, normal = 0, summed_height = 0;
+    std::uint64_t edges = 0, normal = 0, summed_height = 0, by_codes = 0;
     std::uint64_t split_by_both = 0, stopped_by_view_alone = 0, stopped_by_several = 0;
 
     static Note begin(const datapath::Triangle&) { return {true, 0}; }
@@ -37,7 +40,9 @@ struct Expected {
             const bool gates = (tests & datapath::gating_tests) == datapath::gating_tests;
             const bool splits = (tests & (datapath::normal_bit | datapath::highlight_bit)) != 0;
             normal += !cheap_first || gates || note.base ? 1u : 0u;
-            summed_height += !cheap_first || (gates && !splits) ? 1u : 0u;
+            const bool its_height = !cheap_first || (gates && !splits);
+            summed_height += its_height ? 1u : 0u;
+            by_codes += its_height && from_map && !note.base && within_texels(pass, static_cast<int>(k)) ? 1u : 0u;
         }
     }
     /// An edge of a child is final if it is a whole edge of the parent, from corner to corner.
@@ -51,6 +56,13 @@ struct Expected {
     void finished(const datapath::Triangle&, bool) {}
 
   private:
+    /// |du| / 2 and |dv| / 4, rounded down, are 0 or 1.
+    bool within_texels(const datapath::TrianglePass& pass, int edge) const {
+        const datapath::TexCoord& i = pass.edge_begin(edge).texture;
+        const datapath::TexCoord& j = pass.edge_end(edge).texture;
+        const std::int64_t texel = std::int64_t{1} << setup.registers.formats.texture.fraction;
+        return std::llabs(std::int64_t{i.u} - j.u) < 4 * texel && std::llabs(std::int64_t{i.v} - j.v) < 8 * texel;
+    }
     void add_to_report(unsigned tests, bool split) {
         const bool normal_test = (tests & datapath::normal_bit) != 0;
         const bool summed_height_test = (tests & datapath::summed_height_bit) != 0;
@@ -92,6 +104,18 @@ const CaseTable designs(
         {"both, no Normal Test", "hardware.test_order=cheap_first hardware.final_edges=true tests.normal=false"},
         {"both, no Summed Height Test",
          "hardware.test_order=cheap_first hardware.final_edges=true tests.summed_height=false"},
+        {"sums over one texel from the map", "hardware.one_texel_from_map=true"},
+        {"sums over one texel from the map, functional", "hardware.one_texel_from_map=true mode=functional"},
+        {"sums over one texel from a slow map, three tests units, random stalls",
+         "hardware.one_texel_from_map=true hardware.tests_units=3 timing.displacement_map_latency=30 "
+         "timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=20"},
+        {"all of these", "hardware.one_texel_from_map=true hardware.test_order=cheap_first hardware.final_edges=true"},
+        {"all of these, functional",
+         "hardware.one_texel_from_map=true hardware.test_order=cheap_first hardware.final_edges=true mode=functional"},
+        {"all of these, a queue of one place that spills",
+         "hardware.one_texel_from_map=true hardware.test_order=cheap_first hardware.final_edges=true "
+         "hardware.queue_capacity=1 timing.summed_height_table_banks=8 timing.summed_height_table_interleave=xor "
+         "timing.summed_height_table_window=12"},
     },
     [](const Row& row) {
         const CheckedRun run(with_settings(timed_job(), row.settings));
@@ -103,12 +127,15 @@ const CaseTable designs(
         }
 
         BareRecursion bare(run.setup);
-        Expected expected{run.setup.design.test_order == TestOrder::cheap_first,
-                          run.setup.registers.formats.final_edges};
+        Expected expected{run.setup};
         bare.walk(expected);
         const bool summed_height = run.setup.registers.tests.summed_height_test;
         CHECK(p.edges_tested() == expected.edges);
-        CHECK(p.summed_height_table_reads() == (summed_height ? 12 * expected.summed_height : 0));
+        CHECK(p.summed_height_table_reads() == (summed_height ? 12 * (expected.summed_height - expected.by_codes) : 0));
+        if (expected.from_map) {
+            CHECK(expected.by_codes > 1000);
+            CHECK(expected.by_codes < expected.summed_height);
+        }
         const std::uint64_t corners = (run.setup.design.tests_units == 1 ? 3 : 6) * run.setup.base_triangles.size();
         CHECK(p.normal_map_reads() == corners + expected.normal);
         const Decisions::Counts& counts = run.simulation.decisions.counts();

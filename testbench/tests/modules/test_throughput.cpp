@@ -180,6 +180,25 @@ TEST_CASE("four banks of the Summed Height Table are between one port and four")
     CHECK(simulation.cycles() < fill + 3 + 36 * passes + drain);
 }
 
+// Without conflicts eight banks would give an edge's 12 entries in 1.5 cycles, a pass's in 4.5; four ports take 9.
+TEST_CASE("eight banks entry by entry: more than eight cycles a pass") {
+    const MachineSetup setup = full_split("timing.summed_height_table_banks=8");
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    CHECK(simulation.cycles() > 8 * passes);
+    CHECK(simulation.cycles() < 9 * passes);
+}
+
+TEST_CASE("eight exclusive-or banks, the rectangles of four edges at a time: less than seven cycles a pass") {
+    const MachineSetup setup = full_split(
+        "timing.summed_height_table_banks=8 timing.summed_height_table_interleave=xor "
+        "timing.summed_height_table_window=12");
+    Simulation simulation(setup, 1'000'000);
+    run_full_split(simulation);
+    CHECK(2 * simulation.cycles() > 9 * passes);
+    CHECK(simulation.cycles() < 7 * passes);
+}
+
 TEST_CASE("Get Triangle of latency 200 binds: 200 cycles a pass") {
     const MachineSetup setup = full_split("timing.get_triangle_latency=200");
     Simulation simulation(setup, 1'000'000);

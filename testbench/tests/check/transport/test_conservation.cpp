@@ -62,6 +62,7 @@ const Equations two_triangles_functional{
     {"taken by the rasteriser = finished - culled", {8, 8}},
     {"edges tested = 3 a pass", {30, 30}},
     {"reads of displace_vertex = vertices and edges", {36, 6 + 30}},
+    {"reads of displacement_map = vertices, edges and texels", {36, 6 + 30}},
     {"reads of normal_test = vertices and its edges", {36, 6 + 30}},
     {"positions of transform = vertices and edges", {36, 6 + 30}},
 };
@@ -86,10 +87,10 @@ Equations two_triangles_timed() {
         {"vertices taken by view_test = vertices, once a unit", {6, 6}},
         {"edges taken from tessellation_tests = edges", {30, 30}},
         {"edges collected = edges", {30, 30}},
-        {"entries of displacement_map = read by displace_vertex", {36, 36}},
+        {"entries of displacement_map = read", {36, 36}},
         {"entries of normal_map = read by normal_test", {36, 36}},
         {"entries of summed_height_table = read by summed_height_test", {30 * 12, 30 * 12}},
-        {"requests to displacement_map = vertices and edges", {36, 6 + 30}},
+        {"requests to displacement_map = vertices, edges and texels", {36, 6 + 30}},
         {"requests to normal_map = vertices and edges of normal_test", {36, 6 + 30}},
         {"requests to summed_height_table = three an edge, if it tests", {90, 90}},
         {"triangles spilled = come back", {0, 0}},
@@ -194,7 +195,7 @@ TEST_CASE("conservation: an item too many in a unit breaks its equation and no o
         {&tests.summed_height_test, "edges in summed_height_test = its edges"},
         {&tests.view_test, "edges in view_test = edges"},
         {tests.collect_tests, "edges collected = edges"},
-        {&p.displacement_map, "requests to displacement_map = vertices and edges"},
+        {&p.displacement_map, "requests to displacement_map = vertices, edges and texels"},
         {&p.normal_map, "requests to normal_map = vertices and edges of normal_test"},
         {&p.summed_height_table, "requests to summed_height_table = three an edge, if it tests"},
         {&p.off_chip_memory, "requests to off_chip_memory = out and back"},
@@ -243,7 +244,8 @@ TEST_CASE("conservation: a read too many") {
     expect_change("displacement map", simulation,
                   [&] { p.displace_vertex.displacement_map.read(r.displacement_map.base, delay); },
                   {{"reads of displace_vertex = vertices and edges", {1, 0}},
-                   {"entries of displacement_map = read by displace_vertex", {1, 1}}});
+                   {"reads of displacement_map = vertices, edges and texels", {1, 0}},
+                   {"entries of displacement_map = read", {1, 1}}});
     expect_change("normal map", simulation,
                   [&] { p.tessellation_tests[0].normal_test.normal_map.read(r.normal_map.base, delay); },
                   {{"reads of normal_test = vertices and its edges", {1, 0}},
@@ -255,7 +257,7 @@ TEST_CASE("conservation: a read too many") {
     // the same past the units
     expect_change("displacement map, past its unit", simulation,
                   [&] { read_directly(p.displace_vertex.displacement_map, r.displacement_map.base); },
-                  {{"entries of displacement_map = read by displace_vertex", {1, 0}}});
+                  {{"entries of displacement_map = read", {1, 0}}});
     expect_change("normal map, past its unit", simulation,
                   [&] { read_directly(p.tessellation_tests[0].normal_test.normal_map, r.normal_map.base); },
                   {{"entries of normal_map = read by normal_test", {1, 0}}});
@@ -287,6 +289,7 @@ TEST_CASE("conservation: a vertex transformed, and triangles decided, too many")
                    {"finished = emitted", {1, 1}},
                    {"taken by the rasteriser = finished - culled", {1, 1}},
                    {"reads of displace_vertex = vertices and edges", {0, 3}},
+                   {"reads of displacement_map = vertices, edges and texels", {0, 3}},
                    {"reads of normal_test = vertices and its edges", {0, 3}},
                    {"positions of transform = vertices and edges", {0, 3}},
                    {"positions and normals of transform = parts", {1, 0}},
@@ -296,7 +299,7 @@ TEST_CASE("conservation: a vertex transformed, and triangles decided, too many")
                    {"parts in calculate_new_u = vertices and edges", {0, 3}},
                    {"parts in normal_test = vertices and its edges", {0, 3}},
                    {"vertices taken by view_test = vertices, once a unit", {0, 3}},
-                   {"requests to displacement_map = vertices and edges", {0, 3}},
+                   {"requests to displacement_map = vertices, edges and texels", {0, 3}},
                    {"requests to normal_map = vertices and edges of normal_test", {0, 3}}});
 
     // one of its branches: Pass or Tessellate waits for the other
@@ -331,6 +334,7 @@ TEST_CASE("conservation: a vertex transformed, and triangles decided, too many")
                    {"finished = base triangles + edges split", {0, 1}},
                    {"edges tested = 3 a pass", {3, 3}},
                    {"reads of displace_vertex = vertices and edges", {0, 3}},
+                   {"reads of displacement_map = vertices, edges and texels", {0, 3}},
                    {"reads of normal_test = vertices and its edges", {0, 3}},
                    {"positions of transform = vertices and edges", {0, 3}},
                    {"triangles in get_triangle = decided", {0, 1}},
@@ -343,7 +347,7 @@ TEST_CASE("conservation: a vertex transformed, and triangles decided, too many")
                    {"edges in view_test = edges", {0, 3}},
                    {"edges taken from tessellation_tests = edges", {0, 3}},
                    {"edges collected = edges", {0, 3}},
-                   {"requests to displacement_map = vertices and edges", {0, 3}},
+                   {"requests to displacement_map = vertices, edges and texels", {0, 3}},
                    {"requests to normal_map = vertices and edges of normal_test", {0, 3}},
                    {"requests to summed_height_table = three an edge, if it tests", {0, 9}}});
 

@@ -48,6 +48,8 @@ std::vector<Formats> many_formats() {
         all.push_back(make_formats({width(32), width(32), width(32), width(32), width(32), width(8)}));
     for (std::size_t k = 1; k < all.size(); k += 2)
         all[k].final_edges = true;
+    for (std::size_t k = 2; k < all.size(); k += 3)
+        all[k].codes = true;
     return all;
 }
 
@@ -138,6 +140,9 @@ std::vector<ExpectedField> fields_of(const Formats& formats) {
         };
         flag("displaced known", &Vertex::displaced_known);
         flag("screen normal known", &Vertex::screen_normal_known);
+        if (formats.codes)
+            fields.push_back(number<std::uint16_t>(vertex + "d", formats.displacement.bits,
+                                                   [k](Triangle& t) -> std::uint16_t& { return t.vertices[k].code; }));
         add_vector(fields, vertex + "P'", position, k, &Vertex::displaced);
         add_vector(fields, vertex + "N'", normal, k, &Vertex::displaced_normal);
         const auto screen = [&](const char* name, auto member, int bits) {

@@ -35,6 +35,7 @@ Vertex any_vertex(Random& random) {
     v.generation = static_cast<std::uint8_t>(random.integer(0, 11));
     v.displaced_known = true;
     v.screen_normal_known = random.coin();
+    v.code = static_cast<std::uint16_t>(random.integer(0, 65535));
     v.displaced = any_position(random);
     v.displaced_normal = any_direction(random);
     v.screen = any_screen(random);
@@ -46,8 +47,9 @@ TrianglePass any_pass(Random& random) {
     TrianglePass pass;
     for (std::size_t k = 0; k < 3; ++k) {
         pass.triangle.vertices[k] = any_vertex(random);
-        pass.new_vertex[k] = {any_position(random), any_direction(random), any_texture(random), any_position(random),
-                              any_screen(random)};
+        pass.new_vertex[k] = {any_position(random), any_direction(random),
+                              any_texture(random),  static_cast<std::uint16_t>(random.integer(0, 65535)),
+                              any_position(random), any_screen(random)};
         pass.edges[k] = {any_texture(random), any_direction(random), any_direction(random), any_direction(random),
                          static_cast<std::uint8_t>(random.integer(0, 31))};
     }
@@ -114,6 +116,7 @@ TEST_CASE("tessellate: children carry complete vertices and the parent's tags") 
             v.generation = static_cast<std::uint8_t>(std::min(generation, highest_generation));
             v.displaced_known = true;
             v.screen_normal_known = false;
+            v.code = pass.new_vertex[e].code;
             v.displaced = pass.new_vertex[e].displaced;
             v.displaced_normal = pass.edges[e].displaced_normal;
             v.screen = pass.new_vertex[e].screen;

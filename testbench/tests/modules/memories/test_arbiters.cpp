@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cstdint>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "modules/memories/banked_ports.h"
@@ -70,6 +73,69 @@ TEST_CASE("banked ports: entry k is in bank k mod banks, and each bank counts fo
     CHECK(p.ports.slots_per_cycle() == 4);
     CHECK(p.ports.slots_taken() == 7);
     CHECK(p.ports.occupied_cycles() == 4);  // bank 0's
+}
+
+TEST_CASE("banked ports: a window lets requests start while others wait for a bank") {
+    Ports p({1, 2, 1, 0, 1, Interleave::entry, 2});
+    CHECK(p.serve({0, 2, 4}, 10) == 12 + 1);  // bank 0: 10, 11, 12
+    CHECK(p.ready({6}) == 0);                 // one of two is under way
+    CHECK(p.serve({6, 1}, 10) == 13 + 1);     // bank 0 in 13, bank 1 in 10
+    CHECK(p.ready({3}) == 13);                // the first has sent its last address
+    CHECK(p.serve({3}, 13) == 14);            // bank 1
+    CHECK(p.ready({3}) == 14);                // the second
+}
+
+TEST_CASE("banked ports: exclusive-or banks hold the same share of any table, and no entry shares its place") {
+    for (const unsigned banks : {2U, 4U, 8U, 16U, 32U, 64U}) {
+        CAPTURE(banks);
+        std::vector<unsigned> held(banks);
+        std::set<std::array<std::uint64_t, 3>> places;  // bank, the column's other bits, row
+        for (std::uint32_t row = 0; row < 256; ++row)
+            for (std::uint32_t column = 0; column < 256; ++column) {
+                const std::size_t bank = BankOfEntry::of(column, row, banks);
+                REQUIRE(bank < banks);
+                ++held[bank];
+                places.insert({bank, column / banks, row});
+            }
+        CHECK(held == std::vector<unsigned>(banks, 65536 / banks));
+        CHECK(places.size() == 65536);
+    }
+}
+
+namespace {
+
+/// Cycles that the four corners of a rectangle of every size up to `most` take on average, at 64 places each.
+template <class Bank>
+double cycles_a_rectangle(unsigned banks, std::uint32_t most, bool powers_of_two, Bank bank) {
+    unsigned rectangles = 0, cycles = 0;
+    for (std::uint32_t width = 1; width <= most; width += powers_of_two ? width : 1)
+        for (std::uint32_t height = 1; height <= most; height += powers_of_two ? height : 1)
+            for (std::uint32_t place = 0; place < 64; ++place) {
+                const std::uint32_t x = 37 * place % 101, y = 53 * place % 89;
+                std::vector<unsigned> reads(banks);
+                for (const auto& [dx, dy] : {std::pair{0U, 0U}, {width, 0U}, {0U, height}, {width, height}})
+                    ++reads[bank(x + dx, y + dy)];
+                cycles += *std::max_element(reads.begin(), reads.end());
+                ++rectangles;
+            }
+    return double(cycles) / rectangles;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "banked ports: exclusive-or banks conflict less than chance, entry by entry more where sides are powers of 2") {
+    // Four corners in four of `banks` banks by chance: the mean of the fullest.
+    for (const auto& [banks, chance] : {std::pair{4U, 2.125}, {8U, 1.65}, {16U, 1.35}}) {
+        CAPTURE(banks);
+        const auto exclusive_or = [banks = banks](std::uint32_t x, std::uint32_t y) {
+            return BankOfEntry::of(x, y, banks);
+        };
+        const auto entry = [banks = banks](std::uint32_t x, std::uint32_t y) { return (y * 257 + x) % banks; };
+        CHECK(cycles_a_rectangle(banks, 32, true, exclusive_or) < chance);
+        CHECK(cycles_a_rectangle(banks, 32, false, exclusive_or) < chance);
+        CHECK(cycles_a_rectangle(banks, 32, true, entry) > 1.15 * chance);
+    }
 }
 
 TEST_CASE("banked ports: a port narrower than an entry takes ceil(bytes / width) cycles for it") {

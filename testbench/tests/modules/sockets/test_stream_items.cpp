@@ -76,7 +76,7 @@ datapath::Formats widest_formats() {
         datapath::Format::make_unsigned(Limits::texture_integer.most + Limits::texture_fraction.most + 1, 12);
     formats.screen = datapath::Format::make_signed(Limits::screen_bits.most, 8);
     formats.generation_bits = Limits::generation_bits.most;
-    formats.highlight_tag = true;
+    formats.highlight_tag = formats.final_edges = formats.codes = true;
     return formats;
 }
 

@@ -95,6 +95,7 @@ TEST_CASE("statistics: two triangles split once, by hand") {
                                   {"edge_tests", 30},
                                   {"normal_tests", 30},
                                   {"summed_height_tests", 30},
+                                  {"summed_height_tests_by_codes", 0},
                                   {"tests_per_edge", 30.0 / 21}});
     f.require_all("get_triangle", {{"host_triangles", 2}, {"queue_triangles", 8}});
     f.require_all("transform", {{"positions", 36}, {"normals", 24}});
@@ -105,6 +106,11 @@ TEST_CASE("statistics: two triangles split once, by hand") {
     f.require_all("lighting", {{"triangles", 8}});
     // a byte or two a code; three components of 16 bits; 9 x 9 sums
     const std::uint64_t sum = setup.registers.summed_height_table.entry_bytes;
+    // one a cycle of each table; 16 + 24 + 51 + 12
+    f.require("area", {{"transform_multipliers", 24},
+                       {"transform_register_bits", 300 + 20 * 381},
+                       {"total_multipliers", 103},
+                       {"total_ports", 3}});
     f.require_all(
         "displacement_map",
         {{"size", 8 * 8 * 2}, {"entry", 2}, {"reads", 36}, {"bytes_read", 36 * 2}, {"reads_per_edge", 36.0 / 30}});

@@ -1,0 +1,62 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "modules/datapath/parameters.h"
+#include "modules/timing/timing.h"
+
+namespace tessera {
+
+/// Which bank of a table an entry lies in.
+///
+/// entry:        entry k, counted row by row, lies in bank k mod `banks`. With banks a power of two and a pitch one
+///               above a multiple of it, as of a Summed Height Table, two corners of each square share a bank.
+/// exclusive_or: bit b of the bank is the parity of some bits of the column and some of the row. Its lowest bits are
+///               the column's, each in one bit of the bank, so that the column's other bits and the row address an
+///               entry within its bank.
+class BankOfEntry {
+  public:
+    static constexpr unsigned most_banks = 64;
+    struct Masks {
+        std::uint32_t column;
+        std::uint32_t row;
+    };
+    /// For bit b of the bank. Found by search for the fewest conflicts within an edge's three rectangles, over all
+    /// numbers of banks (modules/DECISIONS.md).
+    static constexpr std::array<Masks, 6> masks{
+        {{0x041, 0x0cd}, {0x142, 0x1b4}, {0x184, 0x127}, {0x188, 0x1fa}, {0x010, 0x0b7}, {0x120, 0x022}}};
+
+    BankOfEntry(const MemoryTiming& timing, const datapath::TableLayout& layout)
+        : base_(layout.base),
+          entry_bytes_(layout.entry_bytes),
+          columns_(layout.columns),
+          banks_(timing.banks),
+          interleave_(timing.interleave) {}
+
+    std::size_t operator()(std::uint64_t address) const {
+        if (banks_ == 1)
+            return 0;
+        const std::uint64_t entry = (address - base_) / entry_bytes_;
+        if (interleave_ == Interleave::entry)
+            return entry % banks_;
+        return of(static_cast<std::uint32_t>(entry % columns_), static_cast<std::uint32_t>(entry / columns_), banks_);
+    }
+
+    /// With exclusive_or.
+    static constexpr std::size_t of(std::uint32_t column, std::uint32_t row, unsigned banks) {
+        std::size_t bank = 0;
+        for (std::size_t b = 0; (1u << b) < banks; ++b)
+            bank |= static_cast<std::size_t>(__builtin_parity((column & masks[b].column) ^ (row & masks[b].row))) << b;
+        return bank;
+    }
+
+  private:
+    std::uint64_t base_;
+    std::uint32_t entry_bytes_;
+    std::uint32_t columns_;
+    unsigned banks_;
+    Interleave interleave_;
+};
+
+}  // namespace tessera

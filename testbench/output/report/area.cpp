@@ -1,0 +1,147 @@
+#include "testbench/output/report/area.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "modules/datapath/widths.h"
+#include "modules/sockets/items.h"
+
+namespace tessera {
+namespace {
+
+class AreaCounter {
+  public:
+    AreaCounter(const Design& design, const datapath::Registers& registers) : design_(design), registers_(registers) {}
+
+    std::vector<UnitArea> count(std::size_t queue_places) {
+        const Timing& t = design_.timing;
+        const datapath::Formats& f = registers_.formats;
+        using M = Multiplications;
+        unit("get_triangle", 0, 2 * t.get_triangle.buffer * bits<datapath::Triangle>() + bits<TakenTriangle>());
+        stage<GeometryOperands, BasePoint>("calculate_new_p", t.calculate_new_p);
+        stage<BasePoint, DisplacedPoint>("displace_vertex", t.displace_vertex, M::normalise + M::displace, 1,
+                                         {t.displacement_map.latency, f.displacement.bits});
+        stage<DisplacedPoint, ScreenPoint>("transform", t.transform, M::transform + M::transform_normal,
+                                           design_.transform_pipelines);
+        edge_tests();
+        const UnitTiming& join = t.pass_or_tessellate;
+        unit("pass_or_tessellate", registers_.back_face_culling ? M::faces_away : 0,
+             triangles_ahead_of_parts(design_) * bits<TakenTriangle>() + bits<ScreenPoint>() +
+                 3 * join.buffer * bits<TestedEdge>() +
+                 (join.buffer + register_stages(join)) * (tag_ + bits<DecidedTriangle>()));
+        unit("tessellation", 0, (t.tessellation.buffer + 1) * bits<DecidedTriangle>());
+        unit("triangle_queue", 0, t.triangle_queue.buffer * bits<datapath::Triangle>());
+        areas_.back().memory_bits = queue_places * bits<datapath::Triangle>();
+        stage<TriangleToLight, LitTriangle>("lighting", t.lighting, 3 * M::light);
+        table("displacement_map", registers_.displacement_map, f.displacement.bits, t.displacement_map);
+        table("normal_map", registers_.normal_map, 3 * f.normal.bits, t.normal_map);
+        table("summed_height_table", registers_.summed_height_table, f.summed_height.bits, t.summed_height_table);
+        return std::move(areas_);
+    }
+
+  private:
+    /// What a unit reads for an item: how long that takes, and the bits it keeps of it.
+    struct Read {
+        unsigned latency = 0;
+        int bits = 0;
+    };
+
+    template <class Item>
+    std::uint64_t bits() const {
+        return item_bits<Item>(registers_.formats, static_cast<int>(tag_));
+    }
+
+    void unit(const char* name, std::uint64_t multipliers, std::uint64_t register_bits, unsigned copies = 1) {
+        areas_.push_back({name, copies * multipliers, copies * register_bits, 0, 0});
+    }
+
+    /// An input buffer, and pipeline registers of the wider of the items in and out. A unit with an interval above one
+    /// uses its multipliers several times for an item.
+    template <class In, class Out>
+    void stage(const char* name, const UnitTiming& timing, unsigned multiplications = 0, unsigned servers = 1,
+               Read read = {}, unsigned copies = 1) {
+        const std::uint64_t in = bits<In>(), out = bits<Out>();
+        const unsigned multipliers = servers * ((multiplications + timing.interval - 1) / timing.interval);
+        unit(name, multipliers,
+             timing.buffer * in + register_stages(timing, servers, read.latency) *
+                                      (std::max(in, out) + static_cast<std::uint64_t>(read.bits)),
+             copies);
+    }
+
+    void edge_tests() {
+        const Timing& t = design_.timing;
+        const datapath::Formats& f = registers_.formats;
+        const datapath::TestParameters& tests = registers_.tests;
+        using M = Multiplications;
+        const unsigned copies = design_.tests_units;
+        const std::uint64_t corners = 3 * (1 + 3 * static_cast<std::uint64_t>(f.normal.bits)) + tag_;
+        const std::uint64_t screens = 3 + 3 * (bits<ScreenCorner>() - bits<ViewResult>() + 1) + tag_;
+        UnitTiming normal = t.normal_test;
+        normal.latency += tests.highlight_test ? t.highlight_test_latency : 0;
+        const bool area = tests.summed_height_unit == datapath::SummedHeightUnit::area;
+
+        stage<TestOperands, TestOperands>("calculate_new_u", t.calculate_new_u, 0, 1, {0, 2 * f.texture.bits}, copies);
+        stage<TexCoordOperands, TexCoordResult>("tex_coord_test", t.tex_coord_test, 0, 1, {}, copies);
+        stage<HeightOperands, HeightResult>("summed_height_test", t.summed_height_test,
+                                            area ? M::summed_height_limit : 0, 1,
+                                            {height_latency(), 3 * f.summed_height.bits}, copies);
+        stage<NormalOperands, NormalResult>("normal_test", normal,
+                                            2 * M::normalise + M::bump + (tests.highlight_test ? M::highlight_test : 0),
+                                            1, {t.normal_map.latency, 3 * f.normal.bits}, copies);
+        areas_.back().register_bits += copies * corners;
+        stage<ViewOperands, ViewResult>("view_test", t.view_test, 0, 1, {}, copies);
+        areas_.back().register_bits += copies * (t.pass_or_tessellate.buffer + 2) * screens;
+        const std::uint64_t results = t.results_buffer * (bits<TexCoordResult>() + bits<HeightResult>() +
+                                                          bits<NormalResult>() + bits<ViewResult>());
+        const std::uint64_t operands = bits<NormalOperands>() + bits<HeightOperands>();
+        if (design_.test_order == TestOrder::parallel)
+            unit("collect_tests", 0, results, copies);
+        else
+            unit("sequence_tests", 0,
+                 results + t.results_buffer * operands + t.edges_in_sequence * (operands + bits<TestedEdge>()), copies);
+    }
+
+    unsigned height_latency() const {
+        const Timing& t = design_.timing;
+        return registers_.formats.codes ? std::max(t.summed_height_table.latency, t.displacement_map.latency)
+                                        : t.summed_height_table.latency;
+    }
+
+    void table(const char* name, const datapath::TableLayout& layout, int entry_bits, const MemoryTiming& timing) {
+        const std::uint64_t entries = std::uint64_t{layout.rows} * layout.columns;
+        areas_.push_back(
+            {name, 0, 0, entries * static_cast<std::uint64_t>(entry_bits), std::uint64_t{timing.ports} * timing.banks});
+    }
+
+    const Design& design_;
+    const datapath::Registers& registers_;
+    const std::uint64_t tag_ = static_cast<std::uint64_t>(tag_bits(design_));
+    std::vector<UnitArea> areas_;
+};
+
+}  // namespace
+
+std::vector<UnitArea> design_area(const Design& design, const datapath::Registers& registers,
+                                  std::size_t queue_places) {
+    return AreaCounter(design, registers).count(queue_places);
+}
+
+std::vector<UnitArea> area_of(const Simulation& simulation) {
+    const TriangleQueue& queue = simulation.pipeline.triangle_queue;
+    const std::size_t places = simulation.setup.design.queue.capacity;
+    return design_area(simulation.setup.design, simulation.setup.registers,
+                       places == 0 ? queue.high_water_mark() : places);
+}
+
+UnitArea total_area(const std::vector<UnitArea>& units) {
+    UnitArea total{"total"};
+    for (const UnitArea& unit : units) {
+        total.multipliers += unit.multipliers;
+        total.register_bits += unit.register_bits;
+        total.memory_bits += unit.memory_bits;
+        total.ports += unit.ports;
+    }
+    return total;
+}
+
+}  // namespace tessera

@@ -1,0 +1,103 @@
+#include "testbench/output/report/area.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <string>
+
+#include "testbench/tests/support/case_table.h"
+#include "testbench/tests/support/job_settings.h"
+#include "testbench/tests/support/timed_checks.h"
+
+// Hardware of a design: some units by hand, and what each parameter changes.
+
+using namespace tessera;
+using namespace tessera::testing;
+
+namespace {
+
+std::map<std::string, UnitArea> area(const std::string& settings = "", std::size_t queue_places = 100) {
+    const MachineSetup setup = setup_of(with_settings(timed_job(), settings));
+    const std::vector<UnitArea> units = design_area(setup.design, setup.registers, queue_places);
+    std::map<std::string, UnitArea> by_name;
+    for (const UnitArea& unit : units)
+        by_name[unit.name] = unit;
+    REQUIRE(by_name.size() == units.size());
+    by_name["total"] = total_area(units);
+    return by_name;
+}
+
+/// "12 x" in the row of a function in the datapath's README.
+unsigned multiplications(const std::string& function) {
+    std::ifstream readme(TESSERA_SOURCE_DIR "/modules/datapath/README.md");
+    for (std::string line; std::getline(readme, line);) {
+        std::smatch found;
+        if (line.rfind("| `" + function + "`", 0) == 0 &&
+            std::regex_search(line, found, std::regex(R"((\d+) x[,;| ])")))
+            return static_cast<unsigned>(std::stoul(found[1]));
+    }
+    return 0;
+}
+
+}  // namespace
+
+TEST_CASE("area: the datapath's README says how often each function multiplies") {
+    using M = Multiplications;
+    CHECK(multiplications("normalise") == M::normalise);
+    CHECK(multiplications("bump") + M::normalise == M::bump);
+    CHECK(multiplications("displace") == M::displace);
+    CHECK(multiplications("transform") == M::transform);
+    CHECK(multiplications("transform_normal") == M::transform_normal);
+    CHECK(multiplications("light") == M::light);
+    CHECK(multiplications("faces_away") == M::faces_away);
+    CHECK(multiplications("summed_height_limit") == M::summed_height_limit);
+    CHECK(multiplications("highlight_test") == M::highlight_test);
+}
+
+// A base point is 6 + 4 + 96 + 48 + 50 = 204 bits, a displaced one 96 more, a screen point 81 more than that.
+TEST_CASE("area: the default design, by hand") {
+    auto units = area();
+    // buffer of one; latency 6 and the map's 1; a code of 16 bits
+    CHECK(units["displace_vertex"].register_bits == 204 + 7 * (300 + 16));
+    CHECK(units["displace_vertex"].multipliers == 12 + 4);
+    CHECK(units["transform"].register_bits == 300 + 20 * 381);
+    CHECK(units["transform"].multipliers == 15 + 9);
+    CHECK(units["normal_test"].multipliers == 51);
+    CHECK(units["lighting"].multipliers == 12);
+    CHECK(units["tessellation"].register_bits == 2 * 2991);
+    CHECK(units["triangle_queue"].memory_bits == 100 * 1572);
+    CHECK(units["displacement_map"].memory_bits == 264 * 264 * 16);
+    CHECK(units["normal_map"].memory_bits == 264 * 264 * 48);
+    CHECK(units["summed_height_table"].memory_bits == 265 * 265 * 32);
+    CHECK(units["summed_height_table"].ports == 1);
+    CHECK(units["total"].multipliers == 16 + 24 + 51 + 12);
+    CHECK(units["total"].ports == 3);
+    std::uint64_t registers = 0;
+    for (const auto& [name, unit] : units)
+        registers += name == "total" ? 0 : unit.register_bits;
+    CHECK(units["total"].register_bits == registers);
+}
+
+TEST_CASE("area: what each parameter changes") {
+    auto paper = area();
+    CHECK(area("timing.transform_interval=5")["transform"].multipliers == 5);
+    CHECK(area("hardware.transform_pipelines=2")["transform"].multipliers == 48);
+    CHECK(area("hardware.tests_units=3")["normal_test"].multipliers == 3 * 51);
+    CHECK(area("tests.highlight=true")["normal_test"].multipliers == 51 + 9);
+    CHECK(area("hardware.culling=back")["pass_or_tessellate"].multipliers == 2);
+    CHECK(area("tests.summed_height_unit=area")["summed_height_test"].multipliers == 2);
+    CHECK(area("timing.summed_height_table_ports=2 timing.summed_height_table_banks=8")["total"].ports == 18);
+    CHECK(area("", 7)["triangle_queue"].memory_bits == 7 * 1572);
+    CHECK(area("hardware.final_edges=true", 7)["triangle_queue"].memory_bits == 7 * 1575);
+    CHECK(area("hardware.one_texel_from_map=true", 7)["triangle_queue"].memory_bits == 7 * (1572 + 48));
+    auto first = area("hardware.test_order=cheap_first");
+    CHECK(first.count("collect_tests") == 0);
+    CHECK(first["sequence_tests"].register_bits > paper["collect_tests"].register_bits);
+    const std::uint64_t one_edge_less =
+        area("hardware.test_order=cheap_first timing.edges_in_sequence=31")["sequence_tests"].register_bits;
+    CHECK(32 * (first["sequence_tests"].register_bits - one_edge_less) < first["sequence_tests"].register_bits);
+    CHECK(first["sequence_tests"].register_bits - one_edge_less > 600);
+    CHECK(paper["total"].multipliers == first["total"].multipliers);
+}
