@@ -35,15 +35,22 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
       clock("clock", clock_period(this->name(), design.timing.cycle_picoseconds)),
       made_(make({clock, registers, design}, factory == nullptr ? standard_units() : *factory)),
       tessellation_tests("tessellation_tests"),
-      displacement_map("displacement_map", clock, registers.displacement_map, design.timing.displacement_map,
-                       design.timing.stalls),
-      normal_map("normal_map", clock, registers.normal_map, design.timing.normal_map, design.timing.stalls),
-      summed_height_table("summed_height_table", clock, registers.summed_height_table,
-                          design.timing.summed_height_table, design.timing.stalls),
       off_chip_memory("off_chip_memory", clock, design.timing.off_chip_memory, design.timing.stalls,
                       design.queue.off_chip_triangles *
                           (datapath::packed_triangle_bytes(registers.formats) + datapath::packed_triangle_tag_bytes),
                       datapath::packed_triangle_tag_bytes),
+      displacement_map("displacement_map", clock, registers.displacement_map, design.timing.displacement_map,
+                       design.timing.stalls, &off_chip_memory.channel()),
+      normal_map("normal_map", clock, registers.normal_map, design.timing.normal_map, design.timing.stalls,
+                 &off_chip_memory.channel()),
+      summed_height_table("summed_height_table", clock, registers.summed_height_table,
+                          design.timing.summed_height_table, design.timing.stalls, &off_chip_memory.channel()),
+      displacement_map_cache(make_cache("displacement_map_cache", registers.displacement_map,
+                                        design.timing.displacement_map, design.timing.stalls)),
+      normal_map_cache(
+          make_cache("normal_map_cache", registers.normal_map, design.timing.normal_map, design.timing.stalls)),
+      summed_height_table_cache(make_cache("summed_height_table_cache", registers.summed_height_table,
+                                           design.timing.summed_height_table, design.timing.stalls)),
       transport_(design.transport),
       random_stalls_(design.timing.stalls.per_mille > 0) {
     UnitFactory& units = factory == nullptr ? standard_units() : *factory;
@@ -57,6 +64,23 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
     dont_initialize();
     sensitive << clock.quiet() << triangle_queue.emptied();
 }
+
+std::unique_ptr<TableCache> Pipeline::make_cache(const char* name, const datapath::TableLayout& layout,
+                                                 const MemoryTiming& timing, const StallParameters& stalls) {
+    return timing.cache.bytes == 0 ? nullptr : std::make_unique<TableCache>(name, clock, layout, timing, stalls);
+}
+
+namespace {
+
+/// To the table, or to the cache in front of it.
+void join(UnitFactory& factory, MemoryPort& port, TableMemory& table, TableCache* cache) {
+    if (cache == nullptr)
+        factory.join(port, table);
+    else
+        factory.join(port, *cache);
+}
+
+}  // namespace
 
 void Pipeline::see_whether_drained() {
     if (idle())
@@ -73,18 +97,26 @@ void Pipeline::wire(UnitFactory& factory) {
     triangle_queue.level.bind(get_triangle.queue_level);
     calculate_new_p.to_displace_vertex.bind(displace_vertex.from_calculate_new_p);
     displace_vertex.to_transform.bind(transform.from_displace_vertex);
-    factory.join(displace_vertex.displacement_map, displacement_map);
+    join(factory, displace_vertex.displacement_map, displacement_map, displacement_map_cache.get());
     transform.to_pass_or_tessellate.bind(pass_or_tessellate.from_transform);
     for (std::size_t k = 0; k < tessellation_tests.size(); ++k) {
         TessellationTests& tests = tessellation_tests[k];
         get_triangle.to_tessellation_tests[k].bind(tests.calculate_new_u.input);
         transform.to_view_test[k].bind(tests.view_test.from_transform);
         tests.to_pass_or_tessellate().bind(pass_or_tessellate.from_tessellation_tests[k]);
-        factory.join(tests.summed_height_test.summed_height_table, summed_height_table);
+        join(factory, tests.summed_height_test.summed_height_table, summed_height_table,
+             summed_height_table_cache.get());
         if (tests.summed_height_test.displacement_map)
-            factory.join(*tests.summed_height_test.displacement_map, displacement_map);
-        factory.join(tests.normal_test.normal_map, normal_map);
+            join(factory, *tests.summed_height_test.displacement_map, displacement_map, displacement_map_cache.get());
+        join(factory, tests.normal_test.normal_map, normal_map, normal_map_cache.get());
     }
+    const auto fill = [&](TableCache* cache, TableMemory& table) {
+        if (cache != nullptr)
+            factory.join(cache->table, table);
+    };
+    fill(displacement_map_cache.get(), displacement_map);
+    fill(normal_map_cache.get(), normal_map);
+    fill(summed_height_table_cache.get(), summed_height_table);
     pass_or_tessellate.to_tessellation.bind(tessellation.from_pass_or_tessellate);
     pass_or_tessellate.to_lighting.bind(lighting.from_pass_or_tessellate);
     tessellation.to_triangle_queue.bind(triangle_queue.from_tessellation);
@@ -100,10 +132,18 @@ void Pipeline::attach() {
             units_.push_back(unit);
     units_.insert(units_.end(), {&pass_or_tessellate, &tessellation, &triangle_queue, &lighting, &displacement_map,
                                  &normal_map, &summed_height_table, &off_chip_memory});
+    for (const auto* cache : {&displacement_map_cache, &normal_map_cache, &summed_height_table_cache}) {
+        if (*cache != nullptr)
+            units_.push_back(cache->get());
+    }
     clock.attach(off_chip_memory);
     for (Unit* memory : {static_cast<Unit*>(&displacement_map), static_cast<Unit*>(&normal_map),
                          static_cast<Unit*>(&summed_height_table)})
         clock.attach(*memory);
+    for (const auto* cache : {&displacement_map_cache, &normal_map_cache, &summed_height_table_cache}) {
+        if (*cache != nullptr)
+            clock.attach(**cache);
+    }
     clock.attach(lighting);
     clock.attach(triangle_queue);
     clock.attach(tessellation);

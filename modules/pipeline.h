@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "modules/memories/off_chip_memory.h"
+#include "modules/memories/table_cache.h"
 #include "modules/memories/table_memory.h"
 #include "modules/tessellation_tests.h"
 #include "modules/timing/cycle_scheduler.h"
@@ -51,10 +52,13 @@ class Pipeline : public sc_core::sc_module {
     Tessellation& tessellation = *made_.tessellation;
     TriangleQueue& triangle_queue = *made_.triangle_queue;
     Lighting& lighting = *made_.lighting;
+    OffChipMemory off_chip_memory;
     DisplacementMap displacement_map;
     NormalMap normal_map;
     SummedHeightTable summed_height_table;
-    OffChipMemory off_chip_memory;
+    std::unique_ptr<TableCache> displacement_map_cache;  ///< null: the table is on chip
+    std::unique_ptr<TableCache> normal_map_cache;
+    std::unique_ptr<TableCache> summed_height_table_cache;
 
     /// `registers` must outlive the pipeline. factory: null: the units of this folder.
     Pipeline(const sc_core::sc_module_name& name, const datapath::Registers& registers, const Design& design,
@@ -83,6 +87,8 @@ class Pipeline : public sc_core::sc_module {
   private:
     static Units make(const UnitContext& context, UnitFactory& factory);
     void wire(UnitFactory& factory);
+    std::unique_ptr<TableCache> make_cache(const char* name, const datapath::TableLayout& layout,
+                                           const MemoryTiming& timing, const StallParameters& stalls);
     void attach();
     void see_whether_drained();
 

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "modules/memories/off_chip_memory.h"
+#include "modules/memories/table_cache.h"
 #include "modules/memories/table_memory.h"
 #include "modules/sockets/memory_port.h"
 #include "modules/timing/design.h"
@@ -86,6 +87,7 @@ class UnitFactory {
 
     /// Joins a unit's port to its memory.
     virtual void join(MemoryPort& port, TableMemory& memory) { port.bind(memory); }
+    virtual void join(MemoryPort& port, TableCache& cache) { port.bind(cache); }
     virtual void join(MemoryPort& port, OffChipMemory& memory) { port.bind(memory); }
 };
 

@@ -5,7 +5,7 @@
 
 namespace tessera {
 
-/// When off-chip memory's requests are served: one channel for both directions.
+/// When off-chip memory's requests are served: one channel for both directions, and for all memories that share it.
 ///
 /// Interval:  a request takes ceil(bytes / bandwidth) cycles of the channel.
 /// Latency:   it is answered `latency` cycles after its last byte.

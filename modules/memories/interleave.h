@@ -12,9 +12,9 @@ namespace tessera {
 ///
 /// entry:        entry k, counted row by row, lies in bank k mod `banks`. With banks a power of two and a pitch one
 ///               above a multiple of it, as of a Summed Height Table, two corners of each square share a bank.
-/// exclusive_or: bit b of the bank is the parity of some bits of the column and some of the row. Its lowest bits are
-///               the column's, each in one bit of the bank, so that the column's other bits and the row address an
-///               entry within its bank.
+/// exclusive_or: bit b of the bank is the parity of some bits of the column and some of the row. Of the lowest bits of
+///               the column, one for each bit of the bank, bit b occurs in the mask of bank bit b alone: the column's
+///               other bits and the row address an entry within its bank.
 class BankOfEntry {
   public:
     static constexpr unsigned most_banks = 64;

@@ -23,7 +23,8 @@ std::uint64_t OffChipMemory::serve(MemoryRequest& request, std::uint64_t cycle) 
     last_address_ = request.address[0];
     last_is_write_ = request.command == tlm::TLM_WRITE_COMMAND;
     const std::uint64_t answer_at = channel_.serve(counted(request), cycle);
-    wake_at(channel_.ready());  // no longer busy
+    busy_until_ = channel_.ready();
+    wake_at(busy_until_);
     return answer_at;
 }
 
@@ -36,7 +37,7 @@ void OffChipMemory::b_transport(int, MemoryRequest& request, sc_core::sc_time& d
 /// Shows the request served last.
 void OffChipMemory::trace_signals(Signals& signals) const {
     Unit::trace_signals(signals);
-    signals.pulse("served", channel_.occupied_cycles());
+    signals.pulse("served", bytes_written_ + bytes_read_);
     signals.value("requests", 32, activity_.items_in());
     signals.value("address", 32, last_address_);
     signals.flag("write", last_is_write_);

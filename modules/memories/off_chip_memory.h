@@ -10,7 +10,8 @@ namespace tessera {
 
 /// Off-chip memory, to which the Triangle Queue spills: byte addresses from 0, reads and writes.
 ///
-/// Timing: channel.h. Busy: while a request is on the channel.
+/// Timing: channel.h, which tables behind caches share. Busy: while a request of its own is on the channel.
+/// Utilisation: the channel's, whoever uses it.
 /// Capacity: `size` bytes. Errors: TLM_ADDRESS_ERROR_RESPONSE beyond the size, TLM_COMMAND_ERROR_RESPONSE for anything
 /// but read and write.
 class OffChipMemory : public MemoryServer {
@@ -25,10 +26,12 @@ class OffChipMemory : public MemoryServer {
     std::uint64_t occupied_cycles() const override { return channel_.occupied_cycles(); }
     void trace_signals(Signals& signals) const override;
 
+    Channel& channel() { return channel_; }
+
   private:
     std::uint64_t ready(const MemoryRequest&) const override { return channel_.ready(); }
     std::uint64_t serve(MemoryRequest& request, std::uint64_t cycle) override;
-    bool busy(std::uint64_t cycle) const override { return channel_.ready() > cycle; }
+    bool busy(std::uint64_t cycle) const override { return busy_until_ > cycle; }
     void b_transport(int id, MemoryRequest& request, sc_core::sc_time& delay) override;
     unsigned transport_dbg(int, MemoryRequest& request) override { return move(storage_, request); }
     void count_access(MemoryRequest& request);
@@ -37,6 +40,7 @@ class OffChipMemory : public MemoryServer {
     Storage storage_;
     Channel channel_;
     unsigned uncounted_;
+    std::uint64_t busy_until_ = 0;
     std::uint64_t last_address_ = 0;  // of the request served last
     bool last_is_write_ = false;
     std::uint64_t bytes_written_ = 0;

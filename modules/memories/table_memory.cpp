@@ -7,8 +7,12 @@
 namespace tessera {
 
 TableMemory::TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock,
-                         const datapath::TableLayout& layout, const MemoryTiming& timing, const StallParameters& stalls)
-    : MemoryServer(name, clock, timing.buffer, stalls), storage_(layout.base, layout.bytes()), ports_(timing, layout) {
+                         const datapath::TableLayout& layout, const MemoryTiming& timing, const StallParameters& stalls,
+                         Channel* off_chip)
+    : MemoryServer(name, clock, timing.buffer, stalls),
+      storage_(layout.base, layout.bytes() + (timing.cache.bytes == 0 ? 0 : timing.cache.line_bytes)),
+      ports_(timing, layout),
+      channel_(timing.cache.bytes == 0 ? nullptr : off_chip) {
     storage_.all();
 }
 
@@ -20,7 +24,7 @@ void TableMemory::read(MemoryRequest& request) {
 }
 
 std::uint64_t TableMemory::ready(const MemoryRequest& request) const {
-    return ports_.ready(request.address.data(), request.count);
+    return channel_ != nullptr ? channel_->ready() : ports_.ready(request.address.data(), request.count);
 }
 
 std::uint64_t TableMemory::serve(MemoryRequest& request, std::uint64_t cycle) {
@@ -28,7 +32,11 @@ std::uint64_t TableMemory::serve(MemoryRequest& request, std::uint64_t cycle) {
     last_address_ = request.address[0];
     last_entries_ = request.count;
     last_entry_bytes_ = request.entry_bytes;
-    return ports_.serve(request.address.data(), request.count, cycle);
+    if (channel_ == nullptr)
+        return ports_.serve(request.address.data(), request.count, cycle);
+    const std::uint64_t answer_at = channel_->serve(request.bytes(), cycle);
+    channel_cycles_ += channel_->ready() - cycle;
+    return answer_at;
 }
 
 void TableMemory::b_transport(int, MemoryRequest& request, sc_core::sc_time& delay) {

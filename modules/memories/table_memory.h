@@ -4,6 +4,7 @@
 #include <systemc>
 
 #include "modules/memories/banked_ports.h"
+#include "modules/memories/channel.h"
 #include "modules/memories/memory_server.h"
 #include "modules/memories/storage.h"
 
@@ -12,22 +13,28 @@ namespace tessera {
 /// A memory that holds one table.
 ///
 /// Address map: [layout.base, layout.base + layout.bytes()); entry (x, y) at layout.address(x, y), little endian.
-/// Read by units, written only by the host's debug transport before the run.
-/// Timing: banked_ports.h. b_transport, DMI: the latency, once a request.
+/// Off chip it reaches to the end of its last line. Read by units, written only by the host's debug transport before the
+/// run.
+/// Timing: on chip banked_ports.h; of a table in off-chip memory, which a cache reads line by line (table_cache.h), the
+/// channel that all off-chip memory shares. b_transport, DMI: the latency, once a request.
 /// Utilisation: the share of the busiest bank's port slots taken, or of cycles in which a request was held up,
 /// whichever is greater: bank conflicts delay requests while most ports are idle.
 /// Errors: a write gives TLM_COMMAND_ERROR_RESPONSE, an address outside TLM_ADDRESS_ERROR_RESPONSE.
 class TableMemory : public MemoryServer {
   public:
+    /// off_chip: used if the table has a cache.
     TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock, const datapath::TableLayout& layout,
-                const MemoryTiming& timing, const StallParameters& stalls);
+                const MemoryTiming& timing, const StallParameters& stalls, Channel* off_chip = nullptr);
 
     /// Entries read by transactions; reads through DMI are counted by the reader.
     std::uint64_t transactions() const { return transactions_; }
-    std::uint64_t slots_taken() const { return ports_.slots_taken(); }
-    std::uint64_t slots_per_cycle() const { return ports_.slots_per_cycle(); }
+    /// Port slots, or cycles of the channel.
+    std::uint64_t slots_taken() const { return channel_ != nullptr ? channel_cycles_ : ports_.slots_taken(); }
+    std::uint64_t slots_per_cycle() const { return channel_ != nullptr ? 1 : ports_.slots_per_cycle(); }
 
-    std::uint64_t occupied_cycles() const override { return std::max(ports_.occupied_cycles(), cycles_held_up()); }
+    std::uint64_t occupied_cycles() const override {
+        return channel_ != nullptr ? channel_cycles_ : std::max(ports_.occupied_cycles(), cycles_held_up());
+    }
     void trace_signals(Signals& signals) const override;
 
   private:
@@ -40,13 +47,16 @@ class TableMemory : public MemoryServer {
 
     Storage storage_;
     BankedPorts ports_;
+    Channel* channel_;  // null: on chip
+    std::uint64_t channel_cycles_ = 0;
     std::uint64_t transactions_ = 0;
     std::uint64_t last_address_ = 0;  // of the request served last
     unsigned last_entries_ = 0;
     unsigned last_entry_bytes_ = 0;
 };
 
-/// The displacement map: one unsigned code per texel. Read by Displace Vertex.
+/// The displacement map: one unsigned code per texel. Read by Displace Vertex, with Formats::codes also by Summed Height
+/// Test.
 class DisplacementMap : public TableMemory {
   public:
     using TableMemory::TableMemory;

@@ -45,6 +45,9 @@ const std::vector<UnitNumbers::Entry>& UnitNumbers::all() {
         {33, "tessellation_tests_0.sequence_tests"},
         {34, "tessellation_tests_1.sequence_tests"},
         {35, "tessellation_tests_2.sequence_tests"},
+        {36, "displacement_map_cache"},
+        {37, "normal_map_cache"},
+        {38, "summed_height_table_cache"},
     };
     return entries;
 }

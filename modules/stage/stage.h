@@ -36,7 +36,7 @@ class Stage : public Unit {
     ~Stage() override;
 
     /// To be called in a derived unit's constructor: its input; each output, what it gets of a result,
-    /// and the parts that it is for; the ports it reads through, if it does, one an item (most_requests: of one item).
+    /// and the parts that it is for; the ports it reads through, if it does; an item reads through one of them (most_requests: of one item).
     void takes_from(const UnitContext& context, StreamInput<In>& input);
     void delivers_to(const UnitContext& context, StreamOutput<Out>& output, Parts only = all_parts);
     template <class Payload>

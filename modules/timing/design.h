@@ -64,7 +64,7 @@ constexpr unsigned register_stages(const UnitTiming& timing, unsigned servers = 
 constexpr unsigned triangles_ahead_of_parts(const Design& design) {
     const Timing& t = design.timing;
     return 1 + t.calculate_new_p.buffer + register_stages(t.calculate_new_p) + t.displace_vertex.buffer +
-           register_stages(t.displace_vertex, 1, t.displacement_map.latency) + t.transform.buffer +
+           register_stages(t.displace_vertex, 1, t.read_latency(t.displacement_map)) + t.transform.buffer +
            register_stages(t.transform, design.transform_pipelines) + 1;
 }
 

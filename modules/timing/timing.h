@@ -18,6 +18,14 @@ enum class Interleave {
     exclusive_or,  ///< exclusive ORs of bits of its column and row; banks: a power of two
 };
 
+/// A cache in front of a table that lies in off-chip memory.
+struct CacheTiming {
+    unsigned bytes = 0;        ///< 0: none, the table is on chip; less than a line: one line
+    unsigned line_bytes = 64;  ///< a line holds as many entries as fit
+    unsigned ways = 4;
+    unsigned fills = 16;  ///< lines, and requests that wait for one, at least 1
+};
+
 /// A memory's ports, in cycles.
 struct MemoryTiming {
     unsigned ports = 1;    ///< entries a cycle, from each bank
@@ -27,6 +35,7 @@ struct MemoryTiming {
     unsigned buffer = 1;   ///< requests that may wait, at least 1
     Interleave interleave = Interleave::entry;
     unsigned window = 0;  ///< requests whose reads may overlap; 0: those that find each of their banks free
+    CacheTiming cache{};  ///< with one, ports, banks and latency are the cache's
 };
 
 /// Off-chip memory, as the Triangle Queue sees it.
@@ -62,6 +71,14 @@ struct Timing {
     MemoryTiming summed_height_table;
     OffChipTiming off_chip_memory;
     StallParameters stalls;
+
+    /// From a request for a table's entries to its data, if nothing delays it and, with a cache, no line is there.
+    constexpr unsigned read_latency(const MemoryTiming& table) const {
+        return table.latency + (table.cache.bytes == 0 ? 0
+                                                       : off_chip_memory.latency +
+                                                             (table.cache.line_bytes + off_chip_memory.bandwidth - 1) /
+                                                                 off_chip_memory.bandwidth);
+    }
 };
 
 }  // namespace tessera

@@ -8,7 +8,8 @@
 namespace tessera {
 
 DisplaceVertex::DisplaceVertex(const sc_core::sc_module_name& name, const UnitContext& context)
-    : Stage(name, context, context.timing().displace_vertex, 1, context.timing().displacement_map.latency),
+    : Stage(name, context, context.timing().displace_vertex, 1,
+            context.timing().read_latency(context.timing().displacement_map)),
       displacement_map("displacement_map", context.registers.displacement_map.entry_bytes,
                        context.design.direct_memory),
       registers_(context.registers) {

@@ -15,7 +15,7 @@ namespace tessera {
 /// (Formats::final_edges):
 ///
 ///   base triangle          three vertices to displace and transform (and to bump), then three edges
-///   re-tessellated         normals that have no N's yet, then three edges
+///   re-tessellated         normals that have no N's yet, then the edges that are not final
 ///   finished, without N's  its normals only: no edge is tested again
 ///
 /// In:   triangles; the queue's level. Out: to Calculate New P all parts, to Tessellation Tests vertices and edges;

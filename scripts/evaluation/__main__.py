@@ -12,8 +12,10 @@ from study import ROOT, ProgramError, Study
 
 # In the order of the page.
 NAMES = ["text_plane", "two_tests", "view_distances", "crater_lake", "teapot", "tex_coord_test", "generation_limit",
-         "triangulation", "tests_units", "designs", "ladder", "host_bandwidth", "highlight_test", "curved_surfaces", "displacement_scale"]
-LONGEST_FIRST = ["crater_lake", "ladder", "view_distances", "tests_units", "designs", "two_tests", "teapot", "tex_coord_test"]
+         "triangulation", "tests_units", "designs", "ladder", "off_chip", "host_bandwidth", "highlight_test", "curved_surfaces",
+         "displacement_scale"]
+LONGEST_FIRST = ["crater_lake", "off_chip", "ladder", "view_distances", "tests_units", "designs", "two_tests", "teapot",
+                 "tex_coord_test"]
 
 
 def options_from(arguments):

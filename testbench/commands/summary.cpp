@@ -127,6 +127,20 @@ std::string timing_rows(const Simulation& simulation) {
     text += row("hardware", fmt::format("{} multipliers, {} bits of registers, {} bits of memory with {} table ports",
                                         count(area.multipliers), count(area.register_bits), count(area.memory_bits),
                                         count(area.ports)));
+    std::uint64_t fetched = 0;
+    std::string rates;
+    for (const auto* cache : {&p.displacement_map_cache, &p.normal_map_cache, &p.summed_height_table_cache}) {
+        if (*cache == nullptr)
+            continue;
+        fetched += (*cache)->bytes_fetched();
+        rates += fmt::format(", {} {:.1f} %", unit_name(**cache), percent((*cache)->hits(), (*cache)->entries_read()));
+    }
+    if (!rates.empty())
+        text +=
+            row("fetched", fmt::format("{} bytes of tables, {:.1f} per finished triangle; hits of {}", count(fetched),
+                                       static_cast<double>(fetched) / static_cast<double>(std::max<std::uint64_t>(
+                                                                          1, p.pass_or_tessellate.counts().finished)),
+                                       rates.substr(2)));
     if (p.triangle_queue.spilled() > 0)
         text += row("spilled", fmt::format("{} triangles, at most {} on chip", count(p.triangle_queue.spilled()),
                                            count(p.triangle_queue.on_chip_high_water_mark())));

@@ -230,6 +230,21 @@ void add_memory(const Writer& key, const std::string& leaf, const std::string& n
     key.add_deep(
         leaf + "_buffer", [memory](auto& t) -> auto& { return memory(t).buffer; }, "requests", between(1, most_places),
         name + ": requests that may wait");
+    key.add_deep(
+        leaf + "_cache_bytes", [memory](auto& t) -> auto& { return memory(t).cache.bytes; }, "bytes",
+        between(0, 1 << 30),
+        name +
+            ": 0: on chip; else it lies in off-chip memory, behind a cache of this size (at least a line), which has "
+            "the ports, banks and latency above");
+    key.add_deep(
+        leaf + "_line_bytes", [memory](auto& t) -> auto& { return memory(t).cache.line_bytes; }, "bytes",
+        between(1, 4096), name + ": of a line of its cache; as many whole entries as fit, at least one");
+    key.add_deep(
+        leaf + "_cache_ways", [memory](auto& t) -> auto& { return memory(t).cache.ways; }, "lines", between(1, 64),
+        name + ": lines of its cache in which an entry may lie");
+    key.add_deep(
+        leaf + "_cache_fills", [memory](auto& t) -> auto& { return memory(t).cache.fills; }, "lines",
+        between(1, most_places), name + ": lines under way to its cache, and requests that wait there");
 }
 
 template <typename Writer>
@@ -265,7 +280,7 @@ void add_timing(const Writer& key) {
         "Edges decided by one test that may wait for the other three");
     key.add_deep(
         "edges_in_sequence", [](auto& t) -> auto& { return t.edges_in_sequence; }, "edges", between(1, most_places),
-        "With hardware.test_order = \"cheap_first\": edges whose Normal or Summed Height Test is not decided");
+        "With hardware.test_order = \"cheap_first\": edges that have not left, from their cheap tests' results on");
     add_unit(
         key, "pass_or_tessellate", "Pass or Tessellate", [](auto& t) -> auto& { return t.pass_or_tessellate; }, "",
         "triangles of which not all parts have come from both branches");

@@ -21,7 +21,7 @@ UnitTiming with_highlight_test(const UnitContext& context) {
 }  // namespace
 
 NormalTest::NormalTest(const sc_core::sc_module_name& name, const UnitContext& context, Parts takes)
-    : Stage(name, context, with_highlight_test(context), 1, context.timing().normal_map.latency),
+    : Stage(name, context, with_highlight_test(context), 1, context.timing().read_latency(context.timing().normal_map)),
       normal_map("normal_map", context.registers.normal_map.entry_bytes, context.design.direct_memory),
       registers_(context.registers),
       takes_(takes) {

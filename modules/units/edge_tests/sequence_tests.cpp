@@ -46,7 +46,7 @@ SequenceTests::Next SequenceTests::after_normal_test(const TestedEdge& edge) con
 template <class Item>
 void SequenceTests::b_transport(Item& item, sc_core::sc_time& delay) {
     if constexpr (std::is_same_v<Item, NormalResult> || std::is_same_v<Item, HeightResult>) {
-        add_result(*in_test_, item);
+        add_result(**in_test_.find(item.tag.triangle), item);
         return;
     } else {
         if (item.tag.is_vertex()) {
@@ -73,12 +73,13 @@ void SequenceTests::b_transport(Item& item, sc_core::sc_time& delay) {
 }
 
 void SequenceTests::run_tests(Edge& edge, sc_core::sc_time& delay) {
-    in_test_ = &edge.tested;
+    in_test_.open(edge.tested.tag.triangle) = &edge.tested;
     if (after_cheap_tests(edge) == Next::normal_test) {
         to_normal_test.transport(edge.normal, delay);
         if (after_normal_test(edge.tested) == Next::summed_height_test)
             to_summed_height_test.transport(edge.height, delay);
     }
+    in_test_.close(edge.tested.tag.triangle);
     to_pass_or_tessellate.transport(edge.tested, delay);
 }
 
@@ -91,9 +92,9 @@ SequenceTests::Edge* SequenceTests::first(Next next) {
     return nullptr;
 }
 
-bool SequenceTests::take_vertex() {
+bool SequenceTests::take_vertex(std::uint64_t cycle) {
     if (vertex_waits_ || normal_operands.empty() || !normal_operands.front().tag.is_vertex() ||
-        first(Next::normal_test) != nullptr)
+        first(Next::normal_test) != nullptr || !may_take(cycle))
         return false;
     vertex_ = normal_operands.front();
     normal_operands.pop();
@@ -101,16 +102,21 @@ bool SequenceTests::take_vertex() {
     return true;
 }
 
-/// Takes an edge whose cheap tests have decided.
-bool SequenceTests::take_edge(std::uint64_t cycle) {
-    if (edges_.full() || vertex_waits_ || normal_operands.empty() || normal_operands.front().tag.is_vertex() ||
-        height_operands.empty() || from_tex_coord_test.empty() || from_view_test.empty())
-        return false;
+/// One edge or vertex a cycle.
+bool SequenceTests::may_take(std::uint64_t cycle) {
     if (next_take_ > cycle) {
         wake_at(next_take_);
         return false;
     }
     next_take_ = cycle + 1;
+    return true;
+}
+
+/// Takes an edge whose cheap tests have decided.
+bool SequenceTests::take_edge(std::uint64_t cycle) {
+    if (edges_.full() || vertex_waits_ || normal_operands.empty() || normal_operands.front().tag.is_vertex() ||
+        height_operands.empty() || from_tex_coord_test.empty() || from_view_test.empty() || !may_take(cycle))
+        return false;
     Edge& edge = edges_.push();
     edge.normal = normal_operands.front();
     edge.height = height_operands.front();
@@ -186,7 +192,7 @@ void SequenceTests::step() {
         changed = take_result(from_summed_height_test, Next::summed_height_result);
         changed = take_result(from_normal_test, Next::normal_result) || changed;
         changed = leave(cycle) || changed;
-        changed = take_vertex() || changed;
+        changed = take_vertex(cycle) || changed;
         changed = take_edge(cycle) || changed;
         changed = send_on() || changed;
     }
@@ -221,6 +227,7 @@ std::string SequenceTests::describe_contents() const {
     if (vertex_waits_)
         text = listed(text, "a vertex that the Normal Test does not take");
     count(normal_operands, "from calculate_new_u");
+    count(height_operands, "from calculate_new_u for summed_height_test");
     count(from_tex_coord_test, "from tex_coord_test");
     count(from_view_test, "from view_test");
     count(from_normal_test, "from normal_test");

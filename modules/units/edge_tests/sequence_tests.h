@@ -26,7 +26,7 @@ namespace tessera {
 ///       were evaluated.
 /// Arithmetic: none.
 /// Timing: one edge a cycle in each direction, no latency of its own. Capacity: `edges_in_sequence` edges (32) between
-///       their cheap tests' results and their decision; `results_buffer` at each input.
+///       their cheap tests' results and their turn to leave; `results_buffer` at each input.
 /// Waits for the tests of its oldest edge. Held back by the Normal Test, the Summed Height Test, Pass or Tessellate.
 class SequenceTests : public Unit {
   public:
@@ -72,7 +72,8 @@ class SequenceTests : public Unit {
     void run_tests(Edge& edge, sc_core::sc_time& delay);
     void step() override;
     bool take_edge(std::uint64_t cycle);
-    bool take_vertex();
+    bool may_take(std::uint64_t cycle);
+    bool take_vertex(std::uint64_t cycle);
     bool send_on();
     template <class Result>
     bool take_result(StreamInput<Result>& input, Next expected);
@@ -89,7 +90,7 @@ class SequenceTests : public Unit {
     TestedEdge left_;  // the edge that left last
     std::uint64_t next_take_ = 0, next_leave_ = 0;
     PerTriangle<Arriving> arriving_{1};
-    TestedEdge* in_test_ = nullptr;  // functional mode: the edge that a test is evaluating
+    PerTriangle<TestedEdge*> in_test_{1};  // functional mode: the edge that a test is evaluating
 };
 
 }  // namespace tessera

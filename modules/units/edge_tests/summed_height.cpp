@@ -9,8 +9,9 @@ namespace tessera {
 namespace {
 
 unsigned memory_latency(const UnitContext& context) {
-    const unsigned table = context.timing().summed_height_table.latency;
-    return context.registers.formats.codes ? std::max(table, context.timing().displacement_map.latency) : table;
+    const Timing& timing = context.timing();
+    const unsigned table = timing.read_latency(timing.summed_height_table);
+    return context.registers.formats.codes ? std::max(table, timing.read_latency(timing.displacement_map)) : table;
 }
 
 }  // namespace
@@ -68,7 +69,7 @@ HeightResult SummedHeightTest::process(const HeightOperands& edge, const Entries
     unsigned next = 0;
     if (has_codes(edge)) {
         for (const std::uint64_t code : {std::uint64_t{edge.code_i}, std::uint64_t{edge.code_j}, entries[0]})
-            sums_[sum++] = code & static_cast<std::uint64_t>(registers_.formats.summed_height.highest);
+            sums_[sum++] = code;
     } else {
         for (const datapath::TexCoord& centre : {edge.t_i, edge.t_j, edge.t_ij})
             sums_[sum++] = rectangle_sum(centred_rectangle(centre, its_size, registers_.map, registers_.formats),

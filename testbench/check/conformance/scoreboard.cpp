@@ -125,11 +125,12 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
     const double leeway = std::max({bumped_bound.x, bumped_bound.y, bumped_bound.z}) + 0x1p-50;
     const bool near_threshold = inputs_.parameters.enabled.normal &&
                                 std::abs(golden.normal_difference - inputs_.parameters.normal_threshold) <= leeway;
-    if (tested.evaluated == 0) {
+    const bool split = (pass.split >> k & 1) != 0;
+    if ((pass.triangle.final_edges >> k & 1) != 0) {
         // Tested with the parent, from the same ends. Without those tests that may flip, would golden split it?
         const bool asked = (golden.normal_test && !near_threshold) || golden.summed_height_test ||
                            (golden.highlight_test && !highlight_may_flip(golden, bumped_bound, leeway));
-        decide(split_decision, false, golden.split, !asked, context);
+        decide(split_decision, split, golden.split, !asked, context);
         return;
     }
     ++edges_;
@@ -159,7 +160,7 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
     texture(tested.texture);
 
     const auto evaluated = [&](datapath::TestBits bit) { return (tested.evaluated & bit) != 0; };
-    if (evaluated(datapath::normal_bit)) {
+    if (evaluated(datapath::normal_bit) || split) {
         compare_vector(inserted_normal, tested.normal, m.normal, n_bound, context);
         compare_vector(inserted_tangent, tested.tangent, m.tangent, t_bound, context);
         compare_vector(inserted_displaced_normal, tested.displaced_normal, m.displaced_normal, bumped_bound, context);
@@ -184,7 +185,6 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
     decide(tex_coord_decision, says(datapath::tex_coord_bit), golden.tex_coord_test, false, context);
     decide(generation_decision, says(datapath::generation_bit), golden.generation_test, false, context);
 
-    const bool split = (pass.split >> k & 1) != 0;
     // If NT or HT flipped, the decision that follows from the hardware's result; it may equal golden's.
     const bool asked =
         golden.normal_test != normal_flipped || golden.summed_height_test || golden.highlight_test != highlight_flipped;

@@ -78,6 +78,22 @@ void add_reads(Equations& list, const Pipeline& p, const Tested& tested) {
     list.add("positions of transform = vertices and edges", p.transform.positions(), vertices + edges);
 }
 
+/// A table, or the cache through which the units read it.
+struct Read {
+    const TableMemory& table;
+    const TableCache* cache;
+
+    Read(const TableMemory& its_table, const std::unique_ptr<TableCache>& its_cache)
+        : table(its_table), cache(its_cache.get()) {}
+    std::uint64_t requests() const { return cache != nullptr ? items(*cache) : items(table); }
+    std::uint64_t entries() const { return cache != nullptr ? cache->entries_read() : table.transactions(); }
+    void add_fills(Equations& list) const {
+        if (cache != nullptr)
+            list.add("lines read of " + std::string(table.basename()) + " = fills of its cache", items(table),
+                     cache->fills());
+    }
+};
+
 void add_timed(Equations& list, const Simulation& simulation, const Tested& tested) {
     const auto& [vertices, edges, normal, summed_height, by_codes] = tested;
     const Pipeline& p = simulation.pipeline;
@@ -115,15 +131,20 @@ void add_timed(Equations& list, const Simulation& simulation, const Tested& test
     list.add("edges taken from tessellation_tests = edges", joined, edges);
     list.add("edges collected = edges", tests([](const auto& t) { return items(t.collector()); }), edges);
 
-    list.add("entries of displacement_map = read", p.displacement_map.transactions(), p.displacement_map_reads());
-    list.add("entries of normal_map = read by normal_test", p.normal_map.transactions(), p.normal_map_reads());
-    list.add("entries of summed_height_table = read by summed_height_test", p.summed_height_table.transactions(),
+    const Read displacement_map(p.displacement_map, p.displacement_map_cache);
+    const Read normal_map(p.normal_map, p.normal_map_cache);
+    const Read summed_height_table(p.summed_height_table, p.summed_height_table_cache);
+    list.add("entries of displacement_map = read", displacement_map.entries(), p.displacement_map_reads());
+    list.add("entries of normal_map = read by normal_test", normal_map.entries(), p.normal_map_reads());
+    list.add("entries of summed_height_table = read by summed_height_test", summed_height_table.entries(),
              p.summed_height_table_reads());
-    list.add("requests to displacement_map = vertices, edges and texels", items(p.displacement_map),
+    for (const Read& read : {displacement_map, normal_map, summed_height_table})
+        read.add_fills(list);
+    list.add("requests to displacement_map = vertices, edges and texels", displacement_map.requests(),
              vertices + edges + by_codes);
-    list.add("requests to normal_map = vertices and edges of normal_test", items(p.normal_map),
+    list.add("requests to normal_map = vertices and edges of normal_test", normal_map.requests(),
              bumps(p, vertices) + normal);
-    list.add("requests to summed_height_table = three an edge, if it tests", items(p.summed_height_table),
+    list.add("requests to summed_height_table = three an edge, if it tests", summed_height_table.requests(),
              simulation.setup.registers.tests.summed_height_test ? 3 * (summed_height - by_codes) : 0);
 
     list.add("triangles spilled = come back", p.triangle_queue.spilled(), p.triangle_queue.refilled());

@@ -3,9 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <utility>
+#include <vector>
 
 namespace tessera {
 
@@ -23,9 +23,9 @@ unsigned ReadCheck::transport_dbg(MemoryRequest& request) {
 void ReadCheck::compare(const MemoryRequest& asked, const MemoryRequest& answer) {
     if (asked.command != tlm::TLM_READ_COMMAND || !answer.is_ok())
         return;
-    const unsigned bytes = asked.entry_bytes;
+    const unsigned bytes = asked.entry_bytes;  // of a cache's line more than of a table's entry
+    std::vector<unsigned char> held(bytes);
     for (unsigned k = 0; k < asked.count; ++k) {
-        std::array<unsigned char, 8> held{};
         MemoryRequest look{tlm::TLM_READ_COMMAND, 1, bytes, {asked.address[k]}, held.data()};
         ++result_.entries;
         const unsigned char* const brought = asked.entry(k);
@@ -35,8 +35,9 @@ void ReadCheck::compare(const MemoryRequest& asked, const MemoryRequest& answer)
             continue;
         std::uint64_t expected = 0;
         std::uint64_t found = 0;
-        std::memcpy(&expected, held.data(), bytes);
-        std::memcpy(&found, brought, bytes);
+        const std::size_t shown = std::min<std::size_t>(bytes, sizeof expected);
+        std::memcpy(&expected, held.data(), shown);
+        std::memcpy(&found, brought, shown);
         result_.first_wrong = fmt::format("{}: a read at address {:#x} brought {:#x}; the memory holds {:#x}", port_,
                                           asked.address[k], found, expected);
     }

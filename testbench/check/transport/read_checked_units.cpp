@@ -2,7 +2,7 @@
 
 namespace tessera {
 
-ReadCheck& ReadCheckedUnits::check(MemoryPort& port, TableMemory& memory) {
+ReadCheck& ReadCheckedUnits::check(MemoryPort& port, const sc_core::sc_object& memory) {
     checks_.push_back(std::make_unique<ReadCheck>(sc_core::sc_gen_unique_name("read_check"), port.socket.name()));
     port.bind(*checks_.back(), memory);
     return *checks_.back();
@@ -10,6 +10,10 @@ ReadCheck& ReadCheckedUnits::check(MemoryPort& port, TableMemory& memory) {
 
 void ReadCheckedUnits::join(MemoryPort& port, TableMemory& memory) {
     check(port, memory).to_memory.bind(memory.socket);
+}
+
+void ReadCheckedUnits::join(MemoryPort& port, TableCache& cache) {
+    check(port, cache).to_memory.bind(cache.socket);
 }
 
 ReadResult ReadCheckedUnits::result() const {

@@ -40,6 +40,7 @@ void add_vertex(Hash& hash, const datapath::Vertex& v, bool known) {
     hash.add(v.generation, known ? 1 : 0);
     if (!known)
         return;
+    hash.add(v.code);
     hash.add(v.displaced.x, v.displaced.y);
     hash.add(v.displaced.z, v.displaced_normal.x);
     hash.add(v.displaced_normal.y, v.displaced_normal.z);

@@ -20,7 +20,7 @@ class AreaCounter {
         unit("get_triangle", 0, 2 * t.get_triangle.buffer * bits<datapath::Triangle>() + bits<TakenTriangle>());
         stage<GeometryOperands, BasePoint>("calculate_new_p", t.calculate_new_p);
         stage<BasePoint, DisplacedPoint>("displace_vertex", t.displace_vertex, M::normalise + M::displace, 1,
-                                         {t.displacement_map.latency, f.displacement.bits});
+                                         {t.read_latency(t.displacement_map), f.displacement.bits});
         stage<DisplacedPoint, ScreenPoint>("transform", t.transform, M::transform + M::transform_normal,
                                            design_.transform_pipelines);
         edge_tests();
@@ -33,9 +33,10 @@ class AreaCounter {
         unit("triangle_queue", 0, t.triangle_queue.buffer * bits<datapath::Triangle>());
         areas_.back().memory_bits = queue_places * bits<datapath::Triangle>();
         stage<TriangleToLight, LitTriangle>("lighting", t.lighting, 3 * M::light);
-        table("displacement_map", registers_.displacement_map, f.displacement.bits, t.displacement_map);
-        table("normal_map", registers_.normal_map, 3 * f.normal.bits, t.normal_map);
-        table("summed_height_table", registers_.summed_height_table, f.summed_height.bits, t.summed_height_table);
+        table("displacement_map", registers_.displacement_map, f.displacement.bits, t.displacement_map, 1);
+        table("normal_map", registers_.normal_map, 3 * f.normal.bits, t.normal_map, 1);
+        table("summed_height_table", registers_.summed_height_table, f.summed_height.bits, t.summed_height_table,
+              corners_of_a_rectangle());
         return std::move(areas_);
     }
 
@@ -87,10 +88,10 @@ class AreaCounter {
                                             {height_latency(), 3 * f.summed_height.bits}, copies);
         stage<NormalOperands, NormalResult>("normal_test", normal,
                                             2 * M::normalise + M::bump + (tests.highlight_test ? M::highlight_test : 0),
-                                            1, {t.normal_map.latency, 3 * f.normal.bits}, copies);
+                                            1, {t.read_latency(t.normal_map), 3 * f.normal.bits}, copies);
         areas_.back().register_bits += copies * corners;
         stage<ViewOperands, ViewResult>("view_test", t.view_test, 0, 1, {}, copies);
-        areas_.back().register_bits += copies * (t.pass_or_tessellate.buffer + 2) * screens;
+        areas_.back().register_bits += copies * (bits<ScreenCorner>() + (t.pass_or_tessellate.buffer + 2) * screens);
         const std::uint64_t results = t.results_buffer * (bits<TexCoordResult>() + bits<HeightResult>() +
                                                           bits<NormalResult>() + bits<ViewResult>());
         const std::uint64_t operands = bits<NormalOperands>() + bits<HeightOperands>();
@@ -98,19 +99,36 @@ class AreaCounter {
             unit("collect_tests", 0, results, copies);
         else
             unit("sequence_tests", 0,
-                 results + t.results_buffer * operands + t.edges_in_sequence * (operands + bits<TestedEdge>()), copies);
+                 results + t.results_buffer * operands + bits<NormalOperands>() +
+                     t.edges_in_sequence * (operands + bits<TestedEdge>()),
+                 copies);
+    }
+
+    /// With repeat on one axis a rectangle may wrap, and reads six entries, on both nine.
+    std::uint64_t corners_of_a_rectangle() const {
+        const std::uint64_t across = registers_.map.address_u == datapath::AddressMode::repeat ? 3 : 2;
+        const std::uint64_t along = registers_.map.address_v == datapath::AddressMode::repeat ? 3 : 2;
+        return across * along;
     }
 
     unsigned height_latency() const {
         const Timing& t = design_.timing;
-        return registers_.formats.codes ? std::max(t.summed_height_table.latency, t.displacement_map.latency)
-                                        : t.summed_height_table.latency;
+        const unsigned own = t.read_latency(t.summed_height_table);
+        return registers_.formats.codes ? std::max(own, t.read_latency(t.displacement_map)) : own;
     }
 
-    void table(const char* name, const datapath::TableLayout& layout, int entry_bits, const MemoryTiming& timing) {
-        const std::uint64_t entries = std::uint64_t{layout.rows} * layout.columns;
-        areas_.push_back(
-            {name, 0, 0, entries * static_cast<std::uint64_t>(entry_bits), std::uint64_t{timing.ports} * timing.banks});
+    /// addresses: of a request. Those that wait, in the buffer or at the banks, are registers.
+    void table(const char* name, const datapath::TableLayout& layout, int entry_bits, const MemoryTiming& timing,
+               std::uint64_t addresses) {
+        std::uint64_t entries = std::uint64_t{layout.rows} * layout.columns;
+        if (timing.cache.bytes > 0)
+            entries = std::max(timing.cache.bytes, timing.cache.line_bytes) / layout.entry_bytes;
+        std::uint64_t address_bits = 1;
+        while (std::uint64_t{layout.rows} * layout.columns >> address_bits != 0)
+            ++address_bits;
+        areas_.push_back({name, 0, (timing.buffer + timing.window) * addresses * address_bits,
+                          entries * static_cast<std::uint64_t>(entry_bits),
+                          std::uint64_t{timing.ports} * timing.banks});
     }
 
     const Design& design_;

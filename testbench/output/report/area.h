@@ -12,11 +12,14 @@ namespace tessera {
 
 /// Hardware of one unit or memory of a design, counted from the design's parameters.
 struct UnitArea {
-    std::string name;                 ///< "transform"
-    std::uint64_t multipliers = 0;    ///< that give a result every initiation interval; those of addresses are left out
-    std::uint64_t register_bits = 0;  ///< input buffers, pipeline registers, state: the widths of the items they hold
-    std::uint64_t memory_bits = 0;    ///< a table's entries, or the Triangle Queue's places on chip
-    std::uint64_t ports = 0;          ///< of a table: entries a cycle, all banks together
+    std::string name;               ///< "transform"
+    std::uint64_t multipliers = 0;  ///< that give a result every initiation interval; those of addresses are left out
+    /// Input buffers, pipeline registers, state: the widths of the items they hold; of a memory the addresses that wait.
+    /// Left out: control, the bookkeeping of a cache.
+    std::uint64_t register_bits = 0;
+    /// A table's entries, or those in its cache (tags left out), or the Triangle Queue's places on chip.
+    std::uint64_t memory_bits = 0;
+    std::uint64_t ports = 0;  ///< of a table: entries a cycle, all banks together
 };
 
 /// In the order of the figures, the units of several Tessellation Tests together. queue_places: of the Triangle Queue

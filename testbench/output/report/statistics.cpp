@@ -95,6 +95,16 @@ Collector memory_figures(const char* name, const datapath::TableLayout& table, s
     return c;
 }
 
+void add_cache_figures(Collector& c, const TableCache& cache, std::uint64_t finished) {
+    const auto real = [](std::uint64_t value) { return static_cast<double>(value); };
+    c.add("cache_hits", cache.hits(), "entry", "entries whose line was there, or on its way");
+    c.add("cache_fills", cache.fills(), "line", "lines fetched from off-chip memory");
+    c.add("cache_hit_rate", 100 * ratio(real(cache.hits()), real(cache.entries_read())), "percent", "of entries read");
+    c.add("bytes_fetched", cache.bytes_fetched(), "byte", "of these lines");
+    c.add("bytes_fetched_per_triangle", ratio(real(cache.bytes_fetched()), real(finished)), "byte/triangle",
+          "per finished triangle");
+}
+
 Collector host_figures(const MachineSetup& setup, std::uint64_t finished, std::uint64_t vertices) {
     const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
     const auto bytes = [](std::uint64_t bits) { return (bits + 7) / 8; };
@@ -168,7 +178,8 @@ Collector useful_work_figures(const Pipeline& p, const Decisions::Evaluated& eva
           "were split");
     c.add("edge_tests", tested, "edge", "edges tested: one of a triangle, in each pass; final edges are not");
     c.add("normal_tests", evaluated.normal, "edge", "of these, edges whose Normal Test was evaluated");
-    c.add("summed_height_tests", evaluated.summed_height, "edge", "likewise the Summed Height Test");
+    c.add("summed_height_tests", evaluated.summed_height, "edge",
+          "likewise the Summed Height Test, unless it is switched off");
     c.add("summed_height_tests_by_codes", evaluated.summed_height_by_codes, "edge",
           "of these, edges whose rectangles are single texels, with hardware.one_texel_from_map");
     c.add("tests_per_edge", per(tested, mesh.tested_edges()), "times", "edge tests per distinct edge");
@@ -223,7 +234,10 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     take(std::move(run));
     take(format_figures(setup));
     take(stream_figures(setup));
-    take(useful_work_figures(p, simulation.decisions.evaluated(), setup.base_triangles.size(), mesh));
+    Decisions::Evaluated evaluated = simulation.decisions.evaluated();
+    if (!setup.registers.tests.summed_height_test)
+        evaluated.summed_height = 0;
+    take(useful_work_figures(p, evaluated, setup.base_triangles.size(), mesh));
     take(host_figures(setup, counts.finished, mesh.vertices));
 
     Collector get("get_triangle");
@@ -283,10 +297,18 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     lighting.add("triangles", simulation.rasteriser.triangles(), "triangle", "lit and sent to the rasteriser");
     take(std::move(lighting));
 
-    take(memory_figures("displacement_map", setup.registers.displacement_map, p.displacement_map_reads(), edges_real));
-    take(memory_figures("normal_map", setup.registers.normal_map, p.normal_map_reads(), edges_real));
-    take(memory_figures("summed_height_table", setup.registers.summed_height_table, p.summed_height_table_reads(),
-                        edges_real));
+    const auto table = [&](const char* name, const datapath::TableLayout& layout, std::uint64_t reads,
+                           const TableCache* cache) {
+        Collector figures = memory_figures(name, layout, reads, edges_real);
+        if (cache != nullptr && timed)
+            add_cache_figures(figures, *cache, counts.finished);
+        take(std::move(figures));
+    };
+    table("displacement_map", setup.registers.displacement_map, p.displacement_map_reads(),
+          p.displacement_map_cache.get());
+    table("normal_map", setup.registers.normal_map, p.normal_map_reads(), p.normal_map_cache.get());
+    table("summed_height_table", setup.registers.summed_height_table, p.summed_height_table_reads(),
+          p.summed_height_table_cache.get());
 
     Collector saturated("saturations");
     for (const SaturationFigure& figure : saturation_figures(setup, p.saturations()))

@@ -131,6 +131,11 @@ void choose_evaluations(Random& random, Job& job) {
         table.banks = 1U << random.natural(0, 6);
     }
     job.hardware.one_texel_from_map = random.coin();
+    if (random.chance(60))
+        return;
+    for (MemoryTiming* memory : {&job.timing.displacement_map, &job.timing.normal_map, &table})
+        memory->cache = {random.one_of({0U, 1U, 300U, 4096U}), random.one_of({1U, 16U, 64U, 100U}),
+                         random.natural(1, 4), random.natural(1, 20)};
 }
 
 }  // namespace tessera

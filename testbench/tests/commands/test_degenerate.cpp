@@ -199,6 +199,22 @@ TEST_CASE("read checks compare every table read, and change nothing") {
     }
 }
 
+TEST_CASE("read checks compare what a cache fetches, and what units read through it") {
+    const Attempt checked({"mode=timed", "check.reads=true", "timing.displacement_map_cache_bytes=100",
+                           "timing.normal_map_cache_bytes=1000", "timing.summed_height_table_cache_bytes=4096"});
+    CHECK_THAT(checked.end.out, Contains("all checks passed") && Contains("fetched"));
+    const RunFolder run = checked.well();
+    std::uint64_t reads = 0;
+    for (const char* const table : {"displacement_map", "normal_map", "summed_height_table"}) {
+        const std::uint64_t entries = run.count(table, "reads"), fills = run.count(table, "cache_fills");
+        CHECK(run.count(table, "cache_hits") + fills == entries);
+        CHECK(run.count(table, "bytes_fetched") > 32 * fills);
+        reads += entries + fills;
+    }
+    CHECK(run.conformance["reads"]["wrong"] == 0);
+    CHECK(run.conformance["reads"]["entries"] == reads);
+}
+
 TEST_CASE("a check that fails is exit code 1, and the results are there") {
     const Attempt attempt({"check.allowed_flips=0", "formats.normal_bits=8", "formats.normal_fraction=6"});
     INFO(attempt.end.text());

@@ -200,6 +200,7 @@ TEST_CASE("texel borders: edges with an end or a midpoint one LSB below a border
 
     datapath::TrianglePass pass = pass_at({on, on, on, left, left, on});
     pass.edges[0].evaluated = 0;  // a final edge: not tested
+    pass.triangle.final_edges = 1;
     TexelBorders borders(formats);
     borders.write(pass);
     CHECK(borders.count().edges == 2);

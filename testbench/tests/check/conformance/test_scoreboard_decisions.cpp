@@ -145,6 +145,7 @@ TEST_CASE("a final edge: nothing of it is compared but that golden does not spli
             // The others' decision would change the diagonal.
             if (splits && ((tested.tests & datapath::summed_height_bit) == 0 || pass.split != 1))
                 continue;
+            pass.triangle.final_edges = 1;
             pass.edges[0] = {};
             pass.new_vertex[0] = {};
             pass.split = static_cast<std::uint8_t>(pass.split & ~1);
@@ -159,6 +160,24 @@ TEST_CASE("a final edge: nothing of it is compared but that golden does not spli
         }
     }
     CHECK(whole > 100);
+    CHECK(split > 20);
+}
+
+TEST_CASE("a split edge's N, T, N' are compared, whatever the machine says it has evaluated") {
+    Random random(13);
+    int split = 0;
+    for (int k = 0; k < 300; ++k) {
+        Case c(random, datapath::Formats{}, Manner::tame);
+        datapath::TrianglePass pass = c.pass(random);
+        if ((pass.split & 1) == 0)
+            continue;
+        pass.edges[0].evaluated = 0;
+        pass.edges[0].normal = {};
+        Scoreboard scoreboard(c.setup.registers, c.inputs);
+        scoreboard.write(pass);
+        CHECK(scoreboard.result().mismatches > 0);
+        ++split;
+    }
     CHECK(split > 20);
 }
 

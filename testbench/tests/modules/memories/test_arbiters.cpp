@@ -85,6 +85,14 @@ TEST_CASE("banked ports: a window lets requests start while others wait for a ba
     CHECK(p.ready({3}) == 14);                // the second
 }
 
+TEST_CASE("banked ports: with exclusive ORs an entry's column and row say which bank is taken") {
+    Ports p({1, 4, 1, 0, 1, Interleave::exclusive_or, 0});
+    const auto bank = [](unsigned entry) { return BankOfEntry::of(entry % 16, entry / 16, 4); };
+    CHECK(p.serve({37}, 10) == 11);
+    for (unsigned entry = 0; entry < 256; ++entry)
+        CHECK(p.ready({entry}) == (bank(entry) == bank(37) ? 11 : 0));
+}
+
 TEST_CASE("banked ports: exclusive-or banks hold the same share of any table, and no entry shares its place") {
     for (const unsigned banks : {2U, 4U, 8U, 16U, 32U, 64U}) {
         CAPTURE(banks);

@@ -148,7 +148,6 @@ const CaseTable answers(
          timing(1, 4, 1),
          {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 4, 8, 12}, {1, 2, 3, 5}},
          {11, 12, 16, 16}},
-        // two in each bank, cycles 10 and 11; {0, 2} bank 0 in 12, 13; {1, 3} as bank 1 is free in 12: 12, 13
         // Bank 0 in 10, 11, 12; without a window {0, 1} waits for it until 13, and {1, 2} for both its banks until 14.
         {"a request waits for each of its banks", timing(1, 4, 1), {{0, 4, 8}, {0, 1}, {1, 2}}, {13, 14, 15}},
         // {0, 1} takes bank 1 in 10 and bank 0 in 13; {1, 2} starts in 13, as the first is through.
@@ -156,6 +155,7 @@ const CaseTable answers(
          windowed(4, 2),
          {{0, 4, 8}, {0, 1}, {1, 2}},
          {13, 14, 14}},
+        // two in each bank, cycles 10 and 11; {0, 2} bank 0 in 12, 13; {1, 3} as bank 1 is free in 12: 12, 13
         {"requests wait while every bank is taken", timing(1, 2, 1), {{0, 1, 2, 3}, {0, 2}, {1, 3}}, {12, 14, 14}},
     },
     [](const Row& row) {

@@ -54,6 +54,7 @@ class StubTest : public Stage<Operands, Result> {
     StreamInput<Operands> input{"input"};
     StreamOutput<Result> output{"output"};
     std::vector<PartTag> asked;
+    Tag answers_for = ~Tag{0};  ///< another triangle than the edge's
 
     StubTest(const sc_core::sc_module_name& name, const UnitContext& context, const UnitTiming& timing)
         : Stage<Operands, Result>(name, context, timing) {
@@ -64,7 +65,10 @@ class StubTest : public Stage<Operands, Result> {
   private:
     Result process(const Operands& edge, const Entries&) override {
         asked.push_back(edge.tag);
-        return edge.tag.is_edge() ? answer(edge) : Result{edge.tag};
+        Result result = edge.tag.is_edge() ? answer(edge) : Result{edge.tag};
+        if (answers_for != ~Tag{0})
+            result.tag.triangle = answers_for;
+        return result;
     }
 };
 
@@ -231,11 +235,18 @@ TEST_CASE("blocking transport: the same decisions, and the tests' latencies one 
     }
 }
 
-TEST_CASE("an answer for another edge than the one asked is an error") {
+TEST_CASE("operands and results of different edges are an error") {
     Bench bench;
     bench.add_edge(datapath::gating_tests);
     bench.height_operands.items[0].tag.triangle = 17;
     CHECK_THROWS_WITH(sc_core::sc_start(), Catch::Contains("the tests decided different edges"));
+}
+
+TEST_CASE("an answer of another edge than the one asked is an error") {
+    Bench bench;
+    bench.normal_test.answers_for = 17;
+    bench.add_edge(datapath::gating_tests);
+    CHECK_THROWS_WITH(sc_core::sc_start(), Catch::Contains("a test decided an edge that it was not asked for"));
 }
 
 TEST_CASE("an answer that was not asked for is an error") {

@@ -100,4 +100,10 @@ TEST_CASE("area: what each parameter changes") {
     CHECK(32 * (first["sequence_tests"].register_bits - one_edge_less) < first["sequence_tests"].register_bits);
     CHECK(first["sequence_tests"].register_bits - one_edge_less > 600);
     CHECK(paper["total"].multipliers == first["total"].multipliers);
+    // A miss takes 40 cycles of latency and 4 of the channel longer, and so many more register stages of one width.
+    auto cached = area("timing.normal_map_cache_bytes=6000");
+    CHECK(cached["normal_map"].memory_bits == 1000 * 48);
+    const std::uint64_t more = cached["normal_test"].register_bits - paper["normal_test"].register_bits;
+    CHECK(more % 44 == 0);
+    CHECK(more / 44 > 400);
 }

@@ -1,0 +1,77 @@
+#pragma once
+#include <cstdint>
+#include <systemc>
+#include <vector>
+
+#include "modules/memories/banked_ports.h"
+#include "modules/memories/line_cache.h"
+#include "modules/memories/memory_server.h"
+#include "modules/sockets/memory_port.h"
+#include "modules/timing/ring.h"
+
+namespace tessera {
+
+/// A cache between the units and a table in off-chip memory, in designs with `timing.TABLE_cache_bytes`.
+///
+/// In:        requests, as a MemoryServer. Out: `table`, reads of whole lines.
+/// Lines:     line_cache.h. A line holds as many entries as fit its bytes, none in part.
+/// Lookup:    entries in order, any number a cycle; tags are banked as the data are. An entry whose line is neither
+///            there nor on its way begins a fill. Up to `fills` lines, and as many requests, are under way: requests
+///            overtake neither at lookup nor when they are answered.
+/// Timing:    a request whose entries have all come reads them from the cache's banks (banked_ports.h).
+/// Busy:      while an answer is due; waiting for memory: while the oldest waits for a line.
+/// Functional mode: forwards to the table, past the lines.
+class TableCache : public MemoryServer {
+  public:
+    MemoryPort table;
+
+    TableCache(const sc_core::sc_module_name& name, CycleScheduler& clock, const datapath::TableLayout& layout,
+               const MemoryTiming& timing, const StallParameters& stalls);
+
+    /// Entries found, or on their way, at lookup; entries that began a fill.
+    std::uint64_t hits() const { return hits_; }
+    std::uint64_t fills() const { return table.requests(); }
+    std::uint64_t bytes_fetched() const { return fills() * table.entry_bytes(); }
+    std::uint64_t entries_read() const { return hits_ + fills(); }
+
+    std::uint64_t occupied_cycles() const override { return ports_.occupied_cycles(); }
+    std::string describe_contents() const override;
+    void trace_signals(Signals& signals) const override;
+
+  private:
+    /// A request that was looked up, in whole or in part.
+    struct Gather {
+        MemoryRequest* request = nullptr;
+        unsigned looked_up = 0;  // entries
+        std::uint32_t come = 0;  // bit k: entry k
+        bool answered = false;
+
+        bool complete() const { return come == (1u << request->count) - 1; }
+    };
+
+    std::uint64_t ready(const MemoryRequest&) const override;
+    std::uint64_t serve(MemoryRequest& request, std::uint64_t cycle) override;
+    void step() override;
+    void look_up();
+    void take_fills(std::uint64_t cycle);
+    void send_fills();
+    void take_entry(Gather& gather, unsigned entry, const LineCache::Line& line);
+    void drop_answered();
+    bool looking_up() const;
+    std::uint64_t line_number(std::uint64_t address) const { return (address - base_) / line_bytes_; }
+
+    void b_transport(int id, MemoryRequest& request, sc_core::sc_time& delay) override;
+    bool get_direct_mem_ptr(int id, MemoryRequest& request, tlm::tlm_dmi& dmi) override;
+    unsigned transport_dbg(int id, MemoryRequest& request) override;
+
+    std::uint64_t base_;
+    unsigned line_bytes_;
+    LineCache cache_;
+    BankedPorts ports_;
+    Ring<Gather> gathers_;                 // in order of arrival
+    Ring<std::uint64_t> to_fetch_;         // line numbers
+    Ring<LineCache::Line*> on_their_way_;  // in the order of the requests
+    std::uint64_t hits_ = 0;
+};
+
+}  // namespace tessera

@@ -1,0 +1,65 @@
+"""Tables that do not fit on chip: the last design of the ladder, with caches in front of off-chip memory."""
+from section import Chart, Claim, Experiment, Section, Table, MEASURED, FAILED
+from .ladder import DESIGNS, JOBS, LAST
+from .tests_units import QUIET
+import charts
+
+TABLES = {"displacement_map": 8, "normal_map": 8, "summed_height_table": 16}  # KiB
+BANDWIDTHS = (16, 64)
+MAPS = {job: {} for job in JOBS} | {"half_donut, a map of 4096 x 4096": {"map.width": 4096, "map.height": 4096}}
+
+
+def caches(bandwidth):
+    settings = {"timing.off_chip_latency": 100, "timing.off_chip_bandwidth": bandwidth, "hardware.queue_order": "lifo",
+                "timing.pass_or_tessellate_buffer": 64, "timing.edges_in_sequence": 200, "timing.results_buffer": 32}
+    for table, size in TABLES.items():
+        settings[f"timing.{table}_cache_bytes"] = 1024 * size
+        settings[f"timing.{table}_cache_fills"] = 96
+    return settings
+
+
+def measure(study):
+    section, rows, series, wrong = Section(), [], {"on chip": []}, []
+    for name, map_settings in MAPS.items():
+        job, meshes = name.split(",")[0], set()
+        for bandwidth in (None, *BANDWIDTHS):
+            settings = {**QUIET, **DESIGNS[LAST], **map_settings, "output.ply": True,
+                        **(caches(bandwidth) if bandwidth else {})}
+            run = study.run(f"{job}_{len(map_settings)}_{bandwidth}", job=job, settings=settings)
+            meshes.add((run.folder / "mesh.ply").read_bytes())
+            figures = run.figures
+            triangles = figures["mesh.triangles"]
+            cycles = figures["timing.cycles_per_triangle"]
+            series.setdefault(f"{bandwidth} bytes a cycle" if bandwidth else "on chip", []).append(cycles)
+            hits = [figures[f"{table}.cache_hit_rate"] if bandwidth else None for table in TABLES]
+            fetched = sum(figures[f"{table}.bytes_fetched"] for table in TABLES) / triangles if bandwidth else 0
+            rows.append([name, bandwidth or "on chip", cycles, *(value if bandwidth else "" for value in hits), fetched,
+                         figures["host.tessellated_mesh_bytes"] / triangles, figures["host.table_bytes"] / 1e6,
+                         figures["timing.bottleneck"]])
+        if len(meshes) != 1:
+            wrong.append(name)
+    section.claims.append(Claim(
+        "The tables are read from off-chip memory.", "section 3",
+        f"the mesh files of {', '.join(wrong)} differ" if wrong else
+        "the mesh files are the same, byte for byte, whether the tables are on chip or behind caches of "
+        + ", ".join(f"{size} KiB ({table.replace('_', ' ')})" for table, size in TABLES.items())
+        + f". With 100 cycles of latency {min(row[6] for row in rows if row[6]):.0f} to {max(row[6] for row in rows):.0f} bytes "
+        "of tables are fetched per finished triangle. Sending the finished mesh instead would take "
+        f"{min(row[7] for row in rows):.0f} to {max(row[7] for row in rows):.0f} bytes per triangle, from the host.",
+        FAILED if wrong else MEASURED))
+    names = list(MAPS)
+    section.charts.append(Chart(
+        charts.bars([f"{name}, {where}" for name in names for where in series],
+                    [series[where][names.index(name)] for name in names for where in series],
+                    "cycles per finished triangle"),
+        "Cycles per finished triangle"))
+    section.tables.append(Table(
+        "off_chip", "Per finished triangle, with 64 byte lines, 4 ways, up to 96 lines and 64 triangles under way",
+        [("job", ""), ("off-chip memory", "bytes a cycle"), ("cycles", ""), ("displacement map hits", "%"),
+         ("normal map hits", "%"), ("Summed Height Table hits", "%"), ("fetched", "bytes"), ("finished mesh", "bytes"),
+         ("tables", "MB"), ("bottleneck", "")], rows))
+    return section
+
+
+EXPERIMENT = Experiment("off_chip", "Tables in off-chip memory", "Section 3",
+                        "What caches, latency and bandwidth cost a design whose tables do not fit on chip.", measure)

@@ -1,0 +1,73 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <list>
+#include <vector>
+
+#include "modules/memories/line_cache.h"
+#include "testbench/common/random.h"
+
+// A cache's lines: which are there, and which one goes.
+
+using namespace tessera;
+using State = LineCache::State;
+
+namespace {
+
+/// Looks a line up and, if it is not there, fills it at once. True: it was there.
+bool access(LineCache& cache, std::uint64_t number) {
+    if (cache.find(number) != nullptr)
+        return true;
+    LineCache::Line* const line = cache.allocate(number);
+    REQUIRE(line != nullptr);
+    REQUIRE(line->state == State::filling);
+    line->state = State::present;
+    return false;
+}
+
+}  // namespace
+
+TEST_CASE("line cache: its size in lines, one at least") {
+    for (const auto& [bytes, ways, line_bytes, lines] : std::vector<std::array<unsigned, 4>>{
+             {0, 4, 64, 1}, {1, 4, 64, 1}, {64, 4, 64, 1}, {128, 4, 64, 2}, {1024, 4, 64, 16}, {1000, 4, 60, 16}}) {
+        CAPTURE(bytes, ways, line_bytes);
+        CHECK(LineCache(bytes, ways, line_bytes).lines() == lines);
+    }
+}
+
+TEST_CASE("line cache: hits are those of a list of each set's lines in the order of their last use") {
+    Random random(7);
+    for (const auto& [sets, ways] :
+         std::vector<std::pair<std::uint64_t, unsigned>>{{1, 1}, {1, 4}, {8, 1}, {4, 2}, {5, 3}}) {
+        CAPTURE(sets, ways);
+        LineCache cache(sets * ways * 16, ways, 16);
+        std::vector<std::list<std::uint64_t>> expected(sets);
+        unsigned hits = 0;
+        for (int k = 0; k < 5000; ++k) {
+            const std::uint64_t number = random.natural(0, static_cast<unsigned>(3 * sets * ways));
+            std::list<std::uint64_t>& set = expected[number % sets];
+            const auto found = std::find(set.begin(), set.end(), number);
+            const bool hit = found != set.end();
+            if (hit)
+                set.erase(found);
+            else if (set.size() == ways)
+                set.pop_back();
+            set.push_front(number);
+            hits += hit ? 1 : 0;
+            REQUIRE(access(cache, number) == hit);
+        }
+        CHECK(hits > 500);
+    }
+}
+
+TEST_CASE("line cache: a line that is being filled is found, and keeps its place") {
+    LineCache cache(32, 2, 16);
+    LineCache::Line* const first = cache.allocate(10);
+    CHECK(cache.find(10) == first);
+    CHECK(cache.find(11) == nullptr);
+    CHECK(cache.allocate(11) != first);
+    CHECK(cache.allocate(12) == nullptr);
+    first->state = State::present;
+    CHECK(cache.allocate(12) == first);
+    CHECK(cache.find(10) == nullptr);
+}
