@@ -9,6 +9,12 @@
 namespace tessera {
 namespace {
 
+/// What a unit reads for an item: how long that takes, and the bits it keeps of it.
+struct Read {
+    unsigned latency = 0;
+    int bits = 0;
+};
+
 class AreaCounter {
   public:
     AreaCounter(const Design& design, const datapath::Registers& registers) : design_(design), registers_(registers) {}
@@ -17,7 +23,8 @@ class AreaCounter {
         const Timing& t = design_.timing;
         const datapath::Formats& f = registers_.formats;
         using M = Multiplications;
-        unit("get_triangle", 0, 2 * t.get_triangle.buffer * bits<datapath::Triangle>() + bits<TakenTriangle>());
+        unit("get_triangle", 0,
+             std::uint64_t{2} * t.get_triangle.buffer * bits<datapath::Triangle>() + bits<TakenTriangle>());
         stage<GeometryOperands, BasePoint>("calculate_new_p", t.calculate_new_p);
         stage<BasePoint, DisplacedPoint>("displace_vertex", t.displace_vertex, M::normalise + M::displace, 1,
                                          {t.read_latency(t.displacement_map), f.displacement.bits});
@@ -27,7 +34,7 @@ class AreaCounter {
         const UnitTiming& join = t.pass_or_tessellate;
         unit("pass_or_tessellate", registers_.back_face_culling ? M::faces_away : 0,
              triangles_ahead_of_parts(design_) * bits<TakenTriangle>() + bits<ScreenPoint>() +
-                 3 * join.buffer * bits<TestedEdge>() +
+                 std::uint64_t{3} * join.buffer * bits<TestedEdge>() +
                  (join.buffer + register_stages(join)) * (tag_ + bits<DecidedTriangle>()));
         unit("tessellation", 0, (t.tessellation.buffer + 1) * bits<DecidedTriangle>());
         unit("triangle_queue", 0, t.triangle_queue.buffer * bits<datapath::Triangle>());
@@ -41,12 +48,6 @@ class AreaCounter {
     }
 
   private:
-    /// What a unit reads for an item: how long that takes, and the bits it keeps of it.
-    struct Read {
-        unsigned latency = 0;
-        int bits = 0;
-    };
-
     template <class Item>
     std::uint64_t bits() const {
         return item_bits<Item>(registers_.formats, static_cast<int>(tag_));
