@@ -123,8 +123,10 @@ TEST_CASE("triangle queue: a triangle that does not fit its record is an error, 
     Bench bench("spills", clock, registers, design, 0, StallParameters{1, 1000, 1000});
     for (datapath::Triangle& triangle : bench.driver.items)
         triangle.vertices[0].generation = 255;
+    // In a debug build, which packs every item, its stream notices first.
     CHECK_THAT(error_of([] { sc_core::sc_start(); }),
-               Catch::Contains("triangle_queue") || Catch::Contains("does not fit"));
+               Catch::Contains("a spilled triangle does not fit") ||
+                   Catch::Contains("to_get_triangle: a value that its field cannot hold"));
 }
 
 // Nobody takes what the queue offers, for far longer than the test looks.
