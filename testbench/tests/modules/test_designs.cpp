@@ -106,6 +106,9 @@ const CaseTable designs(
          "hardware.test_order=cheap_first hardware.final_edges=true tests.summed_height=false"},
         {"sums over one texel from the map", "hardware.one_texel_from_map=true"},
         {"sums over one texel from the map, functional", "hardware.one_texel_from_map=true mode=functional"},
+        {"sums over one texel from the map, base edges within a texel",
+         "hardware.one_texel_from_map=true mesh.columns=8 mesh.rows=8 map.width=8 map.height=8 tests.tex_coord=false "
+         "tests.generation_limit=4 tests.normal_threshold=0 tests.view_threshold=0"},
         {"sums over one texel from a slow map, three tests units, random stalls",
          "hardware.one_texel_from_map=true hardware.tests_units=3 timing.displacement_map_latency=30 "
          "timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=20"},
