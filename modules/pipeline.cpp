@@ -134,16 +134,15 @@ void Pipeline::attach() {
                                  &normal_map, &summed_height_table, &off_chip_memory});
     for (const auto* cache : {&displacement_map_cache, &normal_map_cache, &summed_height_table_cache}) {
         if (*cache != nullptr)
-            units_.push_back(cache->get());
+            caches_.push_back(cache->get());
     }
+    units_.insert(units_.end(), caches_.begin(), caches_.end());
     clock.attach(off_chip_memory);
     for (Unit* memory : {static_cast<Unit*>(&displacement_map), static_cast<Unit*>(&normal_map),
                          static_cast<Unit*>(&summed_height_table)})
         clock.attach(*memory);
-    for (const auto* cache : {&displacement_map_cache, &normal_map_cache, &summed_height_table_cache}) {
-        if (*cache != nullptr)
-            clock.attach(**cache);
-    }
+    for (TableCache* cache : caches_)
+        clock.attach(*cache);
     clock.attach(lighting);
     clock.attach(triangle_queue);
     clock.attach(tessellation);

@@ -72,6 +72,8 @@ class Pipeline : public sc_core::sc_module {
 
     /// Every unit and memory, in the order of the figures.
     const std::vector<Unit*>& units() const { return units_; }
+    /// Of the tables that have one.
+    const std::vector<TableCache*>& caches() const { return caches_; }
 
     /// Items are held back at random.
     bool random_stalls() const { return random_stalls_; }
@@ -96,6 +98,7 @@ class Pipeline : public sc_core::sc_module {
     Transport transport_;
     bool random_stalls_;
     std::vector<Unit*> units_;
+    std::vector<TableCache*> caches_;
 };
 
 }  // namespace tessera

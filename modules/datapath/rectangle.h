@@ -11,6 +11,8 @@ namespace tessera::datapath {
 struct RectangleSize {
     std::uint32_t width = 1;
     std::uint32_t height = 1;
+
+    constexpr bool is_one_texel() const { return width == 1 && height == 1; }
 };
 
 /// t ranges from 0 to 2^integer texels, and so does |du|; a rectangle is at most half as wide.

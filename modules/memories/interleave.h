@@ -17,7 +17,6 @@ namespace tessera {
 ///               other bits and the row address an entry within its bank.
 class BankOfEntry {
   public:
-    static constexpr unsigned most_banks = 64;
     struct Masks {
         std::uint32_t column;
         std::uint32_t row;

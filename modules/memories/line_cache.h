@@ -21,8 +21,8 @@ class LineCache {
     };
 
     LineCache(std::uint64_t bytes, unsigned ways, unsigned line_bytes)
-        : ways_(std::min<std::uint64_t>(std::max(1u, ways), lines_of(bytes, line_bytes))),
-          sets_(std::max<std::uint64_t>(1, lines_of(bytes, line_bytes) / ways_)),
+        : ways_(std::min<std::uint64_t>(ways, lines_of(bytes, line_bytes))),
+          sets_(lines_of(bytes, line_bytes) / ways_),
           lines_(ways_ * sets_) {
         for (Line& line : lines_)
             line.data.resize(line_bytes);

@@ -13,10 +13,10 @@ namespace tessera {
 /// A memory that holds one table.
 ///
 /// Address map: [layout.base, layout.base + layout.bytes()); entry (x, y) at layout.address(x, y), little endian.
-/// Off chip it reaches to the end of its last line. Read by units, written only by the host's debug transport before the
-/// run.
-/// Timing: on chip banked_ports.h; of a table in off-chip memory, which a cache reads line by line (table_cache.h), the
-/// channel that all off-chip memory shares. b_transport, DMI: the latency, once a request.
+/// Off chip it reaches to the end of its last line. Read by units, written only by the host's debug transport before
+/// the run.
+/// Timing: on chip banked_ports.h; of a table in off-chip memory, which a cache reads line by line (table_cache.h),
+/// the channel that all off-chip memory shares. b_transport, DMI: the latency, once a request.
 /// Utilisation: the share of the busiest bank's port slots taken, or of cycles in which a request was held up,
 /// whichever is greater: bank conflicts delay requests while most ports are idle.
 /// Errors: a write gives TLM_COMMAND_ERROR_RESPONSE, an address outside TLM_ADDRESS_ERROR_RESPONSE.
@@ -55,8 +55,8 @@ class TableMemory : public MemoryServer {
     unsigned last_entry_bytes_ = 0;
 };
 
-/// The displacement map: one unsigned code per texel. Read by Displace Vertex, with Formats::codes also by Summed Height
-/// Test.
+/// The displacement map: one unsigned code per texel. Read by Displace Vertex, with Formats::codes also by Summed
+/// Height Test.
 class DisplacementMap : public TableMemory {
   public:
     using TableMemory::TableMemory;

@@ -75,7 +75,6 @@ class MemoryPort {
     bool may_request() const { return !on_offer_ && !slots_.full(); }
     /// The request on offer has not been taken.
     bool on_offer() const { return on_offer_; }
-    bool under_way() const { return !slots_.empty(); }
     std::size_t requests_under_way() const { return slots_.size(); }
     /// Of the newest request, if any: the address of its first entry.
     std::uint64_t last_address() const { return slots_.empty() ? 0 : slots_.back().request.address[0]; }

@@ -35,8 +35,8 @@ class Stage : public Unit {
           unsigned servers = 1, unsigned memory_latency = 0);
     ~Stage() override;
 
-    /// To be called in a derived unit's constructor: its input; each output, what it gets of a result,
-    /// and the parts that it is for; the ports it reads through, if it does; an item reads through one of them (most_requests: of one item).
+    /// To be called in a derived unit's constructor: its input; each output, what it gets of a result, and the parts
+    /// that it is for; the ports it reads through, if it does (most_requests: of one item, which reads through one).
     void takes_from(const UnitContext& context, StreamInput<In>& input);
     void delivers_to(const UnitContext& context, StreamOutput<Out>& output, Parts only = all_parts);
     template <class Payload>

@@ -59,6 +59,13 @@ constexpr unsigned register_stages(const UnitTiming& timing, unsigned servers = 
     return servers * std::max(1u, (timing.latency + further_stages + timing.interval - 1) / timing.interval);
 }
 
+/// Of the Summed Height Test's reads: of the table or, of codes, of the displacement map.
+constexpr unsigned summed_height_latency(const Design& design, const datapath::Formats& formats) {
+    const Timing& t = design.timing;
+    const unsigned table = t.read_latency(t.summed_height_table);
+    return formats.codes ? std::max(table, t.read_latency(t.displacement_map)) : table;
+}
+
 /// Most triangles that have left the queue while no part of them has reached Pass or Tessellate: one in Get Triangle,
 /// and one for each place of the units between. Pass or Tessellate has room for as many to wait for their parts.
 constexpr unsigned triangles_ahead_of_parts(const Design& design) {

@@ -43,6 +43,9 @@ struct OffChipTiming {
     unsigned latency = 40;    ///< cycles from a request's last byte to its answer
     unsigned bandwidth = 16;  ///< bytes a cycle, both directions together
     unsigned buffer = 4;      ///< requests that may wait, at least 1
+
+    /// In which the channel transfers so many bytes.
+    constexpr std::uint64_t cycles(std::uint64_t bytes) const { return (bytes + bandwidth - 1) / bandwidth; }
 };
 
 /// Clock period and the datasheet figures of every unit and memory. Defaults follow the paper where it states them
@@ -74,10 +77,10 @@ struct Timing {
 
     /// From a request for a table's entries to its data, if nothing delays it and, with a cache, no line is there.
     constexpr unsigned read_latency(const MemoryTiming& table) const {
-        return table.latency + (table.cache.bytes == 0 ? 0
-                                                       : off_chip_memory.latency +
-                                                             (table.cache.line_bytes + off_chip_memory.bandwidth - 1) /
-                                                                 off_chip_memory.bandwidth);
+        if (table.cache.bytes == 0)
+            return table.latency;
+        return table.latency + off_chip_memory.latency +
+               static_cast<unsigned>(off_chip_memory.cycles(table.cache.line_bytes));
     }
 };
 

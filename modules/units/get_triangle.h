@@ -11,8 +11,8 @@
 namespace tessera {
 
 /// Get Triangle (paper figure 7): takes a triangle from the Triangle Queue or from the host and sends it down both
-/// branches, part by part. Vertices and normals that are already in screen space are not sent again, nor are final edges
-/// (Formats::final_edges):
+/// branches, part by part. Vertices and normals that are already in screen space are not sent again, nor are final
+/// edges (Formats::final_edges):
 ///
 ///   base triangle          three vertices to displace and transform (and to bump), then three edges
 ///   re-tessellated         normals that have no N's yet, then the edges that are not final

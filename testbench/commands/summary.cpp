@@ -129,11 +129,9 @@ std::string timing_rows(const Simulation& simulation) {
                                         count(area.ports)));
     std::uint64_t fetched = 0;
     std::string rates;
-    for (const auto* cache : {&p.displacement_map_cache, &p.normal_map_cache, &p.summed_height_table_cache}) {
-        if (*cache == nullptr)
-            continue;
-        fetched += (*cache)->bytes_fetched();
-        rates += fmt::format(", {} {:.1f} %", unit_name(**cache), percent((*cache)->hits(), (*cache)->entries_read()));
+    for (const TableCache* cache : p.caches()) {
+        fetched += cache->bytes_fetched();
+        rates += fmt::format(", {} {:.1f} %", unit_name(*cache), percent(cache->hits(), cache->entries_read()));
     }
     if (!rates.empty())
         text +=

@@ -36,9 +36,9 @@ void Decisions::count(std::uint8_t tests) {
 bool Decisions::by_codes(const datapath::TrianglePass& pass, int edge) const {
     if (!registers_.formats.codes || !registers_.tests.summed_height_test || pass.new_vertices != 0)
         return false;
-    const datapath::RectangleSize size =
-        rectangle_size(pass.edge_begin(edge).texture, pass.edge_end(edge).texture, registers_.map, registers_.formats);
-    return size.width == 1 && size.height == 1;
+    return rectangle_size(pass.edge_begin(edge).texture, pass.edge_end(edge).texture, registers_.map,
+                          registers_.formats)
+        .is_one_texel();
 }
 
 void Decisions::write(const datapath::TrianglePass& pass) {

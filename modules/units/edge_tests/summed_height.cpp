@@ -1,23 +1,13 @@
 #include "modules/units/edge_tests/summed_height.h"
 
-#include <algorithm>
-
 #include "modules/datapath/edge_tests.h"
 #include "modules/stage/stage_steps.h"
 
 namespace tessera {
-namespace {
-
-unsigned memory_latency(const UnitContext& context) {
-    const Timing& timing = context.timing();
-    const unsigned table = timing.read_latency(timing.summed_height_table);
-    return context.registers.formats.codes ? std::max(table, timing.read_latency(timing.displacement_map)) : table;
-}
-
-}  // namespace
 
 SummedHeightTest::SummedHeightTest(const sc_core::sc_module_name& name, const UnitContext& context)
-    : Stage(name, context, context.timing().summed_height_test, 1, memory_latency(context)),
+    : Stage(name, context, context.timing().summed_height_test, 1,
+            summed_height_latency(context.design, context.registers.formats)),
       summed_height_table("summed_height_table", context.registers.summed_height_table.entry_bytes,
                           context.design.direct_memory),
       registers_(context.registers) {
@@ -37,22 +27,19 @@ datapath::RectangleSize SummedHeightTest::size(const HeightOperands& edge) const
 }
 
 /// The sums around its ends are their codes, and around its midpoint the code there.
-bool SummedHeightTest::has_codes(const HeightOperands& edge) const {
-    if (!displacement_map || !edge.codes_known)
-        return false;
-    const datapath::RectangleSize its_size = size(edge);
-    return its_size.width == 1 && its_size.height == 1;
+bool SummedHeightTest::has_codes(const HeightOperands& edge, const datapath::RectangleSize& its_size) const {
+    return displacement_map && edge.codes_known && its_size.is_one_texel();
 }
 
 void SummedHeightTest::reads(const HeightOperands& edge, Reads& reads) const {
     if (!registers_.tests.summed_height_test)
         return;
-    if (has_codes(edge)) {
+    const datapath::RectangleSize its_size = size(edge);
+    if (has_codes(edge, its_size)) {
         reads.through(1);
         reads.add(texel_address(edge.t_ij, registers_.displacement_map, registers_.map, registers_.formats));
         return;
     }
-    const datapath::RectangleSize its_size = size(edge);
     for (const datapath::TexCoord& centre : {edge.t_i, edge.t_j, edge.t_ij}) {
         reads.add_request();
         rectangle_entries(centred_rectangle(centre, its_size, registers_.map, registers_.formats), registers_.map,
@@ -67,7 +54,7 @@ HeightResult SummedHeightTest::process(const HeightOperands& edge, const Entries
     const datapath::RectangleSize its_size = size(edge);
     unsigned sum = 0;
     unsigned next = 0;
-    if (has_codes(edge)) {
+    if (has_codes(edge, its_size)) {
         for (const std::uint64_t code : {std::uint64_t{edge.code_i}, std::uint64_t{edge.code_j}, entries[0]})
             sums_[sum++] = code;
     } else {

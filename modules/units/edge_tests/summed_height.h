@@ -42,7 +42,7 @@ class SummedHeightTest : public Stage<HeightOperands, HeightResult> {
     void trace_processed(Signals& signals, const HeightOperands& edge, const HeightResult& result) const override;
 
     datapath::RectangleSize size(const HeightOperands& edge) const;
-    bool has_codes(const HeightOperands& edge) const;
+    bool has_codes(const HeightOperands& edge, const datapath::RectangleSize& its_size) const;
 
     const datapath::Registers& registers_;
     std::array<std::uint64_t, 3> sums_{};  // around t_i, t_j, t_ij of the edge decided last

@@ -18,6 +18,11 @@ DESIGNS = {
 LAST = next(reversed(DESIGNS))
 
 
+def cycles_chart(cycles):
+    text = "Cycles per finished triangle"
+    return Chart(charts.bars(list(cycles), list(cycles.values()), text.lower()), text)
+
+
 def measure(study):
     section, rows, cycles, different = Section(), [], {}, []
     for job in JOBS:
@@ -43,10 +48,7 @@ def measure(study):
         "finished triangle, the paper's design and the last: "
         + "; ".join(f"{job}: {cycles[job, next(iter(DESIGNS))]:.1f} and {cycles[job, LAST]:.1f}" for job in JOBS),
         FAILED if different else MEASURED))
-    section.charts.append(Chart(
-        charts.bars([f"{job}, {design}" for job in JOBS for design in DESIGNS],
-                    [cycles[job, design] for job in JOBS for design in DESIGNS], "cycles per finished triangle"),
-        "Cycles per finished triangle"))
+    section.charts.append(cycles_chart({f"{job}, {design}": value for (job, design), value in cycles.items()}))
     section.tables.append(Table(
         "ladder", "Per finished triangle, each design with what those above it have (final edges apart)",
         [("job", ""), ("design", ""), ("cycles", ""), ("a triangle", "cycles"), ("edges tested", ""), ("Normal Tests", ""),

@@ -1,8 +1,7 @@
 """Tables that do not fit on chip: the last design of the ladder, with caches in front of off-chip memory."""
-from section import Chart, Claim, Experiment, Section, Table, MEASURED, FAILED
-from .ladder import DESIGNS, JOBS, LAST
+from section import Claim, Experiment, Section, Table, MEASURED, FAILED
+from .ladder import DESIGNS, JOBS, LAST, cycles_chart
 from .tests_units import QUIET
-import charts
 
 TABLES = {"displacement_map": 8, "normal_map": 8, "summed_height_table": 16}  # KiB
 BANDWIDTHS = (16, 64)
@@ -19,7 +18,7 @@ def caches(bandwidth):
 
 
 def measure(study):
-    section, rows, series, wrong = Section(), [], {"on chip": []}, []
+    section, rows, cycles, wrong = Section(), [], {}, []
     for name, map_settings in MAPS.items():
         job, meshes = name.split(",")[0], set()
         for bandwidth in (None, *BANDWIDTHS):
@@ -29,11 +28,11 @@ def measure(study):
             meshes.add((run.folder / "mesh.ply").read_bytes())
             figures = run.figures
             triangles = figures["mesh.triangles"]
-            cycles = figures["timing.cycles_per_triangle"]
-            series.setdefault(f"{bandwidth} bytes a cycle" if bandwidth else "on chip", []).append(cycles)
-            hits = [figures[f"{table}.cache_hit_rate"] if bandwidth else None for table in TABLES]
+            where = f"{bandwidth} bytes a cycle" if bandwidth else "on chip"
+            cycles[f"{name}, {where}"] = figures["timing.cycles_per_triangle"]
+            hits = [figures[f"{table}.cache_hit_rate"] if bandwidth else "" for table in TABLES]
             fetched = sum(figures[f"{table}.bytes_fetched"] for table in TABLES) / triangles if bandwidth else 0
-            rows.append([name, bandwidth or "on chip", cycles, *(value if bandwidth else "" for value in hits), fetched,
+            rows.append([name, bandwidth or "on chip", figures["timing.cycles_per_triangle"], *hits, fetched,
                          figures["host.tessellated_mesh_bytes"] / triangles, figures["host.table_bytes"] / 1e6,
                          figures["timing.bottleneck"]])
         if len(meshes) != 1:
@@ -45,14 +44,9 @@ def measure(study):
         + ", ".join(f"{size} KiB ({table.replace('_', ' ')})" for table, size in TABLES.items())
         + f". With 100 cycles of latency {min(row[6] for row in rows if row[6]):.0f} to {max(row[6] for row in rows):.0f} bytes "
         "of tables are fetched per finished triangle. Sending the finished mesh instead would take "
-        f"{min(row[7] for row in rows):.0f} to {max(row[7] for row in rows):.0f} bytes per triangle, from the host.",
+        f"{max(row[7] for row in rows):.0f} bytes per triangle, from the host.",
         FAILED if wrong else MEASURED))
-    names = list(MAPS)
-    section.charts.append(Chart(
-        charts.bars([f"{name}, {where}" for name in names for where in series],
-                    [series[where][names.index(name)] for name in names for where in series],
-                    "cycles per finished triangle"),
-        "Cycles per finished triangle"))
+    section.charts.append(cycles_chart(cycles))
     section.tables.append(Table(
         "off_chip", "Per finished triangle, with 64 byte lines, 4 ways, up to 96 lines and 64 triangles under way",
         [("job", ""), ("off-chip memory", "bytes a cycle"), ("cycles", ""), ("displacement map hits", "%"),

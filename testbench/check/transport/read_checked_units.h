@@ -7,8 +7,8 @@
 
 namespace tessera {
 
-/// A machine with a read check before each table or its cache. Must be declared before the machine: the checks are modules within
-/// it, and are destroyed after it.
+/// A machine with a read check before each table or its cache. Must be declared before the machine: the checks are
+/// modules within it, and are destroyed after it.
 class ReadCheckedUnits : public UnitFactory {
   public:
     using UnitFactory::join;

@@ -86,7 +86,7 @@ class AreaCounter {
         stage<TexCoordOperands, TexCoordResult>("tex_coord_test", t.tex_coord_test, 0, 1, {}, copies);
         stage<HeightOperands, HeightResult>("summed_height_test", t.summed_height_test,
                                             area ? M::summed_height_limit : 0, 1,
-                                            {height_latency(), 3 * f.summed_height.bits}, copies);
+                                            {summed_height_latency(design_, f), 3 * f.summed_height.bits}, copies);
         stage<NormalOperands, NormalResult>("normal_test", normal,
                                             2 * M::normalise + M::bump + (tests.highlight_test ? M::highlight_test : 0),
                                             1, {t.read_latency(t.normal_map), 3 * f.normal.bits}, copies);
@@ -110,12 +110,6 @@ class AreaCounter {
         const std::uint64_t across = registers_.map.address_u == datapath::AddressMode::repeat ? 3 : 2;
         const std::uint64_t along = registers_.map.address_v == datapath::AddressMode::repeat ? 3 : 2;
         return across * along;
-    }
-
-    unsigned height_latency() const {
-        const Timing& t = design_.timing;
-        const unsigned own = t.read_latency(t.summed_height_table);
-        return registers_.formats.codes ? std::max(own, t.read_latency(t.displacement_map)) : own;
     }
 
     /// addresses: of a request. Those that wait, in the buffer or at the banks, are registers.

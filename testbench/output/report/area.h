@@ -14,8 +14,8 @@ namespace tessera {
 struct UnitArea {
     std::string name;               ///< "transform"
     std::uint64_t multipliers = 0;  ///< that give a result every initiation interval; those of addresses are left out
-    /// Input buffers, pipeline registers, state: the widths of the items they hold; of a memory the addresses that wait.
-    /// Left out: control, the bookkeeping of a cache.
+    /// Input buffers, pipeline registers, state: the widths of the items they hold; of a memory the addresses that
+    /// wait. Left out: control, the bookkeeping of a cache.
     std::uint64_t register_bits = 0;
     /// A table's entries, or those in its cache (tags left out), or the Triangle Queue's places on chip.
     std::uint64_t memory_bits = 0;

@@ -16,7 +16,7 @@ struct JobContext {
 /// spill, one or three Tessellation Tests units, ports, banks, latencies, buffers, random stalls.
 void make_random_job(Random& random, const JobContext& context, Job& job);
 
-/// Which tests the design leaves out. Apart, and drawn last, so that a seed's mesh does not depend on it.
+/// Which work the design leaves out, banks, and caches. Apart, and drawn last: a seed's mesh does not depend on it.
 void choose_evaluations(Random& random, Job& job);
 
 }  // namespace tessera

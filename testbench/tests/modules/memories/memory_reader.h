@@ -1,4 +1,5 @@
 #pragma once
+#include <catch2/catch.hpp>
 #include <cstdint>
 #include <systemc>
 #include <vector>
@@ -23,6 +24,24 @@ struct MemoryReader : sc_core::sc_module {
         : sc_module(name), port("port", 4, direct_access), clock_(clock), caller_(clock) {
         port.clocked_by(clock, caller_, most_under_way);
         caller_.on_step = [this] { step(); };
+    }
+
+    /// Writes 3 * k + 1 to each entry k, of four bytes.
+    void fill(std::uint32_t entries) {
+        for (std::uint32_t entry = 0; entry < entries; ++entry) {
+            std::uint32_t value = 3 * entry + 1;
+            MemoryRequest request{
+                tlm::TLM_WRITE_COMMAND, 1, 4, {base + entry * entry_bytes}, reinterpret_cast<unsigned char*>(&value)};
+            REQUIRE(port.socket->transport_dbg(request) == 4);
+        }
+    }
+    /// All reads were answered, with what was written.
+    void check_values() const {
+        CHECK(answered.size() == reads.size());
+        std::size_t place = 0;
+        for (const auto& entries_read : reads)
+            for (const std::uint32_t entry : entries_read)
+                REQUIRE(values.at(place++) == 3 * entry + 1);
     }
 
   private:

@@ -46,28 +46,12 @@ struct Bench {
         reader.entry_bytes = 4;
     }
 
-    void fill() {
-        for (std::uint32_t entry = 0; entry < 256; ++entry) {
-            std::uint32_t value = 3 * entry + 1;
-            MemoryRequest request{tlm::TLM_WRITE_COMMAND,
-                                  1,
-                                  4,
-                                  {layout.base + std::uint64_t{entry} * 4},
-                                  reinterpret_cast<unsigned char*>(&value)};
-            REQUIRE(reader.port.socket->transport_dbg(request) == 4);
-        }
-    }
-
     void run() {
         sc_core::sc_start(sc_core::SC_ZERO_TIME);
-        fill();
+        reader.fill(256);
         sc_core::sc_start();
-        REQUIRE(reader.answered.size() == reader.reads.size());
-        std::size_t place = 0;
-        for (const auto& entries : reader.reads)
-            for (const std::uint32_t entry : entries)
-                REQUIRE(reader.values.at(place++) == 3 * entry + 1);
-        CHECK(cache.entries_read() == place);
+        reader.check_values();
+        CHECK(cache.entries_read() == reader.values.size());
         CHECK(cache.fills() == table.activity().items_in());
         CHECK(cache.bytes_fetched() == cache.fills() * cache.table.entry_bytes());
         CHECK(cache.describe_contents().empty());
@@ -184,7 +168,7 @@ const CaseTable functional_reads("cache: functional reads go past it, ",
                                  [](const FunctionalRow& row) {
                                      Bench bench(behind({64, 64, 1, 1}), {}, row.direct_access);
                                      sc_core::sc_start(sc_core::SC_ZERO_TIME);
-                                     bench.fill();
+                                     bench.reader.fill(256);
                                      sc_time delay;
                                      for (std::uint32_t entry = 0; entry < 256; ++entry)
                                          CHECK(bench.reader.port.read(layout.base + std::uint64_t{entry} * 4, delay) ==

@@ -43,30 +43,14 @@ struct Bench {
 
     void run() {
         sc_core::sc_start(sc_core::SC_ZERO_TIME);
-        fill();
+        reader().fill(256);
         sc_core::sc_start();
         memory.activity().finish(clock.last_cycle() + 1);
         for (const auto& reader : readers) {
-            CHECK(reader->answered.size() == reader->reads.size());
-            std::size_t place = 0;
-            for (const auto& entries : reader->reads)
-                for (const std::uint32_t entry : entries)
-                    REQUIRE(reader->values.at(place++) == 3 * entry + 1);
+            reader->check_values();
         }
         CHECK(memory.activity().items_in() == memory.activity().items_out());
         CHECK(memory.describe_contents().empty());
-    }
-
-    void fill() {
-        for (std::uint32_t entry = 0; entry < 256; ++entry) {
-            std::uint32_t value = 3 * entry + 1;
-            MemoryRequest request{tlm::TLM_WRITE_COMMAND,
-                                  1,
-                                  4,
-                                  {layout.base + std::uint64_t{entry} * 4},
-                                  reinterpret_cast<unsigned char*>(&value)};
-            REQUIRE(reader().port.socket->transport_dbg(request) == 4);
-        }
     }
 };
 
@@ -284,7 +268,7 @@ TEST_CASE("memory: random stalls delay answers and change none") {
 TEST_CASE("memory: b_transport adds the latency to the delay it is given, and counts alike") {
     Bench bench(timing(1, 1, 6));
     sc_core::sc_start(sc_core::SC_ZERO_TIME);
-    bench.fill();
+    bench.reader().fill(256);
     sc_time delay(33, SC_PS);
     CHECK(bench.reader().port.read(layout.base + 4 * 77, delay) == 3 * 77 + 1);
     CHECK(delay == sc_time(33 + 60, SC_PS));

@@ -259,7 +259,7 @@ TEST_CASE("memory port: exclusion, requests under way, answers in order") {
     bench.answer(2);
     bench.port.pop_answer();
     bench.port.pop_answer();
-    CHECK_FALSE(bench.port.under_way());
+    CHECK(bench.port.requests_under_way() == 0);
     CHECK(bench.port.reads() == 6);
 }
 
