@@ -13,11 +13,25 @@ Pipeline::Units Pipeline::make(const UnitContext& context, UnitFactory& factory)
     made.calculate_new_p = factory.calculate_new_p("calculate_new_p", context);
     made.displace_vertex = factory.displace_vertex("displace_vertex", context);
     made.transform = factory.transform("transform", context);
-    made.pass_or_tessellate = factory.pass_or_tessellate("pass_or_tessellate", context);
-    made.tessellation = factory.tessellation("tessellation", context);
+    if (context.design.work == Work::triangle) {
+        made.pass_or_tessellate = factory.pass_or_tessellate("pass_or_tessellate", context);
+        made.tessellation = factory.tessellation("tessellation", context);
+    } else {
+        made.family_pass_or_tessellate = factory.family_pass_or_tessellate("pass_or_tessellate", context);
+        made.family_tessellation = factory.family_tessellation("tessellation", context);
+    }
     made.triangle_queue = factory.triangle_queue("triangle_queue", context);
     made.lighting = factory.lighting("lighting", context);
     return made;
+}
+
+DecidingUnit* Pipeline::Units::deciding() const {
+    return pass_or_tessellate != nullptr ? static_cast<DecidingUnit*>(pass_or_tessellate.get())
+                                         : family_pass_or_tessellate.get();
+}
+
+TessellatingUnit* Pipeline::Units::tessellating() const {
+    return tessellation != nullptr ? static_cast<TessellatingUnit*>(tessellation.get()) : family_tessellation.get();
 }
 
 namespace {
@@ -93,22 +107,22 @@ void Pipeline::wire(UnitFactory& factory) {
     for (TessellationTests& tests : tessellation_tests)
         tests.wire();
     get_triangle.to_calculate_new_p.bind(calculate_new_p.from_get_triangle);
-    get_triangle.to_pass_or_tessellate.bind(pass_or_tessellate.from_get_triangle);
     triangle_queue.level.bind(get_triangle.queue_level);
     calculate_new_p.to_displace_vertex.bind(displace_vertex.from_calculate_new_p);
     displace_vertex.to_transform.bind(transform.from_displace_vertex);
     join(factory, displace_vertex.displacement_map, displacement_map, displacement_map_cache.get());
-    transform.to_pass_or_tessellate.bind(pass_or_tessellate.from_transform);
+    if (family_tessellation == nullptr)
+        wire_triangles();
+    else
+        wire_families();
     for (std::size_t k = 0; k < tessellation_tests.size(); ++k) {
         TessellationTests& tests = tessellation_tests[k];
-        get_triangle.to_tessellation_tests[k].bind(tests.calculate_new_u.input);
-        transform.to_view_test[k].bind(tests.view_test.from_transform);
-        tests.to_pass_or_tessellate().bind(pass_or_tessellate.from_tessellation_tests[k]);
         join(factory, tests.summed_height_test.summed_height_table, summed_height_table,
              summed_height_table_cache.get());
         if (tests.summed_height_test.displacement_map)
             join(factory, *tests.summed_height_test.displacement_map, displacement_map, displacement_map_cache.get());
-        join(factory, tests.normal_test.normal_map, normal_map, normal_map_cache.get());
+        for (NormalTest* normal_test : tests.normal_tests())
+            join(factory, normal_test->normal_map, normal_map, normal_map_cache.get());
     }
     const auto fill = [&](TableCache* cache, TableMemory& table) {
         if (cache != nullptr)
@@ -117,11 +131,34 @@ void Pipeline::wire(UnitFactory& factory) {
     fill(displacement_map_cache.get(), displacement_map);
     fill(normal_map_cache.get(), normal_map);
     fill(summed_height_table_cache.get(), summed_height_table);
-    pass_or_tessellate.to_tessellation.bind(tessellation.from_pass_or_tessellate);
     pass_or_tessellate.to_lighting.bind(lighting.from_pass_or_tessellate);
-    tessellation.to_triangle_queue.bind(triangle_queue.from_tessellation);
     triangle_queue.to_get_triangle.bind(get_triangle.from_triangle_queue);
     factory.join(triangle_queue.off_chip_memory, off_chip_memory);
+}
+
+void Pipeline::wire_triangles() {
+    get_triangle.to_join.bind(triangle_pass_or_tessellate->from_get_triangle);
+    transform.to_join.bind(triangle_pass_or_tessellate->from_transform);
+    for (std::size_t k = 0; k < tessellation_tests.size(); ++k) {
+        TessellationTests& tests = tessellation_tests[k];
+        get_triangle.to_tessellation_tests[k].bind(tests.calculate_new_u.input);
+        transform.to_view_test[k].bind(*tests.view_test.from_transform);
+        tests.to_pass_or_tessellate().bind(triangle_pass_or_tessellate->from_tessellation_tests[k]);
+    }
+    triangle_pass_or_tessellate->to_tessellation.bind(triangle_tessellation->from_pass_or_tessellate);
+    triangle_tessellation->to_triangle_queue.bind(triangle_queue.from_tessellation);
+}
+
+void Pipeline::wire_families() {
+    get_triangle.to_join.bind(family_tessellation->from_get_triangle);
+    transform.to_join.bind(family_tessellation->from_transform);
+    TessellationTests& tests = tessellation_tests[0];
+    for (std::size_t lane = 0; lane < tests.lanes().size(); ++lane) {
+        family_tessellation->to_tessellation_tests[lane].bind(tests.lanes()[lane].calculate_new_u.input);
+        tests.to_pass_or_tessellate(lane).bind(family_pass_or_tessellate->from_tessellation_tests[lane]);
+    }
+    family_tessellation->to_pass_or_tessellate.bind(family_pass_or_tessellate->from_tessellation);
+    family_pass_or_tessellate->to_triangle_queue.bind(triangle_queue.from_tessellation);
 }
 
 /// Attached to the clock downstream first (cycle_scheduler.h); listed in the order of the figures.
@@ -145,16 +182,23 @@ void Pipeline::attach() {
         clock.attach(*cache);
     clock.attach(lighting);
     clock.attach(triangle_queue);
-    clock.attach(tessellation);
+    if (triangle_tessellation != nullptr)
+        clock.attach(tessellation);
     clock.attach(pass_or_tessellate);
     for (TessellationTests& tests : tessellation_tests) {
         clock.attach(tests.collector());
-        clock.attach(tests.view_test);
-        clock.attach(tests.normal_test);
+        for (const TessellationTests::Lane& lane : tests.lanes())
+            clock.attach(lane.view_test);
+        for (NormalTest* normal_test : tests.normal_tests())
+            clock.attach(*normal_test);
         clock.attach(tests.summed_height_test);
-        clock.attach(tests.tex_coord_test);
-        clock.attach(tests.calculate_new_u);
+        for (const TessellationTests::Lane& lane : tests.lanes())
+            clock.attach(lane.tex_coord_test);
+        for (const TessellationTests::Lane& lane : tests.lanes())
+            clock.attach(lane.calculate_new_u);
     }
+    if (family_tessellation != nullptr)
+        clock.attach(tessellation);
     clock.attach(transform);
     clock.attach(displace_vertex);
     clock.attach(calculate_new_p);
@@ -169,8 +213,14 @@ bool Pipeline::idle() const {
 }
 
 std::uint64_t Pipeline::passes_under_way() const {
-    return get_triangle.activity().items_in() + tessellation.from_pass_or_tessellate.size() -
-           pass_or_tessellate.activity().items_out();
+    const std::size_t decided =
+        triangle_tessellation == nullptr ? 0 : triangle_tessellation->from_pass_or_tessellate.size();
+    return get_triangle.activity().items_in() + decided - pass_or_tessellate.activity().items_out();
+}
+
+std::size_t Pipeline::most_ahead_of_parts() const {
+    return family_tessellation != nullptr ? family_tessellation->most_ahead_of_parts()
+                                          : triangle_pass_or_tessellate->most_ahead_of_parts();
 }
 
 std::uint64_t Pipeline::displacement_map_reads() const {
@@ -184,8 +234,10 @@ std::uint64_t Pipeline::displacement_map_reads() const {
 
 std::uint64_t Pipeline::normal_map_reads() const {
     std::uint64_t reads = 0;
-    for (const TessellationTests& tests : tessellation_tests)
-        reads += tests.normal_test.normal_map.reads();
+    for (const TessellationTests& tests : tessellation_tests) {
+        for (const NormalTest* normal_test : tests.normal_tests())
+            reads += normal_test->normal_map.reads();
+    }
     return reads;
 }
 
@@ -199,8 +251,10 @@ std::uint64_t Pipeline::summed_height_table_reads() const {
 datapath::Saturations Pipeline::saturations() const {
     datapath::Saturations all = displace_vertex.saturations();
     all += transform.saturations();
-    for (const TessellationTests& tests : tessellation_tests)
-        all += tests.normal_test.saturations();
+    for (const TessellationTests& tests : tessellation_tests) {
+        for (const NormalTest* normal_test : tests.normal_tests())
+            all += normal_test->saturations();
+    }
     all += tessellation.saturations();
     all += lighting.saturations();
     return all;

@@ -23,6 +23,18 @@ namespace tessera {
 ///                └── Triangle Queue <── Tessellation <─────────────────────────────────────┘                 v
 ///                                                                                                       rasteriser
 ///
+/// In a machine of families (Design::work) the queue holds triangles that are known to split, and their children are
+/// tested before they go round:
+///
+///     host ──> Get Triangle ──> Calculate New P ──> Displace Vertex ──> Transform
+///                ^    │                             (displacement map)      │
+///                │    └────────────────────────────> Tessellation <─────────┘
+///                │                                    │        │
+///                │                     Tessellation Tests      │
+///                │                (Summed Height Table,        │
+///                │                         normal map)         v
+///                └── Triangle Queue <──────────── └─> Pass or Tessellate ──> Lighting ──> rasteriser
+///
 /// Outside: get_triangle.from_host, lighting.to_rasteriser, and the memories' sockets for the host's preload.
 class Pipeline : public sc_core::sc_module {
     struct Units {
@@ -30,10 +42,15 @@ class Pipeline : public sc_core::sc_module {
         std::unique_ptr<CalculateNewP> calculate_new_p;
         std::unique_ptr<DisplaceVertex> displace_vertex;
         std::unique_ptr<Transform> transform;
-        std::unique_ptr<PassOrTessellate> pass_or_tessellate;
+        std::unique_ptr<PassOrTessellate> pass_or_tessellate;  // with its Tessellation, or
         std::unique_ptr<Tessellation> tessellation;
+        std::unique_ptr<FamilyPassOrTessellate> family_pass_or_tessellate;  // these two; the others are null
+        std::unique_ptr<FamilyTessellation> family_tessellation;
         std::unique_ptr<TriangleQueue> triangle_queue;
         std::unique_ptr<Lighting> lighting;
+
+        DecidingUnit* deciding() const;
+        TessellatingUnit* tessellating() const;
     };
 
   public:
@@ -48,8 +65,12 @@ class Pipeline : public sc_core::sc_module {
     DisplaceVertex& displace_vertex = *made_.displace_vertex;
     Transform& transform = *made_.transform;
     sc_core::sc_vector<TessellationTests> tessellation_tests;
-    PassOrTessellate& pass_or_tessellate = *made_.pass_or_tessellate;
-    Tessellation& tessellation = *made_.tessellation;
+    PassOrTessellate* const triangle_pass_or_tessellate = made_.pass_or_tessellate.get();  ///< null: of families
+    Tessellation* const triangle_tessellation = made_.tessellation.get();
+    FamilyPassOrTessellate* const family_pass_or_tessellate = made_.family_pass_or_tessellate.get();
+    FamilyTessellation* const family_tessellation = made_.family_tessellation.get();  ///< null: of triangles
+    DecidingUnit& pass_or_tessellate = *made_.deciding();
+    TessellatingUnit& tessellation = *made_.tessellating();
     TriangleQueue& triangle_queue = *made_.triangle_queue;
     Lighting& lighting = *made_.lighting;
     OffChipMemory off_chip_memory;
@@ -80,6 +101,8 @@ class Pipeline : public sc_core::sc_module {
 
     /// Triangles between Get Triangle and the end of their pass, in Tessellation or on the way to Lighting.
     std::uint64_t passes_under_way() const;
+    /// Most triangles that waited for their first part where their parts come together.
+    std::size_t most_ahead_of_parts() const;
     std::uint64_t edges_tested() const { return pass_or_tessellate.counts().edges_tested; }
     std::uint64_t displacement_map_reads() const;
     std::uint64_t normal_map_reads() const;
@@ -89,6 +112,8 @@ class Pipeline : public sc_core::sc_module {
   private:
     static Units make(const UnitContext& context, UnitFactory& factory);
     void wire(UnitFactory& factory);
+    void wire_triangles();
+    void wire_families();
     std::unique_ptr<TableCache> make_cache(const char* name, const datapath::TableLayout& layout,
                                            const MemoryTiming& timing, const StallParameters& stalls);
     void attach();

@@ -1,7 +1,7 @@
 #pragma once
-#include <array>
 #include <memory>
 #include <systemc>
+#include <vector>
 
 #include "modules/timing/design.h"
 #include "modules/unit_factory.h"
@@ -23,6 +23,9 @@ namespace tessera {
 ///                                                             ↕         ↕
 ///                                                   Normal Test     Summed Height Test
 ///
+/// In a machine of families there may be several lanes of Calculate New U, Tex Coord Test and View Test before Sequence
+/// Tests, and several Normal Tests behind it; edges come from Tessellation, with P's.
+///
 /// In:   calculate_new_u.input: edges; vertices of a base triangle. view_test.from_transform: their screen positions.
 /// Out:  to_pass_or_tessellate(): TestedEdge.
 /// Of three units, each takes one edge of a triangle and, of a base triangle, the two vertices it joins
@@ -37,8 +40,15 @@ class TessellationTests : public sc_core::sc_module {
         std::unique_ptr<SummedHeightTest> summed_height_test;
         std::unique_ptr<NormalTest> normal_test;
         std::unique_ptr<ViewTest> view_test;
-        std::unique_ptr<CollectTests> collect_tests;    // or
-        std::unique_ptr<SequenceTests> sequence_tests;  // the other is null
+        // One of these; the others are null.
+        std::unique_ptr<CollectTests> collect_tests;
+        std::unique_ptr<SequenceTests> sequence_tests;
+        std::unique_ptr<FamilySequenceTests> family_sequence_tests;
+        // Of families.
+        std::vector<std::unique_ptr<CalculateNewU>> further_calculate_new_u;
+        std::vector<std::unique_ptr<TexCoordTest>> further_tex_coord_tests;
+        std::vector<std::unique_ptr<ViewTest>> further_view_tests;
+        std::vector<std::unique_ptr<NormalTest>> further_normal_tests;
     };
     const Units made_;
 
@@ -49,7 +59,17 @@ class TessellationTests : public sc_core::sc_module {
     NormalTest& normal_test = *made_.normal_test;
     ViewTest& view_test = *made_.view_test;
     CollectTests* const collect_tests = made_.collect_tests.get();     ///< null: cheapest first
-    SequenceTests* const sequence_tests = made_.sequence_tests.get();  ///< null: in parallel
+    SequenceTests* const sequence_tests = made_.sequence_tests.get();  ///< null: in parallel, or of families
+    FamilySequenceTests* const family_sequence_tests = made_.family_sequence_tests.get();
+
+    /// A lane of cheap tests; of triangles there is one.
+    struct Lane {
+        CalculateNewU& calculate_new_u;
+        TexCoordTest& tex_coord_test;
+        ViewTest& view_test;
+    };
+    const std::vector<Lane>& lanes() const { return lanes_; }
+    const std::vector<NormalTest*>& normal_tests() const { return normal_tests_; }
 
     /// number: of the unit, from 0.
     TessellationTests(const sc_core::sc_module_name& name, const UnitContext& context, UnitFactory& factory,
@@ -59,20 +79,20 @@ class TessellationTests : public sc_core::sc_module {
     void wire();
 
     /// Where an edge's results come together.
-    Unit& collector() const { return sequence_tests == nullptr ? static_cast<Unit&>(*collect_tests) : *sequence_tests; }
-    StreamOutput<TestedEdge>& to_pass_or_tessellate() const {
-        return sequence_tests == nullptr ? collect_tests->to_pass_or_tessellate : sequence_tests->to_pass_or_tessellate;
-    }
+    Unit& collector() const;
+    StreamOutput<TestedEdge>& to_pass_or_tessellate(std::size_t lane = 0) const;
 
-    /// In the order of figure 8.
-    std::array<Unit*, 6> units() {
-        return {&calculate_new_u, &tex_coord_test, &summed_height_test, &normal_test, &view_test, &collector()};
-    }
+    /// In the order of figure 8, further lanes and Normal Tests last.
+    std::vector<Unit*> units() const;
 
   private:
+    void wire_lanes();
     template <class Collector>
     void take_results(Collector& collector);
     static Units make(const UnitContext& context, UnitFactory& factory, unsigned number);
+
+    std::vector<Lane> lanes_;
+    std::vector<NormalTest*> normal_tests_;
 };
 
 }  // namespace tessera

@@ -15,6 +15,9 @@
 #include "modules/units/edge_tests/summed_height.h"
 #include "modules/units/edge_tests/tex_coord.h"
 #include "modules/units/edge_tests/view.h"
+#include "modules/units/families/pass_or_tessellate.h"
+#include "modules/units/families/sequence_tests.h"
+#include "modules/units/families/tessellation.h"
 #include "modules/units/get_triangle.h"
 #include "modules/units/lighting.h"
 #include "modules/units/pass_or_tessellate.h"
@@ -73,6 +76,16 @@ class UnitFactory {
     }
     virtual std::unique_ptr<Tessellation> tessellation(Name name, const UnitContext& context) {
         return std::make_unique<Tessellation>(name, context);
+    }
+    /// In a machine of families.
+    virtual std::unique_ptr<FamilyPassOrTessellate> family_pass_or_tessellate(Name name, const UnitContext& context) {
+        return std::make_unique<FamilyPassOrTessellate>(name, context);
+    }
+    virtual std::unique_ptr<FamilySequenceTests> family_sequence_tests(Name name, const UnitContext& context) {
+        return std::make_unique<FamilySequenceTests>(name, context);
+    }
+    virtual std::unique_ptr<FamilyTessellation> family_tessellation(Name name, const UnitContext& context) {
+        return std::make_unique<FamilyTessellation>(name, context);
     }
     virtual std::unique_ptr<TriangleQueue> triangle_queue(Name name, const UnitContext& context) {
         return std::make_unique<TriangleQueue>(name, context);

@@ -12,7 +12,7 @@ namespace tessera::datapath {
 struct Field {
     const char* name;       ///< of the value, such as "displaced"
     const char* component;  ///< of a vector, such as "x"; else ""
-    int index;              ///< 0 to 2 of three equal fields; else -1
+    int index;              ///< 0 to 2 of three equal fields, 0 to 5 of a family's vertices; else -1
     int bits;               ///< in the job's formats
     int most_bits;          ///< in the widest formats, as a waveform declares it
     bool is_signed;
@@ -83,6 +83,18 @@ class Fields {
         if (formats_.final_edges)
             number(name, value, 3, meaning);
     }
+    /// Only in a machine of families.
+    template <class N>
+    constexpr void split_edges(const char* name, N& value, const char* meaning) {
+        if (formats_.families)
+            number(name, value, 3, meaning);
+    }
+    template <class D>
+    constexpr void midpoint_direction(const char* name, D& n, const char* meaning) {
+        if (formats_.families)
+            direction(name, n, meaning);
+    }
+    /// Only in a design that keeps them.
     template <class N>
     constexpr void code(const char* name, N& value, const char* meaning) {
         if (formats_.codes)
@@ -195,6 +207,15 @@ constexpr void describe_triangle(Fields<Codec>& fields, AnyTriangle& triangle) {
     fields.gating("stopped_by", triangle.stopped_by, "tests that kept an edge whole");
     fields.flag("finished", triangle.finished, "no edge splits");
     fields.final_edges("final_edges", triangle.final_edges, "bit k: edge k was tested before and does not split");
+    fields.split_edges("split", triangle.split, "bit k: edge k is to be split");
+    for (int k = 0; k < 3; ++k) {
+        fields.of(k);
+        auto& midpoint = triangle.midpoints[static_cast<std::size_t>(k)];
+        fields.midpoint_direction("midpoint_n", midpoint.normal, "N of edge k's midpoint, if it is split");
+        fields.midpoint_direction("midpoint_tangent", midpoint.tangent, "T likewise");
+        fields.midpoint_direction("midpoint_displaced_n", midpoint.displaced_normal, "N' likewise");
+    }
+    fields.of(-1);
     fields.annotation("base", triangle.base);
     fields.annotation("parent", triangle.parent);
 }

@@ -38,6 +38,7 @@ struct Formats {
     bool highlight_tag = false;  ///< with a Highlight Test: split_by in a queue entry has a bit for it
     bool final_edges = false;    ///< a queue entry says which of its edges are final
     bool codes = false;          ///< a vertex carries its displacement code
+    bool families = false;       ///< a queue entry says which edges split, and N, T, N' of their midpoints
 };
 
 /// Ranges of the widths that a job may set. The functions of this folder are asserted to work within them. A fraction

@@ -53,7 +53,7 @@ int tessellate(const TrianglePass& pass, Triangulation choice, const Formats& fo
     for (int k = 0; k < indices.count; ++k) {
         const auto& corners = indices.children[static_cast<std::size_t>(k)];
         triangle.vertices = {*vertices[corners[0]], *vertices[corners[1]], *vertices[corners[2]]};
-        triangle.final_edges = formats.final_edges ? final_edges_of(corners) : std::uint8_t{0};
+        triangle.final_edges = formats.final_edges || formats.families ? final_edges_of(corners) : std::uint8_t{0};
         child(triangle);
     }
     return indices.count;

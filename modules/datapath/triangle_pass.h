@@ -10,12 +10,14 @@ namespace tessera::datapath {
 
 /// Results of Calculate New P, Displace Vertex and Transform for the midpoint of one edge.
 struct NewVertex {
-    Position position;       ///< P_ij                             (Calculate New P)
-    Direction mean_normal;   ///< (N_i + N_j) / 2, not yet unit    (Calculate New P)
-    TexCoord texture;        ///< t_ij                             (Calculate New P)
-    std::uint16_t code = 0;  ///< d_ij, 0 unless Formats::codes    (Displace Vertex)
-    Position displaced;      ///< P'_ij                            (Displace Vertex)
-    ScreenPosition screen;   ///< P's_ij                           (Transform)
+    Position position;          ///< P_ij                             (Calculate New P)
+    Direction mean_normal;      ///< (N_i + N_j) / 2, not yet unit    (Calculate New P)
+    TexCoord texture;           ///< t_ij                             (Calculate New P)
+    std::uint16_t code = 0;     ///< d_ij, 0 unless Formats::codes    (Displace Vertex)
+    Position displaced;         ///< P'_ij                            (Displace Vertex)
+    ScreenPosition screen;      ///< P's_ij                           (Transform)
+    Direction screen_normal{};  ///< N's_ij, with Formats::families   (Transform)
+    bool screen_normal_known = false;
 };
 
 /// Results of Tessellation Tests for one edge.
@@ -28,6 +30,9 @@ struct EdgeTests {
     std::uint8_t evaluated = 0;  ///< TestBits: the tests that were evaluated; 0: the edge is final and was not tested
 };
 
+/// What is told of a pass. In a machine of families the edges are tested before the midpoints are made.
+enum class Told : std::uint8_t { all, tests, midpoints };
+
 /// One pass of one triangle through the machine, joined by Pass or Tessellate from the triangle and its parts. Edge k
 /// runs from vertex k to vertex (k + 1) mod 3.
 struct TrianglePass {
@@ -39,6 +44,8 @@ struct TrianglePass {
     std::array<NewVertex, 3> new_vertex;
     std::array<EdgeTests, 3> edges;
     std::uint8_t split = 0;  ///< bit k: edge k is split (Pass or Tessellate)
+    Told told = Told::all;
+    std::uint8_t shared = 0;  ///< bit k: edge k was tested once for this and for a sibling told before
 
     constexpr const Vertex& edge_begin(int k) const { return triangle.vertices[static_cast<std::size_t>(k)]; }
     constexpr const Vertex& edge_end(int k) const {
@@ -46,7 +53,8 @@ struct TrianglePass {
     }
 };
 
-/// The vertex inserted on edge k, from the results of both branches. N's is calculated on its next pass.
+/// The vertex inserted on edge k, from the results of both branches. Without families N's is calculated on its next
+/// pass.
 constexpr Vertex inserted_vertex(const TrianglePass& pass, int k) {
     const Vertex& i = pass.edge_begin(k);
     const Vertex& j = pass.edge_end(k);
@@ -64,6 +72,8 @@ constexpr Vertex inserted_vertex(const TrianglePass& pass, int k) {
     vertex.displaced = made.displaced;
     vertex.displaced_normal = tested.displaced_normal;
     vertex.screen = made.screen;
+    vertex.screen_normal = made.screen_normal;
+    vertex.screen_normal_known = made.screen_normal_known;
     return vertex;
 }
 

@@ -68,6 +68,13 @@ constexpr std::uint8_t requesting_tests = normal_bit | summed_height_bit | highl
 constexpr std::uint8_t gating_tests = view_bit | tex_coord_bit | generation_bit;
 constexpr std::uint8_t all_tests = requesting_tests | gating_tests;
 
+/// What the tests found of an edge that is to be split.
+struct TestedMidpoint {
+    Direction normal;            ///< N_ij
+    Direction tangent;           ///< T_ij
+    Direction displaced_normal;  ///< N'_ij
+};
+
 /// A triangle in the Triangle Queue. Edge k runs from vertex k to vertex (k + 1) mod 3.
 struct Triangle {
     std::array<Vertex, 3> vertices;
@@ -79,6 +86,10 @@ struct Triangle {
     /// Bit k: edge k was tested with the parent and not split; so it never will be. 0 unless Formats::final_edges.
     std::uint8_t final_edges = 0;
     std::uint32_t parent = 0;  ///< the pass in which its parent was split: a tag without effect
+    /// Formats::families: a triangle in the queue is to be split, or is a base triangle or one without N's. Then
+    /// split_by and parent are already those of its children.
+    std::uint8_t split = 0;  ///< bit k: edge k
+    std::array<TestedMidpoint, 3> midpoints{};
 };
 
 }  // namespace tessera::datapath

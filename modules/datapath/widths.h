@@ -9,7 +9,7 @@ namespace tessera::datapath {
 struct Widths {
     std::uint32_t base_vertex = 0;  ///< host to Get Triangle: P, N, T, handedness, t
     std::uint32_t vertex = 0;       ///< in the Triangle Queue: all fields of a vertex
-    std::uint32_t triangle = 0;  ///< Triangle Queue entry: three vertices, split_by, stopped_by, finished, final_edges
+    std::uint32_t triangle = 0;         ///< Triangle Queue entry: describe_triangle
     std::uint32_t emitted_vertex = 0;   ///< to Lighting: P's, N's, t
     std::uint32_t finished_vertex = 0;  ///< a vertex of the tessellated mesh, if the host sent it: P', N', t
 };
@@ -26,7 +26,8 @@ constexpr Widths stream_widths(const Formats& f) {
     widths.base_vertex = position + 2 * direction + handedness + texture;
     widths.vertex = widths.base_vertex + bits(f.generation_bits) + known + position + 2 * direction + screen +
                     bits(f.codes ? f.displacement.bits : 0);
-    widths.triangle = 3 * widths.vertex + (f.highlight_tag ? 3 : 2) + 3 + 1 + (f.final_edges ? 3 : 0);
+    widths.triangle = 3 * widths.vertex + (f.highlight_tag ? 3 : 2) + 3 + 1 + (f.final_edges ? 3 : 0) +
+                      (f.families ? 3 + 9 * direction : 0);
     widths.emitted_vertex = screen + direction + texture;
     widths.finished_vertex = position + direction + texture;
     return widths;

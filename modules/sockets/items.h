@@ -26,7 +26,7 @@ struct GeometryOperands {
         fields.position("p_i", item.p_i, "P of the edge's first end, or of the vertex");
         fields.position("p_j", item.p_j, "P of its second end");
         fields.direction("n_i", item.n_i, "N likewise; N' of a normal");
-        fields.direction("n_j", item.n_j, "N");
+        fields.direction("n_j", item.n_j, "N; of an edge of a family N_ij and N'_ij");
         fields.texture("t_i", item.t_i, "t");
         fields.texture("t_j", item.t_j, "t");
     }
@@ -39,6 +39,7 @@ struct BasePoint {
     datapath::Position p;
     datapath::Direction n;
     datapath::TexCoord t;
+    datapath::Direction displaced_n{};
 
     template <class Codec, class Any>
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
@@ -46,6 +47,7 @@ struct BasePoint {
         fields.position("p", item.p, "P");
         fields.direction("n", item.n, "N; of an edge (N_i + N_j) / 2, not yet of unit length; of a normal N'");
         fields.texture("t", item.t, "t");
+        fields.midpoint_direction("displaced_n", item.displaced_n, "N' of a family's midpoint");
     }
 };
 
@@ -63,7 +65,7 @@ struct DisplacedPoint : BasePoint {
     }
 };
 
-/// Transform to Pass or Tessellate. n of a normal is N's now.
+/// Transform to Pass or Tessellate. n of a normal, and displaced_n of a family's midpoint, is N's now.
 struct ScreenPoint : DisplacedPoint {
     static constexpr const char* name = "screen point";
     datapath::ScreenPosition screen;
@@ -97,6 +99,10 @@ struct EdgeEnd {
     datapath::ScreenPosition screen;
     std::uint8_t generation = 0;
     std::uint16_t code = 0;
+
+    static constexpr EdgeEnd of(const datapath::Vertex& v) {
+        return {v.texture, v.normal, v.tangent, v.handedness, v.displaced_normal, v.screen, v.generation, v.code};
+    }
 
     template <class Codec, class Any>
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& end) {
@@ -340,6 +346,37 @@ struct DecidedTriangle {
     }
 };
 
+/// Tessellation to Pass or Tessellate, in a machine of families: a triangle and the vertices inserted on its split
+/// edges; or a base triangle, whose edges are new.
+struct Family {
+    static constexpr const char* name = "family";
+    Tag tag = 0;
+    Origin origin;
+    std::array<datapath::Vertex, 6> vertices;  ///< as in ChildIndices
+    datapath::Triangle triangle;               ///< all but its vertices and midpoints
+    bool second_diagonal = false;
+    bool untested = false;
+
+    template <class Codec, class Any>
+    static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
+        fields.tag("tag", item.tag, "the triangle");
+        describe_origin(fields, item.origin);
+        for (int k = 0; k < 6; ++k) {
+            fields.of(k);
+            describe_vertex(fields, item.vertices[static_cast<std::size_t>(k)]);
+        }
+        fields.of(-1);
+        fields.requesting("split_by", item.triangle.split_by, "tests that split it");
+        fields.gating("stopped_by", item.triangle.stopped_by, "tests that kept an edge whole");
+        fields.flag("finished", item.triangle.finished, "no edge splits");
+        fields.number("split", item.triangle.split, 3, "bit k: edge k is split");
+        fields.flag("second_diagonal", item.second_diagonal, "the quadrilateral's");
+        fields.flag("untested", item.untested, "a base triangle, whose edges are still to be tested");
+        fields.annotation("triangle_base", item.triangle.base);
+        fields.annotation("parent", item.triangle.parent);
+    }
+};
+
 /// Host, Tessellation and Triangle Queue: a triangle as it waits in the queue. Of a base triangle the host sets P, N,
 /// T, handedness and t of each vertex.
 struct QueuedTriangle {
@@ -438,7 +475,7 @@ struct ItemTypes {
 using StreamItems = ItemTypes<datapath::Triangle, QueueLevel, TakenTriangle, GeometryOperands, BasePoint,
                               DisplacedPoint, ScreenPoint, ScreenCorner, TestOperands, TexCoordOperands, HeightOperands,
                               NormalOperands, ViewOperands, TexCoordResult, HeightResult, NormalResult, ViewResult,
-                              TestedEdge, DecidedTriangle, TriangleToLight, LitTriangle>;
+                              TestedEdge, DecidedTriangle, Family, TriangleToLight, LitTriangle>;
 
 /// Whether a stream's payload describes its fields.
 template <class Item, class = void>

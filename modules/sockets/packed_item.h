@@ -11,7 +11,7 @@ namespace tessera {
 /// An item as the bits on its stream's wires, lowest first, and its annotations, which have no wires. This is what a
 /// unit written in another language sees.
 struct PackedItem {
-    static constexpr std::size_t most_bytes = 416;
+    static constexpr std::size_t most_bytes = 448;
     static constexpr std::size_t most_annotations = 4;  // of a triangle with its origin
 
     std::array<unsigned char, most_bytes> bytes{};

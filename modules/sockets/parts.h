@@ -1,27 +1,34 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <type_traits>
 #include <utility>
 
+#include "modules/datapath/family.h"
 #include "modules/datapath/fields.h"
+#include "modules/timing/work.h"
 
 namespace tessera {
 
 /// The parts of a triangle, one bit each, in the order in which Get Triangle sends them: the vertices of a base
-/// triangle, normals that have no N's yet, edges.
+/// triangle, normals that have no N's yet, edges. The new edges of a family (datapath/family.h) continue the last.
 using Parts = std::uint16_t;
 constexpr unsigned first_normal_part = 3;
 constexpr unsigned first_edge_part = 6;
+constexpr unsigned last_edge_part = 14;
 constexpr unsigned part_bits = 4;
 constexpr Parts vertex_parts = 0007;
 constexpr Parts normal_parts = 0070;
-constexpr Parts edge_parts = 0700;
-constexpr Parts all_parts = 0777;
+constexpr Parts triangle_edge_parts = 0700;
+constexpr Parts edge_parts = 077700;
+constexpr Parts all_parts = 077777;
 
-/// The parts of a triangle that go down the branch of Calculate New P: what is not known yet, and, unless it is
-/// finished, its edges that are not final.
-constexpr Parts parts_of(const datapath::Triangle& triangle) {
-    unsigned parts = triangle.finished ? 0 : edge_parts & ~(unsigned{triangle.final_edges} << first_edge_part);
+/// The parts of a triangle that go down the branch of Calculate New P: what is not known yet and, unless it is
+/// finished, its edges that are not final; of families, the edges that split.
+constexpr Parts parts_of(const datapath::Triangle& triangle, Work work = Work::triangle) {
+    unsigned parts = unsigned{triangle.split} << first_edge_part;
+    if (work == Work::triangle)
+        parts = triangle.finished ? 0 : triangle_edge_parts & ~(unsigned{triangle.final_edges} << first_edge_part);
     for (unsigned k = 0; k < 3; ++k) {
         const datapath::Vertex& vertex = triangle.vertices[k];
         if (!vertex.displaced_known)
@@ -39,6 +46,26 @@ constexpr Parts parts_for_tests(unsigned number, unsigned units) {
         return vertex_parts | edge_parts;
     return static_cast<Parts>(1u << (first_edge_part + number) | 1u << number | 1u << (number + 1) % 3);
 }
+
+/// Of families: the vertices and edges that go to a lane of the tests.
+constexpr Parts parts_for_lane(unsigned lane, unsigned lanes) {
+    unsigned parts = 0;
+    for (unsigned part = 0; part <= last_edge_part; ++part) {
+        const unsigned number = part < first_normal_part ? part : part - first_edge_part;
+        if ((1u << part & (vertex_parts | edge_parts)) != 0 && number % lanes == lane)
+            parts |= 1u << part;
+    }
+    return static_cast<Parts>(parts);
+}
+
+/// Of a family: its new edges, of a base triangle also its vertices.
+constexpr Parts parts_of(const datapath::FamilyEdges& edges, bool vertices) {
+    return static_cast<Parts>(((1u << edges.count) - 1) << first_edge_part | (vertices ? unsigned{vertex_parts} : 0));
+}
+
+/// Of families: base triangles whose vertices have gone on to the Normal Test and whose edges may still follow.
+constexpr std::size_t base_triangles_in_test = 4;
+
 /// The last of some parts.
 constexpr Parts last_of(Parts parts) {
     while ((parts & (parts - 1)) != 0)
@@ -65,7 +92,7 @@ constexpr void describe_origin(datapath::Fields<Codec>& fields, Any& origin) {
 /// Which part of which triangle an item is.
 struct PartTag {
     Tag triangle = 0;
-    std::uint8_t part = 0;  ///< 0 to 8
+    std::uint8_t part = 0;  ///< 0 to 14
     Origin origin;
 
     constexpr Parts bit() const { return static_cast<Parts>(1u << part); }

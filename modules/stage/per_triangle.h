@@ -41,6 +41,8 @@ class PerTriangle {
         return found != nullptr ? *found : open(tag) = State{};
     }
 
+    /// The k-th oldest.
+    State& at(std::size_t k) { return entries_.at(k).state; }
     /// Not when empty.
     State& oldest() { return entries_.front().state; }
     const State& oldest() const { return entries_.front().state; }

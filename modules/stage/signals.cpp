@@ -8,7 +8,8 @@
 namespace tessera {
 
 const std::vector<UnitNumbers::Entry>& UnitNumbers::all() {
-    // In the order of the figures. Of three Tessellation Tests units the second and third come last.
+    // In the order of the figures; then the second and third of three Tessellation Tests units, what other designs
+    // have, and the first further lanes and Normal Tests.
     static const std::vector<Entry> entries = {
         {1, "get_triangle"},
         {2, "calculate_new_p"},
@@ -48,6 +49,18 @@ const std::vector<UnitNumbers::Entry>& UnitNumbers::all() {
         {36, "displacement_map_cache"},
         {37, "normal_map_cache"},
         {38, "summed_height_table_cache"},
+        {39, "tessellation_tests_0.calculate_new_u_1"},
+        {40, "tessellation_tests_0.tex_coord_test_1"},
+        {41, "tessellation_tests_0.normal_test_1"},
+        {42, "tessellation_tests_0.view_test_1"},
+        {43, "tessellation_tests_0.calculate_new_u_2"},
+        {44, "tessellation_tests_0.tex_coord_test_2"},
+        {45, "tessellation_tests_0.normal_test_2"},
+        {46, "tessellation_tests_0.view_test_2"},
+        {47, "tessellation_tests_0.calculate_new_u_3"},
+        {48, "tessellation_tests_0.tex_coord_test_3"},
+        {49, "tessellation_tests_0.normal_test_3"},
+        {50, "tessellation_tests_0.view_test_3"},
     };
     return entries;
 }

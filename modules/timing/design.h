@@ -7,6 +7,7 @@
 #include "modules/timing/cycle_scheduler.h"
 #include "modules/timing/test_order.h"
 #include "modules/timing/timing.h"
+#include "modules/timing/work.h"
 
 namespace tessera {
 
@@ -42,8 +43,11 @@ struct Design {
     Transport transport = Transport::blocking;
     Timing timing;
     QueueDesign queue;
+    Work work = Work::triangle;
     unsigned tests_units = 1;  ///< Tessellation Tests units: 1 or 3
     TestOrder test_order = TestOrder::parallel;
+    unsigned edge_lanes = 1;    ///< of families, tests cheapest first: cheap tests side by side
+    unsigned normal_tests = 1;  ///< likewise: Normal Tests that share the lanes' edges
     unsigned transform_pipelines = 1;
     bool direct_memory = true;  ///< units read memories through DMI in functional mode
 #ifdef NDEBUG
@@ -52,6 +56,12 @@ struct Design {
     bool packed_streams = true;  ///< each item goes through its packed form: slow, proves that the form is complete
 #endif
 };
+
+/// The Normal Test sends on N' of a base triangle's vertices, since not all of its edges need come. Otherwise each edge
+/// brings that of its first end.
+constexpr bool vertices_bring_normals(const Design& design) {
+    return design.work == Work::family && design.test_order == TestOrder::cheap_first;
+}
 
 /// Register stages of a pipeline, all servers together. further_stages: cycles an item spends outside (in a memory)
 /// while others follow it.
@@ -78,7 +88,9 @@ constexpr unsigned triangles_ahead_of_parts(const Design& design) {
 /// Wires of a triangle's tag: enough to distinguish all triangles between Get Triangle and Pass or Tessellate: those
 /// that wait there, one that Get Triangle still offers, and those whose parts have begun to arrive.
 constexpr int tag_bits(const Design& design) {
-    const unsigned triangles = triangles_ahead_of_parts(design) + 1 + design.timing.pass_or_tessellate.buffer;
+    // of families one in Tessellation is joined, and one is being tested
+    const unsigned triangles = triangles_ahead_of_parts(design) + 1 + design.timing.pass_or_tessellate.buffer +
+                               (design.work == Work::family ? 2 : 0);
     int bits = 1;
     while (bits < 32 && std::uint64_t{1} << bits < triangles)
         ++bits;

@@ -6,7 +6,7 @@
 namespace tessera {
 
 CalculateNewP::CalculateNewP(const sc_core::sc_module_name& name, const UnitContext& context)
-    : Stage(name, context, context.timing().calculate_new_p) {
+    : Stage(name, context, context.timing().calculate_new_p), registers_(context.registers) {
     takes_from(context, from_get_triangle);
     delivers_to(context, to_displace_vertex);
 }
@@ -14,7 +14,11 @@ CalculateNewP::CalculateNewP(const sc_core::sc_module_name& name, const UnitCont
 BasePoint CalculateNewP::process(const GeometryOperands& part, const Entries&) {
     if (!part.tag.is_edge())
         return {part.tag, part.p_i, part.n_i, part.t_i};
-    return {part.tag, midpoint(part.p_i, part.p_j), midpoint(part.n_i, part.n_j), midpoint(part.t_i, part.t_j)};
+    const datapath::Position p = midpoint(part.p_i, part.p_j);
+    const datapath::TexCoord t = midpoint(part.t_i, part.t_j);
+    if (registers_.formats.families)
+        return {part.tag, p, part.n_i, t, part.n_j};
+    return {part.tag, p, midpoint(part.n_i, part.n_j), t};
 }
 
 }  // namespace tessera

@@ -28,7 +28,8 @@ DisplacedPoint DisplaceVertex::process(const BasePoint& point, const Entries& co
     DisplacedPoint displaced{point, {}, 0};
     if (point.tag.is_normal())
         return displaced;
-    const datapath::Direction normal = point.tag.is_edge() ? normalise(point.n, formats, saturations_) : point.n;
+    const bool unit_length = !point.tag.is_edge() || formats.families;
+    const datapath::Direction normal = unit_length ? point.n : normalise(point.n, formats, saturations_);
     const auto code = static_cast<std::uint16_t>(codes[0]);
     displaced.displaced = displace(point.p, normal, code, registers_.displacement, formats, saturations_);
     displaced.code = formats.codes ? code : std::uint16_t{0};

@@ -11,7 +11,7 @@ namespace tessera {
 ///
 /// In:   BasePoint. Out: DisplacedPoint: the same and, of an edge or vertex, P'; normals unchanged.
 /// Memory: one read of the displacement map per vertex or edge.
-/// Arithmetic: normalise an edge's normal (the pipeline's existing unit), multiply, round, multiply-accumulate,
+/// Arithmetic: normalise an edge's normal (the pipeline's existing unit; of families it is normalised), multiply, round, multiply-accumulate,
 ///       saturate (counted).
 /// Timing: one vertex, normal or edge per interval; latency 6 plus the map read, interval 1 by default.
 /// Waits for the displacement map; held back by Transform.

@@ -7,16 +7,11 @@
 namespace tessera {
 namespace {
 
-EdgeEnd edge_end(const datapath::Vertex& vertex) {
-    return {vertex.texture,          vertex.normal, vertex.tangent,    vertex.handedness,
-            vertex.displaced_normal, vertex.screen, vertex.generation, vertex.code};
-}
-
 PartTag tag_of(const TakenTriangle& taken, Parts part) {
     return {taken.tag, static_cast<std::uint8_t>(__builtin_ctz(part)), taken.origin};
 }
 
-void make(GeometryOperands& item, const TakenTriangle& taken, Parts part) {
+void make(GeometryOperands& item, const TakenTriangle& taken, Parts part, Work work) {
     item.tag = tag_of(taken, part);
     const unsigned k = item.tag.index();
     const datapath::Vertex& i = taken.triangle.vertices[k];
@@ -29,15 +24,19 @@ void make(GeometryOperands& item, const TakenTriangle& taken, Parts part) {
     item.p_j = j.position;
     item.n_j = j.normal;
     item.t_j = j.texture;
+    if (work == Work::family) {
+        item.n_i = taken.triangle.midpoints[k].normal;
+        item.n_j = taken.triangle.midpoints[k].displaced_normal;
+    }
 }
 
-void make(TestOperands& item, const TakenTriangle& taken, Parts part) {
+void make(TestOperands& item, const TakenTriangle& taken, Parts part, Work) {
     item.tag = tag_of(taken, part);
     item.new_vertices = static_cast<std::uint8_t>(parts_of(taken.triangle) & vertex_parts);
     const unsigned k = item.tag.index();
-    item.ends[0] = edge_end(taken.triangle.vertices[k]);
+    item.ends[0] = EdgeEnd::of(taken.triangle.vertices[k]);
     if (item.tag.is_edge())
-        item.ends[1] = edge_end(taken.triangle.vertices[(k + 1) % 3]);
+        item.ends[1] = EdgeEnd::of(taken.triangle.vertices[(k + 1) % 3]);
 }
 
 /// Nothing of a finished triangle is tested again.
@@ -49,11 +48,14 @@ Parts parts_to_test(const datapath::Triangle& triangle) {
 
 GetTriangle::GetTriangle(const sc_core::sc_module_name& name, const UnitContext& context)
     : Unit(name, context.clock),
-      to_tessellation_tests("to_tessellation_tests", context.design.tests_units),
+      to_tessellation_tests("to_tessellation_tests",
+                            context.design.work == Work::family ? 0 : context.design.tests_units),
+      to_join(context.design.work == Work::family ? "to_tessellation" : "to_pass_or_tessellate"),
       timing_(context.timing().get_triangle),
       latency_(clock_.period() * timing_.latency),
       tag_mask_(static_cast<Tag>((std::uint64_t{1} << tag_bits_in_use(context.design)) - 1)),
-      tests_units_(context.design.tests_units) {
+      work_(context.design.work),
+      tests_units_(to_tessellation_tests.size()) {
     const Timing& timing = context.timing();
     from_host.register_b_transport<&GetTriangle::b_transport_from_host>(*this);
     from_triangle_queue.register_b_transport<&GetTriangle::b_transport_from_triangle_queue>(*this);
@@ -61,7 +63,7 @@ GetTriangle::GetTriangle(const sc_core::sc_module_name& name, const UnitContext&
     from_host.clocked_by(context.clock, *this, timing_.buffer, timing.stalls);
     from_triangle_queue.clocked_by(context.clock, *this, timing_.buffer, timing.stalls);
     queue_level.clocked_by(context.clock, *this, 1, {});  // a wire: it does not stall
-    to_pass_or_tessellate.clocked_by(context, *this);
+    to_join.clocked_by(context, *this);
     to_calculate_new_p.clocked_by(context, *this);
     geometry_.output = &to_calculate_new_p;
     geometry_.takes = all_parts;
@@ -83,7 +85,7 @@ void GetTriangle::send_whole(Branch<Item>& branch, const TakenTriangle& taken, P
                              const sc_core::sc_time& start, sc_core::sc_time& delay) {
     for (unsigned left = parts & branch.takes; left != 0; left &= left - 1) {
         Item item;
-        make(item, taken, static_cast<Parts>(left & -left));
+        make(item, taken, static_cast<Parts>(left & -left), work_);
         sc_core::sc_time its_delay = start;
         branch.output->transport(item, its_delay);
         delay = std::max(delay, its_delay);
@@ -95,8 +97,8 @@ void GetTriangle::send_whole(const datapath::Triangle& triangle, sc_core::sc_tim
     delay += latency_;
     const sc_core::sc_time start = delay;
     sc_core::sc_time its_delay = start;
-    to_pass_or_tessellate.transport(whole, its_delay);
-    send_whole(geometry_, whole, parts_of(triangle), start, delay);
+    to_join.transport(whole, its_delay);
+    send_whole(geometry_, whole, parts_of(triangle, work_), start, delay);
     for (std::size_t k = 0; k < tests_units_; ++k)
         send_whole(tests_[k], whole, parts_to_test(triangle), start, delay);
 }
@@ -148,8 +150,8 @@ bool GetTriangle::begin(std::uint64_t cycle) {
     sending_ = true;
     source->pop();
     activity_.item_in(cycle);
-    to_pass_or_tessellate.send(taken_);
-    geometry_.left = parts_of(taken_.triangle);
+    to_join.send(taken_);
+    geometry_.left = parts_of(taken_.triangle, work_);
     for (std::size_t k = 0; k < tests_units_; ++k)
         tests_[k].left = static_cast<Parts>(parts_to_test(taken_.triangle) & tests_[k].takes);
     for_each_branch([&](auto& branch) { branch.next = std::max(branch.next, cycle + timing_.latency); });
@@ -169,7 +171,7 @@ bool GetTriangle::send_parts(Branch<Item>& branch, std::uint64_t cycle) {
     }
     const auto part = static_cast<Parts>(branch.left & -branch.left);
     branch.left = static_cast<Parts>(branch.left & ~part);
-    make(branch.offered, taken_, part);
+    make(branch.offered, taken_, part, work_);
     branch.next = cycle + timing_.interval;
     if (branch.takes == all_parts)
         ++parts_sent_;
@@ -186,7 +188,7 @@ const sc_core::sc_object* GetTriangle::blocked_by() const {
         if (!output.free())
             return output.consumer();
     }
-    return to_pass_or_tessellate.free() ? nullptr : to_pass_or_tessellate.consumer();
+    return to_join.free() ? nullptr : to_join.consumer();
 }
 
 void GetTriangle::step() {
@@ -196,7 +198,7 @@ void GetTriangle::step() {
     for (;;) {
         if (!sending_ && !begin(cycle))
             break;
-        bool all = to_pass_or_tessellate.free();
+        bool all = to_join.free();
         for_each_branch([&](auto& branch) { all = send_parts(branch, cycle) && all; });
         if (!all)
             break;
@@ -225,7 +227,7 @@ void GetTriangle::trace_signals(Signals& signals) const {
     signals.input(from_host, "from_host");
     signals.input(from_triangle_queue, "from_triangle_queue");
     if (signals.when(signals.changed("begun", activity_.items_in()) && sending_)) {
-        const Parts parts = parts_of(taken_.triangle);
+        const Parts parts = parts_of(taken_.triangle, work_);
         signals.value("triangle", 32, taken_.origin.pass);
         signals.value("base", 32, taken_.origin.base);
         signals.value("new_vertices", 3, parts & vertex_parts);

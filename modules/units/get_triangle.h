@@ -18,6 +18,9 @@ namespace tessera {
 ///   re-tessellated         normals that have no N's yet, then the edges that are not final
 ///   finished, without N's  its normals only: no edge is tested again
 ///
+/// In a machine of families (Formats::families) it sends nothing to the tests, and of a triangle that has been tested
+/// only what its split needs: the midpoints of its split edges, with N, T and N' as the tests found them.
+///
 /// In:   triangles; the queue's level. Out: to Calculate New P all parts, to Tessellation Tests vertices and edges;
 ///       with three Tessellation Tests units edge k and its two vertices to unit k. To Pass or Tessellate the triangle
 ///       itself, for what its parts do not carry.
@@ -31,8 +34,9 @@ class GetTriangle : public Unit {
     StreamInput<datapath::Triangle> from_triangle_queue{"from_triangle_queue"};
     StreamInput<QueueLevel> queue_level{"queue_level"};
     StreamOutput<GeometryOperands> to_calculate_new_p{"to_calculate_new_p"};
-    sc_core::sc_vector<StreamOutput<TestOperands>> to_tessellation_tests;  ///< one per Tessellation Tests unit
-    StreamOutput<TakenTriangle> to_pass_or_tessellate{"to_pass_or_tessellate"};
+    sc_core::sc_vector<StreamOutput<TestOperands>>
+        to_tessellation_tests;            ///< one per Tessellation Tests unit; of families none
+    StreamOutput<TakenTriangle> to_join;  ///< to Pass or Tessellate; of families, to Tessellation
 
     GetTriangle(const sc_core::sc_module_name& name, const UnitContext& context);
 
@@ -79,6 +83,7 @@ class GetTriangle : public Unit {
     UnitTiming timing_;
     sc_core::sc_time latency_;
     Tag tag_mask_;
+    Work work_;
     std::uint32_t passes_ = 0;
     TakenTriangle taken_;  // timed mode: whose parts are being sent
     bool sending_ = false;

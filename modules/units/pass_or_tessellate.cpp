@@ -3,18 +3,14 @@
 #include <algorithm>
 #include <string>
 
-#include "modules/datapath/cull.h"
 #include "modules/datapath/edge_tests.h"
 #include "modules/stage/signals.h"
 
 namespace tessera {
 
 PassOrTessellate::PassOrTessellate(const sc_core::sc_module_name& name, const UnitContext& context)
-    : Unit(name, context.clock),
+    : DecidingUnit(name, context),
       from_tessellation_tests("from_tessellation_tests", context.design.tests_units),
-      registers_(context.registers),
-      timing_(context.timing().pass_or_tessellate),
-      latency_(clock_.period() * timing_.latency),
       incomplete_(timing_.buffer),
       pipeline_(timing_) {
     const StallParameters& stalls = context.timing().stalls;
@@ -27,7 +23,6 @@ PassOrTessellate::PassOrTessellate(const sc_core::sc_module_name& name, const Un
         input.clocked_by(clock_, *this, timing_.buffer * 3 / context.design.tests_units, stalls);
     }
     to_tessellation.clocked_by(context, *this);
-    to_lighting.clocked_by(context, *this);
 }
 
 void PassOrTessellate::end_of_elaboration() {
@@ -119,7 +114,7 @@ void PassOrTessellate::finish_if_complete(Incomplete& place, const PartTag& tag,
         to_tessellation.transport(triangle, delay);
         return;
     }
-    TriangleToLight triangle = to_light(place.triangle);
+    TriangleToLight triangle = to_light(place.triangle.origin, place.triangle.pass.triangle);
     incomplete_.close(tag.triangle);
     if (way == Way::lighting)
         to_lighting.transport(triangle, delay);
@@ -192,7 +187,7 @@ void PassOrTessellate::step() {
             if (next.way == Way::tessellation)
                 next.to_tessellation = triangle;
             else if (next.way == Way::lighting)
-                next.to_lighting = to_light(triangle);
+                next.to_lighting = to_light(triangle.origin, triangle.pass.triangle);
             incomplete_.close_oldest();
             clock_.progress();
             changed = true;
@@ -254,15 +249,6 @@ PassOrTessellate::Way PassOrTessellate::decide(DecidedTriangle& whole) {
     return way;
 }
 
-TriangleToLight PassOrTessellate::to_light(const DecidedTriangle& whole) {
-    TriangleToLight triangle{whole.origin, {}};
-    for (std::size_t k = 0; k < 3; ++k) {
-        const datapath::Vertex& vertex = whole.pass.triangle.vertices[k];
-        triangle.corners[k] = {vertex.screen, vertex.screen_normal, vertex.texture};
-    }
-    return triangle;
-}
-
 PassOrTessellate::Way PassOrTessellate::join(datapath::TrianglePass& pass) {
     datapath::Triangle& triangle = pass.triangle;
     for (unsigned k = 0; k < 3; ++k) {
@@ -284,40 +270,6 @@ PassOrTessellate::Way PassOrTessellate::join(datapath::TrianglePass& pass) {
         return Way::tessellation;
     }
     return finish(triangle);
-}
-
-void PassOrTessellate::decide_edges(datapath::TrianglePass& pass) {
-    ++counts_.passes;
-    unsigned split = 0;
-    unsigned stopped_by = 0;
-    for (unsigned k = 0; k < 3; ++k) {
-        const datapath::EdgeTests& edge = pass.edges[k];
-        if ((pass.triangle.final_edges >> k & 1u) != 0)
-            continue;
-        ++counts_.edges_tested;
-        if (!(edge.texture == pass.new_vertex[k].texture))
-            SC_REPORT_ERROR("tessera/pass_or_tessellate", "the two branches disagree on the midpoint of an edge");
-        if (datapath::split_decision(edge.tests)) {
-            split |= 1u << k;
-            ++counts_.edges_split;
-        } else if ((edge.tests & datapath::requesting_tests) != 0) {
-            stopped_by |= ~edge.tests & datapath::gating_tests;
-        }
-    }
-    pass.split = static_cast<std::uint8_t>(split);
-    pass.triangle.stopped_by = static_cast<std::uint8_t>(stopped_by);
-}
-
-PassOrTessellate::Way PassOrTessellate::finish(datapath::Triangle& triangle) {
-    triangle.finished = true;
-    ++counts_.finished;
-    finished.write(triangle);
-    const auto& v = triangle.vertices;
-    if (registers_.back_face_culling && datapath::faces_away(v[0].screen, v[1].screen, v[2].screen)) {
-        ++counts_.culled;
-        return Way::dropped;
-    }
-    return Way::lighting;
 }
 
 /// Shows the triangle decided last; for one that only fetched normals, with its earlier tests and split.

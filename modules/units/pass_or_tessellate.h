@@ -2,7 +2,6 @@
 #include <array>
 #include <cstdint>
 #include <systemc>
-#include <tlm>
 #include <vector>
 
 #include "modules/datapath/triangle_pass.h"
@@ -10,8 +9,8 @@
 #include "modules/sockets/stream_input.h"
 #include "modules/sockets/stream_output.h"
 #include "modules/stage/per_triangle.h"
-#include "modules/stage/unit.h"
 #include "modules/timing/elastic_pipeline.h"
+#include "modules/units/deciding_unit.h"
 
 namespace tessera {
 
@@ -29,35 +28,17 @@ namespace tessera {
 ///       (triangles_ahead_of_parts). Edges from Tessellation Tests that arrive earlier wait at their own input, as many
 ///       as there are places.
 /// Waits for both branches; held back by Tessellation and Lighting.
-class PassOrTessellate : public Unit {
+class PassOrTessellate : public DecidingUnit {
   public:
     StreamInput<TakenTriangle> from_get_triangle{"from_get_triangle"};
     StreamInput<ScreenPoint> from_transform{"from_transform"};
     sc_core::sc_vector<StreamInput<TestedEdge>> from_tessellation_tests;  ///< one per Tessellation Tests unit
     StreamOutput<DecidedTriangle> to_tessellation{"to_tessellation"};
-    StreamOutput<TriangleToLight> to_lighting{"to_lighting"};
-
-    /// Every pass whose edges have been decided, complete: for the scoreboard.
-    tlm::tlm_analysis_port<datapath::TrianglePass> decided{"decided"};
-    /// Every finished triangle, culled ones too: for the mesh monitor.
-    tlm::tlm_analysis_port<datapath::Triangle> finished{"finished"};
-
-    struct Counts {
-        std::uint64_t passes = 0;         ///< triangles that went through the tests
-        std::uint64_t normal_passes = 0;  ///< finished triangles that went round once more for N's
-        std::uint64_t edges_tested = 0;   ///< of these triangles; final edges are not
-        std::uint64_t edges_split = 0;
-        std::uint64_t finished = 0;
-        std::uint64_t culled = 0;
-    };
 
     PassOrTessellate(const sc_core::sc_module_name& name, const UnitContext& context);
 
-    const Counts& counts() const { return counts_; }
-    /// No triangle waits for a branch.
-    bool joined() const { return incomplete_.empty(); }
-    /// Most triangles that waited for a branch at a time.
-    std::size_t most_incomplete() const { return most_incomplete_; }
+    bool joined() const override { return incomplete_.empty(); }
+    std::size_t most_incomplete() const override { return most_incomplete_; }
     /// Most triangles that waited for their first part.
     std::size_t most_ahead_of_parts() const { return most_ahead_of_parts_; }
 
@@ -68,7 +49,6 @@ class PassOrTessellate : public Unit {
     Begun begun() const override { return {counts_.passes + counts_.normal_passes, last_.origin}; }
 
   private:
-    enum class Way : std::uint8_t { tessellation, lighting, dropped };
     /// A decided triangle on its way out, for the unit it goes to.
     struct Decided {
         Way way = Way::dropped;
@@ -113,13 +93,7 @@ class PassOrTessellate : public Unit {
     /// Completes the triangle and says where it goes.
     Way decide(DecidedTriangle& whole);
     Way join(datapath::TrianglePass& pass);
-    void decide_edges(datapath::TrianglePass& pass);
-    Way finish(datapath::Triangle& triangle);
-    static TriangleToLight to_light(const DecidedTriangle& whole);
 
-    const datapath::Registers& registers_;
-    UnitTiming timing_;
-    sc_core::sc_time latency_;
     PerTriangle<Incomplete> incomplete_;
     std::size_t most_incomplete_ = 0;
     std::size_t most_ahead_of_parts_ = 0;
@@ -127,7 +101,6 @@ class PassOrTessellate : public Unit {
     Shown last_;
     const sc_core::sc_object* transform_ = nullptr;
     std::vector<const sc_core::sc_object*> tests_;  // one per Tessellation Tests unit
-    Counts counts_;
 };
 
 }  // namespace tessera

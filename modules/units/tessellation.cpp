@@ -8,10 +8,7 @@
 namespace tessera {
 
 Tessellation::Tessellation(const sc_core::sc_module_name& name, const UnitContext& context)
-    : Unit(name, context.clock),
-      registers_(context.registers),
-      timing_(context.timing().tessellation),
-      latency_(clock_.period() * timing_.latency) {
+    : TessellatingUnit(name, context), latency_(clock_.period() * timing_.latency) {
     from_pass_or_tessellate.register_b_transport<&Tessellation::b_transport>(*this);
     from_pass_or_tessellate.clocked_by(clock_, *this, timing_.buffer, context.timing().stalls);
     to_triangle_queue.clocked_by(context, *this);

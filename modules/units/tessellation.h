@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <systemc>
+#include <tlm>
 
 #include "modules/sockets/items.h"
 #include "modules/sockets/stream_input.h"
@@ -9,6 +10,28 @@
 #include "modules/stage/unit.h"
 
 namespace tessera {
+
+/// What Tessellation does in both machines, the paper's and that of families (families/tessellation.h).
+class TessellatingUnit : public Unit {
+  public:
+    /// Of families, every triangle that is split and the vertices inserted on its edges: for the scoreboard.
+    tlm::tlm_analysis_port<datapath::TrianglePass> inserted{"inserted"};
+
+    /// Triangles split into 2, 3, 4 children; index 1: passed unchanged.
+    const std::array<std::uint64_t, 5>& made_into() const { return made_into_; }
+    std::uint64_t children() const { return made_into_[1] + 2 * made_into_[2] + 3 * made_into_[3] + 4 * made_into_[4]; }
+
+    const datapath::Saturations& saturations() const { return saturations_; }
+
+  protected:
+    TessellatingUnit(const sc_core::sc_module_name& name, const UnitContext& context)
+        : Unit(name, context.clock), registers_(context.registers), timing_(context.timing().tessellation) {}
+
+    const datapath::Registers& registers_;
+    UnitTiming timing_;
+    std::array<std::uint64_t, 5> made_into_{};
+    datapath::Saturations saturations_;
+};
 
 /// Tessellation (paper figures 6 and 7): builds the two, three or four children of a triangle from its vertices and
 /// the new ones. Winding order is kept. A child's edge from corner to corner of its parent was tested with it and is
@@ -21,18 +44,12 @@ namespace tessera {
 /// Timing: one child per interval, the first a latency after the triangle was taken; latency 1, interval 1 by default.
 ///       Capacity: one triangle; the next is taken when its last child has been taken.
 /// Waits for nothing but its input; held back by the Triangle Queue.
-class Tessellation : public Unit {
+class Tessellation : public TessellatingUnit {
   public:
     StreamInput<DecidedTriangle> from_pass_or_tessellate{"from_pass_or_tessellate"};
     StreamOutput<datapath::Triangle> to_triangle_queue{"to_triangle_queue"};
 
     Tessellation(const sc_core::sc_module_name& name, const UnitContext& context);
-
-    /// Triangles split into 2, 3, 4 children; index 1: passed unchanged.
-    const std::array<std::uint64_t, 5>& made_into() const { return made_into_; }
-    std::uint64_t children() const { return made_into_[1] + 2 * made_into_[2] + 3 * made_into_[3] + 4 * made_into_[4]; }
-
-    const datapath::Saturations& saturations() const { return saturations_; }
 
     std::string describe_contents() const override;
     std::uint64_t occupied_cycles() const override {
@@ -45,16 +62,12 @@ class Tessellation : public Unit {
     void b_transport(DecidedTriangle& decided, sc_core::sc_time& delay);
     void step() override;
 
-    const datapath::Registers& registers_;
-    UnitTiming timing_;
     sc_core::sc_time latency_;
     std::array<datapath::Triangle, 4> children_;
     Origin origin_;      // of the triangle that is being worked on
     unsigned made_ = 0;  // its children
     unsigned sent_ = 0;  // of these, sent
     std::uint64_t next_ = 0;
-    std::array<std::uint64_t, 5> made_into_{};
-    datapath::Saturations saturations_;
 };
 
 }  // namespace tessera

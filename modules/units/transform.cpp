@@ -7,10 +7,11 @@ namespace tessera {
 
 Transform::Transform(const sc_core::sc_module_name& name, const UnitContext& context)
     : Stage(name, context, context.timing().transform, context.design.transform_pipelines),
-      to_view_test("to_view_test", context.design.tests_units),
+      to_join(context.design.work == Work::family ? "to_tessellation" : "to_pass_or_tessellate"),
+      to_view_test("to_view_test", context.design.work == Work::family ? 0 : context.design.tests_units),
       registers_(context.registers) {
     takes_from(context, from_displace_vertex);
-    delivers_to(context, to_pass_or_tessellate);
+    delivers_to(context, to_join);
     const auto corner = +[](const ScreenPoint& point) { return ScreenCorner{point.tag, point.screen}; };
     for (StreamOutput<ScreenCorner>& output : to_view_test)
         delivers_to(context, output, corner, vertex_parts);
@@ -25,6 +26,10 @@ ScreenPoint Transform::process(const DisplacedPoint& point, const Entries&) {
     } else {
         result.screen = transform(point.displaced, parameters, registers_.formats, saturations_);
         ++positions_;
+        if (point.tag.is_edge() && registers_.formats.families) {
+            result.displaced_n = transform_normal(point.displaced_n, parameters, registers_.formats, saturations_);
+            ++normals_;
+        }
     }
     return result;
 }

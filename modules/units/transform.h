@@ -10,8 +10,9 @@ namespace tessera {
 /// Transform (paper figure 7): world to screen; the pipeline's existing unit, OpenGL's clipping, perspective and
 /// viewport application.
 ///
-/// In:   DisplacedPoint. Out: ScreenPoint: of an edge or vertex with P's, of a normal with N's in N's place. A base
-///       triangle's P's also go to the View Test, which waits for them.
+/// In:   DisplacedPoint. Out: ScreenPoint: of an edge or vertex with P's, of a normal with N's in N's place, of a
+///       family's midpoint with both. A base triangle's P's also go to the View Test, which waits for them; of families
+///       the View Test has them with the edge.
 /// Arithmetic: 9 multiplications (position or normal); for a position a reciprocal (a table and 4 multiplications) and
 ///       2 more, saturate (counted).
 /// Timing: one vertex, normal or edge per interval and pipeline; latency 20, interval 1, one pipeline by default.
@@ -20,8 +21,8 @@ namespace tessera {
 class Transform : public Stage<DisplacedPoint, ScreenPoint> {
   public:
     StreamInput<DisplacedPoint> from_displace_vertex{"from_displace_vertex"};
-    StreamOutput<ScreenPoint> to_pass_or_tessellate{"to_pass_or_tessellate"};
-    sc_core::sc_vector<StreamOutput<ScreenCorner>> to_view_test;  ///< one per Tessellation Tests unit
+    StreamOutput<ScreenPoint> to_join;  ///< to Pass or Tessellate; of families, to Tessellation
+    sc_core::sc_vector<StreamOutput<ScreenCorner>> to_view_test;  ///< one per Tessellation Tests unit; of families none
 
     Transform(const sc_core::sc_module_name& name, const UnitContext& context);
 

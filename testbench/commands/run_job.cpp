@@ -147,11 +147,13 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
         golden.emplace(setup);
         scoreboard = std::make_unique<Scoreboard>(setup.registers, *golden);
         simulation.pipeline.pass_or_tessellate.decided.bind(*scoreboard);
+        simulation.pipeline.tessellation.inserted.bind(*scoreboard);
     }
     std::unique_ptr<TransportCheck> work;
     if (job.check.work) {
         work = std::make_unique<TransportCheck>(setup.registers, setup.base_triangles);
         simulation.pipeline.pass_or_tessellate.decided.bind(*work);
+        simulation.pipeline.tessellation.inserted.bind(*work);
         simulation.pipeline.pass_or_tessellate.finished.bind(*work);
         simulation.rasteriser.taken.bind(*work);
     }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "testbench/job/design_preset.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/job/job_paths.h"
 #include "testbench/job/toml_text.h"
@@ -50,12 +51,16 @@ std::string dump_job(const Job& job, const std::filesystem::path& run_folder) {
 
 std::string dump_short_job(const Job& job, const std::filesystem::path& folder, const std::string& heading) {
     const Job moved = moved_to(folder, job);
+    Job preset;
+    preset.hardware.design = job.hardware.design;
+    apply_design(preset);
     std::string out = "# " + heading + "\n";
     for (const KeyTable& table : job_tables()) {
         std::string keys;
         for (const Key& key : table.keys) {
             const std::string value = toml_value(key.get(moved));
-            if (value != toml_value(default_of(key))) {
+            const bool is_preset = key.name == "hardware.design";
+            if (value != toml_value(is_preset ? default_of(key) : key.get(preset))) {
                 keys += fmt::format("{} = {}\n", key.leaf(), value);
             }
         }

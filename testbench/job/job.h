@@ -8,6 +8,7 @@
 
 #include "modules/timing/test_order.h"
 #include "modules/timing/timing.h"
+#include "modules/timing/work.h"
 
 namespace tessera {
 
@@ -20,6 +21,7 @@ enum class Culling { none, back };
 enum class SummedHeightUnit { sum, area };
 enum class Overflow { spill, stall, error };
 enum class Mode { functional, timed };
+enum class DesignPreset { paper, modern };
 
 /// Whether a mesh of this source is what mesh.file names.
 constexpr bool reads_file(MeshSource source) {
@@ -127,6 +129,7 @@ struct Job {
     } formats;
 
     struct Hardware {
+        DesignPreset design = DesignPreset::paper;  // sets the keys of design_preset.h
         Triangulation triangulation = Triangulation::shorter;
         Culling culling = Culling::none;
         QueueOrder queue_order = QueueOrder::fifo;
@@ -135,9 +138,12 @@ struct Job {
         std::int64_t off_chip_triangles = 1 << 20;  // that may be spilled at a time
         Overflow queue_overflow = Overflow::spill;
         std::int64_t tests_units = 1;  // Tessellation Tests units: 1 or 3
+        Work work = Work::triangle;    // what goes round
         TestOrder test_order = TestOrder::parallel;
         bool final_edges = false;         // are not tested again
         bool one_texel_from_map = false;  // the sum over one texel is its code
+        std::int64_t edge_lanes = 1;      // of families: cheap tests side by side
+        std::int64_t normal_tests = 1;    // likewise: that share the lanes' edges
         std::int64_t transform_pipelines = 1;
         bool direct_memory = true;                      // functional mode reads memories through DMI
         std::array<double, 3> light{0.3, -0.4, 0.866};  // direction towards the light, world space

@@ -67,6 +67,26 @@ constexpr std::string_view name_of(Triangulation value) {
     return {};
 }
 
+constexpr std::string_view name_of(DesignPreset value) {
+    switch (value) {
+        case DesignPreset::paper:
+            return "paper";
+        case DesignPreset::modern:
+            return "modern";
+    }
+    return {};
+}
+
+constexpr std::string_view name_of(Work value) {
+    switch (value) {
+        case Work::triangle:
+            return "triangle";
+        case Work::family:
+            return "family";
+    }
+    return {};
+}
+
 constexpr std::string_view name_of(TestOrder value) {
     switch (value) {
         case TestOrder::parallel:

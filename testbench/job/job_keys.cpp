@@ -412,6 +412,7 @@ std::vector<KeyTable> declare_keys() {
     });
     list.table("hardware", &Job::hardware, "The units' options.", [](const auto& key) {
         using Hardware = Job::Hardware;
+        key.add("design", &Hardware::design, "Sets a design's keys, which a job may then set alone: the paper's, or one that leaves out what the paper's does twice (modules/README.md, Designs); the mesh is the same");
         key.add("triangulation", &Hardware::triangulation, "Diagonal when two edges split: the shorter one, or always the first or second");
         key.add("culling", &Hardware::culling, "Back-face culling of finished triangles");
         key.add("queue_order", &Hardware::queue_order, "Triangle Queue: which waiting triangle goes next, the oldest or the newest");
@@ -420,9 +421,12 @@ std::vector<KeyTable> declare_keys() {
         key.add("off_chip_triangles", &Hardware::off_chip_triangles, "triangles", between(1, 1000000000), "Timed mode: places for spilled triangles in off-chip memory; a run that needs more ends with exit code 4");
         key.add("queue_overflow", &Hardware::queue_overflow, "Timed mode: a full queue spills to off-chip memory, stalls the pipeline, or ends the run with exit code 4");
         key.add("tests_units", &Hardware::tests_units, "-", between(1, 3), "Timed mode: Tessellation Tests units, 1 or 3 (one for each edge of a triangle)");
+        key.add("work", &Hardware::work, "What goes round through the Triangle Queue: each triangle (the paper's), or the triangles that are known to split, whose children are then tested as a family; the mesh is the same");
         key.add("test_order", &Hardware::test_order, "All tests of an edge at once (the paper's), or those that read no table first and the others only if the decision still depends on them; the mesh is the same");
         key.add("final_edges", &Hardware::final_edges, "A child's edge that was tested with its parent and not split is not tested again; off: the paper's; the mesh is the same");
         key.add("one_texel_from_map", &Hardware::one_texel_from_map, "Vertices carry their displacement codes, and the Summed Height Test takes the sum over a rectangle of one texel from them and from the displacement map; off: the paper's, from the Summed Height Table; the mesh is the same");
+        key.add("edge_lanes", &Hardware::edge_lanes, "-", between(1, 9), "Timed mode, of families with the cheap tests first: edges a cycle into the cheap tests");
+        key.add("normal_tests", &Hardware::normal_tests, "-", between(1, 9), "Timed mode, likewise: Normal Tests, which share the lanes' edges");
         key.add("transform_pipelines", &Hardware::transform_pipelines, "-", between(1, 16), "Timed mode: Transform pipelines that take turns");
         key.add("direct_memory", &Hardware::direct_memory, "Functional mode reads the memories through DMI");
         key.add("light", &Hardware::light, "-", coordinate_range, "Direction towards the light, world space, of any length");

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "testbench/common/error.h"
+#include "testbench/job/design_preset.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/job/job_paths.h"
 #include "testbench/job/nearest_name.h"
@@ -22,6 +23,7 @@ namespace tessera {
 namespace {
 
 constexpr std::size_t most_faults = 20;
+constexpr std::string_view design_key = "hardware.design";
 
 struct Fault {
     std::uint32_t line;
@@ -149,6 +151,11 @@ void choose_source(Job& job, std::string_view table) {
 class TableReader {
   public:
     void read_top_level(const toml::table& table) {
+        // A preset first: the keys it sets may follow it in any order.
+        if (const auto preset = table["hardware"]["design"]; preset) {
+            set_from_node(job_, *find_key(design_key), *preset.node());
+            apply_design(job_);
+        }
         for (const auto& [name, node] : table) {
             const KeyTable* inner = name.str().empty() ? nullptr : find_table(name.str());
             if (inner == nullptr) {
@@ -273,6 +280,9 @@ void set_key(Job& job, std::string_view name, std::string_view value) {
         throw InputError(fmt::format("`{}` has no value; expected {}", name, wanted_text(*key)));
     } else {
         set_from_text(job, *key, value);
+    }
+    if (key->name == design_key) {
+        apply_design(job);
     }
     if (key->kind == KeyKind::file) {
         set_value(job, *key, rebase_path(std::get<std::string>(key->get(job)), "", job.folder));

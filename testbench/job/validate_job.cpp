@@ -183,6 +183,17 @@ void check_light(const Job::Hardware& hardware, Faults& faults) {
 void check_hardware(const Job::Hardware& hardware, Faults& faults) {
     faults.unless(hardware.tests_units != 2,
                   "`hardware.tests_units` = 2: a design has 1 Tessellation Tests unit, or 3, one for each edge");
+    faults.unless(hardware.tests_units == 1 || hardware.work == Work::triangle,
+                  "`hardware.tests_units` = {}, but `hardware.work` = \"family\" has one Tessellation Tests unit: set "
+                  "`hardware.edge_lanes` and `hardware.normal_tests` in its place",
+                  hardware.tests_units);
+    const bool lanes = hardware.work == Work::family && hardware.test_order == TestOrder::cheap_first;
+    for (const auto& [key, value] :
+         {std::pair{"edge_lanes", hardware.edge_lanes}, {"normal_tests", hardware.normal_tests}})
+        faults.unless(
+            value == 1 || lanes,
+            "`hardware.{}` = {} needs `hardware.work` = \"family\" and `hardware.test_order` = \"cheap_first\"", key,
+            value);
 }
 
 void check_timing(const Timing& timing, Faults& faults) {

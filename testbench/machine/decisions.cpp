@@ -7,7 +7,8 @@ namespace tessera {
 using datapath::TestBits;
 
 Decisions::Decisions(const MachineSetup& setup) : registers_(setup.registers) {
-    if (setup.design.test_order != TestOrder::parallel || setup.registers.formats.final_edges)
+    if (setup.design.test_order != TestOrder::parallel || setup.registers.formats.final_edges ||
+        setup.registers.formats.families)
         bare_.emplace(setup);
 }
 
@@ -34,7 +35,8 @@ void Decisions::count(std::uint8_t tests) {
 
 /// Rectangles of one texel, and vertices that have been displaced before this pass.
 bool Decisions::by_codes(const datapath::TrianglePass& pass, int edge) const {
-    if (!registers_.formats.codes || !registers_.tests.summed_height_test || pass.new_vertices != 0)
+    if (!registers_.formats.codes || !registers_.tests.summed_height_test ||
+        (pass.new_vertices != 0 && !registers_.formats.families))
         return false;
     return rectangle_size(pass.edge_begin(edge).texture, pass.edge_end(edge).texture, registers_.map,
                           registers_.formats)
@@ -43,6 +45,8 @@ bool Decisions::by_codes(const datapath::TrianglePass& pass, int edge) const {
 
 void Decisions::write(const datapath::TrianglePass& pass) {
     for (int k = 0; k < 3; ++k) {
+        if ((pass.shared >> k & 1) != 0)
+            continue;
         const unsigned evaluated = pass.edges[static_cast<std::size_t>(k)].evaluated;
         evaluated_.normal += (evaluated & datapath::normal_bit) != 0;
         evaluated_.summed_height += (evaluated & datapath::summed_height_bit) != 0;

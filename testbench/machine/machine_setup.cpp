@@ -43,7 +43,10 @@ Design make_design(const Job& job) {
                                                                              : QueueOverflow::error;
     design.tests_units = static_cast<unsigned>(job.hardware.tests_units);
     design.transform_pipelines = static_cast<unsigned>(job.hardware.transform_pipelines);
+    design.work = job.hardware.work;
     design.test_order = job.hardware.test_order;
+    design.edge_lanes = static_cast<unsigned>(job.hardware.edge_lanes);
+    design.normal_tests = static_cast<unsigned>(job.hardware.normal_tests);
     design.direct_memory = job.hardware.direct_memory;
     return design;
 }
@@ -114,7 +117,8 @@ MachineSetup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& m
     const ViewAxes view = view_axes(job.camera);
     registers.tests = make_tests(job.tests, formats);
     formats.highlight_tag = job.tests.highlight;
-    formats.final_edges = job.hardware.final_edges;
+    formats.families = job.hardware.work == Work::family;
+    formats.final_edges = job.hardware.final_edges && !formats.families;
     formats.codes = job.hardware.one_texel_from_map;
     if (job.tests.highlight &&
         !set_highlight_test(job.tests, towards_light(job.hardware), view.backward, formats, registers.tests, saturated))

@@ -5,20 +5,13 @@
 #include "modules/sockets/items.h"
 #include "modules/sockets/stream_input.h"
 #include "modules/sockets/stream_output.h"
-#include "modules/stage/per_triangle.h"
-#include "modules/stage/unit.h"
 #include "modules/timing/ring.h"
+#include "modules/units/edge_tests/sequencing_unit.h"
 
 namespace tessera {
 
 /// Sequence Tests: takes the place of Collect Tests in a design whose tests are evaluated cheapest first. It sends an
-/// edge to a test only if the decision still depends on it:
-///
-///   Tex Coord Test (with Generation), View Test   every edge; they read no table
-///   Normal Test                                   edges that none of these keeps whole, and the edges of a base
-///                                                 triangle, which bring the N' of its vertices
-///   Summed Height Test                            edges that may split, and that neither Normal nor Highlight Test
-///                                                 splits
+/// edge to a test only if the decision still depends on it (sequencing_unit.h).
 ///
 /// In:   what the two table tests need of an edge, from Calculate New U; vertices of a base triangle, which go on to
 ///       the Normal Test; each test's result.
@@ -28,7 +21,7 @@ namespace tessera {
 /// Timing: one edge a cycle in each direction, no latency of its own. Capacity: `edges_in_sequence` edges (32) between
 ///       their cheap tests' results and their turn to leave; `results_buffer` at each input.
 /// Waits for the tests of its oldest edge. Held back by the Normal Test, the Summed Height Test, Pass or Tessellate.
-class SequenceTests : public Unit {
+class SequenceTests : public SequencingUnit {
   public:
     StreamInput<NormalOperands> normal_operands{"normal_operands"};
     StreamInput<HeightOperands> height_operands{"height_operands"};
@@ -36,8 +29,6 @@ class SequenceTests : public Unit {
     StreamInput<ViewResult> from_view_test{"from_view_test"};
     StreamOutput<NormalOperands> to_normal_test{"to_normal_test"};
     StreamInput<NormalResult> from_normal_test{"from_normal_test"};
-    StreamOutput<HeightOperands> to_summed_height_test{"to_summed_height_test"};
-    StreamInput<HeightResult> from_summed_height_test{"from_summed_height_test"};
     StreamOutput<TestedEdge> to_pass_or_tessellate{"to_pass_or_tessellate"};
 
     SequenceTests(const sc_core::sc_module_name& name, const UnitContext& context);
@@ -50,26 +41,8 @@ class SequenceTests : public Unit {
     }
 
   private:
-    enum class Next : std::uint8_t { normal_test, normal_result, summed_height_test, summed_height_result, leave };
-    /// An edge between its cheap tests and its decision.
-    struct Edge {
-        TestedEdge tested;
-        NormalOperands normal;
-        HeightOperands height;
-        Next next = Next::leave;
-    };
-    /// Functional mode: an edge whose operands and cheap results have not all come.
-    struct Arriving {
-        Edge edge;
-        unsigned come = 0;
-        sc_core::sc_time latest;
-    };
-
-    template <class Item>
-    void add_input(const UnitContext& context, StreamInput<Item>& input);
-    template <class Item>
-    void b_transport(Item& item, sc_core::sc_time& delay);
-    void run_tests(Edge& edge, sc_core::sc_time& delay);
+    StreamOutput<NormalOperands>& normal_test() override { return to_normal_test; }
+    StreamOutput<TestedEdge>& pass_or_tessellate() override { return to_pass_or_tessellate; }
     void step() override;
     bool take_edge(std::uint64_t cycle);
     bool may_take(std::uint64_t cycle);
@@ -79,18 +52,13 @@ class SequenceTests : public Unit {
     bool take_result(StreamInput<Result>& input, Next expected);
     bool leave(std::uint64_t cycle);
     Edge* first(Next next);
-    Next after_cheap_tests(const Edge& edge) const;
-    Next after_normal_test(const TestedEdge& edge) const;
     const Edge& newest() const { return edges_.back(); }
 
-    const datapath::Registers& registers_;
     Ring<Edge> edges_;
     NormalOperands vertex_;  // on offer to the Normal Test
     bool vertex_waits_ = false;
     TestedEdge left_;  // the edge that left last
     std::uint64_t next_take_ = 0, next_leave_ = 0;
-    PerTriangle<Arriving> arriving_{1};
-    PerTriangle<TestedEdge*> in_test_{1};  // functional mode: the edge that a test is evaluating
 };
 
 }  // namespace tessera

@@ -10,17 +10,21 @@ namespace tessera {
 ViewTest::ViewTest(const sc_core::sc_module_name& name, const UnitContext& context, Parts takes)
     : Stage(name, context, context.timing().view_test),
       registers_(context.registers),
-      last_edge_(last_of(takes)),
+      last_edge_(last_of(takes & triangle_edge_parts)),
       corners_(std::size_t{context.timing().pass_or_tessellate.buffer} + 2) {
     takes_from(context, input);
     delivers_to(context, output);
     may_wait();
-    from_transform.clocked_by(context.clock, *this, 1, context.timing().stalls);
-    from_transform.register_b_transport<&ViewTest::take_corner>(*this);
+    if (context.design.work == Work::family)
+        return;
+    from_transform.emplace("from_transform");
+    from_transform->clocked_by(context.clock, *this, 1, context.timing().stalls);
+    from_transform->register_b_transport<&ViewTest::take_corner>(*this);
 }
 
 void ViewTest::end_of_elaboration() {
-    transform_ = module_behind(from_transform.get_base_port().get_interface());
+    if (from_transform)
+        transform_ = module_behind(from_transform->get_base_port().get_interface());
 }
 
 void ViewTest::take_corner(ScreenCorner& corner, sc_core::sc_time& when) {
@@ -32,8 +36,8 @@ void ViewTest::take_corner(ScreenCorner& corner, sc_core::sc_time& when) {
 
 void ViewTest::step() {
     sc_core::sc_time now;
-    for (; !from_transform.empty(); from_transform.pop())
-        take_corner(from_transform.front(), now);
+    for (; from_transform && !from_transform->empty(); from_transform->pop())
+        take_corner(from_transform->front(), now);
     Stage::step();
 }
 
@@ -66,7 +70,8 @@ ViewResult ViewTest::process(const ViewOperands& edge, const Entries&) {
 
 void ViewTest::trace_signals(Signals& signals) const {
     Stage::trace_signals(signals);
-    signals.input(from_transform, "from_transform");
+    if (from_transform)
+        signals.input(*from_transform, "from_transform");
     signals.value("threshold", 33, registers_.tests.view_threshold);
 }
 

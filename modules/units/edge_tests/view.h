@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <optional>
 #include <systemc>
 
 #include "modules/sockets/items.h"
@@ -21,7 +22,7 @@ namespace tessera {
 class ViewTest : public Stage<ViewOperands, ViewResult> {
   public:
     StreamInput<ViewOperands> input{"input"};
-    StreamInput<ScreenCorner> from_transform{"from_transform"};
+    std::optional<StreamInput<ScreenCorner>> from_transform;  ///< not of families, whose edges bring P's
     StreamOutput<ViewResult> output{"output"};
 
     /// takes: the vertices and edges of a triangle that come to the unit (parts_for_tests).

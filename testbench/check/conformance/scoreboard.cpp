@@ -70,7 +70,7 @@ Scoreboard::Scoreboard(const datapath::Registers& registers, const GoldenInputs&
 }
 
 void Scoreboard::write(const datapath::TrianglePass& pass) {
-    ++passes_;
+    passes_ += pass.told != datapath::Told::midpoints ? 1u : 0u;
     const auto& v = pass.triangle.vertices;
     const std::array<golden::Vertex, 3> given = {dequantise_.vertex(v[0]), dequantise_.vertex(v[1]),
                                                  dequantise_.vertex(v[2])};
@@ -78,8 +78,9 @@ void Scoreboard::write(const datapath::TrianglePass& pass) {
         if ((pass.new_vertices >> k & 1) != 0)
             compare_base_vertex(pass, k, given[static_cast<std::size_t>(k)]);
     for (int k = 0; k < 3; ++k)
-        compare_edge(pass, k, given[static_cast<std::size_t>(k)], given[static_cast<std::size_t>((k + 1) % 3)]);
-    if (pass.split == 3 || pass.split == 5 || pass.split == 6)
+        if (pass.told != datapath::Told::midpoints || (pass.split >> k & 1) != 0)
+            compare_edge(pass, k, given[static_cast<std::size_t>(k)], given[static_cast<std::size_t>((k + 1) % 3)]);
+    if (pass.told != datapath::Told::tests && (pass.split == 3 || pass.split == 5 || pass.split == 6))
         compare_diagonal(pass, given);
 }
 
@@ -126,29 +127,34 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
     const bool near_threshold = inputs_.parameters.enabled.normal &&
                                 std::abs(golden.normal_difference - inputs_.parameters.normal_threshold) <= leeway;
     const bool split = (pass.split >> k & 1) != 0;
-    if ((pass.triangle.final_edges >> k & 1) != 0) {
+    const bool tests_told = pass.told != datapath::Told::midpoints, midpoint_told = pass.told != datapath::Told::tests;
+    if (tests_told && (pass.triangle.final_edges >> k & 1) != 0) {
         // Tested with the parent, from the same ends. Without those tests that may flip, would golden split it?
         const bool asked = (golden.normal_test && !near_threshold) || golden.summed_height_test ||
                            (golden.highlight_test && !highlight_may_flip(golden, bumped_bound, leeway));
         decide(split_decision, split, golden.split, !asked, context);
         return;
     }
-    ++edges_;
+    edges_ += tests_told && (pass.shared >> k & 1) == 0 ? 1u : 0u;
 
     const auto midpoint = [&](std::int64_t hardware, double value, char component) {
         compare(inserted_position, hardware, value, bounds_.position_midpoint(), formats.position, per_position_,
                 component, context);
     };
-    midpoint(made.position.x, m.position.x, 'x');
-    midpoint(made.position.y, m.position.y, 'y');
-    midpoint(made.position.z, m.position.z, 'z');
+    if (midpoint_told) {
+        midpoint(made.position.x, m.position.x, 'x');
+        midpoint(made.position.y, m.position.y, 'y');
+        midpoint(made.position.z, m.position.z, 'z');
+    }
     const auto mean = [&](std::int64_t hardware, double value, char component) {
         compare(inserted_mean_normal, hardware, value, bounds_.direction_midpoint(), formats.normal, per_normal_,
                 component, context);
     };
-    mean(made.mean_normal.x, mean_normal.x, 'x');
-    mean(made.mean_normal.y, mean_normal.y, 'y');
-    mean(made.mean_normal.z, mean_normal.z, 'z');
+    if (pass.told == datapath::Told::all) {
+        mean(made.mean_normal.x, mean_normal.x, 'x');
+        mean(made.mean_normal.y, mean_normal.y, 'y');
+        mean(made.mean_normal.z, mean_normal.z, 'z');
+    }
     const auto texture = [&](const datapath::TexCoord& t) {
         compare(inserted_texture, t.u, m.texture.x, bounds_.texture_midpoint(), formats.texture, per_texture_, 'u',
                 context);
@@ -156,8 +162,10 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
                 context);
     };
     // Both branches calculate it.
-    texture(made.texture);
-    texture(tested.texture);
+    if (midpoint_told)
+        texture(made.texture);
+    if (tests_told)
+        texture(tested.texture);
 
     const auto evaluated = [&](datapath::TestBits bit) { return (tested.evaluated & bit) != 0; };
     if (evaluated(datapath::normal_bit) || split) {
@@ -169,8 +177,12 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
     const double height = inputs_.parameters.scale * inputs_.map.code(texel) + inputs_.parameters.bias;
     const glm::dvec3 displaced_bound =
         bounds_.displaced_position(m.position, height, m.normal, n_bound, m.displaced_position);
-    bool flipped = compare_displaced(inserted_displaced, inserted_screen, inserted_w, made.displaced, made.screen, m,
-                                     displaced_bound, context);
+    bool flipped = midpoint_told && compare_displaced(inserted_displaced, inserted_screen, inserted_w, made.displaced,
+                                                      made.screen, m, displaced_bound, context);
+    if (!tests_told) {
+        flipped_edges_ += flipped ? 1 : 0;
+        return;
+    }
 
     const auto says = [&](datapath::TestBits bit) { return (tested.tests & bit) != 0; };
     const bool normal_flipped = evaluated(datapath::normal_bit) && decide(normal_decision, says(datapath::normal_bit),

@@ -29,6 +29,9 @@ namespace tessera {
 /// Only what the machine has evaluated is compared: N_ij, T_ij, N'_ij and NT, HT if the Normal Test was; SHT likewise;
 /// of a final edge nothing but that golden does not split it.
 ///
+/// Of families an edge's tests and its midpoint are told apart (Told), and (N_i+N_j)/2, which no unit sends, is not
+/// compared.
+///
 /// Any other difference is a mismatch: counted, the first kept with all operands. The diagonal is calculated by the
 /// datapath's function (triangulate.h), which Tessellation applies later, from the pass's P'.
 ///

@@ -58,10 +58,10 @@ void TexelBorders::write(const datapath::TrianglePass& pass) {
     const auto& v = pass.triangle.vertices;
     const std::array<bool, 3> ends = {below(v[0].texture), below(v[1].texture), below(v[2].texture)};
     for (std::size_t k = 0; k < 3; ++k) {
-        if ((pass.triangle.final_edges >> k & 1u) != 0)
+        if (((pass.triangle.final_edges | pass.shared) >> k & 1u) != 0)
             continue;
         ++count_.edges;
-        count_.below += ends[k] || ends[(k + 1) % 3] || below(pass.new_vertex[k].texture) ? 1u : 0u;
+        count_.below += ends[k] || ends[(k + 1) % 3] || below(pass.edges[k].texture) ? 1u : 0u;
     }
 }
 

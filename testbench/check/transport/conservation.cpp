@@ -35,16 +35,27 @@ void add_triangles(Equations& list, const Simulation& simulation) {
     const Pipeline& p = simulation.pipeline;
     const auto& counts = p.pass_or_tessellate.counts();
     const auto& made = p.tessellation.made_into();
-    const std::uint64_t rounds = counts.passes + counts.normal_passes;
     const std::uint64_t cut = made[1] + made[2] + made[3] + made[4];
-    list.add("triangles taken by get_triangle = decided",
-             p.get_triangle.host_triangles() + p.get_triangle.queue_triangles(), rounds);
+    if (simulation.setup.design.work == Work::triangle) {
+        const std::uint64_t rounds = counts.passes + counts.normal_passes;
+        list.add("triangles taken by get_triangle = decided",
+                 p.get_triangle.host_triangles() + p.get_triangle.queue_triangles(), rounds);
+        list.add("children of tessellation = taken by triangle_queue", p.tessellation.children(),
+                 p.triangle_queue.taken());
+        list.add("triangles cut by tessellation + finished = decided", cut + counts.finished, rounds);
+    } else {
+        const std::uint64_t base = p.get_triangle.host_triangles();
+        list.add("base triangles and children of tessellation = decided", base + p.tessellation.children(),
+                 counts.passes + counts.normal_passes);
+        list.add("decided = finished + taken by triangle_queue", counts.passes + counts.normal_passes,
+                 counts.finished + p.triangle_queue.taken());
+        list.add("triangles cut by tessellation = taken by get_triangle from triangle_queue", cut,
+                 p.get_triangle.queue_triangles());
+    }
     list.add("triangles taken by get_triangle from the host = base triangles", p.get_triangle.host_triangles(),
              simulation.host.sent());
-    list.add("children of tessellation = taken by triangle_queue", p.tessellation.children(), p.triangle_queue.taken());
     list.add("taken by triangle_queue = by get_triangle from it", p.triangle_queue.taken(),
              p.get_triangle.queue_triangles());
-    list.add("triangles cut by tessellation + finished = decided", cut + counts.finished, rounds);
     list.add("triangles sent round for normals = decided for normals", made[1], counts.normal_passes);
     list.add("finished = base triangles + edges split", counts.finished,
              p.get_triangle.host_triangles() + counts.edges_split);
@@ -58,24 +69,25 @@ std::uint64_t bumps(const Pipeline& p, std::uint64_t vertices) {
     return p.tessellation_tests.size() == 1 ? vertices : 2 * vertices;
 }
 
-/// Each edge's tests: `normal` and `summed_height` of `edges` edges are evaluated, `by_codes` of the latter without the
+/// Each edge's tests: `midpoints` of edges are displaced, `normal` and `summed_height` of `edges` edges are evaluated, `by_codes` of the latter without the
 /// Summed Height Table.
 struct Tested {
     std::uint64_t vertices;
     std::uint64_t edges;
+    std::uint64_t midpoints;
     std::uint64_t normal;
     std::uint64_t summed_height;
     std::uint64_t by_codes;
 };
 
 void add_reads(Equations& list, const Pipeline& p, const Tested& tested) {
-    const auto& [vertices, edges, normal, summed_height, by_codes] = tested;
-    list.add("reads of displace_vertex = vertices and edges", p.displace_vertex.displacement_map.reads(),
-             vertices + edges);
-    list.add("reads of displacement_map = vertices, edges and texels", p.displacement_map_reads(),
-             vertices + edges + by_codes);
+    const auto& [vertices, edges, midpoints, normal, summed_height, by_codes] = tested;
+    list.add("reads of displace_vertex = vertices and midpoints", p.displace_vertex.displacement_map.reads(),
+             vertices + midpoints);
+    list.add("reads of displacement_map = vertices, midpoints and texels", p.displacement_map_reads(),
+             vertices + midpoints + by_codes);
     list.add("reads of normal_test = vertices and its edges", p.normal_map_reads(), bumps(p, vertices) + normal);
-    list.add("positions of transform = vertices and edges", p.transform.positions(), vertices + edges);
+    list.add("positions of transform = vertices and midpoints", p.transform.positions(), vertices + midpoints);
 }
 
 /// A table, or the cache through which the units read it.
@@ -95,40 +107,68 @@ struct Read {
 };
 
 void add_timed(Equations& list, const Simulation& simulation, const Tested& tested) {
-    const auto& [vertices, edges, normal, summed_height, by_codes] = tested;
+    const auto& [vertices, edges, midpoints, normal, summed_height, by_codes] = tested;
     const Pipeline& p = simulation.pipeline;
     const auto& counts = p.pass_or_tessellate.counts();
-    const std::uint64_t rounds = counts.passes + counts.normal_passes;
-    list.add("triangles in get_triangle = decided", items(p.get_triangle), rounds);
-    list.add("triangles in pass_or_tessellate = decided", items(p.pass_or_tessellate), rounds);
+    const bool families = simulation.setup.design.work == Work::family;
+    const std::uint64_t rounds = families ? p.get_triangle.host_triangles() + p.get_triangle.queue_triangles()
+                                          : counts.passes + counts.normal_passes;
+    list.add(families ? "triangles in get_triangle = taken" : "triangles in get_triangle = decided",
+             items(p.get_triangle), rounds);
+    list.add(
+        families ? "families in pass_or_tessellate = triangles taken" : "triangles in pass_or_tessellate = decided",
+        items(p.pass_or_tessellate), rounds);
     list.add("triangles in triangle_queue = taken by it", items(p.triangle_queue), p.triangle_queue.taken());
     list.add("triangles in lighting = finished - culled", items(p.lighting), counts.finished - counts.culled);
 
-    // geometry branch: a base triangle's vertices, all edges, each new vertex's normal
+    // geometry branch: a base triangle's vertices, midpoints, each new vertex's normal; of families a midpoint's with it
     const std::uint64_t parts = p.get_triangle.parts_sent();
     list.add("parts in calculate_new_p = sent by get_triangle", items(p.calculate_new_p), parts);
     list.add("parts in displace_vertex = sent by get_triangle", items(p.displace_vertex), parts);
     list.add("parts in transform = sent by get_triangle", items(p.transform), parts);
-    list.add("parts taken from transform = sent by get_triangle", p.pass_or_tessellate.from_transform.taken(), parts);
-    list.add("positions and normals of transform = parts", p.transform.positions() + p.transform.normals(), parts);
+    list.add("parts taken from transform = sent by get_triangle",
+             families ? p.family_tessellation->from_transform.taken()
+                      : p.triangle_pass_or_tessellate->from_transform.taken(),
+             parts);
+    list.add("positions and normals of transform = parts", p.transform.positions() + p.transform.normals(),
+             families ? parts + midpoints : parts);
 
     // tests: vertices end in the Normal Test
     const auto tests = [&](auto figure) { return sum_over_tests(p, figure); };
+    const auto lanes = [&](auto figure) {
+        return tests([&](const auto& t) {
+            std::uint64_t sum = 0;
+            for (const TessellationTests::Lane& lane : t.lanes())
+                sum += figure(lane);
+            return sum;
+        });
+    };
     list.add("parts in calculate_new_u = vertices and edges",
-             tests([](const auto& t) { return items(t.calculate_new_u); }), bumps(p, vertices) + edges);
-    list.add("parts in normal_test = vertices and its edges", tests([](const auto& t) { return items(t.normal_test); }),
+             lanes([](const auto& lane) { return items(lane.calculate_new_u); }), bumps(p, vertices) + edges);
+    list.add("parts in normal_test = vertices and its edges", tests([](const auto& t) {
+                 std::uint64_t sum = 0;
+                 for (const NormalTest* test : t.normal_tests())
+                     sum += items(*test);
+                 return sum;
+             }),
              bumps(p, vertices) + normal);
-    list.add("edges in tex_coord_test = edges", tests([](const auto& t) { return items(t.tex_coord_test); }), edges);
+    list.add("edges in tex_coord_test = edges", lanes([](const auto& lane) { return items(lane.tex_coord_test); }),
+             edges);
     list.add("edges in summed_height_test = its edges",
              tests([](const auto& t) { return items(t.summed_height_test); }), summed_height);
-    list.add("edges in view_test = edges", tests([](const auto& t) { return items(t.view_test); }), edges);
-    list.add("vertices taken by view_test = vertices, once a unit",
-             tests([](const auto& t) { return t.view_test.from_transform.taken(); }),
-             vertices * p.tessellation_tests.size());
+    list.add("edges in view_test = edges", lanes([](const auto& lane) { return items(lane.view_test); }), edges);
+    if (!families)
+        list.add("vertices taken by view_test = vertices, once a unit",
+                 tests([](const auto& t) { return t.view_test.from_transform->taken(); }),
+                 vertices * p.tessellation_tests.size());
     std::uint64_t joined = 0;
-    for (const StreamInput<TestedEdge>& input : p.pass_or_tessellate.from_tessellation_tests)
+    for (const StreamInput<TestedEdge>& input : families ? p.family_pass_or_tessellate->from_tessellation_tests
+                                                         : p.triangle_pass_or_tessellate->from_tessellation_tests)
         joined += input.taken();
-    list.add("edges taken from tessellation_tests = edges", joined, edges);
+    const bool vertices_leave = vertices_bring_normals(simulation.setup.design);
+    list.add(vertices_leave ? "parts taken from tessellation_tests = vertices and edges"
+                            : "edges taken from tessellation_tests = edges",
+             joined, vertices_leave ? vertices + edges : edges);
     list.add("edges collected = edges", tests([](const auto& t) { return items(t.collector()); }), edges);
 
     const Read displacement_map(p.displacement_map, p.displacement_map_cache);
@@ -140,8 +180,8 @@ void add_timed(Equations& list, const Simulation& simulation, const Tested& test
              p.summed_height_table_reads());
     for (const Read& read : {displacement_map, normal_map, summed_height_table})
         read.add_fills(list);
-    list.add("requests to displacement_map = vertices, edges and texels", displacement_map.requests(),
-             vertices + edges + by_codes);
+    list.add("requests to displacement_map = vertices, midpoints and texels", displacement_map.requests(),
+             vertices + midpoints + by_codes);
     list.add("requests to normal_map = vertices and edges of normal_test", normal_map.requests(),
              bumps(p, vertices) + normal);
     list.add("requests to summed_height_table = three an edge, if it tests", summed_height_table.requests(),
@@ -158,16 +198,26 @@ void add_timed(Equations& list, const Simulation& simulation, const Tested& test
 std::vector<Conservation> conservation(const Simulation& simulation) {
     Equations list;
     const Pipeline& p = simulation.pipeline;
-    const PassOrTessellate::Counts& counts = p.pass_or_tessellate.counts();
+    const DecidingUnit::Counts& counts = p.pass_or_tessellate.counts();
     const std::uint64_t base = p.get_triangle.host_triangles();
-    // A triangle with k split edges has k + 1 children with 4 k new edges, which alone are not final.
-    const std::uint64_t edges =
-        simulation.setup.registers.formats.final_edges ? 3 * base + 4 * counts.edges_split : 3 * counts.passes;
+    // A triangle with k split edges has k + 1 children with 4 k new edges, which alone are not final; of families the k
+    // inside it are tested once.
+    const bool final_edges = simulation.setup.registers.formats.final_edges;
+    const bool families = simulation.setup.design.work == Work::family;
+    const std::uint64_t edges = families      ? 3 * counts.finished
+                                : final_edges ? 3 * base + 4 * counts.edges_split
+                                              : 3 * counts.passes;
     const Decisions::Evaluated& evaluated = simulation.decisions.evaluated();
-    const Tested tested{3 * base, edges, evaluated.normal, evaluated.summed_height, evaluated.summed_height_by_codes};
+    const Tested tested{3 * base,
+                        edges,
+                        families ? counts.edges_split : edges,
+                        evaluated.normal,
+                        evaluated.summed_height,
+                        evaluated.summed_height_by_codes};
     add_triangles(list, simulation);
-    list.add(simulation.setup.registers.formats.final_edges ? "edges tested = 3 a base triangle, 4 a split"
-                                                            : "edges tested = 3 a pass",
+    list.add(families      ? "edges tested = 3 a finished triangle"
+             : final_edges ? "edges tested = 3 a base triangle, 4 a split"
+                           : "edges tested = 3 a pass",
              counts.edges_tested, edges);
     add_reads(list, p, tested);
     if (simulation.setup.design.transport == Transport::non_blocking)

@@ -66,6 +66,27 @@ std::uint64_t hash_to_finish(const datapath::Triangle& triangle) {
     return hash.value();
 }
 
+/// Hash of a triangle that is to be split, and of what the tests found of its split edges.
+std::uint64_t hash_to_split(const datapath::TrianglePass& pass) {
+    Hash hash;
+    for (const datapath::Vertex& vertex : pass.triangle.vertices)
+        add_vertex(hash, vertex, true);
+    unsigned split_by = 0;
+    for (unsigned k = 0; k < 3; ++k) {
+        if ((pass.split >> k & 1u) == 0)
+            continue;
+        const datapath::EdgeTests& edge = pass.edges[k];
+        split_by |= edge.tests & datapath::requesting_tests;
+        for (const datapath::Direction& n : {edge.normal, edge.tangent, edge.displaced_normal}) {
+            hash.add(n.x, n.y);
+            hash.add(n.z, static_cast<std::int32_t>(k));
+        }
+    }
+    hash.add(std::uint64_t{pass.number} << 32 | split_by << 8 | pass.split);
+    hash.add(pass.triangle.base);
+    return hash.value();
+}
+
 std::uint64_t hash_lit(const LitTriangle& triangle) {
     Hash hash;
     for (const LitTriangle::Corner& corner : triangle.corners) {
@@ -102,11 +123,17 @@ void TransportCheck::finding(const std::string& what) {
 }
 
 void TransportCheck::write(const datapath::TrianglePass& pass) {
-    ++result_.triangles;
     Base& base = base_of(pass.triangle.base);
-    base.decided.come(hash_to_decide(pass.triangle, pass.new_vertices));
+    if (pass.told == datapath::Told::midpoints) {
+        base.split.come(hash_to_split(pass));
+    } else {
+        ++result_.triangles;
+        base.decided.come(hash_to_decide(pass.triangle, pass.new_vertices));
+    }
     if (pass.split == 0)
         base.finished.expect(hash_to_finish(pass.triangle));
+    else if (pass.told == datapath::Told::tests)
+        base.split.expect(hash_to_split(pass));
     else
         datapath::tessellate(pass, registers_.triangulation, registers_.formats, counted_by_the_unit_,
                              [&](const datapath::Triangle& child) {
@@ -157,9 +184,11 @@ WorkResult TransportCheck::result() const {
     };
     for (std::size_t k = 0; k < bases_.size(); ++k) {
         judge(bases_[k].decided, fmt::format("base triangle {}", k), "decided");
+        judge(bases_[k].split, fmt::format("base triangle {}", k), "split");
         judge(bases_[k].finished, fmt::format("base triangle {}", k), "finished");
     }
     judge(foreign_.decided, "no base triangle", "decided");
+    judge(foreign_.split, "no base triangle", "split");
     judge(foreign_.finished, "no base triangle", "finished");
     judge(lit_, "all base triangles", "lit");
     return result;

@@ -26,6 +26,7 @@ struct WorkResult {
 /// decisions, and each must arrive exactly once with every bit unchanged.
 ///
 ///   decided   a base triangle as the host has it, and each child of a decided triangle
+///   split     of families, each triangle that was decided and split, as it comes back from the queue
 ///   finished  each triangle that was decided and not split
 ///   lit       each finished triangle that is not culled; its N's are transformed N', its intensities lit N's
 ///
@@ -62,6 +63,7 @@ class TransportCheck : public tlm::tlm_analysis_if<datapath::TrianglePass>,
     };
     struct Base {
         Balance decided;
+        Balance split;  // of families
         Balance finished;
     };
 

@@ -26,17 +26,16 @@ class AreaCounter {
         unit("get_triangle", 0,
              std::uint64_t{2} * t.get_triangle.buffer * bits<datapath::Triangle>() + bits<TakenTriangle>());
         stage<GeometryOperands, BasePoint>("calculate_new_p", t.calculate_new_p);
-        stage<BasePoint, DisplacedPoint>("displace_vertex", t.displace_vertex, M::normalise + M::displace, 1,
+        stage<BasePoint, DisplacedPoint>("displace_vertex", t.displace_vertex,
+                                         (f.families ? 0 : M::normalise) + M::displace, 1,
                                          {t.read_latency(t.displacement_map), f.displacement.bits});
         stage<DisplacedPoint, ScreenPoint>("transform", t.transform, M::transform + M::transform_normal,
                                            design_.transform_pipelines);
         edge_tests();
-        const UnitTiming& join = t.pass_or_tessellate;
-        unit("pass_or_tessellate", registers_.back_face_culling ? M::faces_away : 0,
-             triangles_ahead_of_parts(design_) * bits<TakenTriangle>() + bits<ScreenPoint>() +
-                 std::uint64_t{3} * join.buffer * bits<TestedEdge>() +
-                 (join.buffer + register_stages(join)) * (tag_ + bits<DecidedTriangle>()));
-        unit("tessellation", 0, (t.tessellation.buffer + 1) * bits<DecidedTriangle>());
+        if (design_.work == Work::triangle)
+            joining_triangles();
+        else
+            joining_families();
         unit("triangle_queue", 0, t.triangle_queue.buffer * bits<datapath::Triangle>());
         areas_.back().memory_bits = queue_places * bits<datapath::Triangle>();
         stage<TriangleToLight, LitTriangle>("lighting", t.lighting, 3 * M::light);
@@ -70,37 +69,67 @@ class AreaCounter {
              copies);
     }
 
+    unsigned culling() const { return registers_.back_face_culling ? Multiplications::faces_away : 0; }
+
+    void joining_triangles() {
+        const UnitTiming& join = design_.timing.pass_or_tessellate;
+        unit("pass_or_tessellate", culling(),
+             triangles_ahead_of_parts(design_) * bits<TakenTriangle>() + bits<ScreenPoint>() +
+                 std::uint64_t{3} * join.buffer * bits<TestedEdge>() +
+                 (join.buffer + register_stages(join)) * (tag_ + bits<DecidedTriangle>()));
+        unit("tessellation", 0, (design_.timing.tessellation.buffer + 1) * bits<DecidedTriangle>());
+    }
+
+    /// Tessellation joins one triangle and sends another; each place of Pass or Tessellate has room for nine edges.
+    void joining_families() {
+        const UnitTiming& collect = design_.timing.pass_or_tessellate;
+        constexpr std::uint64_t midpoints = 3, most_edges = 9;
+        unit("pass_or_tessellate", culling(),
+             bits<Family>() + design_.edge_lanes * bits<TestedEdge>() +
+                 collect.buffer * (bits<Family>() + most_edges * bits<TestedEdge>()) +
+                 register_stages(collect) * (bits<TriangleToLight>() + bits<datapath::Triangle>()));
+        unit("tessellation", 0,
+             (triangles_ahead_of_parts(design_) + 1) * bits<TakenTriangle>() +
+                 (design_.timing.tessellation.buffer + midpoints) * bits<ScreenPoint>() + bits<Family>() +
+                 design_.edge_lanes * bits<TestOperands>());
+    }
+
     void edge_tests() {
         const Timing& t = design_.timing;
         const datapath::Formats& f = registers_.formats;
         const datapath::TestParameters& tests = registers_.tests;
         using M = Multiplications;
         const unsigned copies = design_.tests_units;
+        const unsigned lanes = copies * design_.edge_lanes, normal_tests = copies * design_.normal_tests;
         const std::uint64_t corners = 3 * (1 + 3 * static_cast<std::uint64_t>(f.normal.bits)) + tag_;
         const std::uint64_t screens = 3 + 3 * (bits<ScreenCorner>() - bits<ViewResult>() + 1) + tag_;
         UnitTiming normal = t.normal_test;
         normal.latency += tests.highlight_test ? t.highlight_test_latency : 0;
         const bool area = tests.summed_height_unit == datapath::SummedHeightUnit::area;
 
-        stage<TestOperands, TestOperands>("calculate_new_u", t.calculate_new_u, 0, 1, {0, 2 * f.texture.bits}, copies);
-        stage<TexCoordOperands, TexCoordResult>("tex_coord_test", t.tex_coord_test, 0, 1, {}, copies);
+        stage<TestOperands, TestOperands>("calculate_new_u", t.calculate_new_u, 0, 1, {0, 2 * f.texture.bits}, lanes);
+        stage<TexCoordOperands, TexCoordResult>("tex_coord_test", t.tex_coord_test, 0, 1, {}, lanes);
         stage<HeightOperands, HeightResult>("summed_height_test", t.summed_height_test,
                                             area ? M::summed_height_limit : 0, 1,
                                             {summed_height_latency(design_, f), 3 * f.summed_height.bits}, copies);
         stage<NormalOperands, NormalResult>("normal_test", normal,
                                             2 * M::normalise + M::bump + (tests.highlight_test ? M::highlight_test : 0),
-                                            1, {t.read_latency(t.normal_map), 3 * f.normal.bits}, copies);
+                                            1, {t.read_latency(t.normal_map), 3 * f.normal.bits}, normal_tests);
         areas_.back().register_bits += copies * corners;
-        stage<ViewOperands, ViewResult>("view_test", t.view_test, 0, 1, {}, copies);
-        areas_.back().register_bits += copies * (bits<ScreenCorner>() + (t.pass_or_tessellate.buffer + 2) * screens);
-        const std::uint64_t results = t.results_buffer * (bits<TexCoordResult>() + bits<HeightResult>() +
-                                                          bits<NormalResult>() + bits<ViewResult>());
+        stage<ViewOperands, ViewResult>("view_test", t.view_test, 0, 1, {}, lanes);
+        if (!f.families)
+            areas_.back().register_bits +=
+                copies * (bits<ScreenCorner>() + (t.pass_or_tessellate.buffer + 2) * screens);
+        const std::uint64_t results =
+            t.results_buffer * (bits<HeightResult>() + design_.normal_tests * bits<NormalResult>() +
+                                design_.edge_lanes * (bits<TexCoordResult>() + bits<ViewResult>()));
         const std::uint64_t operands = bits<NormalOperands>() + bits<HeightOperands>();
         if (design_.test_order == TestOrder::parallel)
             unit("collect_tests", 0, results, copies);
         else
             unit("sequence_tests", 0,
-                 results + t.results_buffer * operands + bits<NormalOperands>() +
+                 results + design_.edge_lanes * t.results_buffer * operands +
+                     design_.normal_tests * bits<NormalOperands>() +
                      t.edges_in_sequence * (operands + bits<TestedEdge>()),
                  copies);
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <type_traits>
 
 #include "modules/datapath/reciprocal.h"
 #include "modules/datapath/widths.h"
@@ -77,6 +78,8 @@ Collector stream_figures(const MachineSetup& setup) {
     c.add("tag", tag, "bit", "identifies a triangle between Get Triangle and Pass or Tessellate");
     StreamItems::for_each([&](auto type) {
         using Item = typename decltype(type)::Item;
+        if (std::is_same_v<Item, Family> && setup.design.work == Work::triangle)
+            return;
         std::string name = DescriptionOf<Item>::Type::name;
         std::replace(name.begin(), name.end(), ' ', '_');
         c.add(name.c_str(), item_bits<Item>(setup.registers.formats, tag), "bit",
@@ -165,8 +168,10 @@ Collector useful_work_figures(const Pipeline& p, const Decisions::Evaluated& eva
     Collector c("useful_work");
     c.add("vertices", mesh.vertices, "vertex",
           "distinct vertices of the finished mesh, by t, P' and N', culled triangles included");
-    c.add("vertices_made", made, "vertex",
-          "displaced and transformed: three a base triangle, and the midpoint of each edge tested");
+    c.add(
+        "vertices_made", made, "vertex",
+        "displaced and transformed: three a base triangle, and the midpoint of each edge tested; of families, of each "
+        "edge split");
     c.add("vertices_thrown_away", thrown_away_vertices(p, base_triangles), "vertex",
           "of these: midpoints of edges that were not split");
     c.add("made_per_vertex", per(made, mesh.vertices), "times", "vertices made per distinct vertex");
@@ -212,7 +217,7 @@ std::uint64_t thrown_away_vertices(const Pipeline& pipeline, std::uint64_t base_
 std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulation& simulation,
                                        const MeshCounts& mesh) {
     const Pipeline& p = simulation.pipeline;
-    const PassOrTessellate::Counts& counts = p.pass_or_tessellate.counts();
+    const DecidingUnit::Counts& counts = p.pass_or_tessellate.counts();
     const Decisions::Counts& decided = simulation.decisions.counts();
     const std::uint64_t edges = p.edges_tested();
     const auto edges_real = static_cast<double>(edges);

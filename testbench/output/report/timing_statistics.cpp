@@ -50,8 +50,8 @@ void run_figures(const Simulation& simulation, std::vector<Figure>& figures) {
     run.real("base_triangle_share",
              ratio(p.get_triangle.host_triangles(), p.get_triangle.host_triangles() + p.get_triangle.queue_triangles()),
              "", "base triangles in all triangles that Get Triangle took");
-    run.count("most_triangles_ahead_of_parts", p.pass_or_tessellate.most_ahead_of_parts(), "triangle",
-              "that waited in Pass or Tessellate for their first part");
+    run.count("most_triangles_ahead_of_parts", p.most_ahead_of_parts(), "triangle",
+              "that waited for their first part where its parts come together");
     run.text("bottleneck", bottleneck.binding ? bottleneck.first.names() : "none",
              "the units or memories of the highest utilisation, if that is at least 85 %; none: latency binds");
     run.real("bottleneck_bound", bottleneck.bound(), "times",

@@ -24,8 +24,9 @@ namespace {
 
 /// Of one part; "" of a whole triangle.
 const char* part_name(Parts parts) {
-    constexpr std::array<const char*, 9> names = {"vertex 0", "vertex 1", "vertex 2", "normal 0", "normal 1",
-                                                  "normal 2", "edge 0",   "edge 1",   "edge 2"};
+    constexpr std::array<const char*, 15> names = {"vertex 0", "vertex 1", "vertex 2", "normal 0", "normal 1",
+                                                   "normal 2", "edge 0",   "edge 1",   "edge 2",   "edge 3",
+                                                   "edge 4",   "edge 5",   "edge 6",   "edge 7",   "edge 8"};
     return parts == all_parts ? "" : names.at(static_cast<std::size_t>(__builtin_ctz(parts)));
 }
 

@@ -65,6 +65,7 @@ CaseResult run_case(const RandomCase& random_case, Mode mode) {
                           static_cast<std::uint64_t>(with_mode.job.limits.cycles_without_progress));
     Scoreboard scoreboard(setup.registers, golden);
     simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
+    simulation.pipeline.tessellation.inserted.bind(scoreboard);
 
     CaseResult result;
     const auto fail = [&](const std::string& what) { result.failure += (result.failure.empty() ? "" : "\n") + what; };

@@ -123,6 +123,14 @@ void make_random_job(Random& random, const JobContext& context, Job& job) {
 void choose_evaluations(Random& random, Job& job) {
     job.hardware.test_order = random.coin() ? TestOrder::parallel : TestOrder::cheap_first;
     job.hardware.final_edges = random.coin();
+    job.hardware.work = random.coin() ? Work::triangle : Work::family;
+    if (job.hardware.work == Work::family) {
+        job.hardware.tests_units = 1;
+        if (job.hardware.test_order == TestOrder::cheap_first) {
+            job.hardware.edge_lanes = random.integer(1, 9);
+            job.hardware.normal_tests = random.integer(1, 3);
+        }
+    }
     job.timing.edges_in_sequence = random.natural(1, 40);
     MemoryTiming& table = job.timing.summed_height_table;
     table.window = random.one_of({0U, 1U, 2U, 5U, 12U});

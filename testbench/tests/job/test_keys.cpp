@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "testbench/common/error.h"
+#include "testbench/job/design_preset.h"
 #include "testbench/job/document_keys.h"
 #include "testbench/job/dump_job.h"
 #include "testbench/job/job_choices.h"
@@ -139,6 +140,8 @@ TEST_CASE("every key reads, sets itself only, dumps and round-trips") {
 
         Job restored = job;
         key.set(restored, default_of(key));
+        if (key.name == "hardware.design")
+            apply_design(restored);
         if (key.kind == KeyKind::file) {
             restored.mesh.source = MeshSource::plane;
             restored.map.source = MapSource::half_donut;
@@ -157,6 +160,30 @@ TEST_CASE("every key reads, sets itself only, dumps and round-trips") {
             CHECK(same_settings(set, job));
         }
     }
+}
+
+TEST_CASE("a preset sets its keys, and those beside it in the job are set alone, in any order") {
+    const Job modern = parse_job("[hardware]\ndesign = 'modern'\n", "job.toml");
+    CHECK(modern.hardware.work == Work::family);
+    CHECK(modern.hardware.edge_lanes == 3);
+    CHECK(modern.timing.summed_height_table.interleave == Interleave::exclusive_or);
+    CHECK_NOTHROW(validate(modern));
+    const Job before = parse_job(
+        "[timing]\nsummed_height_table_banks = 1\n[hardware]\nedge_lanes = 2\ndesign = 'modern'\n", "job.toml");
+    CHECK(before.hardware.edge_lanes == 2);
+    CHECK(before.hardware.work == Work::family);
+    CHECK(before.timing.summed_height_table.banks == 1);
+
+    Job job = before;
+    apply_setting(job, "hardware.design=modern");
+    CHECK(same_settings(job, modern));
+    apply_setting(job, "hardware.edge_lanes=1");
+    CHECK(job.hardware.edge_lanes == 1);
+    const std::string short_text = dump_short_job(job, "", "short");
+    CHECK_THAT(short_text, Contains("edge_lanes = 1\n"));
+    CHECK(same_settings(parse_job(short_text, "short.toml"), job));
+    apply_setting(job, "hardware.design=paper");
+    CHECK(same_settings(job, Job{}));
 }
 
 TEST_CASE("what may be left to the program reads as auto, and is so by default") {

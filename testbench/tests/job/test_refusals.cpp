@@ -232,6 +232,12 @@ TEST_CASE("keys that contradict each other") {
              {"is parallel to the view direction [0.0, 0.0, -5.0]"}},
             {"camera.eye=[0, 0, 5]; camera.up=[0, 1, 0]", {}},
             {"hardware.light=[0, 0, 0]", {"`hardware.light`"}},
+            {"hardware.tests_units=3", {}},
+            {"hardware.tests_units=3; hardware.work=family", {"`hardware.tests_units` = 3", "`hardware.edge_lanes`"}},
+            {"hardware.edge_lanes=2", {"`hardware.edge_lanes` = 2 needs `hardware.work` = \"family\""}},
+            {"hardware.normal_tests=2; hardware.work=family", {"`hardware.normal_tests` = 2 needs"}},
+            {"hardware.normal_tests=2; hardware.work=family; hardware.test_order=cheap_first", {}},
+            {"hardware.design=modern; hardware.normal_tests=2", {}},
 
             {"map.fingerprint=0123456789abcdef", {"`map.file` is empty"}},
             {"map.source=file; map.file=a.exr; map.fingerprint=0123456789ABCDEF", {"expected 16 hexadecimal digits"}},

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <cstdlib>
@@ -20,37 +21,47 @@ struct Expected {
     struct Note {
         bool base = false;
         unsigned final_edges = 0;
+        unsigned inside = 0;  // bit k: edge k is two children's
     };
     const MachineSetup& setup;
     bool cheap_first = setup.design.test_order == TestOrder::cheap_first;
-    bool final_edges = setup.registers.formats.final_edges;
+    bool families = setup.design.work == Work::family;
+    bool final_edges = setup.registers.formats.final_edges || families;
     bool from_map = setup.registers.formats.codes;
 
-    std::uint64_t edges = 0, normal = 0, summed_height = 0, by_codes = 0;
+    std::uint64_t edges = 0, normal = 0, summed_height = 0, by_codes = 0;  // twice
     std::uint64_t split_by_both = 0, stopped_by_view_alone = 0, stopped_by_several = 0;
 
-    static Note begin(const datapath::Triangle&) { return {true, 0}; }
+    static Note begin(const datapath::Triangle&) { return {true}; }
     void decided(const datapath::TrianglePass& pass, const datapath::ChildIndices&, const Note& note) {
         for (unsigned k = 0; k < 3; ++k) {
             const unsigned tests = pass.edges[k].tests;
             add_to_report(tests, (pass.split >> k & 1u) != 0);
             if (final_edges && (note.final_edges >> k & 1u) != 0)
                 continue;
-            ++edges;
+            const unsigned once = families && (note.inside >> k & 1u) != 0 ? 1 : 2;
+            edges += once;
             const bool gates = (tests & datapath::gating_tests) == datapath::gating_tests;
             const bool splits = (tests & (datapath::normal_bit | datapath::highlight_bit)) != 0;
-            normal += !cheap_first || gates || note.base ? 1u : 0u;
+            normal += !cheap_first || gates || (note.base && !families) ? once : 0u;
             const bool its_height = !cheap_first || (gates && !splits);
-            summed_height += its_height ? 1u : 0u;
-            by_codes += its_height && from_map && !note.base && within_texels(pass, static_cast<int>(k)) ? 1u : 0u;
+            summed_height += its_height ? once : 0u;
+            const bool codes = from_map && (families || !note.base);
+            by_codes += its_height && codes && within_texels(pass, static_cast<int>(k)) ? once : 0u;
         }
     }
-    /// An edge of a child is final if it is a whole edge of the parent, from corner to corner.
+    /// An edge of a child is final if it is a whole edge of the parent, from corner to corner, and half an edge if it
+    /// joins a corner to the midpoint (3 + k) of an edge k that begins or ends there; every other is inside the parent.
     static Note child(const std::array<std::uint8_t, 3>& corners) {
         Note note;
-        for (unsigned k = 0; k < 3; ++k)
-            if (corners[k] <= 2 && corners[k == 2 ? 0 : k + 1] <= 2)
+        for (unsigned k = 0; k < 3; ++k) {
+            const int least = std::min(corners[k], corners[k == 2 ? 0 : k + 1]);
+            const int most = std::max(corners[k], corners[k == 2 ? 0 : k + 1]);
+            if (most <= 2)
                 note.final_edges |= 1u << k;
+            else if (least > 2 || (least != most - 3 && least != (most - 2) % 3))
+                note.inside |= 1u << k;
+        }
         return note;
     }
     void finished(const datapath::Triangle&, bool) {}
@@ -136,6 +147,39 @@ const CaseTable designs(
          "timing.summed_height_table_cache_bytes=1 timing.displacement_map_line_bytes=1 timing.normal_map_line_bytes=1 "
          "timing.summed_height_table_line_bytes=1 timing.summed_height_table_cache_fills=1 "
          "hardware.queue_capacity=1 timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=20"},
+        {"families", "hardware.work=family"},
+        {"families, functional", "hardware.work=family mode=functional"},
+        {"families, one at a time, a queue of one place that spills",
+         "hardware.work=family timing.pass_or_tessellate_buffer=1 hardware.queue_capacity=1"},
+        {"families, random stalls",
+         "hardware.work=family timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=20"},
+        {"families, cheap tests first", "hardware.work=family hardware.test_order=cheap_first"},
+        {"families, sums over one texel from the map",
+         "hardware.work=family hardware.test_order=cheap_first hardware.one_texel_from_map=true"},
+        {"families, sums over one texel from the map, functional",
+         "hardware.work=family hardware.test_order=cheap_first hardware.one_texel_from_map=true mode=functional"},
+        {"families, sums over one texel from the map, base edges within a texel",
+         "hardware.work=family hardware.test_order=cheap_first hardware.one_texel_from_map=true mesh.columns=8 mesh.rows=8 map.width=8 map.height=8 tests.tex_coord=false "
+         "tests.generation_limit=4 tests.normal_threshold=0 tests.view_threshold=0"},
+        {"families, three lanes",
+         "hardware.work=family hardware.test_order=cheap_first hardware.one_texel_from_map=true hardware.edge_lanes=3"},
+        {"families, three lanes, functional",
+         "hardware.work=family hardware.test_order=cheap_first hardware.one_texel_from_map=true hardware.edge_lanes=3 mode=functional"},
+        {"families, nine lanes, three Normal Tests, last in first out, places for one",
+         "hardware.work=family hardware.test_order=cheap_first hardware.one_texel_from_map=true hardware.edge_lanes=9 hardware.normal_tests=3 hardware.queue_order=lifo "
+         "timing.edges_in_sequence=1 timing.results_buffer=1 timing.pass_or_tessellate_buffer=1"},
+        {"families, two lanes, two Normal Tests, a queue of one place that spills, random stalls",
+         "hardware.work=family hardware.test_order=cheap_first hardware.one_texel_from_map=true hardware.edge_lanes=2 hardware.normal_tests=2 hardware.queue_capacity=1 "
+         "timing.stalls_seed=5 timing.stalls_per_mille=300 timing.stalls_longest=20"},
+        {"families, three lanes, Highlight Test and culling",
+         "hardware.work=family hardware.test_order=cheap_first hardware.one_texel_from_map=true hardware.edge_lanes=3 tests.highlight=true hardware.culling=back"},
+        {"families, three lanes, no Normal Test",
+         "hardware.work=family hardware.test_order=cheap_first hardware.one_texel_from_map=true hardware.edge_lanes=3 tests.normal=false"},
+        {"families, three lanes, no Summed Height Test",
+         "hardware.work=family hardware.test_order=cheap_first hardware.one_texel_from_map=true hardware.edge_lanes=3 tests.summed_height=false"},
+        {"families, three lanes, all tables behind caches",
+         "hardware.work=family hardware.test_order=cheap_first hardware.one_texel_from_map=true hardware.edge_lanes=3 timing.displacement_map_cache_bytes=4096 "
+         "timing.normal_map_cache_bytes=4096 timing.summed_height_table_cache_bytes=8192"},
         {"all of these, a queue of one place that spills",
          "hardware.one_texel_from_map=true hardware.test_order=cheap_first hardware.final_edges=true "
          "hardware.queue_capacity=1 timing.summed_height_table_banks=8 timing.summed_height_table_interleave=xor "
@@ -154,20 +198,24 @@ const CaseTable designs(
         Expected expected{run.setup};
         bare.walk(expected);
         const bool summed_height = run.setup.registers.tests.summed_height_test;
-        CHECK(p.edges_tested() == expected.edges);
-        CHECK(p.summed_height_table_reads() == (summed_height ? 12 * (expected.summed_height - expected.by_codes) : 0));
+        CHECK(2 * p.edges_tested() == expected.edges);
+        CHECK(p.summed_height_table_reads() == (summed_height ? 6 * (expected.summed_height - expected.by_codes) : 0));
         if (expected.from_map && summed_height) {
             CHECK(expected.by_codes > 1000);
-            CHECK(expected.by_codes < expected.summed_height);
+            CHECK((expected.families || expected.by_codes < expected.summed_height));  // whose base edges have none
         }
         const std::uint64_t corners = (run.setup.design.tests_units == 1 ? 3 : 6) * run.setup.base_triangles.size();
-        CHECK(p.normal_map_reads() == corners + expected.normal);
+        CHECK(2 * p.normal_map_reads() == 2 * corners + expected.normal);
         const Decisions::Counts& counts = run.simulation.decisions.counts();
         CHECK(counts.split_by_both == expected.split_by_both);
         CHECK(counts.stopped_by_view_alone == expected.stopped_by_view_alone);
         CHECK(counts.stopped_by_several == expected.stopped_by_several);
         if (run.setup.registers.formats.final_edges)
             CHECK(p.edges_tested() == 3 * run.setup.base_triangles.size() + 4 * run.counts.edges_split);
+        if (run.setup.design.transport == Transport::non_blocking)
+            CHECK(p.pass_or_tessellate.most_incomplete() <= run.setup.design.timing.pass_or_tessellate.buffer);
+        if (expected.families)
+            CHECK(p.edges_tested() == 3 * run.counts.finished);
     });
 
 }  // namespace

@@ -144,6 +144,42 @@ const CaseTable designs(
         CHECK(simulation.pipeline.normal_map.transactions() == (three_units ? 6 : 3) + 3);
     });
 
+/// A base triangle, all of whose edges split once.
+constexpr const char* one_split =
+    "map.source=noise tests.normal_threshold=0 tests.summed_height_threshold=0 tests.view_threshold=0 "
+    "tests.tex_coord=false tests.generation_limit=1 ";
+
+/// In a machine of families Tessellation has a base triangle's three vertices in V = 31, and sends them and the edges a
+/// cycle later.
+const CaseTable families(
+    "one triangle in a machine of families, ",
+    {
+        // Vertices in 32 to 34, edges in 35 to 37, in the Summed Height Test from 36 on: 36 addresses in 36 to 71, data
+        // 72, test 75. The triangle leaves in 76, is in Get Triangle in 77; its third normal leaves in 80 and is on the
+        // screen in 80 + 1 + 6 + 20 = 107. Tessellation 108, Pass or Tessellate 109, Lighting 113.
+        Row{"no edge splits: 114 cycles", "hardware.work=family", 114},
+        // Its split is known in 75, too. Normals leave Get Triangle in 78 to 80, midpoints in 81 to 83; the third is on
+        // the screen in 83 + 1 + 1 + 6 + 20 = 111. Nine edges from 112 on, in the Summed Height Test from 113 on: 108
+        // addresses in 113 to 220, data 221, test 224. Four children leave in 225 to 228; the last is lit in 232.
+        {"three edges split once: 233 cycles", std::string(one_split) + "hardware.work=family", 233},
+        // Vertices in 32, one a lane, edges in 33. The Normal Test starts the vertices in 33 to 35; the edges have gone
+        // through the cheap tests in 35 and start in 36 to 38, are through in 46 to 48, and split. Out in 49, in Get
+        // Triangle in 50, normals 51 to 53, midpoints 54 to 56, the third on the screen in 84. Nine edges in 85 to 87,
+        // three at a time, through the cheap tests in 87 to 89: their generation keeps them whole. Four children leave
+        // in 90 to 93, lit in 97.
+        {"three edges split once, three lanes: 98 cycles",
+         std::string(one_split) + "hardware.work=family hardware.test_order=cheap_first hardware.edge_lanes=3", 98},
+    },
+    [](const Row& row) {
+        const bool splits = row.settings.find("noise") != std::string::npos;
+        const MachineSetup setup = one_triangle(with_settings(one_quad_job(), row.settings));
+        Simulation simulation(setup, 1000);
+        run_timed(simulation);
+        CHECK(simulation.cycles() == row.cycles);
+        CHECK(simulation.rasteriser.triangles() == (splits ? 4 : 1));
+        CHECK(simulation.pipeline.edges_tested() == (splits ? 12 : 3));
+    });
+
 }  // namespace
 
 // What the header of each unit says, and the sums above rest on. The tests' own figures do not hold the

@@ -17,11 +17,15 @@ struct CheckedRun {
         const GoldenInputs golden(setup);
         Scoreboard scoreboard(setup.registers, golden);
         auto& decided = simulation.pipeline.pass_or_tessellate.decided;
+        auto& inserted = simulation.pipeline.tessellation.inserted;
         decided.bind(scoreboard);
+        inserted.bind(scoreboard);
         run_to_the_end(simulation);
         decided.unbind(scoreboard);
+        inserted.unbind(scoreboard);
 
         conformance = scoreboard.result();
+        CHECK(conformance.quantities.front().count >= 3 * counts.edges_split);  // P_ij of each inserted vertex
         INFO(conformance.first_mismatch);
         CHECK(conformance.mismatches == 0);
         CHECK(conformance.edges == pipeline.edges_tested());
@@ -47,7 +51,7 @@ struct CheckedRun {
     Simulation simulation;
     const Pipeline& pipeline = simulation.pipeline;
     const EmittedMesh& mesh = simulation.monitor.mesh;
-    const PassOrTessellate::Counts& counts = pipeline.pass_or_tessellate.counts();
+    const DecidingUnit::Counts& counts = pipeline.pass_or_tessellate.counts();
     ConformanceResult conformance;
     InvariantResult invariants;
 };

@@ -62,7 +62,7 @@ class HandMadeRun {
     }
     void bring_parts(TakenTriangle taken) {
         sc_core::sc_time delay;
-        simulation.pipeline.get_triangle.to_pass_or_tessellate.transport(taken, delay);
+        simulation.pipeline.get_triangle.to_join.transport(taken, delay);
         for (std::uint8_t part = 0; part < 9; ++part) {
             DisplacedPoint point;
             point.tag.part = part;

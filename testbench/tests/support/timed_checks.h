@@ -95,7 +95,8 @@ inline void require_conservation(const Simulation& simulation) {
     }
     const Pipeline& p = simulation.pipeline;
     const auto& made = p.tessellation.made_into();
-    CHECK(p.tessellation.activity().items_in() == made[1] + made[2] + made[3] + made[4]);
+    const std::uint64_t untested = p.family_tessellation != nullptr ? p.get_triangle.host_triangles() : 0;
+    CHECK(p.tessellation.activity().items_in() == untested + made[1] + made[2] + made[3] + made[4]);
     const Decisions::Evaluated& evaluated = simulation.decisions.evaluated();
     if (simulation.setup.registers.tests.summed_height_test)
         CHECK(p.summed_height_table_reads() >= 12 * (evaluated.summed_height - evaluated.summed_height_by_codes));

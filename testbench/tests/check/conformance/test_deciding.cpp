@@ -90,7 +90,7 @@ datapath::TrianglePass pass_at(const std::array<datapath::TexCoord, 6>& t) {
     datapath::TrianglePass pass;
     for (std::size_t k = 0; k < 3; ++k) {
         pass.triangle.vertices[k].texture = t[k];
-        pass.new_vertex[k].texture = t[3 + k];
+        pass.edges[k].texture = t[3 + k];
         pass.edges[k].evaluated = datapath::all_tests;
     }
     return pass;

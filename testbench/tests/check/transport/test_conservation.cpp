@@ -63,10 +63,10 @@ const Equations two_triangles_functional{
     {"finished = emitted", {8, 8}},
     {"taken by the rasteriser = finished - culled", {8, 8}},
     {"edges tested = 3 a pass", {30, 30}},
-    {"reads of displace_vertex = vertices and edges", {36, 6 + 30}},
-    {"reads of displacement_map = vertices, edges and texels", {36, 6 + 30}},
+    {"reads of displace_vertex = vertices and midpoints", {36, 6 + 30}},
+    {"reads of displacement_map = vertices, midpoints and texels", {36, 6 + 30}},
     {"reads of normal_test = vertices and its edges", {36, 6 + 30}},
-    {"positions of transform = vertices and edges", {36, 6 + 30}},
+    {"positions of transform = vertices and midpoints", {36, 6 + 30}},
 };
 
 Equations two_triangles_timed() {
@@ -92,7 +92,7 @@ Equations two_triangles_timed() {
         {"entries of displacement_map = read", {36, 36}},
         {"entries of normal_map = read by normal_test", {36, 36}},
         {"entries of summed_height_table = read by summed_height_test", {30 * 12, 30 * 12}},
-        {"requests to displacement_map = vertices, edges and texels", {36, 6 + 30}},
+        {"requests to displacement_map = vertices, midpoints and texels", {36, 6 + 30}},
         {"requests to normal_map = vertices and edges of normal_test", {36, 6 + 30}},
         {"requests to summed_height_table = three an edge, if it tests", {90, 90}},
         {"triangles spilled = come back", {0, 0}},
@@ -197,7 +197,7 @@ TEST_CASE("conservation: an item too many in a unit breaks its equation and no o
         {&tests.summed_height_test, "edges in summed_height_test = its edges"},
         {&tests.view_test, "edges in view_test = edges"},
         {tests.collect_tests, "edges collected = edges"},
-        {&p.displacement_map, "requests to displacement_map = vertices, edges and texels"},
+        {&p.displacement_map, "requests to displacement_map = vertices, midpoints and texels"},
         {&p.normal_map, "requests to normal_map = vertices and edges of normal_test"},
         {&p.summed_height_table, "requests to summed_height_table = three an edge, if it tests"},
         {&p.off_chip_memory, "requests to off_chip_memory = out and back"},
@@ -216,8 +216,7 @@ TEST_CASE("conservation: an item too many on a stream") {
     auto corner = part_of_it<ScreenCorner>(0);
     auto edge = part_of_it<TestedEdge>(first_edge_part);
     TakenTriangle taken = known_triangle();
-    expect_change("transform to pass_or_tessellate", simulation,
-                  [&] { offer(p.transform.to_pass_or_tessellate, point); },
+    expect_change("transform to pass_or_tessellate", simulation, [&] { offer(p.transform.to_join, point); },
                   {{"parts taken from transform = sent by get_triangle", {1, 0}}});
     expect_change("transform to view_test", simulation, [&] { offer(p.transform.to_view_test[0], corner); },
                   {{"vertices taken by view_test = vertices, once a unit", {1, 0}}});
@@ -230,7 +229,7 @@ TEST_CASE("conservation: an item too many on a stream") {
     expect_change("a triangle that is emitted twice", simulation,
                   [&] { simulation.monitor.mesh.triangles.emplace_back(); }, {{"finished = emitted", {0, 1}}});
     expect_change("tessellation to triangle_queue", simulation,
-                  [&] { give(p.tessellation.to_triangle_queue, taken.triangle); },
+                  [&] { give(p.triangle_tessellation->to_triangle_queue, taken.triangle); },
                   {{"children of tessellation = taken by triangle_queue", {0, 1}},
                    {"taken by triangle_queue = by get_triangle from it", {1, 0}},
                    {"triangles in triangle_queue = taken by it", {0, 1}}});
@@ -245,8 +244,8 @@ TEST_CASE("conservation: a read too many") {
     sc_core::sc_time delay;
     expect_change("displacement map", simulation,
                   [&] { p.displace_vertex.displacement_map.read(r.displacement_map.base, delay); },
-                  {{"reads of displace_vertex = vertices and edges", {1, 0}},
-                   {"reads of displacement_map = vertices, edges and texels", {1, 0}},
+                  {{"reads of displace_vertex = vertices and midpoints", {1, 0}},
+                   {"reads of displacement_map = vertices, midpoints and texels", {1, 0}},
                    {"entries of displacement_map = read", {1, 1}}});
     expect_change("normal map", simulation,
                   [&] { p.tessellation_tests[0].normal_test.normal_map.read(r.normal_map.base, delay); },
@@ -290,10 +289,10 @@ TEST_CASE("conservation: a vertex transformed, and triangles decided, too many")
                    {"finished = base triangles + edges split", {1, 1}},
                    {"finished = emitted", {1, 1}},
                    {"taken by the rasteriser = finished - culled", {1, 1}},
-                   {"reads of displace_vertex = vertices and edges", {0, 3}},
-                   {"reads of displacement_map = vertices, edges and texels", {0, 3}},
+                   {"reads of displace_vertex = vertices and midpoints", {0, 3}},
+                   {"reads of displacement_map = vertices, midpoints and texels", {0, 3}},
                    {"reads of normal_test = vertices and its edges", {0, 3}},
-                   {"positions of transform = vertices and edges", {0, 3}},
+                   {"positions of transform = vertices and midpoints", {0, 3}},
                    {"positions and normals of transform = parts", {1, 0}},
                    {"triangles in get_triangle = decided", {0, 1}},
                    {"triangles in pass_or_tessellate = decided", {0, 1}},
@@ -301,7 +300,7 @@ TEST_CASE("conservation: a vertex transformed, and triangles decided, too many")
                    {"parts in calculate_new_u = vertices and edges", {0, 3}},
                    {"parts in normal_test = vertices and its edges", {0, 3}},
                    {"vertices taken by view_test = vertices, once a unit", {0, 3}},
-                   {"requests to displacement_map = vertices, edges and texels", {0, 3}},
+                   {"requests to displacement_map = vertices, midpoints and texels", {0, 3}},
                    {"requests to normal_map = vertices and edges of normal_test", {0, 3}}});
 
     // one of its branches: Pass or Tessellate waits for the other
@@ -311,13 +310,13 @@ TEST_CASE("conservation: a vertex transformed, and triangles decided, too many")
     taken.triangle.vertices[1].screen_normal_known = false;
     expect_change("transform works on a vertex, a normal and three edges", simulation,
                   [&] {
-                      give(p.get_triangle.to_pass_or_tessellate, taken);
+                      give(p.get_triangle.to_join, taken);
                       for (const unsigned part : {0u, 4u, 6u, 7u, 8u}) {
                           auto point = part_of_it<DisplacedPoint>(part);
                           give(p.displace_vertex.to_transform, point);
                       }
                   },
-                  {{"positions of transform = vertices and edges", {4, 0}},
+                  {{"positions of transform = vertices and midpoints", {4, 0}},
                    {"positions and normals of transform = parts", {5, 0}}});
     expect_change("its other branch: one edge splits", simulation,
                   [&] {
@@ -335,10 +334,10 @@ TEST_CASE("conservation: a vertex transformed, and triangles decided, too many")
                    {"triangles cut by tessellation + finished = decided", {1, 1}},
                    {"finished = base triangles + edges split", {0, 1}},
                    {"edges tested = 3 a pass", {3, 3}},
-                   {"reads of displace_vertex = vertices and edges", {0, 3}},
-                   {"reads of displacement_map = vertices, edges and texels", {0, 3}},
+                   {"reads of displace_vertex = vertices and midpoints", {0, 3}},
+                   {"reads of displacement_map = vertices, midpoints and texels", {0, 3}},
                    {"reads of normal_test = vertices and its edges", {0, 3}},
-                   {"positions of transform = vertices and edges", {0, 3}},
+                   {"positions of transform = vertices and midpoints", {0, 3}},
                    {"triangles in get_triangle = decided", {0, 1}},
                    {"triangles in pass_or_tessellate = decided", {0, 1}},
                    {"triangles in triangle_queue = taken by it", {0, 2}},
@@ -349,14 +348,14 @@ TEST_CASE("conservation: a vertex transformed, and triangles decided, too many")
                    {"edges in view_test = edges", {0, 3}},
                    {"edges taken from tessellation_tests = edges", {0, 3}},
                    {"edges collected = edges", {0, 3}},
-                   {"requests to displacement_map = vertices, edges and texels", {0, 3}},
+                   {"requests to displacement_map = vertices, midpoints and texels", {0, 3}},
                    {"requests to normal_map = vertices and edges of normal_test", {0, 3}},
                    {"requests to summed_height_table = three an edge, if it tests", {0, 9}}});
 
     DecidedTriangle untested;
     untested.pass.triangle.finished = true;
     expect_change("a finished triangle that goes round for normals", simulation,
-                  [&] { give(p.pass_or_tessellate.to_tessellation, untested); },
+                  [&] { give(p.triangle_pass_or_tessellate->to_tessellation, untested); },
                   {{"children of tessellation = taken by triangle_queue", {1, 1}},
                    {"taken by triangle_queue = by get_triangle from it", {1, 0}},
                    {"triangles cut by tessellation + finished = decided", {1, 0}},

@@ -76,7 +76,7 @@ datapath::Formats widest_formats() {
         datapath::Format::make_unsigned(Limits::texture_integer.most + Limits::texture_fraction.most + 1, 12);
     formats.screen = datapath::Format::make_signed(Limits::screen_bits.most, 8);
     formats.generation_bits = Limits::generation_bits.most;
-    formats.highlight_tag = formats.final_edges = formats.codes = true;
+    formats.highlight_tag = formats.final_edges = formats.codes = formats.families = true;
     return formats;
 }
 
@@ -149,8 +149,12 @@ TEST_CASE("every stream's item goes through its packed form and back, in any for
     Random random(11);
     for (const datapath::Formats& formats : {datapath::Formats{}, narrow_formats(), widest_formats()}) {
         for (const int tag : {1, 6, 32}) {
-            StreamItems::for_each(
-                [&](auto type) { check_round_trips<typename decltype(type)::Item>(formats, tag, random); });
+            StreamItems::for_each([&](auto type) {
+                using Item = typename decltype(type)::Item;
+                datapath::Formats its_formats = formats;
+                its_formats.families = formats.families && !std::is_same_v<Item, DecidedTriangle>;  // not of families
+                check_round_trips<Item>(its_formats, tag, random);
+            });
         }
     }
 }
@@ -179,6 +183,7 @@ TEST_CASE("widths of items in the default formats, by hand") {
     CHECK(item_bits<datapath::Triangle>(formats, 6) == 1572);
     CHECK(item_bits<TriangleToLight>(formats, 6) == 3 * (81 + 48 + 50));
     CHECK(item_bits<QueueLevel>(formats, 6) == 1);
+    CHECK(item_bits<Family>(formats, 6) == 6 + 6 * 522 + 2 + 3 + 1 + 3 + 2);
 }
 
 // One bit more wherever tests are named: in split_by, and in each edge's tests.

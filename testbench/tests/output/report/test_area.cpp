@@ -56,6 +56,27 @@ TEST_CASE("area: the datapath's README says how often each function multiplies")
     CHECK(multiplications("highlight_test") == M::highlight_test);
 }
 
+// A screen point has 48 bits more, N' or N's of a midpoint, 16 of its code, and one of a longer tag.
+TEST_CASE("area: a machine of families") {
+    auto units = area("hardware.design=modern");
+    CHECK(units["displace_vertex"].multipliers == 4);
+    CHECK(units["total"].multipliers == 4 + 24 + 51 + 12);
+    CHECK(units["triangle_queue"].memory_bits == 100 * (1572 + 3 * 16 + 3 + 9 * 48));
+    CHECK(units["transform"].register_bits == (300 + 65) + 20 * (381 + 65));
+    CHECK(units["total"].ports == 2 + 1 + 8);
+    auto two_tests = area("hardware.design=modern hardware.normal_tests=2");
+    CHECK(two_tests["normal_test"].multipliers == 2 * 51);
+    auto one_lane = area("hardware.design=modern hardware.edge_lanes=1");
+    CHECK(units["view_test"].register_bits == 3 * one_lane["view_test"].register_bits);
+    CHECK(units["tex_coord_test"].register_bits == 3 * one_lane["tex_coord_test"].register_bits);
+    // A place of Pass or Tessellate: a family and nine edges of some 300 bits.
+    const std::uint64_t place =
+        units["pass_or_tessellate"].register_bits -
+        area("hardware.design=modern timing.pass_or_tessellate_buffer=31")["pass_or_tessellate"].register_bits;
+    CHECK(place > 6 * 520 + 9 * 250);
+    CHECK(place < 6 * 540 + 9 * 350);
+}
+
 // A base point is 6 + 4 + 96 + 48 + 50 = 204 bits, a displaced one 96 more, a screen point 81 more than that.
 TEST_CASE("area: the default design, by hand") {
     auto units = area();

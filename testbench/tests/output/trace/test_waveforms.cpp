@@ -61,18 +61,19 @@ std::vector<std::pair<std::string, unsigned>> signals_in(const fs::path& save_fi
 
 TEST_CASE("every signal a save file shows is in the default job's waveforms and changes, but for thresholds") {
     const TestFolder here;
-    const auto traced = [&](const std::string& test_order) {
+    const auto traced = [&](const std::string& design) {
         const ProgramEnd end =
-            run_tessera({"run", "--vcd", "--set", "output.folder=" + test_order, "--set", "check.golden=false", "--set",
-                         "check.end_to_end=false", "--set", "output.picture=false", "--set",
-                         "tests.normal_threshold=0.125", "--set", "tests.view_threshold=5", "--set",
-                         "tests.generation_limit=7", "--set", "hardware.test_order=" + test_order},
+            run_tessera({"run", "--vcd", "--set", "output.folder=" + design.substr(design.find('=') + 1), "--set",
+                         "check.golden=false", "--set", "check.end_to_end=false", "--set", "output.picture=false",
+                         "--set", "tests.normal_threshold=0.125", "--set", "tests.view_threshold=5", "--set",
+                         "tests.generation_limit=7", "--set", "hardware." + design},
                         here.path());
         INFO(end.text());
         REQUIRE(end.exit_code == 0);
-        return VcdFile(here.path() / test_order / "trace.vcd");
+        return VcdFile(here.path() / design.substr(design.find('=') + 1) / "trace.vcd");
     };
-    const VcdFile parallel = traced("parallel"), cheap_first = traced("cheap_first");
+    const VcdFile paper = traced("design=paper"), cheap_first = traced("test_order=cheap_first"),
+                  modern = traced("design=modern");
     const std::vector<fs::path> views = files_ending_in(".gtkw");
     std::set<std::string> names;
     // Thresholds chosen such that their registers are exact: 14 fraction bits, and 8.
@@ -84,7 +85,7 @@ TEST_CASE("every signal a save file shows is in the default job's waveforms and 
     for (const fs::path& view : views) {
         INFO(view);
         names.insert(view.stem());
-        const VcdFile& vcd = view.stem() == "sequence" ? cheap_first : parallel;
+        const VcdFile& vcd = view.stem() == "sequence" ? cheap_first : view.stem() == "families" ? modern : paper;
         const auto signals = signals_in(view);
         CHECK(signals.size() >= 20);
         for (const auto& [name, bits] : signals) {
@@ -99,7 +100,7 @@ TEST_CASE("every signal a save file shows is in the default job's waveforms and 
             ++constants;
         }
     }
-    CHECK(names == std::set<std::string>{"memories", "overview", "queue", "sequence", "tests"});
+    CHECK(names == std::set<std::string>{"families", "memories", "overview", "queue", "sequence", "tests"});
     CHECK(constants == 2 * constant.size());
 }
 
@@ -143,13 +144,13 @@ TEST_CASE("filters name every number as the code does") {
     }
 
     const std::map<unsigned, std::string> parts = read_filter("parts.txt");
-    CHECK(parts.size() == 9);
+    CHECK(parts.size() == last_edge_part + 1);
     const auto check_parts = [&](Parts mask, const std::string& name) {
-        for (unsigned part = 0; part < 9; ++part) {
+        for (unsigned part = 0; part <= last_edge_part; ++part) {
             if ((mask >> part & 1u) == 0)
                 continue;
-            const PartTag tag{0, static_cast<std::uint8_t>(part), {}};
-            CHECK(parts.at(part) == name + std::to_string(tag.index()));
+            const unsigned number = part < first_edge_part ? part % 3 : part - first_edge_part;
+            CHECK(parts.at(part) == name + std::to_string(number));
         }
     };
     check_parts(vertex_parts, "vertex ");
@@ -160,11 +161,13 @@ TEST_CASE("filters name every number as the code does") {
           std::map<unsigned, std::string>{{0, "Tessellation"}, {1, "Lighting"}, {2, "culled"}});
 }
 
-TEST_CASE("every unit of both designs has a number of its own") {
+TEST_CASE("every unit has a number of its own, whatever the design") {
     const TestFolder here;
-    for (const std::string units : {"1", "3"}) {
+    const std::map<std::string, std::size_t> units_of{
+        {"design=paper", 18}, {"tests_units=3", 30}, {"design=modern", 24}};
+    for (const auto& [design, units] : units_of) {
         const ProgramEnd end = run_tessera({"run", "--timeline", "--trace-units", "no_such_unit", "--set",
-                                            "hardware.tests_units=" + units, "--set", "output.folder=out"},
+                                            "hardware." + design, "--set", "output.folder=out"},
                                            here.path());
         INFO(end.text());
         REQUIRE(end.exit_code == 2);
@@ -180,7 +183,7 @@ TEST_CASE("every unit of both designs has a number of its own") {
             INFO(it->str());
             CHECK(numbered.count(it->str()) == 1);
         }
-        CHECK(count == (units == "1" ? 18u : 30u));
+        CHECK(count == units);
     }
 }
 

@@ -1,0 +1,42 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "modules/datapath/triangulate.h"
+
+namespace tessera::datapath {
+
+/// The edges of a triangle's children that no test has seen: with k split edges their 2 k halves and k edges inside the
+/// triangle, each once, though one inside belongs to two children.
+struct FamilyEdges {
+    static constexpr std::uint8_t whole = 0xff;  ///< not new: an edge of the parent that was not split
+    struct Ends {
+        std::uint8_t i, j;  ///< as in ChildIndices
+    };
+    std::array<Ends, 9> edges{};
+    unsigned count = 0;
+    /// of_child[c][e]: which of `edges` is edge e of child c, from its corner e to the next; or `whole`.
+    std::array<std::array<std::uint8_t, 3>, 4> of_child{};
+};
+
+/// In the order of the children, and of each child's edges. untested: a base triangle, whose three edges are all new.
+constexpr FamilyEdges family_edges(const ChildIndices& indices, bool untested) {
+    FamilyEdges family;
+    const auto number_of = [&](std::uint8_t i, std::uint8_t j) -> std::uint8_t {
+        if (i < 3 && j < 3 && !untested)
+            return FamilyEdges::whole;
+        for (std::uint8_t k = 0; k < family.count; ++k) {
+            if (family.edges[k].i == j && family.edges[k].j == i)
+                return k;
+        }
+        family.edges[family.count] = {i, j};
+        return static_cast<std::uint8_t>(family.count++);
+    };
+    for (std::size_t c = 0; c < static_cast<std::size_t>(indices.count); ++c) {
+        for (std::size_t e = 0; e < 3; ++e)
+            family.of_child[c][e] = number_of(indices.children[c][e], indices.children[c][(e + 1) % 3]);
+    }
+    return family;
+}
+
+}  // namespace tessera::datapath

@@ -1,0 +1,65 @@
+#pragma once
+#include <cstdint>
+#include <systemc>
+
+#include "modules/sockets/items.h"
+#include "modules/sockets/stream_input.h"
+#include "modules/sockets/stream_output.h"
+#include "modules/stage/per_triangle.h"
+#include "modules/stage/unit.h"
+
+namespace tessera {
+
+/// What Sequence Tests does in both machines, that of triangles (sequence_tests.h) and that of families
+/// (families/sequence_tests.h): says which tests an edge needs, and runs them in functional mode.
+///
+///   Tex Coord Test (with Generation), View Test   every edge; they read no table
+///   Normal Test                                   edges that none of these keeps whole; of triangles also the edges
+///                                                 of a base triangle, which bring the N' of its vertices
+///   Summed Height Test                            edges that may split, and that neither Normal nor Highlight Test
+///                                                 splits
+class SequencingUnit : public Unit {
+  public:
+    StreamOutput<HeightOperands> to_summed_height_test{"to_summed_height_test"};
+    StreamInput<HeightResult> from_summed_height_test{"from_summed_height_test"};
+
+  protected:
+    enum class Next : std::uint8_t { normal_test, normal_result, summed_height_test, summed_height_result, leave };
+    /// An edge between its cheap tests and its decision.
+    struct Edge {
+        TestedEdge tested;
+        NormalOperands normal;
+        HeightOperands height;
+        Next next = Next::leave;
+    };
+
+    SequencingUnit(const sc_core::sc_module_name& name, const UnitContext& context);
+
+    template <class Item>
+    void add_input(const UnitContext& context, StreamInput<Item>& input);
+    Next after_cheap_tests(const Edge& edge) const;
+    Next after_normal_test(const TestedEdge& edge) const;
+
+    /// Functional mode: the outputs that are used.
+    virtual StreamOutput<NormalOperands>& normal_test() = 0;
+    virtual StreamOutput<TestedEdge>& pass_or_tessellate() = 0;
+
+    const datapath::Registers& registers_;
+
+  private:
+    /// Functional mode: an edge whose operands and cheap results have not all come.
+    struct Arriving {
+        Edge edge;
+        unsigned come = 0;
+        sc_core::sc_time latest;
+    };
+
+    template <class Item>
+    void b_transport(Item& item, sc_core::sc_time& delay);
+    void run_tests(Edge& edge, sc_core::sc_time& delay);
+
+    PerTriangle<Arriving> arriving_{1};
+    PerTriangle<TestedEdge*> in_test_{1};  // functional mode: the edge that a test is evaluating
+};
+
+}  // namespace tessera

@@ -1,0 +1,111 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <systemc>
+#include <vector>
+
+#include "modules/datapath/family.h"
+#include "modules/sockets/items.h"
+#include "modules/sockets/stream_input.h"
+#include "modules/sockets/stream_output.h"
+#include "modules/stage/per_triangle.h"
+#include "modules/timing/elastic_pipeline.h"
+#include "modules/units/deciding_unit.h"
+
+namespace tessera {
+
+/// Pass or Tessellate in a machine of families: collects what the tests found of a family's edges, and decides all its
+/// children.
+///
+/// In:   each family from Tessellation, and its tested edges, in any order, of a base triangle also N' of its vertices;
+///       the last one completes it.
+/// Out:  to Lighting a child whose edges are whole, one after another; to the Triangle Queue a child that splits, with
+///       N, T and N' of its split edges, and a base triangle, which lacks N's. Both in the order of the families.
+/// Arithmetic: logic; for culling two products of screen bits + 1 and a compare.
+/// Timing: one family per interval is decided when its last edge has come; then one child per interval leaves on each
+///       output, the first a latency later; latency 1, interval 1 by default. A child that is culled takes a turn of
+///       Lighting's.
+/// Capacity: `buffer` families (8), from their arrival until their last child has left.
+/// Waits for Tessellation Tests; held back by Lighting and the Triangle Queue.
+class FamilyPassOrTessellate : public DecidingUnit {
+  public:
+    StreamInput<Family> from_tessellation{"from_tessellation"};
+    sc_core::sc_vector<StreamInput<TestedEdge>> from_tessellation_tests;  ///< one a lane
+    StreamOutput<datapath::Triangle> to_triangle_queue{"to_triangle_queue"};
+
+    FamilyPassOrTessellate(const sc_core::sc_module_name& name, const UnitContext& context);
+
+    bool joined() const override { return places_.empty(); }
+    std::size_t most_incomplete() const override { return most_incomplete_; }
+
+    std::string describe_contents() const override;
+    std::uint64_t occupied_cycles() const override {
+        return std::max({families_decided_, lit_children_, queued_children_}) * timing_.interval;
+    }
+    void trace_signals(Signals& signals) const override;
+    Begun begun() const override { return {families_decided_, last_.origin}; }
+
+  private:
+    struct Child {
+        datapath::Triangle triangle;
+        Way way = Way::dropped;
+    };
+    /// A family, its edges' results, and then its children; functional mode: when the last edge came.
+    struct Place {
+        Family family;
+        datapath::ChildIndices indices;
+        datapath::FamilyEdges edges;
+        Parts left = 0;  // edges, and vertices of a base triangle, that have not come
+        std::array<datapath::EdgeTests, 9> found{};
+        std::array<datapath::Direction, 3> displaced_n{};  // of a base triangle's vertices
+        std::array<Child, 4> children{};
+        sc_core::sc_time latest;
+    };
+    /// Which child leaves next on an output.
+    struct Next {
+        std::size_t place = 0;
+        int child = 0;
+    };
+    /// A whole child on its way to Lighting, or to nowhere.
+    struct Leaving {
+        TriangleToLight triangle;
+        bool culled = false;
+    };
+    struct Shown {
+        Origin origin;
+        unsigned children = 0, split = 0;
+    };
+
+    void b_transport_from_tessellation(Family& family, sc_core::sc_time& delay);
+    void b_transport_from_tests(TestedEdge& edge, sc_core::sc_time& delay);
+    void finish_if_complete(Place& place, sc_core::sc_time& delay);
+    void step() override;
+    bool take_inputs(std::uint64_t cycle);
+    void open(const Family& family);
+    void take(Place& place, const TestedEdge& part) const;
+    void decide(Place& place);
+    void decide_child(Place& place, std::size_t c, unsigned& told);
+    Child* next(Next& from, bool whole);
+    bool start_children(std::uint64_t cycle);
+    bool close_places(std::uint64_t cycle);
+    void end_of_elaboration() override;
+
+    PerTriangle<Place> places_;
+    bool front_has_place_ = false;  // the family at the input, which stays there while no place is free
+    bool vertices_bring_normals_;
+    std::size_t decided_ = 0;  // of these, the first so many
+    std::uint64_t next_decision_ = 0;
+    Next next_lit_, next_queued_;
+    ElasticPipeline<Leaving> lit_;
+    ElasticPipeline<datapath::Triangle> queued_;
+    std::size_t most_incomplete_ = 0;
+    std::uint64_t families_decided_ = 0;
+    std::uint64_t lit_children_ = 0;  // or culled
+    std::uint64_t queued_children_ = 0;
+    Shown last_;
+    std::vector<const sc_core::sc_object*> tests_;
+};
+
+}  // namespace tessera

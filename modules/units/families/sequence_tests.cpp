@@ -1,0 +1,273 @@
+#include "modules/units/families/sequence_tests.h"
+
+#include "modules/units/edge_tests/test_results.h"
+
+namespace tessera {
+namespace {
+
+bool same_part(const PartTag& a, const PartTag& b) {
+    return a.triangle == b.triangle && a.part == b.part;
+}
+
+}  // namespace
+
+FamilySequenceTests::FamilySequenceTests(const sc_core::sc_module_name& name, const UnitContext& context)
+    : SequencingUnit(name, context),
+      normal_operands("normal_operands", context.design.edge_lanes),
+      height_operands("height_operands", context.design.edge_lanes),
+      from_tex_coord_test("from_tex_coord_test", context.design.edge_lanes),
+      from_view_test("from_view_test", context.design.edge_lanes),
+      to_pass_or_tessellate("to_pass_or_tessellate", context.design.edge_lanes),
+      to_normal_test("to_normal_test", context.design.normal_tests),
+      from_normal_test("from_normal_test", context.design.normal_tests),
+      lanes_(context.design.edge_lanes),
+      places_(context.timing().edges_in_sequence),
+      for_normal_(places_),
+      for_height_(places_),
+      normals_(context.design.normal_tests),
+      in_height_(places_),
+      leaving_(places_) {
+    for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
+        add_input(context, normal_operands[lane]);
+        add_input(context, height_operands[lane]);
+        add_input(context, from_tex_coord_test[lane]);
+        add_input(context, from_view_test[lane]);
+        to_pass_or_tessellate[lane].clocked_by(context, *this);
+    }
+    for (std::size_t k = 0; k < normals_.size(); ++k) {
+        normals_[k].in_test = Ring<Edge>(places_);
+        add_input(context, from_normal_test[k]);
+        to_normal_test[k].clocked_by(context, *this);
+    }
+}
+
+/// Places an edge where it waits next.
+void FamilySequenceTests::decided(const Edge& edge, Next next) {
+    if (next == Next::normal_test)
+        for_normal_.push(edge);
+    else if (next == Next::summed_height_test)
+        for_height_.push(edge);
+    else
+        leaving_.push(edge.tested);
+}
+
+/// Takes an edge whose cheap tests have decided.
+bool FamilySequenceTests::take_edge(std::size_t lane) {
+    if (height_operands[lane].empty() || from_tex_coord_test[lane].empty() || from_view_test[lane].empty())
+        return false;
+    Edge edge;
+    edge.normal = normal_operands[lane].front();
+    edge.height = height_operands[lane].front();
+    edge.tested.tag = edge.normal.tag;
+    if (edge.normal.new_vertices != 0) {
+        const Base* base = bases_.find(edge.normal.tag.triangle);
+        if (base == nullptr || base->vertices < 3)
+            return false;
+    }
+    add_result(edge.tested, from_tex_coord_test[lane].front());
+    add_result(edge.tested, from_view_test[lane].front());
+    for (const PartTag& tag :
+         {edge.height.tag, from_tex_coord_test[lane].front().tag, from_view_test[lane].front().tag}) {
+        if (!same_part(tag, edge.tested.tag))
+            SC_REPORT_ERROR("tessera/sequence_tests", "the tests decided different edges");
+    }
+    height_operands[lane].pop();
+    from_tex_coord_test[lane].pop();
+    from_view_test[lane].pop();
+    const Next next = after_cheap_tests(edge);
+    if (edge.normal.new_vertices != 0 && next != Next::normal_test)
+        edge_done(edge.tested.tag);
+    decided(edge, next);
+    return true;
+}
+
+bool FamilySequenceTests::take_vertex(const NormalOperands& vertex) {
+    Base* base = bases_.find(vertex.tag.triangle);
+    if (base == nullptr) {
+        if (bases_.size() == base_triangles_in_test)
+            return false;
+        base = &(bases_.open(vertex.tag.triangle) = {});
+    }
+    ++base->vertices;
+    Edge& part = for_normal_.push();
+    part.normal = vertex;
+    part.tested = {};
+    part.tested.tag = vertex.tag;
+    return true;
+}
+
+/// An edge of a base triangle has gone to the Normal Test, or does not need it. The Normal Test forgets base triangles
+/// in order of arrival; so does this.
+void FamilySequenceTests::edge_done(const PartTag& tag) {
+    ++bases_.find(tag.triangle)->edges_done;
+    while (!bases_.empty() && bases_.oldest().edges_done == 3)
+        bases_.close_oldest();
+}
+
+/// One edge or vertex a cycle and lane.
+bool FamilySequenceTests::take_part(std::size_t lane, std::uint64_t cycle) {
+    if (taken_ == places_ || normal_operands[lane].empty())
+        return false;
+    if (lanes_[lane].next_in > cycle) {
+        wake_at(lanes_[lane].next_in);
+        return false;
+    }
+    const NormalOperands& operands = normal_operands[lane].front();
+    const PartTag tag = operands.tag;
+    if (tag.is_vertex()) {
+        if (!take_vertex(operands))
+            return false;
+    } else if (!take_edge(lane)) {
+        return false;
+    } else {
+        activity_.item_in(cycle);
+        newest_ = tag;
+    }
+    normal_operands[lane].pop();
+    ++taken_;
+    lanes_[lane].next_in = cycle + 1;
+    return true;
+}
+
+/// Each test answers in the order in which it was asked.
+bool FamilySequenceTests::take_results() {
+    bool taken = false;
+    const auto take = [&](Ring<Edge>& in_test, auto& input, auto&& next) {
+        for (; !input.empty(); input.pop()) {
+            if (in_test.empty() || !same_part(in_test.front().tested.tag, input.front().tag))
+                SC_REPORT_ERROR("tessera/sequence_tests", "a test decided an edge that it was not asked for");
+            add_result(in_test.front().tested, input.front());
+            decided(in_test.front(), next(in_test.front().tested));
+            in_test.pop();
+            taken = true;
+        }
+    };
+    const auto after_normal = [&](const TestedEdge& part) {
+        return part.tag.is_vertex() ? Next::leave : after_normal_test(part);
+    };
+    take(in_height_, from_summed_height_test, [](const TestedEdge&) { return Next::leave; });
+    for (std::size_t k = 0; k < normals_.size(); ++k)
+        take(normals_[k].in_test, from_normal_test[k], after_normal);
+    return taken;
+}
+
+/// The oldest part to the next Normal Test that is free; a base triangle's to the first.
+bool FamilySequenceTests::send_to_normal_test() {
+    if (for_normal_.empty())
+        return false;
+    const Edge& part = for_normal_.front();
+    std::size_t k = part.normal.new_vertices != 0 ? 0 : normal_turn_;
+    for (std::size_t tried = 1; part.normal.new_vertices == 0 && !to_normal_test[k].free() && tried < normals_.size();
+         ++tried)
+        k = (k + 1) % normals_.size();
+    if (!to_normal_test[k].free())
+        return false;
+    Normal& normal = normals_[k];
+    normal.offered = part.normal;
+    normal.in_test.push(part);
+    if (part.normal.new_vertices != 0 && !part.normal.tag.is_vertex())
+        edge_done(part.normal.tag);
+    for_normal_.pop();
+    to_normal_test[k].send(normal.offered);
+    normal_turn_ = (k + 1) % normals_.size();
+    return true;
+}
+
+bool FamilySequenceTests::send_to_summed_height_test() {
+    if (for_height_.empty() || !to_summed_height_test.free())
+        return false;
+    in_height_.push(for_height_.front());
+    height_offered_ = for_height_.front().height;
+    for_height_.pop();
+    to_summed_height_test.send(height_offered_);
+    return true;
+}
+
+/// Decided edges, one a cycle and lane.
+bool FamilySequenceTests::leave(std::uint64_t cycle) {
+    bool left = false;
+    for (std::size_t k = 0; k < lanes_.size() && !leaving_.empty(); ++k) {
+        Lane& lane = lanes_[k];
+        if (lane.next_out > cycle) {
+            wake_at(lane.next_out);
+            continue;
+        }
+        if (!to_pass_or_tessellate[k].free())
+            continue;
+        lane.leaving = leaving_.front();
+        leaving_.pop();
+        lane.next_out = cycle + 1;
+        last_lane_ = k;
+        --taken_;
+        to_pass_or_tessellate[k].send(lane.leaving);
+        if (lane.leaving.tag.is_edge())
+            activity_.item_out(cycle);
+        left = true;
+    }
+    return left;
+}
+
+void FamilySequenceTests::step() {
+    const std::uint64_t cycle = now();
+    for (bool changed = true; changed;) {
+        changed = take_results();
+        changed = leave(cycle) || changed;
+        for (std::size_t lane = 0; lane < lanes_.size(); ++lane)
+            changed = take_part(lane, cycle) || changed;
+        changed = send_to_normal_test() || changed;
+        changed = send_to_summed_height_test() || changed;
+    }
+    if (!leaving_.empty())
+        activity_.set(cycle, lanes_[0].next_out > cycle ? State::busy : State::blocked,
+                      lanes_[0].next_out > cycle ? nullptr : to_pass_or_tessellate[0].consumer());
+    else if (!for_normal_.empty())
+        activity_.set(cycle, State::blocked, to_normal_test[0].consumer());
+    else if (!for_height_.empty())
+        activity_.set(cycle, State::blocked, to_summed_height_test.consumer());
+    else
+        activity_.set(cycle, State::starved);
+}
+
+std::string FamilySequenceTests::describe_contents() const {
+    std::string text;
+    const auto count = [&](std::size_t number, const char* what, const char* where) {
+        text = listed(text, number == 0 ? "" : count_of(number, what) + where);
+    };
+    count(for_normal_.size(), "part", " for the Normal Test");
+    for (const Normal& normal : normals_)
+        count(normal.in_test.size(), "edge", " in the Normal Test");
+    count(for_height_.size(), "edge", " for the Summed Height Test");
+    count(in_height_.size(), "edge", " in it");
+    count(leaving_.size(), "decided edge", "");
+    for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
+        count(to_pass_or_tessellate[lane].free() ? 0 : 1, "edge", " that Pass or Tessellate does not take");
+        count(normal_operands[lane].size(), "part", " from calculate_new_u");
+        count(height_operands[lane].size(), "edge", " from calculate_new_u for summed_height_test");
+        count(from_tex_coord_test[lane].size(), "result", " from tex_coord_test");
+        count(from_view_test[lane].size(), "result", " from view_test");
+    }
+    return text;
+}
+
+/// Shows the edge that left last.
+void FamilySequenceTests::trace_signals(Signals& signals) const {
+    Unit::trace_signals(signals);
+    const auto inputs = [&](const auto& all) {
+        for (const auto& input : all)
+            signals.input(input, input.basename());
+    };
+    inputs(normal_operands);
+    inputs(height_operands);
+    inputs(from_tex_coord_test);
+    inputs(from_view_test);
+    inputs(from_normal_test);
+    signals.input(from_summed_height_test, "from_summed_height_test");
+    signals.value("places_taken", 16, taken_);
+    signals.value("for_normal_test", 16, for_normal_.size());
+    signals.value("for_summed_height_test", 16, for_height_.size());
+    if (signals.when(signals.changed("collected", activity_.items_out())))
+        show_tested_edge(signals, lanes_[last_lane_].leaving, registers_.tests);
+    signals.value("edges_out", 32, activity_.items_out());
+}
+
+}  // namespace tessera

@@ -1,0 +1,100 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <systemc>
+#include <vector>
+
+#include "modules/sockets/items.h"
+#include "modules/sockets/stream_input.h"
+#include "modules/sockets/stream_output.h"
+#include "modules/stage/per_triangle.h"
+#include "modules/units/tessellation.h"
+
+namespace tessera {
+
+/// Tessellation in a machine of families: stands before the tests. It joins a triangle that is to be split with its
+/// midpoints, chooses the diagonal, and sends the new edges of its children to the tests, each once. Of a base triangle
+/// it sends the vertices, which the Normal Test bumps, and the three edges.
+///
+/// In:   each triangle from Get Triangle, and its parts from Transform; the last part completes it.
+/// Out:  to Pass or Tessellate the triangle and its inserted vertices; when it has taken them, to Tessellation Tests the
+///       edges, every n-th to each of n lanes.
+/// Arithmetic: wiring; with the `shorter` diagonal two Manhattan lengths and a compare. New vertices' generations
+///       saturate (counted), which can only happen with the Generation Test off.
+/// Timing: the family and the first edge or vertex of each lane a latency after the last part arrived, then one per
+///       interval; latency 1, interval 1 by default.
+/// Capacity: one triangle that is being joined and one whose edges are being sent; triangles wait at the input from Get
+///       Triangle until their first part arrives (triangles_ahead_of_parts).
+/// Waits for Transform; held back by Tessellation Tests and Pass or Tessellate.
+class FamilyTessellation : public TessellatingUnit {
+  public:
+    StreamInput<TakenTriangle> from_get_triangle{"from_get_triangle"};
+    StreamInput<ScreenPoint> from_transform{"from_transform"};
+    sc_core::sc_vector<StreamOutput<TestOperands>> to_tessellation_tests;  ///< one a lane
+    StreamOutput<Family> to_pass_or_tessellate{"to_pass_or_tessellate"};
+
+    FamilyTessellation(const sc_core::sc_module_name& name, const UnitContext& context);
+
+    /// Vertices and edges sent to the tests.
+    std::uint64_t parts_sent() const { return parts_sent_; }
+    /// Most triangles that waited for their first part.
+    std::size_t most_ahead_of_parts() const { return most_ahead_of_parts_; }
+
+    std::string describe_contents() const override;
+    std::uint64_t occupied_cycles() const override {
+        return one_at_a_time_cycles(timing_, activity_.items_in(), most_parts_);
+    }
+    void trace_signals(Signals& signals) const override;
+    Begun begun() const override { return {activity_.items_in(), sent_.family.origin}; }
+
+  private:
+    /// A triangle whose parts are coming; functional mode: when the last one came.
+    struct Joined {
+        TakenTriangle taken;
+        Parts left = 0;
+        std::array<datapath::NewVertex, 3> made{};
+        sc_core::sc_time latest;
+    };
+    /// What goes to Pass or Tessellate, and the parts for the tests.
+    struct Sent {
+        Family family;
+        datapath::FamilyEdges edges;
+        Parts parts = 0;
+    };
+    struct Branch {
+        StreamOutput<TestOperands>* output = nullptr;
+        Parts takes = 0;
+        Parts left = 0;
+        TestOperands offered;
+        std::uint64_t next = 0;
+    };
+
+    void b_transport_from_get_triangle(TakenTriangle& taken, sc_core::sc_time& delay);
+    void b_transport_from_transform(ScreenPoint& part, sc_core::sc_time& delay);
+    static void open(Joined& joined, const TakenTriangle& taken);
+    static void take(Joined& joined, const ScreenPoint& part);
+    void tessellate(const Joined& joined, Sent& sent);
+    static TestOperands operands(const Sent& sent, Parts part);
+    void step() override;
+    bool join();
+    bool send_family();
+    bool send_parts(Branch& branch, std::uint64_t cycle);
+    Branch& lane_of(Parts part);
+
+    sc_core::sc_time latency_;
+    PerTriangle<Joined> joined_{1};
+    Sent sent_;  // timed mode: being sent
+    bool sending_ = false;
+    bool family_sent_ = false;  // of these, to Pass or Tessellate
+    std::uint64_t start_ = 0;   // cycle from which they may be sent
+    std::vector<Branch> lanes_;
+    std::uint64_t parts_sent_ = 0;
+    std::size_t most_ahead_of_parts_ = 0;
+    std::uint64_t most_parts_ = 0;  // of the output that sends most of a triangle, summed up
+    const sc_core::sc_object* transform_ = nullptr;
+
+    void end_of_elaboration() override;
+};
+
+}  // namespace tessera

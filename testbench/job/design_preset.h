@@ -1,0 +1,9 @@
+#pragma once
+#include "testbench/job/job.h"
+
+namespace tessera {
+
+/// Sets the keys of a preset, hardware.design, to its values. Every other key keeps its own.
+void apply_design(Job& job);
+
+}  // namespace tessera
