@@ -6,12 +6,14 @@
 
 #include "golden/golden_model.h"
 #include "testbench/check/conformance/golden_inputs.h"
+#include "testbench/job/design_preset.h"
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/simulation.h"
 
 // One process, one job: half donut 1024 x 1024 on the plane of 18 triangles, about 0.2 million triangles out. Times the
-// golden model, the bare datapath, functional mode and timed mode side by side, in edges evaluated per second.
+// golden model, the bare datapath, and functional and timed mode of both machines side by side, in edges evaluated and
+// triangles finished per second.
 
 namespace tessera {
 namespace {
@@ -26,14 +28,19 @@ Job benchmark_job() {
     return job;
 }
 
-MachineSetup benchmark_setup() {
-    const Inputs inputs = load_inputs(benchmark_job());
+MachineSetup benchmark_setup(DesignPreset design) {
+    Job job = benchmark_job();
+    job.hardware.design = design;
+    apply_design(job);
+    const Inputs inputs = load_inputs(job);
     return make_setup(inputs.resolved.job, inputs.mesh, inputs.map);
 }
 
 void report(benchmark::State& state, std::uint64_t edges, std::size_t triangles) {
     state.counters["edges_per_second"] = benchmark::Counter(static_cast<double>(edges), benchmark::Counter::kIsRate);
     state.counters["triangles"] = static_cast<double>(triangles);
+    state.counters["triangles_per_second"] =
+        benchmark::Counter(static_cast<double>(triangles), benchmark::Counter::kIsIterationInvariantRate);
 }
 
 void golden_model(benchmark::State& state, const MachineSetup& setup) {
@@ -88,13 +95,17 @@ MachineSetup in_timed_mode(MachineSetup setup) {
 
 int sc_main(int argc, char** argv) {
     benchmark::Initialize(&argc, argv);
-    const tessera::MachineSetup setup = tessera::benchmark_setup();
+    const tessera::MachineSetup setup = tessera::benchmark_setup(tessera::DesignPreset::paper);
     tessera::BareRecursion bare(setup);
     tessera::Simulation simulation(setup, std::uint64_t{1} << 40);
-    // Both simulations are of one elaboration; names that exist get a number.
+    // All simulations are of one elaboration; names that exist get a number.
     sc_core::sc_report_handler::set_actions(sc_core::SC_ID_INSTANCE_EXISTS_, sc_core::SC_DO_NOTHING);
     const tessera::MachineSetup timed_setup = tessera::in_timed_mode(setup);
     tessera::Simulation timed_simulation(timed_setup, std::uint64_t{1} << 40);
+    const tessera::MachineSetup modern_setup = tessera::benchmark_setup(tessera::DesignPreset::modern);
+    tessera::Simulation modern_simulation(modern_setup, std::uint64_t{1} << 40);
+    const tessera::MachineSetup modern_timed_setup = tessera::in_timed_mode(modern_setup);
+    tessera::Simulation modern_timed_simulation(modern_timed_setup, std::uint64_t{1} << 40);
     simulation.run();
     benchmark::RegisterBenchmark("golden_model", [&](benchmark::State& state) {
         tessera::golden_model(state, setup);
@@ -107,6 +118,12 @@ int sc_main(int argc, char** argv) {
     })->Unit(benchmark::kMillisecond);
     benchmark::RegisterBenchmark("timed_mode", [&](benchmark::State& state) {
         tessera::one_frame(state, timed_simulation);
+    })->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark("modern_functional_mode", [&](benchmark::State& state) {
+        tessera::one_frame(state, modern_simulation);
+    })->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark("modern_timed_mode", [&](benchmark::State& state) {
+        tessera::one_frame(state, modern_timed_simulation);
     })->Unit(benchmark::kMillisecond);
     benchmark::RunSpecifiedBenchmarks();
     return 0;

@@ -38,12 +38,12 @@ void apply_design(Job& job) {
         hardware.edge_lanes = 3;
         hardware.queue_order = QueueOrder::lifo;
         hardware.queue_capacity = 256;
-        timing.pass_or_tessellate.buffer = 32;
+        timing.pass_or_tessellate.buffer = 64;
         timing.edges_in_sequence = 128;
         timing.displacement_map.ports = 2;
-        timing.summed_height_table.banks = 8;
+        timing.summed_height_table.banks = 16;
         timing.summed_height_table.interleave = Interleave::exclusive_or;
-        timing.summed_height_table.window = 12;
+        timing.summed_height_table.window = 24;
     }
     copy_design(hardware, timing, job);
 }

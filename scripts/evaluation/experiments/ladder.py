@@ -18,9 +18,7 @@ DESIGNS = {
     "families": {**BANKS, "hardware.work": "family", "hardware.queue_order": "lifo", "hardware.queue_capacity": 256,
                  "timing.pass_or_tessellate_buffer": 32},
     "three lanes": {"hardware.design": "modern"},
-    "two Normal Tests": {"hardware.design": "modern", "hardware.normal_tests": 2, "timing.normal_map_ports": 2,
-                         "timing.summed_height_table_banks": 16, "timing.summed_height_table_window": 24,
-                         "timing.pass_or_tessellate_buffer": 64},
+    "two Normal Tests": {"hardware.design": "modern", "hardware.normal_tests": 2, "timing.normal_map_ports": 2},
 }
 MODERN = "three lanes"
 
