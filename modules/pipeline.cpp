@@ -115,8 +115,7 @@ void Pipeline::wire(UnitFactory& factory) {
         wire_triangles();
     else
         wire_families();
-    for (std::size_t k = 0; k < tessellation_tests.size(); ++k) {
-        TessellationTests& tests = tessellation_tests[k];
+    for (TessellationTests& tests : tessellation_tests) {
         join(factory, tests.summed_height_test.summed_height_table, summed_height_table,
              summed_height_table_cache.get());
         if (tests.summed_height_test.displacement_map)

@@ -25,9 +25,9 @@ constexpr FamilyEdges family_edges(const ChildIndices& indices, bool untested) {
     const auto number_of = [&](std::uint8_t i, std::uint8_t j) -> std::uint8_t {
         if (i < 3 && j < 3 && !untested)
             return FamilyEdges::whole;
-        for (std::uint8_t k = 0; k < family.count; ++k) {
+        for (unsigned k = 0; k < family.count; ++k) {
             if (family.edges[k].i == j && family.edges[k].j == i)
-                return k;
+                return static_cast<std::uint8_t>(k);
         }
         family.edges[family.count] = {i, j};
         return static_cast<std::uint8_t>(family.count++);

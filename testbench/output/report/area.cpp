@@ -128,7 +128,7 @@ class AreaCounter {
             unit("collect_tests", 0, results, copies);
         else
             unit("sequence_tests", 0,
-                 results + design_.edge_lanes * t.results_buffer * operands +
+                 results + std::uint64_t{design_.edge_lanes} * t.results_buffer * operands +
                      design_.normal_tests * bits<NormalOperands>() +
                      t.edges_in_sequence * (operands + bits<TestedEdge>()),
                  copies);
