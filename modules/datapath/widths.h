@@ -7,8 +7,8 @@ namespace tessera::datapath {
 
 /// Bits per item of each stream, the cost of a design's buses and buffers.
 struct Widths {
-    std::uint32_t base_vertex = 0;  ///< host to Get Triangle: P, N, T, handedness, t
-    std::uint32_t vertex = 0;       ///< in the Triangle Queue: all fields of a vertex
+    std::uint32_t base_vertex = 0;      ///< host to Get Triangle: P, N, T, handedness, t
+    std::uint32_t vertex = 0;           ///< in the Triangle Queue: all fields of a vertex
     std::uint32_t triangle = 0;         ///< Triangle Queue entry: describe_triangle
     std::uint32_t emitted_vertex = 0;   ///< to Lighting: P's, N's, t
     std::uint32_t finished_vertex = 0;  ///< a vertex of the tessellated mesh, if the host sent it: P', N', t
