@@ -111,6 +111,8 @@ void Pipeline::wire(UnitFactory& factory) {
     calculate_new_p.to_displace_vertex.bind(displace_vertex.from_calculate_new_p);
     displace_vertex.to_transform.bind(transform.from_displace_vertex);
     join(factory, displace_vertex.displacement_map, displacement_map, displacement_map_cache.get());
+    if (displace_vertex.normal_map)
+        join(factory, *displace_vertex.normal_map, normal_map, normal_map_cache.get());
     if (family_tessellation == nullptr)
         wire_triangles();
     else
@@ -232,7 +234,7 @@ std::uint64_t Pipeline::displacement_map_reads() const {
 }
 
 std::uint64_t Pipeline::normal_map_reads() const {
-    std::uint64_t reads = 0;
+    std::uint64_t reads = displace_vertex.normal_map ? displace_vertex.normal_map->reads() : 0;
     for (const TessellationTests& tests : tessellation_tests) {
         for (const NormalTest* normal_test : tests.normal_tests())
             reads += normal_test->normal_map.reads();

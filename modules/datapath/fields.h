@@ -94,6 +94,11 @@ class Fields {
         if (formats_.families)
             direction(name, n, meaning);
     }
+    template <class H>
+    constexpr void family_handedness(const char* name, H& value, const char* meaning) {
+        if (formats_.families)
+            handedness(name, value, meaning);
+    }
     /// Only in a design that keeps them.
     template <class N>
     constexpr void code(const char* name, N& value, const char* meaning) {

@@ -86,8 +86,7 @@ struct Triangle {
     /// Bit k: edge k was tested with the parent and not split; so it never will be. 0 unless Formats::final_edges.
     std::uint8_t final_edges = 0;
     std::uint32_t parent = 0;  ///< the pass in which its parent was split: a tag without effect
-    /// Formats::families: a triangle in the queue is to be split, or is a base triangle or one without N's. Then
-    /// split_by and parent are already those of its children.
+    /// Formats::families: a triangle in the queue is to be split; split_by and parent are those of its children.
     std::uint8_t split = 0;  ///< bit k: edge k
     std::array<TestedMidpoint, 3> midpoints{};
 };

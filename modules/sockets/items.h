@@ -12,23 +12,26 @@
 
 namespace tessera {
 
-/// Get Triangle to Calculate New P. A vertex or normal has only the first end's fields; n_i of a normal is N'.
+/// Get Triangle to Calculate New P. A vertex or normal has only the first end's fields; n_i of a normal is N'. Of
+/// families n_j of a vertex is T, and n_i, n_j of an edge are N_ij, N'_ij.
 struct GeometryOperands {
     static constexpr const char* name = "geometry operands";
     PartTag tag;
     datapath::Position p_i, p_j;
     datapath::Direction n_i, n_j;
     datapath::TexCoord t_i, t_j;
+    std::int8_t handedness = 1;
 
     template <class Codec, class Any>
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
         describe_tag(fields, item.tag);
         fields.position("p_i", item.p_i, "P of the edge's first end, or of the vertex");
         fields.position("p_j", item.p_j, "P of its second end");
-        fields.direction("n_i", item.n_i, "N likewise; N' of a normal");
-        fields.direction("n_j", item.n_j, "N; of an edge of a family N_ij and N'_ij");
+        fields.direction("n_i", item.n_i, "N likewise; N' of a normal; N_ij of a family's edge");
+        fields.direction("n_j", item.n_j, "N; of families N'_ij of an edge, T of a vertex");
         fields.texture("t_i", item.t_i, "t");
         fields.texture("t_j", item.t_j, "t");
+        fields.family_handedness("handedness", item.handedness, "of a vertex's tangent frame");
     }
 };
 
@@ -40,6 +43,7 @@ struct BasePoint {
     datapath::Direction n;
     datapath::TexCoord t;
     datapath::Direction displaced_n{};
+    std::int8_t handedness = 1;
 
     template <class Codec, class Any>
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
@@ -47,11 +51,12 @@ struct BasePoint {
         fields.position("p", item.p, "P");
         fields.direction("n", item.n, "N; of an edge (N_i + N_j) / 2, not yet of unit length; of a normal N'");
         fields.texture("t", item.t, "t");
-        fields.midpoint_direction("displaced_n", item.displaced_n, "N' of a family's midpoint");
+        fields.midpoint_direction("displaced_n", item.displaced_n, "N' of a family's midpoint, T of a vertex");
+        fields.family_handedness("handedness", item.handedness, "of a vertex's tangent frame");
     }
 };
 
-/// Displace Vertex to Transform.
+/// Displace Vertex to Transform. Of families displaced_n is N', of a vertex too.
 struct DisplacedPoint : BasePoint {
     static constexpr const char* name = "displaced point";
     datapath::Position displaced;
@@ -65,7 +70,7 @@ struct DisplacedPoint : BasePoint {
     }
 };
 
-/// Transform to Pass or Tessellate. n of a normal, and displaced_n of a family's midpoint, is N's now.
+/// Transform to Pass or Tessellate. n of a normal is N's now. Of families displaced_n is, and n of a vertex is N'.
 struct ScreenPoint : DisplacedPoint {
     static constexpr const char* name = "screen point";
     datapath::ScreenPosition screen;
@@ -117,7 +122,8 @@ struct EdgeEnd {
     }
 };
 
-/// Get Triangle to Tessellation Tests: an edge, or a vertex of a base triangle, which has only the first end's fields.
+/// Get Triangle to Tessellation Tests: an edge, or a vertex of a base triangle, which has only the first end's fields;
+/// of families, Tessellation to Tessellation Tests, and edges alone.
 struct TestOperands {
     static constexpr const char* name = "test operands";
     PartTag tag;
@@ -368,7 +374,6 @@ struct Family {
         fields.of(-1);
         fields.requesting("split_by", item.triangle.split_by, "tests that split it");
         fields.gating("stopped_by", item.triangle.stopped_by, "tests that kept an edge whole");
-        fields.flag("finished", item.triangle.finished, "no edge splits");
         fields.number("split", item.triangle.split, 3, "bit k: edge k is split");
         fields.flag("second_diagonal", item.second_diagonal, "the quadrilateral's");
         fields.flag("untested", item.untested, "a base triangle, whose edges are still to be tested");

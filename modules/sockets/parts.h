@@ -47,24 +47,18 @@ constexpr Parts parts_for_tests(unsigned number, unsigned units) {
     return static_cast<Parts>(1u << (first_edge_part + number) | 1u << number | 1u << (number + 1) % 3);
 }
 
-/// Of families: the vertices and edges that go to a lane of the tests.
+/// Of families: the edges that go to a lane of the tests.
 constexpr Parts parts_for_lane(unsigned lane, unsigned lanes) {
     unsigned parts = 0;
-    for (unsigned part = 0; part <= last_edge_part; ++part) {
-        const unsigned number = part < first_normal_part ? part : part - first_edge_part;
-        if ((1u << part & (vertex_parts | edge_parts)) != 0 && number % lanes == lane)
-            parts |= 1u << part;
-    }
+    for (unsigned part = first_edge_part + lane; part <= last_edge_part; part += lanes)
+        parts |= 1u << part;
     return static_cast<Parts>(parts);
 }
 
-/// Of a family: its new edges, of a base triangle also its vertices.
-constexpr Parts parts_of(const datapath::FamilyEdges& edges, bool vertices) {
-    return static_cast<Parts>(((1u << edges.count) - 1) << first_edge_part | (vertices ? unsigned{vertex_parts} : 0));
+/// The new edges of a family.
+constexpr Parts parts_of(const datapath::FamilyEdges& edges) {
+    return static_cast<Parts>(((1u << edges.count) - 1) << first_edge_part);
 }
-
-/// Of families: base triangles whose vertices have gone on to the Normal Test and whose edges may still follow.
-constexpr std::size_t base_triangles_in_test = 4;
 
 /// The last of some parts.
 constexpr Parts last_of(Parts parts) {

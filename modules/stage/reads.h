@@ -4,14 +4,14 @@
 
 namespace tessera {
 
-/// The table entries that an item needs of one memory: byte addresses, grouped in requests that it serves one after
-/// another. Filled in by the unit; empty: none.
+/// The table entries that an item needs: byte addresses, grouped in requests, made one after another. Filled in by the
+/// unit; empty: none.
 class Reads {
   public:
     static constexpr unsigned most_requests = 3;
     static constexpr unsigned most_entries = 27;
 
-    /// Which of the unit's ports they are read through, in the order of reads_through(); 0 unless this is called.
+    /// Which of the unit's ports the requests added next are made through, in the order of reads_through(); at first 0.
     void through(unsigned port) { port_ = port; }
     /// One more request, for one entry.
     void add(std::uint64_t address) {
@@ -19,11 +19,15 @@ class Reads {
         add_entry(address);
     }
     /// One more request, for the 1 to 9 entries that are added next (a gather).
-    void add_request() { first_[requests_++] = entries_; }
+    void add_request() {
+        ports_[requests_] = static_cast<std::uint8_t>(port_);
+        first_[requests_++] = entries_;
+    }
     void add_entry(std::uint64_t address) { address_[entries_++] = address; }
     void clear() { port_ = requests_ = entries_ = 0; }
 
-    unsigned port() const { return port_; }
+    unsigned port(unsigned request) const { return ports_[request]; }
+    unsigned last_port() const { return port_; }
     unsigned requests() const { return requests_; }
     unsigned entries() const { return entries_; }
     /// Entries of a request; of all, their addresses in order.
@@ -36,7 +40,8 @@ class Reads {
     unsigned port_ = 0;
     unsigned requests_ = 0;
     unsigned entries_ = 0;
-    std::array<unsigned, most_requests> first_;  // entry of each request
+    std::array<std::uint8_t, most_requests> ports_;  // of each request
+    std::array<unsigned, most_requests> first_;      // its first entry
     std::array<std::uint64_t, most_entries> address_;
 };
 

@@ -36,7 +36,7 @@ class Stage : public Unit {
     ~Stage() override;
 
     /// To be called in a derived unit's constructor: its input; each output, what it gets of a result, and the parts
-    /// that it is for; the ports it reads through, if it does (most_requests: of one item, which reads through one).
+    /// that it is for; the ports it reads through, if it does (most_requests: of one item through this port).
     void takes_from(const UnitContext& context, StreamInput<In>& input);
     void delivers_to(const UnitContext& context, StreamOutput<Out>& output, Parts only = all_parts);
     template <class Payload>
@@ -68,7 +68,7 @@ class Stage : public Unit {
   private:
     struct Machinery;  // stage_steps.h
 
-    bool reads_tables() const { return ports_[0] != nullptr; }
+    bool reads_tables() const;
     template <class Figure>
     std::uint64_t over_ports(Figure figure) const;
     void b_transport(In& item, sc_core::sc_time& delay);
@@ -79,7 +79,6 @@ class Stage : public Unit {
     const sc_core::sc_time latency_;
     bool may_wait_ = false;
     StreamInput<In>* input_ = nullptr;
-    std::array<MemoryPort*, 2> ports_{};  // none: the unit reads nothing
     const std::unique_ptr<Machinery> machinery_;
 };
 

@@ -18,14 +18,14 @@ namespace tessera {
 /// What a stage is made of.
 template <class In, class Out>
 struct Stage<In, Out>::Machinery {
-    /// An item under way: its requests and their port, how many of them have been answered, and the entries that each
+    /// An item under way: its requests, how many of them have been answered, and of each its port and the entries that it
     /// asks for.
     struct Slot {
         In item{};
         Out result{};
-        std::uint8_t port = 0;
         std::uint8_t requests = 0;
         std::uint8_t answered = 0;
+        std::array<std::uint8_t, Reads::most_requests> port;
         std::array<std::uint8_t, Reads::most_requests> count;
 
         bool processed() const { return answered == requests; }
@@ -34,16 +34,20 @@ struct Stage<In, Out>::Machinery {
     Machinery(const UnitTiming& timing, unsigned pipelines, unsigned memory_latency)
         : servers(pipelines), pipeline(timing, pipelines, memory_latency) {}
 
-    /// Makes as many of the started items' requests as the memory accepts. True: all.
-    bool ask(MemoryPort& port) {
+    /// Makes as many of the started items' requests as the memories accept. True: all.
+    bool ask() {
         for (; asked < reads.requests(); ++asked) {
+            MemoryPort& port = *ports[reads.port(asked)];
             if (!port.may_request())
                 return false;
             port.request(reads.addresses() + asked_entries, reads.count(asked));
             asked_entries += reads.count(asked);
         }
-        return !port.on_offer();
+        return !ports[0]->on_offer() && (ports[1] == nullptr || !ports[1]->on_offer());
     }
+
+    /// The port through which the first item's next answer comes.
+    const MemoryPort& awaited() const { return *ports[pipeline.front().port[pipeline.front().answered]]; }
 
     /// Past the items whose answers have all come.
     void skip_processed() {
@@ -52,6 +56,7 @@ struct Stage<In, Out>::Machinery {
     }
 
     const unsigned servers;
+    std::array<MemoryPort*, 2> ports{};  // none: the unit reads nothing
     Fork<Out> fork;
     ElasticPipeline<Slot> pipeline;
     Reads reads;                 // of the item started last
@@ -72,6 +77,11 @@ Stage<In, Out>::Stage(const sc_core::sc_module_name& name, const UnitContext& co
 
 template <class In, class Out>
 Stage<In, Out>::~Stage() = default;
+
+template <class In, class Out>
+bool Stage<In, Out>::reads_tables() const {
+    return machinery_->ports[0] != nullptr;
+}
 
 template <class In, class Out>
 void Stage<In, Out>::takes_from(const UnitContext& context, StreamInput<In>& input) {
@@ -96,7 +106,7 @@ void Stage<In, Out>::delivers_to(const UnitContext& context, StreamOutput<Payloa
 
 template <class In, class Out>
 void Stage<In, Out>::reads_through(MemoryPort& port, unsigned most_requests) {
-    ports_[reads_tables() ? 1 : 0] = &port;
+    machinery_->ports[reads_tables() ? 1 : 0] = &port;
     port.clocked_by(clock_, *this, machinery_->pipeline.capacity() * most_requests);
 }
 
@@ -118,9 +128,14 @@ Out Stage<In, Out>::read_and_process(const In& item, sc_core::sc_time& delay) {
     if (reads_tables()) {
         Reads needed;
         reads(item, needed);
-        MemoryPort::Burst burst(*ports_[needed.port()], delay);
-        for (unsigned k = 0; k < needed.entries(); ++k)
-            entries[k] = burst.read(needed.addresses()[k]);
+        for (unsigned request = 0, entry = 0; request < needed.requests();) {
+            const unsigned port = needed.port(request);
+            MemoryPort::Burst burst(*machinery_->ports[port], delay);
+            for (; request < needed.requests() && needed.port(request) == port; ++request) {
+                for (const unsigned end = entry + needed.count(request); entry < end; ++entry)
+                    entries[entry] = burst.read(needed.addresses()[entry]);
+            }
+        }
     }
     return process(item, entries);
 }
@@ -136,10 +151,11 @@ void Stage<In, Out>::start(std::uint64_t cycle) {
         m.reads.clear();
         m.asked = m.asked_entries = 0;
         reads(slot.item, m.reads);
-        slot.port = static_cast<std::uint8_t>(m.reads.port());
         slot.requests = static_cast<std::uint8_t>(m.reads.requests());
-        for (unsigned k = 0; k < m.reads.requests(); ++k)
+        for (unsigned k = 0; k < m.reads.requests(); ++k) {
+            slot.port[k] = static_cast<std::uint8_t>(m.reads.port(k));
             slot.count[k] = static_cast<std::uint8_t>(m.reads.count(k));
+        }
     }
     if (slot.requests > 0)
         m.pipeline.finish(m.pipeline.size() - 1, never);
@@ -148,13 +164,13 @@ void Stage<In, Out>::start(std::uint64_t cycle) {
     input_->pop();
 }
 
-/// In the order of the items, whichever port an item reads through.
+/// In the order of the items and of each item's requests, whichever port they go through.
 template <class In, class Out>
 void Stage<In, Out>::take_answers(std::uint64_t cycle) {
     Machinery& m = *machinery_;
     for (m.skip_processed(); m.waiting < m.pipeline.size(); m.skip_processed()) {
         typename Machinery::Slot& slot = m.pipeline.at(m.waiting);
-        MemoryPort& port = *ports_[slot.port];
+        MemoryPort& port = *m.ports[slot.port[slot.answered]];
         if (!port.answered())
             break;
         const unsigned count = slot.count[slot.answered++];
@@ -182,7 +198,7 @@ void Stage<In, Out>::step() {
         activity_.item_out(cycle);
     }
     bool lacking = false;
-    while ((!reads_tables() || m.ask(*ports_[m.reads.port()])) && !input_->empty() && m.pipeline.may_start(cycle)) {
+    while ((!reads_tables() || m.ask()) && !input_->empty() && m.pipeline.may_start(cycle)) {
         lacking = may_wait_ && !may_start(input_->front());
         if (lacking)
             break;
@@ -193,7 +209,7 @@ void Stage<In, Out>::step() {
     if (m.pipeline.front_finished(cycle))
         activity_.set(cycle, State::blocked, m.fork.blocked_by());
     else if (reads_tables() && m.waiting == 0 && !m.pipeline.empty())
-        activity_.set(cycle, State::waiting_for_memory, ports_[m.pipeline.front().port]->memory());
+        activity_.set(cycle, State::waiting_for_memory, m.awaited().memory());
     else if (!m.pipeline.empty() || (!lacking && !input_->empty()))
         activity_.set(cycle, State::busy);
     else
@@ -213,7 +229,7 @@ template <class In, class Out>
 template <class Figure>
 std::uint64_t Stage<In, Out>::over_ports(Figure figure) const {
     std::uint64_t sum = 0;
-    for (const MemoryPort* port : ports_) {
+    for (const MemoryPort* port : machinery_->ports) {
         if (port != nullptr)
             sum += static_cast<std::uint64_t>(figure(*port));
     }
@@ -256,7 +272,7 @@ void Stage<In, Out>::trace_signals(Signals& signals) const {
     signals.flag("request_held", over_ports([](const MemoryPort& port) { return port.on_offer(); }) > 0);
     signals.value("requests_under_way", 16, under_way);
     if (signals.when(signals.changed("asked", read) && under_way > 0))
-        signals.value("address", 32, ports_[m.reads.port()]->last_address());
+        signals.value("address", 32, m.ports[m.reads.last_port()]->last_address());
     if (signals.when(signals.changed("processed", activity_.items_out() + m.waiting) && m.waiting > 0))
         show_result(m.waiting > 0 ? m.pipeline.at(m.waiting - 1) : m.pipeline.newest());
 }

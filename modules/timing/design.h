@@ -57,12 +57,6 @@ struct Design {
 #endif
 };
 
-/// The Normal Test sends on N' of a base triangle's vertices, since not all of its edges need come. Otherwise each edge
-/// brings that of its first end.
-constexpr bool vertices_bring_normals(const Design& design) {
-    return design.work == Work::family && design.test_order == TestOrder::cheap_first;
-}
-
 /// Register stages of a pipeline, all servers together. further_stages: cycles an item spends outside (in a memory)
 /// while others follow it.
 constexpr unsigned register_stages(const UnitTiming& timing, unsigned servers = 1, unsigned further_stages = 0) {
@@ -76,12 +70,19 @@ constexpr unsigned summed_height_latency(const Design& design, const datapath::F
     return formats.codes ? std::max(table, t.read_latency(t.displacement_map)) : table;
 }
 
+/// Of Displace Vertex's reads: of the displacement map and, of families, of the normal map.
+constexpr unsigned displace_vertex_latency(const Design& design) {
+    const Timing& t = design.timing;
+    const unsigned map = t.read_latency(t.displacement_map);
+    return design.work == Work::family ? std::max(map, t.read_latency(t.normal_map)) : map;
+}
+
 /// Most triangles that have left the queue while no part of them has reached Pass or Tessellate: one in Get Triangle,
 /// and one for each place of the units between. Pass or Tessellate has room for as many to wait for their parts.
 constexpr unsigned triangles_ahead_of_parts(const Design& design) {
     const Timing& t = design.timing;
     return 1 + t.calculate_new_p.buffer + register_stages(t.calculate_new_p) + t.displace_vertex.buffer +
-           register_stages(t.displace_vertex, 1, t.read_latency(t.displacement_map)) + t.transform.buffer +
+           register_stages(t.displace_vertex, 1, displace_vertex_latency(design)) + t.transform.buffer +
            register_stages(t.transform, design.transform_pipelines) + 1;
 }
 

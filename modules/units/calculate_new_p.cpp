@@ -13,7 +13,7 @@ CalculateNewP::CalculateNewP(const sc_core::sc_module_name& name, const UnitCont
 
 BasePoint CalculateNewP::process(const GeometryOperands& part, const Entries&) {
     if (!part.tag.is_edge())
-        return {part.tag, part.p_i, part.n_i, part.t_i};
+        return {part.tag, part.p_i, part.n_i, part.t_i, part.n_j, part.handedness};
     const datapath::Position p = midpoint(part.p_i, part.p_j);
     const datapath::TexCoord t = midpoint(part.t_i, part.t_j);
     if (registers_.formats.families)

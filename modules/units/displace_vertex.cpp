@@ -1,38 +1,50 @@
 #include "modules/units/displace_vertex.h"
 
+#include "modules/datapath/bump.h"
 #include "modules/datapath/displace.h"
 #include "modules/datapath/map_address.h"
+#include "modules/datapath/map_entry.h"
 #include "modules/datapath/normalise.h"
 #include "modules/stage/stage_steps.h"
 
 namespace tessera {
 
 DisplaceVertex::DisplaceVertex(const sc_core::sc_module_name& name, const UnitContext& context)
-    : Stage(name, context, context.timing().displace_vertex, 1,
-            context.timing().read_latency(context.timing().displacement_map)),
+    : Stage(name, context, context.timing().displace_vertex, 1, displace_vertex_latency(context.design)),
       displacement_map("displacement_map", context.registers.displacement_map.entry_bytes,
                        context.design.direct_memory),
       registers_(context.registers) {
     takes_from(context, from_calculate_new_p);
     delivers_to(context, to_transform);
     reads_through(displacement_map, 1);
+    if (context.design.work == Work::family) {
+        normal_map.emplace("normal_map", context.registers.normal_map.entry_bytes, context.design.direct_memory);
+        reads_through(*normal_map, 1);
+    }
 }
 
 void DisplaceVertex::reads(const BasePoint& point, Reads& reads) const {
     if (!point.tag.is_normal())
         reads.add(texel_address(point.t, registers_.displacement_map, registers_.map, registers_.formats));
+    if (normal_map && point.tag.is_vertex()) {
+        reads.through(1);
+        reads.add(texel_address(point.t, registers_.normal_map, registers_.map, registers_.formats));
+    }
 }
 
-DisplacedPoint DisplaceVertex::process(const BasePoint& point, const Entries& codes) {
+DisplacedPoint DisplaceVertex::process(const BasePoint& point, const Entries& entries) {
     const datapath::Formats& formats = registers_.formats;
     DisplacedPoint displaced{point, {}, 0};
     if (point.tag.is_normal())
         return displaced;
     const bool unit_length = !point.tag.is_edge() || formats.families;
     const datapath::Direction normal = unit_length ? point.n : normalise(point.n, formats, saturations_);
-    const auto code = static_cast<std::uint16_t>(codes[0]);
+    const auto code = static_cast<std::uint16_t>(entries[0]);
     displaced.displaced = displace(point.p, normal, code, registers_.displacement, formats, saturations_);
     displaced.code = formats.codes ? code : std::uint16_t{0};
+    if (normal_map && point.tag.is_vertex())
+        displaced.displaced_n = bump(point.n, point.displaced_n, point.handedness,
+                                     datapath::unpack_normal(entries[1], formats.normal.bits), formats, saturations_);
     return displaced;
 }
 

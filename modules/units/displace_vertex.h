@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <systemc>
 
 #include "modules/sockets/items.h"
@@ -9,17 +10,19 @@ namespace tessera {
 
 /// Displace Vertex (paper figure 7): P' = P + (S * d(t) + bias) * N, the one added long-latency unit.
 ///
-/// In:   BasePoint. Out: DisplacedPoint: the same and, of an edge or vertex, P'; normals unchanged.
-/// Memory: one read of the displacement map per vertex or edge.
-/// Arithmetic: normalise an edge's normal (the pipeline's existing unit; of families it is normalised), multiply, round, multiply-accumulate,
-///       saturate (counted).
+/// In:   BasePoint. Out: DisplacedPoint: the same and, of an edge or vertex, P'; normals unchanged. Of families also N'
+///       of a base triangle's vertex.
+/// Memory: one read of the displacement map per vertex or edge; of families one of the normal map per vertex.
+/// Arithmetic: normalise an edge's normal (the pipeline's existing unit; of families it is normalised), multiply, round,
+///       multiply-accumulate, saturate (counted). Of families bump a vertex's normal.
 /// Timing: one vertex, normal or edge per interval; latency 6 plus the map read, interval 1 by default.
-/// Waits for the displacement map; held back by Transform.
+/// Waits for the displacement map and the normal map; held back by Transform.
 class DisplaceVertex : public Stage<BasePoint, DisplacedPoint> {
   public:
     StreamInput<BasePoint> from_calculate_new_p{"from_calculate_new_p"};
     StreamOutput<DisplacedPoint> to_transform{"to_transform"};
     MemoryPort displacement_map;
+    std::optional<MemoryPort> normal_map;  ///< of families
 
     DisplaceVertex(const sc_core::sc_module_name& name, const UnitContext& context);
 
@@ -27,7 +30,7 @@ class DisplaceVertex : public Stage<BasePoint, DisplacedPoint> {
 
   protected:
     void reads(const BasePoint& point, Reads& reads) const override;
-    DisplacedPoint process(const BasePoint& point, const Entries& codes) override;
+    DisplacedPoint process(const BasePoint& point, const Entries& entries) override;
 
     const datapath::Registers& registers_;
     datapath::Saturations saturations_;

@@ -18,6 +18,10 @@ void make(GeometryOperands& item, const TakenTriangle& taken, Parts part, Work w
     item.p_i = i.position;
     item.n_i = item.tag.is_normal() ? i.displaced_normal : i.normal;
     item.t_i = i.texture;
+    if (work == Work::family && item.tag.is_vertex()) {
+        item.n_j = i.tangent;
+        item.handedness = i.handedness;
+    }
     if (!item.tag.is_edge())
         return;
     const datapath::Vertex& j = taken.triangle.vertices[(k + 1) % 3];

@@ -18,8 +18,8 @@ namespace tessera {
 ///   re-tessellated         normals that have no N's yet, then the edges that are not final
 ///   finished, without N's  its normals only: no edge is tested again
 ///
-/// In a machine of families (Formats::families) it sends nothing to the tests, and of a triangle that has been tested
-/// only what its split needs: the midpoints of its split edges, with N, T and N' as the tests found them.
+/// In a machine of families (Formats::families) it sends nothing to the tests: of a base triangle the vertices, of one
+/// from the queue the midpoints of its split edges, with N and N' as the tests found them.
 ///
 /// In:   triangles; the queue's level. Out: to Calculate New P all parts, to Tessellation Tests vertices and edges;
 ///       with three Tessellation Tests units edge k and its two vertices to unit k. To Pass or Tessellate the triangle

@@ -26,7 +26,9 @@ ScreenPoint Transform::process(const DisplacedPoint& point, const Entries&) {
     } else {
         result.screen = transform(point.displaced, parameters, registers_.formats, saturations_);
         ++positions_;
-        if (point.tag.is_edge() && registers_.formats.families) {
+        if (registers_.formats.families) {
+            if (point.tag.is_vertex())
+                result.n = point.displaced_n;
             result.displaced_n = transform_normal(point.displaced_n, parameters, registers_.formats, saturations_);
             ++normals_;
         }

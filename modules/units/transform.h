@@ -10,9 +10,9 @@ namespace tessera {
 /// Transform (paper figure 7): world to screen; the pipeline's existing unit, OpenGL's clipping, perspective and
 /// viewport application.
 ///
-/// In:   DisplacedPoint. Out: ScreenPoint: of an edge or vertex with P's, of a normal with N's in N's place, of a
-///       family's midpoint with both. A base triangle's P's also go to the View Test, which waits for them; of families
-///       the View Test has them with the edge.
+/// In:   DisplacedPoint. Out: ScreenPoint: of an edge or vertex with P's, of a normal with N's in N's place; of families
+///       with both. A base triangle's P's also go to the View Test, which waits for them; of families the View Test has
+///       them with the edge.
 /// Arithmetic: 9 multiplications (position or normal); for a position a reciprocal (a table and 4 multiplications) and
 ///       2 more, saturate (counted).
 /// Timing: one vertex, normal or edge per interval and pipeline; latency 20, interval 1, one pipeline by default.

@@ -20,6 +20,7 @@ void copy_design(const Job::Hardware& hardware, const Timing& timing, Job& job) 
     t.pass_or_tessellate.buffer = timing.pass_or_tessellate.buffer;
     t.edges_in_sequence = timing.edges_in_sequence;
     t.displacement_map.ports = timing.displacement_map.ports;
+    t.normal_map.ports = timing.normal_map.ports;
     t.summed_height_table.ports = timing.summed_height_table.ports;
     t.summed_height_table.banks = timing.summed_height_table.banks;
     t.summed_height_table.interleave = timing.summed_height_table.interleave;
@@ -41,6 +42,7 @@ void apply_design(Job& job) {
         timing.pass_or_tessellate.buffer = 64;
         timing.edges_in_sequence = 128;
         timing.displacement_map.ports = 2;
+        timing.normal_map.ports = 2;
         timing.summed_height_table.banks = 16;
         timing.summed_height_table.interleave = Interleave::exclusive_or;
         timing.summed_height_table.window = 24;

@@ -29,17 +29,6 @@ ViewOperands for_view_test(const EdgeToTest& edge) {
     return {edge.tag, edge.new_vertices, edge.ends[0].screen, edge.ends[1].screen};
 }
 
-/// Of a family's edge: P's and d of its ends are known.
-HeightOperands for_summed_height_test_of_family(const EdgeToTest& edge) {
-    HeightOperands operands = for_summed_height_test(edge);
-    operands.codes_known = true;
-    return operands;
-}
-
-ViewOperands for_view_test_of_family(const EdgeToTest& edge) {
-    return {edge.tag, 0, edge.ends[0].screen, edge.ends[1].screen};
-}
-
 }  // namespace
 
 CalculateNewU::CalculateNewU(const sc_core::sc_module_name& name, const UnitContext& context)
@@ -47,10 +36,8 @@ CalculateNewU::CalculateNewU(const sc_core::sc_module_name& name, const UnitCont
     takes_from(context, input);
     delivers_to(context, to_normal_test, for_normal_test, all_parts);
     delivers_to(context, to_tex_coord_test, for_tex_coord_test, edge_parts);
-    const bool family = context.design.work == Work::family;
-    delivers_to(context, to_summed_height_test, family ? for_summed_height_test_of_family : for_summed_height_test,
-                edge_parts);
-    delivers_to(context, to_view_test, family ? for_view_test_of_family : for_view_test, edge_parts);
+    delivers_to(context, to_summed_height_test, for_summed_height_test, edge_parts);
+    delivers_to(context, to_view_test, for_view_test, edge_parts);
 }
 
 EdgeToTest CalculateNewU::process(const TestOperands& part, const Entries&) {

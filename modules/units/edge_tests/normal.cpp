@@ -24,10 +24,9 @@ NormalTest::NormalTest(const sc_core::sc_module_name& name, const UnitContext& c
     : Stage(name, context, with_highlight_test(context), 1, context.timing().read_latency(context.timing().normal_map)),
       normal_map("normal_map", context.registers.normal_map.entry_bytes, context.design.direct_memory),
       registers_(context.registers),
-      takes_(takes),
-      vertices_leave_(vertices_bring_normals(context.design)) {
+      takes_(takes) {
     takes_from(context, input);
-    delivers_to(context, output, vertices_leave_ ? all_parts : edge_parts);
+    delivers_to(context, output, edge_parts);
     reads_through(normal_map, 1);
     may_wait();
 }
@@ -48,26 +47,11 @@ NormalResult NormalTest::process(const NormalOperands& part, const Entries& entr
     if (part.tag.is_edge())
         return test_edge(part, entries[0]);
     const datapath::Direction n = bumped(part.n_i, part.tangent_i, part.handedness_i, entries[0]);
-    if (vertices_leave_)
-        forget_corners(part.tag);
     Corners& corners = corners_.find_or_open(part.tag.triangle);
     corners.bumped |= part.tag.bit();
     corners.displaced_n[part.tag.index()] = n;
     compared_ = {n, n, n};
-    NormalResult result{part.tag};
-    result.displaced_n_i = n;
-    return result;
-}
-
-/// Makes room for a base triangle, and forgets an earlier one of the same tag, whose vertices have all come.
-void NormalTest::forget_corners(const PartTag& vertex) {
-    const Corners* const known = corners_.find(vertex.triangle);
-    if (known != nullptr && (known->bumped & vertex.bit()) == 0)
-        return;
-    if (known != nullptr)
-        corners_.close(vertex.triangle);
-    else if (corners_.size() == base_triangles_in_test)
-        corners_.close_oldest();
+    return {part.tag};
 }
 
 datapath::Direction NormalTest::bumped(const datapath::Direction& n, const datapath::Direction& t, int handedness,
@@ -86,7 +70,7 @@ void NormalTest::take_corners(const NormalOperands& edge) {
     if ((corners.bumped >> j & 1u) != 0)
         compared_[1] = corners.displaced_n[j];
     corners.tested |= edge.tag.bit();
-    if (corners.tested == (takes_ & triangle_edge_parts) && !vertices_leave_)
+    if (corners.tested == (takes_ & triangle_edge_parts))
         corners_.close(edge.tag.triangle);
 }
 

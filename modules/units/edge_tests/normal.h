@@ -14,8 +14,8 @@ namespace tessera {
 /// their differences, and splits further where the Phong highlight is.
 ///
 /// In:   NormalOperands: edges; of a base triangle its vertices first, which are bumped and end here.
-/// Out:  NormalResult: N_ij, T_ij, N'_ij, the tests' bits, and N' of the edge's first end. In a design with
-///       vertices_bring_normals also N' of each vertex of a base triangle: not all of its edges come.
+///       Of families N' of all vertices is known, and only edges come.
+/// Out:  NormalResult: N_ij, T_ij, N'_ij, the tests' bits, and N' of the edge's first end.
 /// Memory: one read of the normal map per edge or vertex.
 /// Arithmetic: add, shift by 1; the pipeline's existing normalise and bump units; six absolute differences and
 ///       compares, one OR. The Highlight Test adds three dot products with one vector, six compares with another
@@ -23,7 +23,7 @@ namespace tessera {
 /// Timing: one edge or vertex per interval; latency 9 plus the map read, interval 1 by default. A Highlight Test adds
 ///       its own latency, 1 by default, and nothing to the interval.
 ///       An edge of a base triangle starts when the map entries of all its corners in this unit have arrived.
-/// State: a base triangle's tag, and N' of its corners; in such a design of the last base_triangles_in_test.
+/// State: a base triangle's tag, and N' of its corners.
 /// Waits for Calculate New U and the normal map. Held back by the collection of the tests.
 class NormalTest : public Stage<NormalOperands, NormalResult> {
   public:
@@ -55,11 +55,9 @@ class NormalTest : public Stage<NormalOperands, NormalResult> {
                                std::uint64_t entry);
     NormalResult test_edge(const NormalOperands& edge, std::uint64_t entry);
     void take_corners(const NormalOperands& edge);
-    void forget_corners(const PartTag& vertex);
 
     const datapath::Registers& registers_;
     Parts takes_;
-    bool vertices_leave_;
     PerTriangle<Corners> corners_{1};
     std::array<datapath::Direction, 3> compared_{};  // N'_i, N'_j, N'_ij of the part worked on last
     datapath::Saturations saturations_;

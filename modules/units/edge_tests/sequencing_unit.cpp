@@ -27,8 +27,7 @@ void SequencingUnit::add_input(const UnitContext& context, StreamInput<Item>& in
 }
 
 SequencingUnit::Next SequencingUnit::after_cheap_tests(const Edge& edge) const {
-    const bool brings_normals = edge.normal.new_vertices != 0 && !registers_.formats.families;
-    return may_split(edge.tested) || brings_normals ? Next::normal_test : Next::leave;
+    return may_split(edge.tested) || edge.normal.new_vertices != 0 ? Next::normal_test : Next::leave;
 }
 
 SequencingUnit::Next SequencingUnit::after_normal_test(const TestedEdge& edge) const {
@@ -39,14 +38,6 @@ SequencingUnit::Next SequencingUnit::after_normal_test(const TestedEdge& edge) c
 template <class Item>
 void SequencingUnit::b_transport(Item& item, sc_core::sc_time& delay) {
     if constexpr (std::is_same_v<Item, NormalResult> || std::is_same_v<Item, HeightResult>) {
-        if (item.tag.is_vertex()) {
-            TestedEdge vertex;
-            vertex.tag = item.tag;
-            if constexpr (std::is_same_v<Item, NormalResult>)
-                vertex.displaced_n_i = item.displaced_n_i;
-            pass_or_tessellate().transport(vertex, delay);
-            return;
-        }
         add_result(**in_test_.find(item.tag.triangle), item);
         return;
     } else {

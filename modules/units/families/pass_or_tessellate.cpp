@@ -11,7 +11,6 @@ FamilyPassOrTessellate::FamilyPassOrTessellate(const sc_core::sc_module_name& na
     : DecidingUnit(name, context),
       from_tessellation_tests("from_tessellation_tests", context.design.edge_lanes),
       places_(timing_.buffer),
-      vertices_bring_normals_(vertices_bring_normals(context.design)),
       lit_(timing_),
       queued_(timing_) {
     const StallParameters& stalls = context.timing().stalls;
@@ -34,18 +33,15 @@ void FamilyPassOrTessellate::open(const Family& family) {
     place.family = family;
     place.indices = datapath::triangulate(family.triangle.split, family.second_diagonal);
     place.edges = datapath::family_edges(place.indices, family.untested);
-    place.left = parts_of(place.edges, family.untested && vertices_bring_normals_);
+    place.left = parts_of(place.edges);
     place.latest = sc_core::SC_ZERO_TIME;
 }
 
-void FamilyPassOrTessellate::take(Place& place, const TestedEdge& part) const {
-    if ((place.left & part.tag.bit()) == 0)
+void FamilyPassOrTessellate::take(Place& place, const TestedEdge& edge) {
+    if ((place.left & edge.tag.bit()) == 0)
         SC_REPORT_ERROR("tessera/pass_or_tessellate", "an edge of a family came twice");
-    place.left = static_cast<Parts>(place.left & ~part.tag.bit());
-    if (part.tag.is_edge())
-        place.found[part.tag.part - first_edge_part] = part.found;
-    if (place.family.untested && (part.tag.is_vertex() || !vertices_bring_normals_))
-        place.displaced_n[part.tag.index()] = part.displaced_n_i;
+    place.left = static_cast<Parts>(place.left & ~edge.tag.bit());
+    place.found[edge.tag.part - first_edge_part] = edge.found;
 }
 
 void FamilyPassOrTessellate::b_transport_from_tessellation(Family& family, sc_core::sc_time& delay) {
@@ -103,19 +99,9 @@ void FamilyPassOrTessellate::decide_child(Place& place, std::size_t c, unsigned&
     datapath::Triangle& triangle = pass.triangle;
     triangle = family.triangle;
     triangle.split = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < 3; ++k)
         triangle.vertices[k] = family.vertices[corners[k]];
-        triangle.vertices[k].displaced_known = true;
-        if (family.untested)
-            triangle.vertices[k].displaced_normal = place.displaced_n[k];
-    }
     Child& child = place.children[c];
-    if (triangle.finished) {
-        ++counts_.normal_passes;
-        child.way = finish(triangle);
-        child.triangle = triangle;
-        return;
-    }
     pass.number = static_cast<std::uint32_t>(counts_.passes);
     pass.told = datapath::Told::tests;
     pass.tested = true;
@@ -132,19 +118,16 @@ void FamilyPassOrTessellate::decide_child(Place& place, std::size_t c, unsigned&
     }
     decide_edges(pass);
     decided.write(pass);
-    if (pass.split == 0 && !family.untested) {
+    if (pass.split == 0) {
         child.way = finish(triangle);
         child.triangle = triangle;
         return;
     }
     child.way = Way::tessellation;
     triangle.final_edges = 0;
-    triangle.finished = pass.split == 0;
     triangle.split = pass.split;
-    if (pass.split != 0) {
-        triangle.parent = pass.number;
-        triangle.split_by = 0;
-    }
+    triangle.parent = pass.number;
+    triangle.split_by = 0;
     for (std::size_t k = 0; k < 3; ++k) {
         if ((pass.split >> k & 1u) == 0)
             continue;

@@ -19,10 +19,9 @@ namespace tessera {
 /// Pass or Tessellate in a machine of families: collects what the tests found of a family's edges, and decides all its
 /// children.
 ///
-/// In:   each family from Tessellation, and its tested edges, in any order, of a base triangle also N' of its vertices;
-///       the last one completes it.
+/// In:   each family from Tessellation, and its tested edges, in any order; the last one completes it.
 /// Out:  to Lighting a child whose edges are whole, one after another; to the Triangle Queue a child that splits, with
-///       N, T and N' of its split edges, and a base triangle, which lacks N's. Both in the order of the families.
+///       N, T and N' of its split edges. Both in the order of the families. A base triangle is the one child of its own.
 /// Arithmetic: logic; for culling two products of screen bits + 1 and a compare.
 /// Timing: one family per interval is decided when its last edge has come; then one child per interval leaves on each
 ///       output, the first a latency later; latency 1, interval 1 by default. A child that is culled takes a turn of
@@ -57,9 +56,8 @@ class FamilyPassOrTessellate : public DecidingUnit {
         Family family;
         datapath::ChildIndices indices;
         datapath::FamilyEdges edges;
-        Parts left = 0;  // edges, and vertices of a base triangle, that have not come
+        Parts left = 0;  // edges that have not come
         std::array<datapath::EdgeTests, 9> found{};
-        std::array<datapath::Direction, 3> displaced_n{};  // of a base triangle's vertices
         std::array<Child, 4> children{};
         sc_core::sc_time latest;
     };
@@ -84,7 +82,7 @@ class FamilyPassOrTessellate : public DecidingUnit {
     void step() override;
     bool take_inputs(std::uint64_t cycle);
     void open(const Family& family);
-    void take(Place& place, const TestedEdge& part) const;
+    static void take(Place& place, const TestedEdge& edge);
     void decide(Place& place);
     void decide_child(Place& place, std::size_t c, unsigned& told);
     Child* next(Next& from, bool whole);
@@ -94,8 +92,7 @@ class FamilyPassOrTessellate : public DecidingUnit {
 
     PerTriangle<Place> places_;
     bool front_has_place_ = false;  // the family at the input, which stays there while no place is free
-    bool vertices_bring_normals_;
-    std::size_t decided_ = 0;  // of these, the first so many
+    std::size_t decided_ = 0;       // of these, the first so many
     std::uint64_t next_decision_ = 0;
     Next next_lit_, next_queued_;
     ElasticPipeline<Leaving> lit_;

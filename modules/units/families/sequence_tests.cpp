@@ -51,19 +51,19 @@ void FamilySequenceTests::decided(const Edge& edge, Next next) {
         leaving_.push(edge.tested);
 }
 
-/// Takes an edge whose cheap tests have decided.
-bool FamilySequenceTests::take_edge(std::size_t lane) {
-    if (height_operands[lane].empty() || from_tex_coord_test[lane].empty() || from_view_test[lane].empty())
+/// Takes an edge whose cheap tests have decided, one a cycle and lane.
+bool FamilySequenceTests::take_edge(std::size_t lane, std::uint64_t cycle) {
+    if (taken_ == places_ || normal_operands[lane].empty() || height_operands[lane].empty() ||
+        from_tex_coord_test[lane].empty() || from_view_test[lane].empty())
         return false;
+    if (lanes_[lane].next_in > cycle) {
+        wake_at(lanes_[lane].next_in);
+        return false;
+    }
     Edge edge;
     edge.normal = normal_operands[lane].front();
     edge.height = height_operands[lane].front();
     edge.tested.tag = edge.normal.tag;
-    if (edge.normal.new_vertices != 0) {
-        const Base* base = bases_.find(edge.normal.tag.triangle);
-        if (base == nullptr || base->vertices < 3)
-            return false;
-    }
     add_result(edge.tested, from_tex_coord_test[lane].front());
     add_result(edge.tested, from_view_test[lane].front());
     for (const PartTag& tag :
@@ -71,59 +71,13 @@ bool FamilySequenceTests::take_edge(std::size_t lane) {
         if (!same_part(tag, edge.tested.tag))
             SC_REPORT_ERROR("tessera/sequence_tests", "the tests decided different edges");
     }
+    normal_operands[lane].pop();
     height_operands[lane].pop();
     from_tex_coord_test[lane].pop();
     from_view_test[lane].pop();
-    const Next next = after_cheap_tests(edge);
-    if (edge.normal.new_vertices != 0 && next != Next::normal_test)
-        edge_done(edge.tested.tag);
-    decided(edge, next);
-    return true;
-}
-
-bool FamilySequenceTests::take_vertex(const NormalOperands& vertex) {
-    Base* base = bases_.find(vertex.tag.triangle);
-    if (base == nullptr) {
-        if (bases_.size() == base_triangles_in_test)
-            return false;
-        base = &(bases_.open(vertex.tag.triangle) = {});
-    }
-    ++base->vertices;
-    Edge& part = for_normal_.push();
-    part.normal = vertex;
-    part.tested = {};
-    part.tested.tag = vertex.tag;
-    return true;
-}
-
-/// An edge of a base triangle has gone to the Normal Test, or does not need it. The Normal Test forgets base triangles
-/// in order of arrival; so does this.
-void FamilySequenceTests::edge_done(const PartTag& tag) {
-    ++bases_.find(tag.triangle)->edges_done;
-    while (!bases_.empty() && bases_.oldest().edges_done == 3)
-        bases_.close_oldest();
-}
-
-/// One edge or vertex a cycle and lane.
-bool FamilySequenceTests::take_part(std::size_t lane, std::uint64_t cycle) {
-    if (taken_ == places_ || normal_operands[lane].empty())
-        return false;
-    if (lanes_[lane].next_in > cycle) {
-        wake_at(lanes_[lane].next_in);
-        return false;
-    }
-    const NormalOperands& operands = normal_operands[lane].front();
-    const PartTag tag = operands.tag;
-    if (tag.is_vertex()) {
-        if (!take_vertex(operands))
-            return false;
-    } else if (!take_edge(lane)) {
-        return false;
-    } else {
-        activity_.item_in(cycle);
-        newest_ = tag;
-    }
-    normal_operands[lane].pop();
+    decided(edge, after_cheap_tests(edge));
+    activity_.item_in(cycle);
+    newest_ = edge.tested.tag;
     ++taken_;
     lanes_[lane].next_in = cycle + 1;
     return true;
@@ -142,31 +96,24 @@ bool FamilySequenceTests::take_results() {
             taken = true;
         }
     };
-    const auto after_normal = [&](const TestedEdge& part) {
-        return part.tag.is_vertex() ? Next::leave : after_normal_test(part);
-    };
     take(in_height_, from_summed_height_test, [](const TestedEdge&) { return Next::leave; });
     for (std::size_t k = 0; k < normals_.size(); ++k)
-        take(normals_[k].in_test, from_normal_test[k], after_normal);
+        take(normals_[k].in_test, from_normal_test[k], [&](const TestedEdge& edge) { return after_normal_test(edge); });
     return taken;
 }
 
-/// The oldest part to the next Normal Test that is free; a base triangle's to the first.
+/// The oldest edge to the next Normal Test that is free.
 bool FamilySequenceTests::send_to_normal_test() {
     if (for_normal_.empty())
         return false;
-    const Edge& part = for_normal_.front();
-    std::size_t k = part.normal.new_vertices != 0 ? 0 : normal_turn_;
-    for (std::size_t tried = 1; part.normal.new_vertices == 0 && !to_normal_test[k].free() && tried < normals_.size();
-         ++tried)
+    std::size_t k = normal_turn_;
+    for (std::size_t tried = 1; !to_normal_test[k].free() && tried < normals_.size(); ++tried)
         k = (k + 1) % normals_.size();
     if (!to_normal_test[k].free())
         return false;
     Normal& normal = normals_[k];
-    normal.offered = part.normal;
-    normal.in_test.push(part);
-    if (part.normal.new_vertices != 0 && !part.normal.tag.is_vertex())
-        edge_done(part.normal.tag);
+    normal.offered = for_normal_.front().normal;
+    normal.in_test.push(for_normal_.front());
     for_normal_.pop();
     to_normal_test[k].send(normal.offered);
     normal_turn_ = (k + 1) % normals_.size();
@@ -200,8 +147,7 @@ bool FamilySequenceTests::leave(std::uint64_t cycle) {
         last_lane_ = k;
         --taken_;
         to_pass_or_tessellate[k].send(lane.leaving);
-        if (lane.leaving.tag.is_edge())
-            activity_.item_out(cycle);
+        activity_.item_out(cycle);
         left = true;
     }
     return left;
@@ -213,7 +159,7 @@ void FamilySequenceTests::step() {
         changed = take_results();
         changed = leave(cycle) || changed;
         for (std::size_t lane = 0; lane < lanes_.size(); ++lane)
-            changed = take_part(lane, cycle) || changed;
+            changed = take_edge(lane, cycle) || changed;
         changed = send_to_normal_test() || changed;
         changed = send_to_summed_height_test() || changed;
     }
@@ -233,7 +179,7 @@ std::string FamilySequenceTests::describe_contents() const {
     const auto count = [&](std::size_t number, const char* what, const char* where) {
         text = listed(text, number == 0 ? "" : count_of(number, what) + where);
     };
-    count(for_normal_.size(), "part", " for the Normal Test");
+    count(for_normal_.size(), "edge", " for the Normal Test");
     for (const Normal& normal : normals_)
         count(normal.in_test.size(), "edge", " in the Normal Test");
     count(for_height_.size(), "edge", " for the Summed Height Test");
@@ -241,7 +187,7 @@ std::string FamilySequenceTests::describe_contents() const {
     count(leaving_.size(), "decided edge", "");
     for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
         count(to_pass_or_tessellate[lane].free() ? 0 : 1, "edge", " that Pass or Tessellate does not take");
-        count(normal_operands[lane].size(), "part", " from calculate_new_u");
+        count(normal_operands[lane].size(), "edge", " from calculate_new_u");
         count(height_operands[lane].size(), "edge", " from calculate_new_u for summed_height_test");
         count(from_tex_coord_test[lane].size(), "result", " from tex_coord_test");
         count(from_view_test[lane].size(), "result", " from view_test");

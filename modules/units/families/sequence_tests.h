@@ -7,7 +7,6 @@
 #include "modules/sockets/items.h"
 #include "modules/sockets/stream_input.h"
 #include "modules/sockets/stream_output.h"
-#include "modules/stage/per_triangle.h"
 #include "modules/timing/ring.h"
 #include "modules/units/edge_tests/sequencing_unit.h"
 
@@ -16,17 +15,15 @@ namespace tessera {
 /// Sequence Tests in a machine of families. Several lanes of cheap tests share one or more Normal Tests and the Summed
 /// Height Test. An edge leaves as soon as it is decided: Pass or Tessellate takes a family's edges in any order.
 ///
-/// In:   from each lane what the two table tests need of an edge, and the cheap tests' results; vertices of a base
-///       triangle, which go on to the Normal Test; each table test's results.
-/// Out:  operands to the Normal Tests, those of base triangles to the first; operands to the Summed Height Test;
-///       TestedEdge, once, on any lane: an edge with the tests that were evaluated, or N' of a base triangle's vertex.
+/// In:   from each lane what the two table tests need of an edge, and the cheap tests' results; each table test's
+///       results.
+/// Out:  operands to the Normal Tests and to the Summed Height Test; TestedEdge, once, on any lane: an edge with the
+///       tests that were evaluated.
 /// Arithmetic: none.
 /// Timing: one edge a cycle and lane in and out, no latency of its own.
-/// Capacity: `edges_in_sequence` edges and vertices (32) between their cheap tests' results and their turn to leave;
+/// Capacity: `edges_in_sequence` edges (32) between their cheap tests' results and their turn to leave;
 ///       `results_buffer` at each input.
-/// Waits for nothing but its inputs; an edge of a base triangle waits for the triangle's vertices, and the vertices of
-///       one until fewer than base_triangles_in_test are in test. Held back by the Normal Tests, the Summed Height Test
-///       and Pass or Tessellate.
+/// Waits for nothing but its inputs; held back by the Normal Tests, the Summed Height Test and Pass or Tessellate.
 class FamilySequenceTests : public SequencingUnit {
   public:
     // One a lane.
@@ -56,18 +53,11 @@ class FamilySequenceTests : public SequencingUnit {
         Ring<Edge> in_test;
         NormalOperands offered;
     };
-    /// Of a base triangle: vertices that have come, and edges that have gone to the Normal Test or do not need it.
-    struct Base {
-        unsigned vertices = 0, edges_done = 0;
-    };
 
     StreamOutput<NormalOperands>& normal_test() override { return to_normal_test[0]; }
     StreamOutput<TestedEdge>& pass_or_tessellate() override { return to_pass_or_tessellate[0]; }
     void step() override;
-    bool take_part(std::size_t lane, std::uint64_t cycle);
-    bool take_edge(std::size_t lane);
-    bool take_vertex(const NormalOperands& vertex);
-    void edge_done(const PartTag& tag);
+    bool take_edge(std::size_t lane, std::uint64_t cycle);
     void decided(const Edge& edge, Next next);
     bool take_results();
     bool send_to_normal_test();
@@ -76,14 +66,13 @@ class FamilySequenceTests : public SequencingUnit {
 
     std::vector<Lane> lanes_;
     std::size_t places_;
-    std::size_t taken_ = 0;               // of the places
-    Ring<Edge> for_normal_, for_height_;  // vertices, too, wait for the Normal Test
+    std::size_t taken_ = 0;  // of the places
+    Ring<Edge> for_normal_, for_height_;
     std::vector<Normal> normals_;
     Ring<Edge> in_height_;
     HeightOperands height_offered_;
     Ring<TestedEdge> leaving_;
     std::size_t normal_turn_ = 0;
-    PerTriangle<Base> bases_{1};
     PartTag newest_;
     std::size_t last_lane_ = 0;  // from which an edge left
 };

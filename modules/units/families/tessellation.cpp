@@ -32,6 +32,7 @@ void FamilyTessellation::end_of_elaboration() {
 void FamilyTessellation::open(Joined& joined, const TakenTriangle& taken) {
     joined.taken = taken;
     joined.left = parts_of(taken.triangle, Work::family);
+    joined.untested = (joined.left & vertex_parts) != 0;
     joined.latest = sc_core::SC_ZERO_TIME;
 }
 
@@ -43,13 +44,13 @@ void FamilyTessellation::take(Joined& joined, const ScreenPoint& part) {
     datapath::Vertex& vertex = joined.taken.triangle.vertices[k];
     if (part.tag.is_edge()) {
         joined.made[k] = {part.p, part.n, part.t, part.code, part.displaced, part.screen, part.displaced_n, true};
-    } else if (part.tag.is_normal()) {
-        vertex.screen_normal = part.n;
-        vertex.screen_normal_known = true;
     } else {
         vertex.code = part.code;
         vertex.displaced = part.displaced;
+        vertex.displaced_normal = part.n;
         vertex.screen = part.screen;
+        vertex.screen_normal = part.displaced_n;
+        vertex.displaced_known = vertex.screen_normal_known = true;
     }
 }
 
@@ -60,7 +61,7 @@ void FamilyTessellation::tessellate(const Joined& joined, Sent& sent) {
     family.tag = joined.taken.tag;
     family.origin = joined.taken.origin;
     family.triangle = triangle;
-    family.untested = (parts_of(triangle, Work::family) & vertex_parts) != 0;
+    family.untested = joined.untested;
     datapath::TrianglePass pass;
     pass.number = triangle.parent;
     pass.triangle = triangle;
@@ -83,22 +84,16 @@ void FamilyTessellation::tessellate(const Joined& joined, Sent& sent) {
         [&](std::uint8_t index) -> const datapath::Position& { return family.vertices[index].displaced; });
     const datapath::ChildIndices children = datapath::triangulate(triangle.split, family.second_diagonal);
     sent.edges = datapath::family_edges(children, family.untested);
-    sent.parts = parts_of(sent.edges, family.untested);
+    sent.parts = parts_of(sent.edges);
     if (family.untested)
         return;
     ++made_into_[static_cast<std::size_t>(children.count)];
-    if (triangle.split != 0)
-        inserted.write(pass);
+    inserted.write(pass);
 }
 
 TestOperands FamilyTessellation::operands(const Sent& sent, Parts part) {
     TestOperands item;
     item.tag = {sent.family.tag, static_cast<std::uint8_t>(__builtin_ctz(part)), sent.family.origin};
-    item.new_vertices = sent.family.untested ? vertex_parts : std::uint8_t{0};
-    if (item.tag.is_vertex()) {
-        item.ends[0] = EdgeEnd::of(sent.family.vertices[item.tag.index()]);
-        return item;
-    }
     const datapath::FamilyEdges::Ends& ends = sent.edges.edges[item.tag.part - first_edge_part];
     item.ends = {EdgeEnd::of(sent.family.vertices[ends.i]), EdgeEnd::of(sent.family.vertices[ends.j])};
     return item;

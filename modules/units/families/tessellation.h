@@ -14,15 +14,15 @@
 namespace tessera {
 
 /// Tessellation in a machine of families: stands before the tests. It joins a triangle that is to be split with its
-/// midpoints, chooses the diagonal, and sends the new edges of its children to the tests, each once. Of a base triangle
-/// it sends the vertices, which the Normal Test bumps, and the three edges.
+/// midpoints, chooses the diagonal, and sends the new edges of its children to the tests, each once. A base triangle is
+/// joined with its vertices; its three edges are new.
 ///
 /// In:   each triangle from Get Triangle, and its parts from Transform; the last part completes it.
 /// Out:  to Pass or Tessellate the triangle and its inserted vertices; when it has taken them, to Tessellation Tests the
 ///       edges, every n-th to each of n lanes.
 /// Arithmetic: wiring; with the `shorter` diagonal two Manhattan lengths and a compare. New vertices' generations
 ///       saturate (counted), which can only happen with the Generation Test off.
-/// Timing: the family and the first edge or vertex of each lane a latency after the last part arrived, then one per
+/// Timing: the family and the first edge of each lane a latency after the last part arrived, then one per
 ///       interval; latency 1, interval 1 by default.
 /// Capacity: one triangle that is being joined and one whose edges are being sent; triangles wait at the input from Get
 ///       Triangle until their first part arrives (triangles_ahead_of_parts).
@@ -36,7 +36,7 @@ class FamilyTessellation : public TessellatingUnit {
 
     FamilyTessellation(const sc_core::sc_module_name& name, const UnitContext& context);
 
-    /// Vertices and edges sent to the tests.
+    /// Edges sent to the tests.
     std::uint64_t parts_sent() const { return parts_sent_; }
     /// Most triangles that waited for their first part.
     std::size_t most_ahead_of_parts() const { return most_ahead_of_parts_; }
@@ -53,6 +53,7 @@ class FamilyTessellation : public TessellatingUnit {
     struct Joined {
         TakenTriangle taken;
         Parts left = 0;
+        bool untested = false;  // a base triangle
         std::array<datapath::NewVertex, 3> made{};
         sc_core::sc_time latest;
     };

@@ -46,8 +46,8 @@ void add_triangles(Equations& list, const Simulation& simulation) {
     } else {
         const std::uint64_t base = p.get_triangle.host_triangles();
         list.add("base triangles and children of tessellation = decided", base + p.tessellation.children(),
-                 counts.passes + counts.normal_passes);
-        list.add("decided = finished + taken by triangle_queue", counts.passes + counts.normal_passes,
+                 counts.passes);
+        list.add("decided = finished + taken by triangle_queue", counts.passes,
                  counts.finished + p.triangle_queue.taken());
         list.add("triangles cut by tessellation = taken by get_triangle from triangle_queue", cut,
                  p.get_triangle.queue_triangles());
@@ -64,13 +64,20 @@ void add_triangles(Equations& list, const Simulation& simulation) {
              counts.finished - counts.culled);
 }
 
-/// Vertices sent to Tessellation Tests. With three units, each receives the two ends of its edge.
+/// Vertices sent to Tessellation Tests, of families none. With three units, each receives the two ends of its edge.
 std::uint64_t bumps(const Pipeline& p, std::uint64_t vertices) {
+    if (p.family_tessellation != nullptr)
+        return 0;
     return p.tessellation_tests.size() == 1 ? vertices : 2 * vertices;
 }
 
-/// Each edge's tests: `midpoints` of edges are displaced, `normal` and `summed_height` of `edges` edges are evaluated, `by_codes` of the latter without the
-/// Summed Height Table.
+/// Reads of the normal map: of families Displace Vertex bumps the vertices, else the tests do.
+std::uint64_t normal_map_reads(const Pipeline& p, std::uint64_t vertices, std::uint64_t normal) {
+    return (p.family_tessellation != nullptr ? vertices : bumps(p, vertices)) + normal;
+}
+
+/// Each edge's tests: `midpoints` of edges are displaced, `normal` and `summed_height` of `edges` edges are evaluated,
+/// `by_codes` of the latter without the Summed Height Table.
 struct Tested {
     std::uint64_t vertices;
     std::uint64_t edges;
@@ -82,11 +89,12 @@ struct Tested {
 
 void add_reads(Equations& list, const Pipeline& p, const Tested& tested) {
     const auto& [vertices, edges, midpoints, normal, summed_height, by_codes] = tested;
-    list.add("reads of displace_vertex = vertices and midpoints", p.displace_vertex.displacement_map.reads(),
-             vertices + midpoints);
+    list.add("reads of displacement_map by displace_vertex = vertices and midpoints",
+             p.displace_vertex.displacement_map.reads(), vertices + midpoints);
     list.add("reads of displacement_map = vertices, midpoints and texels", p.displacement_map_reads(),
              vertices + midpoints + by_codes);
-    list.add("reads of normal_test = vertices and its edges", p.normal_map_reads(), bumps(p, vertices) + normal);
+    list.add("reads of normal_map = vertices and edges of normal_test", p.normal_map_reads(),
+             normal_map_reads(p, vertices, normal));
     list.add("positions of transform = vertices and midpoints", p.transform.positions(), vertices + midpoints);
 }
 
@@ -121,7 +129,7 @@ void add_timed(Equations& list, const Simulation& simulation, const Tested& test
     list.add("triangles in triangle_queue = taken by it", items(p.triangle_queue), p.triangle_queue.taken());
     list.add("triangles in lighting = finished - culled", items(p.lighting), counts.finished - counts.culled);
 
-    // geometry branch: a base triangle's vertices, midpoints, each new vertex's normal; of families a midpoint's with it
+    // geometry branch: a base triangle's vertices, midpoints, each new vertex's normal; of families the normal with it
     const std::uint64_t parts = p.get_triangle.parts_sent();
     list.add("parts in calculate_new_p = sent by get_triangle", items(p.calculate_new_p), parts);
     list.add("parts in displace_vertex = sent by get_triangle", items(p.displace_vertex), parts);
@@ -131,7 +139,7 @@ void add_timed(Equations& list, const Simulation& simulation, const Tested& test
                       : p.triangle_pass_or_tessellate->from_transform.taken(),
              parts);
     list.add("positions and normals of transform = parts", p.transform.positions() + p.transform.normals(),
-             families ? parts + midpoints : parts);
+             families ? 2 * parts : parts);
 
     // tests: vertices end in the Normal Test
     const auto tests = [&](auto figure) { return sum_over_tests(p, figure); };
@@ -165,17 +173,14 @@ void add_timed(Equations& list, const Simulation& simulation, const Tested& test
     for (const StreamInput<TestedEdge>& input : families ? p.family_pass_or_tessellate->from_tessellation_tests
                                                          : p.triangle_pass_or_tessellate->from_tessellation_tests)
         joined += input.taken();
-    const bool vertices_leave = vertices_bring_normals(simulation.setup.design);
-    list.add(vertices_leave ? "parts taken from tessellation_tests = vertices and edges"
-                            : "edges taken from tessellation_tests = edges",
-             joined, vertices_leave ? vertices + edges : edges);
+    list.add("edges taken from tessellation_tests = edges", joined, edges);
     list.add("edges collected = edges", tests([](const auto& t) { return items(t.collector()); }), edges);
 
     const Read displacement_map(p.displacement_map, p.displacement_map_cache);
     const Read normal_map(p.normal_map, p.normal_map_cache);
     const Read summed_height_table(p.summed_height_table, p.summed_height_table_cache);
     list.add("entries of displacement_map = read", displacement_map.entries(), p.displacement_map_reads());
-    list.add("entries of normal_map = read by normal_test", normal_map.entries(), p.normal_map_reads());
+    list.add("entries of normal_map = read", normal_map.entries(), p.normal_map_reads());
     list.add("entries of summed_height_table = read by summed_height_test", summed_height_table.entries(),
              p.summed_height_table_reads());
     for (const Read& read : {displacement_map, normal_map, summed_height_table})
@@ -183,7 +188,7 @@ void add_timed(Equations& list, const Simulation& simulation, const Tested& test
     list.add("requests to displacement_map = vertices, midpoints and texels", displacement_map.requests(),
              vertices + midpoints + by_codes);
     list.add("requests to normal_map = vertices and edges of normal_test", normal_map.requests(),
-             bumps(p, vertices) + normal);
+             normal_map_reads(p, vertices, normal));
     list.add("requests to summed_height_table = three an edge, if it tests", summed_height_table.requests(),
              simulation.setup.registers.tests.summed_height_test ? 3 * (summed_height - by_codes) : 0);
 

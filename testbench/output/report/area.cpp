@@ -26,9 +26,9 @@ class AreaCounter {
         unit("get_triangle", 0,
              std::uint64_t{2} * t.get_triangle.buffer * bits<datapath::Triangle>() + bits<TakenTriangle>());
         stage<GeometryOperands, BasePoint>("calculate_new_p", t.calculate_new_p);
-        stage<BasePoint, DisplacedPoint>("displace_vertex", t.displace_vertex,
-                                         (f.families ? 0 : M::normalise) + M::displace, 1,
-                                         {t.read_latency(t.displacement_map), f.displacement.bits});
+        stage<BasePoint, DisplacedPoint>(
+            "displace_vertex", t.displace_vertex, (f.families ? M::bump : M::normalise) + M::displace, 1,
+            {displace_vertex_latency(design_), f.displacement.bits + (f.families ? 3 * f.normal.bits : 0)});
         stage<DisplacedPoint, ScreenPoint>("transform", t.transform, M::transform + M::transform_normal,
                                            design_.transform_pipelines);
         edge_tests();
@@ -115,7 +115,8 @@ class AreaCounter {
         stage<NormalOperands, NormalResult>("normal_test", normal,
                                             2 * M::normalise + M::bump + (tests.highlight_test ? M::highlight_test : 0),
                                             1, {t.read_latency(t.normal_map), 3 * f.normal.bits}, normal_tests);
-        areas_.back().register_bits += copies * corners;
+        if (!f.families)
+            areas_.back().register_bits += copies * corners;
         stage<ViewOperands, ViewResult>("view_test", t.view_test, 0, 1, {}, lanes);
         if (!f.families)
             areas_.back().register_bits +=

@@ -63,9 +63,9 @@ const Equations two_triangles_functional{
     {"finished = emitted", {8, 8}},
     {"taken by the rasteriser = finished - culled", {8, 8}},
     {"edges tested = 3 a pass", {30, 30}},
-    {"reads of displace_vertex = vertices and midpoints", {36, 6 + 30}},
+    {"reads of displacement_map by displace_vertex = vertices and midpoints", {36, 6 + 30}},
     {"reads of displacement_map = vertices, midpoints and texels", {36, 6 + 30}},
-    {"reads of normal_test = vertices and its edges", {36, 6 + 30}},
+    {"reads of normal_map = vertices and edges of normal_test", {36, 6 + 30}},
     {"positions of transform = vertices and midpoints", {36, 6 + 30}},
 };
 
@@ -90,7 +90,7 @@ Equations two_triangles_timed() {
         {"edges taken from tessellation_tests = edges", {30, 30}},
         {"edges collected = edges", {30, 30}},
         {"entries of displacement_map = read", {36, 36}},
-        {"entries of normal_map = read by normal_test", {36, 36}},
+        {"entries of normal_map = read", {36, 36}},
         {"entries of summed_height_table = read by summed_height_test", {30 * 12, 30 * 12}},
         {"requests to displacement_map = vertices, midpoints and texels", {36, 6 + 30}},
         {"requests to normal_map = vertices and edges of normal_test", {36, 6 + 30}},
@@ -244,13 +244,13 @@ TEST_CASE("conservation: a read too many") {
     sc_core::sc_time delay;
     expect_change("displacement map", simulation,
                   [&] { p.displace_vertex.displacement_map.read(r.displacement_map.base, delay); },
-                  {{"reads of displace_vertex = vertices and midpoints", {1, 0}},
+                  {{"reads of displacement_map by displace_vertex = vertices and midpoints", {1, 0}},
                    {"reads of displacement_map = vertices, midpoints and texels", {1, 0}},
                    {"entries of displacement_map = read", {1, 1}}});
     expect_change("normal map", simulation,
                   [&] { p.tessellation_tests[0].normal_test.normal_map.read(r.normal_map.base, delay); },
-                  {{"reads of normal_test = vertices and its edges", {1, 0}},
-                   {"entries of normal_map = read by normal_test", {1, 1}}});
+                  {{"reads of normal_map = vertices and edges of normal_test", {1, 0}},
+                   {"entries of normal_map = read", {1, 1}}});
     expect_change(
         "Summed Height Table", simulation,
         [&] { p.tessellation_tests[0].summed_height_test.summed_height_table.read(r.summed_height_table.base, delay); },
@@ -261,7 +261,7 @@ TEST_CASE("conservation: a read too many") {
                   {{"entries of displacement_map = read", {1, 0}}});
     expect_change("normal map, past its unit", simulation,
                   [&] { read_directly(p.tessellation_tests[0].normal_test.normal_map, r.normal_map.base); },
-                  {{"entries of normal_map = read by normal_test", {1, 0}}});
+                  {{"entries of normal_map = read", {1, 0}}});
     expect_change("Summed Height Table, past its unit", simulation,
                   [&] {
                       read_directly(p.tessellation_tests[0].summed_height_test.summed_height_table,
@@ -289,9 +289,9 @@ TEST_CASE("conservation: a vertex transformed, and triangles decided, too many")
                    {"finished = base triangles + edges split", {1, 1}},
                    {"finished = emitted", {1, 1}},
                    {"taken by the rasteriser = finished - culled", {1, 1}},
-                   {"reads of displace_vertex = vertices and midpoints", {0, 3}},
+                   {"reads of displacement_map by displace_vertex = vertices and midpoints", {0, 3}},
                    {"reads of displacement_map = vertices, midpoints and texels", {0, 3}},
-                   {"reads of normal_test = vertices and its edges", {0, 3}},
+                   {"reads of normal_map = vertices and edges of normal_test", {0, 3}},
                    {"positions of transform = vertices and midpoints", {0, 3}},
                    {"positions and normals of transform = parts", {1, 0}},
                    {"triangles in get_triangle = decided", {0, 1}},
@@ -334,9 +334,9 @@ TEST_CASE("conservation: a vertex transformed, and triangles decided, too many")
                    {"triangles cut by tessellation + finished = decided", {1, 1}},
                    {"finished = base triangles + edges split", {0, 1}},
                    {"edges tested = 3 a pass", {3, 3}},
-                   {"reads of displace_vertex = vertices and midpoints", {0, 3}},
+                   {"reads of displacement_map by displace_vertex = vertices and midpoints", {0, 3}},
                    {"reads of displacement_map = vertices, midpoints and texels", {0, 3}},
-                   {"reads of normal_test = vertices and its edges", {0, 3}},
+                   {"reads of normal_map = vertices and edges of normal_test", {0, 3}},
                    {"positions of transform = vertices and midpoints", {0, 3}},
                    {"triangles in get_triangle = decided", {0, 1}},
                    {"triangles in pass_or_tessellate = decided", {0, 1}},

@@ -183,7 +183,7 @@ TEST_CASE("widths of items in the default formats, by hand") {
     CHECK(item_bits<datapath::Triangle>(formats, 6) == 1572);
     CHECK(item_bits<TriangleToLight>(formats, 6) == 3 * (81 + 48 + 50));
     CHECK(item_bits<QueueLevel>(formats, 6) == 1);
-    CHECK(item_bits<Family>(formats, 6) == 6 + 6 * 522 + 2 + 3 + 1 + 3 + 2);
+    CHECK(item_bits<Family>(formats, 6) == 6 + 6 * 522 + 2 + 3 + 3 + 2);
 }
 
 // One bit more wherever tests are named: in split_by, and in each edge's tests.

@@ -56,14 +56,15 @@ TEST_CASE("area: the datapath's README says how often each function multiplies")
     CHECK(multiplications("highlight_test") == M::highlight_test);
 }
 
-// A screen point has 48 bits more, N' or N's of a midpoint, 16 of its code, and one of a longer tag.
+// A screen point has 48 bits more, N' or N's, 16 of its code, one of a vertex's handedness, and one of a longer tag.
 TEST_CASE("area: a machine of families") {
     auto units = area("hardware.design=modern");
-    CHECK(units["displace_vertex"].multipliers == 4);
-    CHECK(units["total"].multipliers == 4 + 24 + 51 + 12);
+    CHECK(units["displace_vertex"].multipliers == 4 + 27);
+    CHECK(units["displace_vertex"].register_bits == (204 + 50) + 7 * (300 + 66 + 16 + 48));
+    CHECK(units["total"].multipliers == 31 + 24 + 51 + 12);
     CHECK(units["triangle_queue"].memory_bits == 100 * (1572 + 3 * 16 + 3 + 9 * 48));
-    CHECK(units["transform"].register_bits == (300 + 65) + 20 * (381 + 65));
-    CHECK(units["total"].ports == 2 + 1 + 16);
+    CHECK(units["transform"].register_bits == (300 + 66) + 20 * (381 + 66));
+    CHECK(units["total"].ports == 2 + 2 + 16);
     auto two_tests = area("hardware.design=modern hardware.normal_tests=2");
     CHECK(two_tests["normal_test"].multipliers == 2 * 51);
     auto one_lane = area("hardware.design=modern hardware.edge_lanes=1");

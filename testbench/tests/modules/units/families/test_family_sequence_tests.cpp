@@ -23,12 +23,8 @@ namespace {
 
 constexpr unsigned lanes = 3, normal_tests = 2;
 constexpr unsigned combinations = 64;  // of the six tests
-constexpr unsigned base_triangles = 12, families = 40;
+constexpr unsigned families = 40;
 
-/// The first `base_triangles` triangles are base triangles.
-bool of_base_triangle(const PartTag& tag) {
-    return tag.triangle < base_triangles;
-}
 unsigned says(const PartTag& tag) {
     return (tag.triangle * 9 + tag.part) % combinations;
 }
@@ -43,7 +39,7 @@ unsigned expected_evaluations(const PartTag& tag) {
 
 NormalResult answer(const NormalOperands& part) {
     NormalResult result{part.tag};
-    result.displaced_n_i = {static_cast<std::int32_t>(part.tag.triangle), part.tag.part, 7};
+    result.displaced_n = {static_cast<std::int32_t>(part.tag.triangle), part.tag.part, 7};
     result.normal = (says(part.tag) & datapath::normal_bit) != 0;
     result.highlight = (says(part.tag) & datapath::highlight_bit) != 0;
     return result;
@@ -144,22 +140,16 @@ struct Bench {
         return registers;
     }
 
-    /// Every part to its lane, a base triangle's vertices first.
+    /// Every edge to its lane; every third triangle is a base triangle, with three edges.
     void add(unsigned triangle) {
         PartTag tag;
         tag.triangle = triangle;
-        const bool base = of_base_triangle(tag);
-        for (tag.part = base ? 0 : first_edge_part; tag.part <= (base ? 8u : last_edge_part); ++tag.part) {
-            if (tag.is_normal())
-                continue;
-            const unsigned number = tag.is_vertex() ? tag.part : tag.part - first_edge_part;
-            Lane& its = *lane[number % lanes];
+        const unsigned last = triangle % 3 == 0 ? first_edge_part + 2 : last_edge_part;
+        for (tag.part = first_edge_part; tag.part <= last; ++tag.part) {
+            Lane& its = *lane[(tag.part - first_edge_part) % lanes];
             NormalOperands operands;
             operands.tag = tag;
-            operands.new_vertices = base ? vertex_parts : std::uint8_t{0};
             its.normal_operands.items.push_back(operands);
-            if (tag.is_vertex())
-                continue;
             const unsigned tests = says(tag);
             its.height_operands.items.push_back({tag, {}, {}, {}});
             its.tex_coord_results.items.push_back({tag,
@@ -185,7 +175,7 @@ Timing timing_of(unsigned places, unsigned results, const StallParameters& stall
 }
 
 const CaseTable rows(
-    "families, Sequence Tests: each part once, with the tests its decision depends on, ",
+    "families, Sequence Tests: each edge once, with the tests its decision depends on, ",
     {Row{"32 places", timing_of(32, 4, {})},
      {"one place", timing_of(1, 1, {})},
      {"two places, random stalls", timing_of(2, 2, {5, 400, 30})},
@@ -199,35 +189,21 @@ const CaseTable rows(
             for (const TestedEdge& part : lane->sink.items) {
                 CAPTURE(part.tag.triangle, part.tag.part);
                 CHECK(++come[std::make_pair(part.tag.triangle, part.tag.part)] == 1);
-                const datapath::Direction n{static_cast<std::int32_t>(part.tag.triangle), part.tag.part, 7};
-                if (part.tag.is_vertex()) {
-                    CHECK(part.displaced_n_i == n);
-                    ++evaluated_normal;
-                    continue;
-                }
                 const unsigned evaluated = expected_evaluations(part.tag);
                 CHECK(part.found.evaluated == evaluated);
                 CHECK(part.found.tests == (says(part.tag) & evaluated));
                 CHECK(part.found.texture == datapath::TexCoord{part.tag.triangle, part.tag.part});
-                evaluated_normal += (evaluated & datapath::normal_bit) != 0;
+                const bool normal = (evaluated & datapath::normal_bit) != 0;
+                const datapath::Direction n{static_cast<std::int32_t>(part.tag.triangle), part.tag.part, 7};
+                CHECK(part.found.displaced_normal == (normal ? n : datapath::Direction{}));
+                evaluated_normal += normal;
                 evaluated_height += (evaluated & datapath::summed_height_bit) != 0;
             }
         }
-        CHECK(come.size() == base_triangles * 6 + (families - base_triangles) * 9);
+        CHECK(come.size() == 14 * 3 + (families - 14) * 9);
         CHECK(bench.first_normal_test.asked.size() + bench.second_normal_test.asked.size() == evaluated_normal);
         CHECK(bench.second_normal_test.asked.size() > 10);
         CHECK(bench.summed_height_test.asked.size() == evaluated_height);
-        for (const PartTag& tag : bench.second_normal_test.asked)
-            CHECK_FALSE(of_base_triangle(tag));
-        // The Normal Test keeps the corners of four base triangles: no edge of one comes after the vertices of a
-        // fourth after it.
-        Tag newest = 0;
-        for (const PartTag& tag : bench.first_normal_test.asked) {
-            if (tag.is_vertex() && tag.triangle > newest)
-                newest = tag.triangle;
-            if (of_base_triangle(tag))
-                CHECK(tag.triangle + base_triangles_in_test > newest);
-        }
         CHECK(bench.unit.describe_contents().empty());
         CHECK(bench.unit.idle());
     });
