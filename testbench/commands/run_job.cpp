@@ -26,6 +26,7 @@
 #include "testbench/machine/fingerprint.h"
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/simulation.h"
+#include "testbench/machine/totals.h"
 #include "testbench/output/picture/render_run.h"
 #include "testbench/output/report/conformance_report.h"
 #include "testbench/output/report/obj_writer.h"
@@ -79,8 +80,9 @@ void write_run_folder(const std::filesystem::path& folder, const Job& job, const
     const MeshUnits units{setup.registers.formats, setup.registers.map, setup.model_scale.scale,
                           setup.model_scale.centre};
     if (job.mode == Mode::timed) {
-        write_file(folder / "timing.txt", timing_text(simulation.pipeline, simulation.cycles()));
-        write_file(folder / "queue_levels.csv", queue_levels_csv(simulation.pipeline.triangle_queue.history()));
+        write_file(folder / "timing.txt", timing_text(simulation));
+        write_file(folder / "queue_levels.csv",
+                   queue_levels_csv(simulation.last_machine().pipeline.triangle_queue.history()));
     }
     progress.show("writing the mesh", 0.87);
     if (job.output.ply)
@@ -146,22 +148,23 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
     if (job.check.golden) {
         golden.emplace(setup);
         scoreboard = std::make_unique<Scoreboard>(setup.registers, *golden);
-        simulation.pipeline.pass_or_tessellate.decided.bind(*scoreboard);
-        simulation.pipeline.tessellation.inserted.bind(*scoreboard);
+        simulation.observe_decisions(*scoreboard);
     }
     std::unique_ptr<TransportCheck> work;
     if (job.check.work) {
         work = std::make_unique<TransportCheck>(setup.registers, setup.base_triangles);
-        simulation.pipeline.pass_or_tessellate.decided.bind(*work);
-        simulation.pipeline.tessellation.inserted.bind(*work);
-        simulation.pipeline.pass_or_tessellate.finished.bind(*work);
-        simulation.rasteriser.taken.bind(*work);
+        simulation.observe_decisions(*work);
+        for (const auto& machine : simulation.machines) {
+            machine->pipeline.pass_or_tessellate.finished.bind(*work);
+            machine->rasteriser.taken.bind(*work);
+        }
     }
     TexelBorders borders(setup.registers.formats);
-    simulation.pipeline.pass_or_tessellate.decided.bind(borders);
+    for (const auto& machine : simulation.machines)
+        machine->pipeline.pass_or_tessellate.decided.bind(borders);
     simulation.monitor.on_progress([&](std::size_t triangles) {
         progress.show(fmt::format("simulating, {} triangles", triangles),
-                      0.6 * static_cast<double>(simulation.host.sent()) / static_cast<double>(simulation.host.total()));
+                      0.6 * static_cast<double>(simulation.sent()) / static_cast<double>(setup.base_triangles.size()));
     });
 
     AtomicSet files;
@@ -213,7 +216,7 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
     }
     if (job.check.end_to_end) {
         // Golden's own run saturates nothing: with values that did there is nothing to judge it by.
-        const datapath::Saturations saturated = simulation.pipeline.saturations();
+        const datapath::Saturations saturated = Totals(simulation).saturations;
         const bool judged = saturated.displaced_position + saturated.screen_position + saturated.view_distance == 0;
         checks.end_to_end = compare_end_to_end(
             setup, *golden_job, checks.setup->base_triangles, mesh,

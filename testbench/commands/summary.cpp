@@ -6,6 +6,7 @@
 
 #include "modules/datapath/widths.h"
 #include "testbench/common/grouped_digits.h"
+#include "testbench/machine/totals.h"
 #include "testbench/output/report/area.h"
 #include "testbench/output/report/saturation_figures.h"
 #include "testbench/output/report/timing_report.h"
@@ -94,24 +95,24 @@ std::string checks_rows(const Checks& checks) {
 
 /// Repeated work, beside what the mesh needs.
 std::string work_rows(const Simulation& simulation, const MeshCounts& mesh) {
-    const Pipeline& p = simulation.pipeline;
+    const Totals totals(simulation);
+    const std::uint64_t edges = totals.counts.edges_tested;
     const double tests =
-        mesh.tested_edges() == 0 ? 0 : static_cast<double>(p.edges_tested()) / static_cast<double>(mesh.tested_edges());
-    const Decisions::Evaluated& evaluated = simulation.decisions.evaluated();
-    const bool all = evaluated.normal == p.edges_tested() && evaluated.summed_height == p.edges_tested();
+        mesh.tested_edges() == 0 ? 0 : static_cast<double>(edges) / static_cast<double>(mesh.tested_edges());
+    const Decisions::Evaluated& evaluated = totals.evaluated;
+    const bool all = evaluated.normal == edges && evaluated.summed_height == edges;
     return (all ? ""
                 : row("tests evaluated", fmt::format("normal {}, summed height {}", count(evaluated.normal),
                                                      count(evaluated.summed_height)))) +
            row("distinct edges",
                fmt::format("{}, each tested {:.1f} times on average", count(mesh.tested_edges()), tests)) +
-           row("distinct vertices", fmt::format("{}; {} computed, {} of them discarded, and {} normals transformed",
-                                                count(mesh.vertices), count(p.transform.positions()),
-                                                count(thrown_away_vertices(p, simulation.setup.base_triangles.size())),
-                                                count(p.transform.normals())));
+           row("distinct vertices",
+               fmt::format("{}; {} computed, {} of them discarded, and {} normals transformed", count(mesh.vertices),
+                           count(totals.positions), count(totals.thrown_away_vertices()), count(totals.normals)));
 }
 
 std::string timing_rows(const Simulation& simulation) {
-    const Pipeline& p = simulation.pipeline;
+    const Totals totals(simulation);
     const auto per = [&](std::uint64_t count) {
         return count == 0 ? 0.0 : static_cast<double>(simulation.cycles()) / static_cast<double>(count);
     };
@@ -119,29 +120,35 @@ std::string timing_rows(const Simulation& simulation) {
     std::string text =
         row("cycles",
             fmt::format("{}: {:.1f} per finished triangle, {:.1f} per pass, {:.1f} per edge; {:.3g} ms at {:.4g} MHz",
-                        count(simulation.cycles()), per(p.pass_or_tessellate.counts().finished),
-                        per(p.pass_or_tessellate.counts().passes), per(p.edges_tested()),
-                        static_cast<double>(simulation.cycles()) * period * 1e3, 1e-6 / period));
-    text += row("bottleneck", bottleneck_text(p, simulation.cycles()));
+                        count(simulation.cycles()), per(totals.counts.finished), per(totals.counts.passes),
+                        per(totals.counts.edges_tested), static_cast<double>(simulation.cycles()) * period * 1e3,
+                        1e-6 / period));
+    text += row("bottleneck", bottleneck_text(simulation.last_machine().pipeline, simulation.cycles()));
     const UnitArea area = total_area(area_of(simulation));
     text += row("hardware", fmt::format("{} multipliers, {} bits of registers, {} bits of memory with {} table ports",
                                         count(area.multipliers), count(area.register_bits), count(area.memory_bits),
                                         count(area.ports)));
     std::uint64_t fetched = 0;
     std::string rates;
-    for (const TableCache* cache : p.caches()) {
-        fetched += cache->bytes_fetched();
-        rates += fmt::format(", {} {:.1f} %", unit_name(*cache), percent(cache->hits(), cache->entries_read()));
+    for (std::size_t k = 0; k < simulation.pipeline.caches().size(); ++k) {
+        std::uint64_t hits = 0, read = 0;
+        for (const auto& machine : simulation.machines) {
+            const TableCache& cache = *machine->pipeline.caches()[k];
+            fetched += cache.bytes_fetched();
+            hits += cache.hits();
+            read += cache.entries_read();
+        }
+        rates += fmt::format(", {} {:.1f} %", simulation.pipeline.caches()[k]->basename(), percent(hits, read));
     }
     if (!rates.empty())
         text +=
             row("fetched", fmt::format("{} bytes of tables, {:.1f} per finished triangle; hits of {}", count(fetched),
-                                       static_cast<double>(fetched) / static_cast<double>(std::max<std::uint64_t>(
-                                                                          1, p.pass_or_tessellate.counts().finished)),
+                                       static_cast<double>(fetched) /
+                                           static_cast<double>(std::max<std::uint64_t>(1, totals.counts.finished)),
                                        rates.substr(2)));
-    if (p.triangle_queue.spilled() > 0)
-        text += row("spilled", fmt::format("{} triangles, at most {} on chip", count(p.triangle_queue.spilled()),
-                                           count(p.triangle_queue.on_chip_high_water_mark())));
+    if (totals.spilled > 0)
+        text += row("spilled", fmt::format("{} triangles, at most {} on chip", count(totals.spilled),
+                                           count(totals.most_queued_on_chip)));
     return text;
 }
 
@@ -156,12 +163,12 @@ std::string found_text(const std::vector<FoundValue>& found) {
 
 std::string summary(const MachineSetup& setup, const Simulation& simulation, const MeshCounts& mesh,
                     const Checks& checks, double seconds) {
-    const Pipeline& p = simulation.pipeline;
-    const auto& counts = p.pass_or_tessellate.counts();
-    const Decisions::Counts& decided = simulation.decisions.counts();
-    const std::uint64_t edges = p.edges_tested();
+    const Totals totals(simulation);
+    const DecidingUnit::Counts& counts = totals.counts;
+    const Decisions::Counts& decided = totals.decided;
+    const std::uint64_t edges = counts.edges_tested;
     const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
-    const std::uint64_t table_reads = p.summed_height_table_reads();
+    const std::uint64_t table_reads = totals.summed_height_table_reads;
 
     std::string text;
     text += row("triangles",
@@ -180,15 +187,15 @@ std::string summary(const MachineSetup& setup, const Simulation& simulation, con
                             count(decided.stopped_by_view_alone), count(decided.stopped_by_tex_coord_alone),
                             count(decided.stopped_by_generation_alone), count(decided.stopped_by_several)));
     text += work_rows(simulation, mesh);
-    text += row("triangle queue", fmt::format("at most {} triangles waiting, {} bits each",
-                                              count(p.triangle_queue.high_water_mark()), widths.triangle));
+    text += row("triangle queue",
+                fmt::format("at most {} triangles waiting, {} bits each", count(totals.most_queued), widths.triangle));
     text +=
         row("summed height table",
             fmt::format("{} bytes, {} bit entries{}; {} reads, {:.1f} per edge",
                         count(setup.registers.summed_height_table.bytes()), setup.registers.formats.summed_height.bits,
                         setup.summed_height_bits_chosen ? " (chosen)" : "", count(table_reads),
                         edges == 0 ? 0.0 : static_cast<double>(table_reads) / static_cast<double>(edges)));
-    const std::vector<SaturationFigure> saturations = saturation_figures(setup, p.saturations());
+    const std::vector<SaturationFigure> saturations = saturation_figures(setup, totals.saturations);
     text += row("saturations", saturations_text(saturations));
     text += checks_rows(checks);
     const bool timed = setup.design.transport == Transport::non_blocking;

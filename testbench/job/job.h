@@ -145,6 +145,7 @@ struct Job {
         std::int64_t edge_lanes = 1;      // of families: cheap tests side by side
         std::int64_t normal_tests = 1;    // likewise: that share the lanes' edges
         std::int64_t transform_pipelines = 1;
+        std::int64_t machines = 1;                      // side by side
         bool direct_memory = true;                      // functional mode reads memories through DMI
         std::array<double, 3> light{0.3, -0.4, 0.866};  // direction towards the light, world space
         double ambient = 0.2;

@@ -428,6 +428,7 @@ std::vector<KeyTable> declare_keys() {
         key.add("edge_lanes", &Hardware::edge_lanes, "-", between(1, 9), "Timed mode, of families with the cheap tests first: edges a cycle into the cheap tests");
         key.add("normal_tests", &Hardware::normal_tests, "-", between(1, 9), "Timed mode, likewise: Normal Tests, which share the lanes' edges");
         key.add("transform_pipelines", &Hardware::transform_pipelines, "-", between(1, 16), "Timed mode: Transform pipelines that take turns");
+        key.add("machines", &Hardware::machines, "-", between(1, 16), "Whole machines side by side, each with its own tables and off-chip memory; base triangle k goes to machine k modulo their number");
         key.add("direct_memory", &Hardware::direct_memory, "Functional mode reads the memories through DMI");
         key.add("light", &Hardware::light, "-", coordinate_range, "Direction towards the light, world space, of any length");
         key.add("ambient", &Hardware::ambient, "full scale", between(0, 1), "Light that falls on every surface");
@@ -454,8 +455,8 @@ std::vector<KeyTable> declare_keys() {
         key.add("ply", &Output::ply, "Write the mesh as binary PLY");
         key.add("obj", &Output::obj, "Write the mesh as OBJ too: text, some five times as large as mesh.ply");
         key.add("picture", &Output::picture, "Write picture.png");
-        key.add("vcd", &Output::vcd, "Timed mode: write waveforms, trace.vcd");
-        key.add("timeline", &Output::timeline, "Timed mode: write activity per unit in the Chrome trace format, timeline.json");
+        key.add("vcd", &Output::vcd, "Timed mode: write waveforms, trace.vcd; with several machines, of the first");
+        key.add("timeline", &Output::timeline, "Timed mode: write activity per unit in the Chrome trace format, timeline.json; with several machines, of the first");
         key.add("trace_from", &Output::trace_from, "cycles", between(0, most_trace), "First cycle of waveforms and timeline");
         key.add("trace_to", &Output::trace_to, "cycles", between(0, most_trace), "Last cycle of waveforms and timeline");
         key.add("trace_units", &Output::trace_units, KeyKind::text, "Waveforms of those units only whose name contains one of these words; empty: all");

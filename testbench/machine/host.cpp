@@ -39,8 +39,8 @@ class TableRow {
 
 }  // namespace
 
-Host::Host(const sc_core::sc_module_name& name, const MachineSetup& setup, CycleScheduler& clock)
-    : sc_module(name), setup_(setup), clock_(clock) {
+Host::Host(const sc_core::sc_module_name& name, const MachineSetup& setup, CycleScheduler& clock, std::size_t machine)
+    : sc_module(name), setup_(setup), machine_(machine), clock_(clock) {
     clock.attach(*this);
     to_get_triangle.clocked_by(clock, *this);
     SC_HAS_PROCESS(Host);
@@ -105,16 +105,17 @@ void Host::send_again() {
 }
 
 void Host::step() {
-    while (sent_ < setup_.base_triangles.size() && to_get_triangle.free()) {
-        offered_ = setup_.base_triangles[sent_++];
+    while (sent_ < total() && to_get_triangle.free()) {
+        offered_ = next();
+        ++sent_;
         to_get_triangle.send(offered_);
     }
 }
 
 void Host::send_triangles() {
     for (;;) {
-        for (const datapath::Triangle& base : setup_.base_triangles) {
-            datapath::Triangle triangle = base;
+        while (sent_ < total()) {
+            datapath::Triangle triangle = next();
             sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
             to_get_triangle->b_transport(triangle, delay);
             ++sent_;

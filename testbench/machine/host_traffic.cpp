@@ -31,8 +31,9 @@ std::vector<std::uint32_t> register_words(const datapath::Registers& registers) 
 
 HostTraffic first_frame_traffic(const MachineSetup& setup) {
     const datapath::Registers& r = setup.registers;
-    return {base_mesh_bytes(setup), r.displacement_map.bytes(), r.normal_map.bytes(), r.summed_height_table.bytes(),
-            register_words(r).size() * sizeof(std::uint32_t)};
+    const std::uint64_t n = setup.machines;
+    return {base_mesh_bytes(setup), n * r.displacement_map.bytes(), n * r.normal_map.bytes(),
+            n * r.summed_height_table.bytes(), n * register_words(r).size() * sizeof(std::uint32_t)};
 }
 
 HostTraffic next_frame_traffic(const MachineSetup& before, const MachineSetup& now) {
@@ -48,7 +49,7 @@ HostTraffic next_frame_traffic(const MachineSetup& before, const MachineSetup& n
                                      words = register_words(now.registers);
     traffic.registers = 0;
     for (std::size_t k = 0; k < words.size(); ++k)
-        traffic.registers += words[k] == old_words[k] ? 0 : sizeof(std::uint32_t);
+        traffic.registers += words[k] == old_words[k] ? 0 : now.machines * sizeof(std::uint32_t);
     return traffic;
 }
 

@@ -133,6 +133,7 @@ MachineSetup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& m
     check_registers(registers);
 
     setup.design = make_design(job);
+    setup.machines = static_cast<unsigned>(job.hardware.machines);
     return setup;
 }
 

@@ -26,6 +26,7 @@ struct InputSaturations {
 struct MachineSetup {
     datapath::Registers registers;
     Design design;
+    unsigned machines = 1;  ///< of that design, side by side; base triangle b goes to machine b mod so many
     QuantisedMap map;
     std::vector<datapath::Triangle> base_triangles;
     ModelScale model_scale;

@@ -10,13 +10,16 @@
 
 namespace tessera {
 
-/// Records every finished triangle of Pass or Tessellate. Stops the simulation at `limit` triangles.
+/// Records every finished triangle of Pass or Tessellate, of all machines. Stops the simulation at `limit` triangles.
 class MeshMonitor : public sc_core::sc_object, public tlm::tlm_analysis_if<datapath::Triangle> {
   public:
     MeshMonitor(const char* name, bool back_face_culling, std::uint64_t limit)
         : sc_object(name), back_face_culling_(back_face_culling), limit_(limit) {}
 
-    void write(const datapath::Triangle& triangle) override {
+    void write(const datapath::Triangle& triangle) override { record(triangle, nullptr); }
+
+    /// decisions: of the triangle's machine, for its tags; null: they are the machine's own.
+    void record(const datapath::Triangle& triangle, const Decisions* decisions) {
         if (mesh.triangles.size() == limit_) {
             if (!limit_reached_)
                 sc_core::sc_stop();
@@ -28,12 +31,9 @@ class MeshMonitor : public sc_core::sc_object, public tlm::tlm_analysis_if<datap
             progress_(mesh.triangles.size());
         mesh.triangles.push_back(EmittedTriangle::from(
             triangle, back_face_culling_ && datapath::faces_away(v[0].screen, v[1].screen, v[2].screen)));
-        if (decisions_ != nullptr)
-            decisions_->complete_tags(triangle, mesh.triangles.back());
+        if (decisions != nullptr)
+            decisions->complete_tags(triangle, mesh.triangles.back());
     }
-
-    /// For the triangles' tags; without it they are the machine's own. `decisions` must outlive this.
-    void tags_from(const Decisions& decisions) { decisions_ = &decisions; }
 
     /// `progress` is called occasionally with the number of triangles so far.
     void on_progress(std::function<void(std::size_t)> progress) { progress_ = std::move(progress); }
@@ -46,7 +46,6 @@ class MeshMonitor : public sc_core::sc_object, public tlm::tlm_analysis_if<datap
     static constexpr std::size_t progress_step = 16384;
 
     std::function<void(std::size_t)> progress_;
-    const Decisions* decisions_ = nullptr;
     bool back_face_culling_;
     std::uint64_t limit_;
     bool limit_reached_ = false;

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <new>
 #include <string_view>
 
@@ -9,25 +10,46 @@
 
 namespace tessera {
 
+namespace {
+
+std::vector<std::unique_ptr<HostedMachine>> make_machines(const MachineSetup& setup, MeshMonitor& monitor,
+                                                          UnitFactory* units) {
+    std::vector<std::unique_ptr<HostedMachine>> machines;
+    for (std::size_t number = 0; number < setup.machines; ++number)
+        machines.push_back(std::make_unique<HostedMachine>(setup, number, monitor, units));
+    return machines;
+}
+
+}  // namespace
+
 Simulation::Simulation(const MachineSetup& its_setup, std::uint64_t triangle_limit,
                        std::uint64_t cycles_without_progress, UnitFactory* units)
     : setup(its_setup),
-      pipeline("tessera", setup.registers, setup.design, units),
-      host("host", setup, pipeline.clock),
-      rasteriser("rasteriser", pipeline.clock, setup.design.timing.stalls),
-      decisions(setup),
-      monitor("mesh_monitor", setup.registers.back_face_culling, triangle_limit) {
-    if (units != nullptr)
-        units->made(host);
-    host.to_get_triangle.bind(pipeline.get_triangle.from_host);
-    host.displacement_map.bind(pipeline.displacement_map.host);
-    host.normal_map.bind(pipeline.normal_map.host);
-    host.summed_height_table.bind(pipeline.summed_height_table.host);
-    pipeline.lighting.to_rasteriser.bind(rasteriser.from_lighting);
-    pipeline.pass_or_tessellate.decided.bind(decisions);
-    pipeline.pass_or_tessellate.finished.bind(monitor);
-    monitor.tags_from(decisions);
-    pipeline.clock.halt_without_progress_for(cycles_without_progress);
+      monitor("mesh_monitor", setup.registers.back_face_culling, triangle_limit),
+      machines(make_machines(setup, monitor, units)) {
+    for (const auto& machine : machines)
+        machine->pipeline.clock.halt_without_progress_for(cycles_without_progress);
+}
+
+void Simulation::observe_decisions(tlm::tlm_analysis_if<datapath::TrianglePass>& sink) {
+    for (const auto& machine : machines) {
+        machine->pipeline.pass_or_tessellate.decided.bind(sink);
+        machine->pipeline.tessellation.inserted.bind(sink);
+    }
+}
+
+const HostedMachine& Simulation::last_machine() const {
+    const auto earlier = [](const auto& a, const auto& b) {
+        return a->pipeline.clock.last_cycle() < b->pipeline.clock.last_cycle();
+    };
+    return **std::max_element(machines.begin(), machines.end(), earlier);
+}
+
+std::uint64_t Simulation::sent() const {
+    std::uint64_t sum = 0;
+    for (const auto& machine : machines)
+        sum += machine->host.sent();
+    return sum;
 }
 
 namespace {
@@ -48,10 +70,12 @@ void start() {
 std::string Simulation::run() {
     start();
     if (setup.design.transport == Transport::non_blocking) {
-        cycles_ = pipeline.clock.last_cycle() + 1;
-        for (Unit* unit : pipeline.units())
-            unit->activity().finish(cycles_);
-        pipeline.triangle_queue.history().finish(cycles_);
+        cycles_ = last_machine().pipeline.clock.last_cycle() + 1;
+        for (const auto& machine : machines) {
+            for (Unit* unit : machine->pipeline.units())
+                unit->activity().finish(cycles_);
+            machine->pipeline.triangle_queue.history().finish(cycles_);
+        }
     }
     if (monitor.limit_reached())
         throw ResourceError(fmt::format(
@@ -60,32 +84,44 @@ std::string Simulation::run() {
             "{}, or raise the limit",
             monitor.mesh.triangles.size(),
             setup.registers.tests.generation_test ? "lower tests.generation_limit" : "set tests.generation = true"));
-    if (pipeline.clock.out_of_time())
+    for (const auto& machine : machines)
+        check_limits(machine->pipeline);
+    return stuck();
+}
+
+void Simulation::check_limits(const Pipeline& machine) const {
+    if (machine.clock.out_of_time())
         throw ResourceError(
             fmt::format("timing.clock_period = {} ps: after cycle {} simulated time ends, at 2^64 - 1 ps; lower the "
                         "period, which changes no figure but those in seconds, or the latencies under [timing]",
-                        setup.design.timing.cycle_picoseconds, pipeline.clock.last_cycle()));
+                        setup.design.timing.cycle_picoseconds, machine.clock.last_cycle()));
     const bool fifo = setup.design.queue.order == TriangleOrder::fifo;
-    if (pipeline.triangle_queue.overflowed())
+    if (machine.triangle_queue.overflowed())
         throw ResourceError(
             fmt::format("hardware.queue_capacity = {}: in cycle {} a triangle found the Triangle Queue full; raise the "
                         "capacity, or set {}hardware.queue_overflow = \"spill\"",
-                        setup.design.queue.capacity, pipeline.clock.last_cycle(),
+                        setup.design.queue.capacity, machine.clock.last_cycle(),
                         fifo ? "hardware.queue_order = \"lifo\" or " : ""));
-    if (pipeline.triangle_queue.off_chip_memory_full())
+    if (machine.triangle_queue.off_chip_memory_full())
         throw ResourceError(fmt::format(
             "hardware.off_chip_triangles = {}: in cycle {} a full Triangle Queue (hardware.queue_capacity = "
             "{}) had more to spill; raise either{}",
-            setup.design.queue.off_chip_triangles, pipeline.clock.last_cycle(), setup.design.queue.capacity,
+            setup.design.queue.off_chip_triangles, machine.clock.last_cycle(), setup.design.queue.capacity,
             fifo ? ", or set hardware.queue_order = \"lifo\", which needs far fewer" : ""));
-    return drained() ? std::string{} : stuck();
-}
-
-bool Simulation::drained() const {
-    return host.idle() && pipeline.idle();
 }
 
 std::string Simulation::stuck() const {
+    std::string text;
+    for (const auto& machine : machines) {
+        if (!machine->drained())
+            text += stuck(*machine, setup);
+    }
+    return text;
+}
+
+std::string Simulation::stuck(const HostedMachine& machine, const MachineSetup& setup) {
+    const auto& pipeline = machine.pipeline;
+    const auto& host = machine.host;
     const bool timed = setup.design.transport == Transport::non_blocking;
     const CycleScheduler& clock = pipeline.clock;
     std::string text =

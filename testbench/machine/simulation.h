@@ -1,14 +1,15 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <string>
+#include <vector>
 
-#include "testbench/machine/host.h"
-#include "testbench/machine/mesh_monitor.h"
-#include "testbench/machine/rasteriser.h"
+#include "testbench/machine/hosted_machine.h"
 
 namespace tessera {
 
-/// The machine with host, rasteriser and mesh monitor. One per process (SystemC elaborates once).
+/// A run: the machine with host, rasteriser and mesh monitor, or several machines side by side, which share nothing but
+/// the base mesh. One per process (SystemC elaborates once).
 struct Simulation {
     /// `setup` must outlive the simulation. triangle_limit: see MeshMonitor. cycles_without_progress: in timed mode,
     /// the limit on cycles without a decided triangle; 0: none.
@@ -24,16 +25,27 @@ struct Simulation {
     /// Timed mode: cycles from the first to the end of the last with any activity.
     std::uint64_t cycles() const { return cycles_; }
 
+    /// Base triangles sent so far, by all hosts.
+    std::uint64_t sent() const;
+    /// The machine that was last to finish.
+    const HostedMachine& last_machine() const;
+    /// Binds `sink` to what each machine's Pass or Tessellate decides and its Tessellation inserts.
+    void observe_decisions(tlm::tlm_analysis_if<datapath::TrianglePass>& sink);
+
     const MachineSetup& setup;
-    Pipeline pipeline;
-    Host host;
-    Rasteriser rasteriser;
-    Decisions decisions;
     MeshMonitor monitor;
+    const std::vector<std::unique_ptr<HostedMachine>> machines;
+
+    /// The machine, or the first of several.
+    Pipeline& pipeline = machines.front()->pipeline;
+    Host& host = machines.front()->host;
+    Rasteriser& rasteriser = machines.front()->rasteriser;
+    Decisions& decisions = machines.front()->decisions;
 
   private:
-    bool drained() const;
+    void check_limits(const Pipeline& machine) const;
     std::string stuck() const;
+    static std::string stuck(const HostedMachine& machine, const MachineSetup& setup);
 
     std::uint64_t cycles_ = 0;
 };

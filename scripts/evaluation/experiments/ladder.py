@@ -18,7 +18,10 @@ DESIGNS = {
     "families": {**BANKS, "hardware.work": "family", "hardware.queue_order": "lifo", "hardware.queue_capacity": 256,
                  "timing.pass_or_tessellate_buffer": 32},
     "three lanes": {"hardware.design": "modern"},
-    "two Normal Tests": {"hardware.design": "modern", "hardware.normal_tests": 2, "timing.normal_map_ports": 2},
+    "two Normal Tests": {"hardware.design": "modern", "hardware.normal_tests": 2, "timing.normal_map_ports": 3},
+    "four machines of two": {"hardware.design": "modern", "hardware.normal_tests": 2, "timing.normal_map_ports": 3,
+                             "hardware.machines": 4},
+    "eight machines": {"hardware.design": "modern", "hardware.machines": 8},
 }
 MODERN = "three lanes"
 
@@ -44,6 +47,7 @@ def measure(study):
                          figures["useful_work.summed_height_tests"] / triangles,
                          figures["summed_height_table.reads"] / triangles, figures["area.total_multipliers"],
                          figures["area.total_register_bits"], figures["area.triangle_queue_memory_bits"],
+                         figures["area.total_memory_bits"] - figures["area.triangle_queue_memory_bits"],
                          figures["area.total_ports"], figures["timing.bottleneck"]])
         if len(meshes) != 1:
             different.append(job)
@@ -61,9 +65,9 @@ def measure(study):
                      "bits of registers and of the Triangle Queue", "cycles per finished triangle", log_x=True, log_y=True),
         "Cycles against area, one mark a design in the order of the table"))
     section.tables.append(Table(
-        "ladder", "Per finished triangle, each design with what those above it have (final edges apart)",
+        "ladder", "Per finished triangle, each design with what those above it have (final edges apart); the last two are several machines",
         [("job", ""), ("design", ""), ("cycles", ""), ("a triangle", "cycles"), ("edges tested", ""), ("Normal Tests", ""),
-         ("Summed Height Tests", ""), ("table reads", ""), ("multipliers", ""), ("registers", "bits"), ("queue", "bits"), ("table ports", ""),
+         ("Summed Height Tests", ""), ("table reads", ""), ("multipliers", ""), ("registers", "bits"), ("queue", "bits"), ("tables", "bits"), ("table ports", ""),
          ("bottleneck", "")], rows))
     return section
 

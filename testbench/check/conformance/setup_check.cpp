@@ -432,7 +432,8 @@ SetupResult check_setup(const MachineSetup& setup, const GoldenJob& golden, Simu
     SetupResult result;
     RegisterCheck(setup, golden, result).run();
     BaseCheck(setup, golden, result).run();
-    check_tables(setup, golden, simulation.host, result);
+    for (const auto& machine : simulation.machines)
+        check_tables(setup, golden, machine->host, result);
     return result;
 }
 

@@ -3,18 +3,23 @@
 #include <string>
 #include <utility>
 
+#include "testbench/machine/totals.h"
+
 namespace tessera {
 
 namespace {
 
 class Equations {
   public:
-    void add(std::string name, std::uint64_t left, std::uint64_t right) {
-        list_.push_back({std::move(name), left, right});
+    /// The machine of which the next are.
+    void of(const std::string& machine) { machine_ = machine + ": "; }
+    void add(const std::string& name, std::uint64_t left, std::uint64_t right) {
+        list_.push_back({machine_ + name, left, right});
     }
     std::vector<Conservation> take() { return std::move(list_); }
 
   private:
+    std::string machine_;
     std::vector<Conservation> list_;
 };
 
@@ -31,12 +36,12 @@ std::uint64_t sum_over_tests(const Pipeline& pipeline, Figure figure) {
     return sum;
 }
 
-void add_triangles(Equations& list, const Simulation& simulation) {
-    const Pipeline& p = simulation.pipeline;
+void add_triangles(Equations& list, const MachineSetup& setup, const HostedMachine& machine) {
+    const Pipeline& p = machine.pipeline;
     const auto& counts = p.pass_or_tessellate.counts();
     const auto& made = p.tessellation.made_into();
     const std::uint64_t cut = made[1] + made[2] + made[3] + made[4];
-    if (simulation.setup.design.work == Work::triangle) {
+    if (setup.design.work == Work::triangle) {
         const std::uint64_t rounds = counts.passes + counts.normal_passes;
         list.add("triangles taken by get_triangle = decided",
                  p.get_triangle.host_triangles() + p.get_triangle.queue_triangles(), rounds);
@@ -53,14 +58,13 @@ void add_triangles(Equations& list, const Simulation& simulation) {
                  p.get_triangle.queue_triangles());
     }
     list.add("triangles taken by get_triangle from the host = base triangles", p.get_triangle.host_triangles(),
-             simulation.host.sent());
+             machine.host.sent());
     list.add("taken by triangle_queue = by get_triangle from it", p.triangle_queue.taken(),
              p.get_triangle.queue_triangles());
     list.add("triangles sent round for normals = decided for normals", made[1], counts.normal_passes);
     list.add("finished = base triangles + edges split", counts.finished,
              p.get_triangle.host_triangles() + counts.edges_split);
-    list.add("finished = emitted", counts.finished, simulation.monitor.mesh.triangles.size());
-    list.add("taken by the rasteriser = finished - culled", simulation.rasteriser.triangles(),
+    list.add("taken by the rasteriser = finished - culled", machine.rasteriser.triangles(),
              counts.finished - counts.culled);
 }
 
@@ -114,11 +118,11 @@ struct Read {
     }
 };
 
-void add_timed(Equations& list, const Simulation& simulation, const Tested& tested) {
+void add_timed(Equations& list, const MachineSetup& setup, const HostedMachine& machine, const Tested& tested) {
     const auto& [vertices, edges, midpoints, normal, summed_height, by_codes] = tested;
-    const Pipeline& p = simulation.pipeline;
+    const Pipeline& p = machine.pipeline;
     const auto& counts = p.pass_or_tessellate.counts();
-    const bool families = simulation.setup.design.work == Work::family;
+    const bool families = setup.design.work == Work::family;
     const std::uint64_t rounds = families ? p.get_triangle.host_triangles() + p.get_triangle.queue_triangles()
                                           : counts.passes + counts.normal_passes;
     list.add(families ? "triangles in get_triangle = taken" : "triangles in get_triangle = decided",
@@ -190,7 +194,7 @@ void add_timed(Equations& list, const Simulation& simulation, const Tested& test
     list.add("requests to normal_map = vertices and edges of normal_test", normal_map.requests(),
              normal_map_reads(p, vertices, normal));
     list.add("requests to summed_height_table = three an edge, if it tests", summed_height_table.requests(),
-             simulation.setup.registers.tests.summed_height_test ? 3 * (summed_height - by_codes) : 0);
+             setup.registers.tests.summed_height_test ? 3 * (summed_height - by_codes) : 0);
 
     list.add("triangles spilled = come back", p.triangle_queue.spilled(), p.triangle_queue.refilled());
     list.add("requests to off_chip_memory = out and back", items(p.off_chip_memory), 2 * p.triangle_queue.spilled());
@@ -198,35 +202,44 @@ void add_timed(Equations& list, const Simulation& simulation, const Tested& test
              p.off_chip_memory.bytes_written());
 }
 
-}  // namespace
-
-std::vector<Conservation> conservation(const Simulation& simulation) {
-    Equations list;
-    const Pipeline& p = simulation.pipeline;
+void add_machine(Equations& list, const MachineSetup& setup, const HostedMachine& machine) {
+    const Pipeline& p = machine.pipeline;
     const DecidingUnit::Counts& counts = p.pass_or_tessellate.counts();
     const std::uint64_t base = p.get_triangle.host_triangles();
     // A triangle with k split edges has k + 1 children with 4 k new edges, which alone are not final; of families the k
     // inside it are tested once.
-    const bool final_edges = simulation.setup.registers.formats.final_edges;
-    const bool families = simulation.setup.design.work == Work::family;
+    const bool final_edges = setup.registers.formats.final_edges;
+    const bool families = setup.design.work == Work::family;
     const std::uint64_t edges = families      ? 3 * counts.finished
                                 : final_edges ? 3 * base + 4 * counts.edges_split
                                               : 3 * counts.passes;
-    const Decisions::Evaluated& evaluated = simulation.decisions.evaluated();
+    const Decisions::Evaluated& evaluated = machine.decisions.evaluated();
     const Tested tested{3 * base,
                         edges,
                         families ? counts.edges_split : edges,
                         evaluated.normal,
                         evaluated.summed_height,
                         evaluated.summed_height_by_codes};
-    add_triangles(list, simulation);
+    add_triangles(list, setup, machine);
     list.add(families      ? "edges tested = 3 a finished triangle"
              : final_edges ? "edges tested = 3 a base triangle, 4 a split"
                            : "edges tested = 3 a pass",
              counts.edges_tested, edges);
     add_reads(list, p, tested);
-    if (simulation.setup.design.transport == Transport::non_blocking)
-        add_timed(list, simulation, tested);
+    if (setup.design.transport == Transport::non_blocking)
+        add_timed(list, setup, machine, tested);
+}
+
+}  // namespace
+
+std::vector<Conservation> conservation(const Simulation& simulation) {
+    Equations list;
+    list.add("finished = emitted", Totals(simulation).counts.finished, simulation.monitor.mesh.triangles.size());
+    for (const auto& machine : simulation.machines) {
+        if (simulation.machines.size() > 1)
+            list.of(machine->pipeline.name());
+        add_machine(list, simulation.setup, *machine);
+    }
     return list.take();
 }
 

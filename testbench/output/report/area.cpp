@@ -5,6 +5,7 @@
 
 #include "modules/datapath/widths.h"
 #include "modules/sockets/items.h"
+#include "testbench/machine/totals.h"
 
 namespace tessera {
 namespace {
@@ -170,10 +171,16 @@ std::vector<UnitArea> design_area(const Design& design, const datapath::Register
 }
 
 std::vector<UnitArea> area_of(const Simulation& simulation) {
-    const TriangleQueue& queue = simulation.pipeline.triangle_queue;
     const std::size_t places = simulation.setup.design.queue.capacity;
-    return design_area(simulation.setup.design, simulation.setup.registers,
-                       places == 0 ? queue.high_water_mark() : places);
+    std::vector<UnitArea> units = design_area(simulation.setup.design, simulation.setup.registers,
+                                              places == 0 ? Totals(simulation).most_queued : places);
+    for (UnitArea& unit : units) {
+        unit.multipliers *= simulation.setup.machines;
+        unit.register_bits *= simulation.setup.machines;
+        unit.memory_bits *= simulation.setup.machines;
+        unit.ports *= simulation.setup.machines;
+    }
+    return units;
 }
 
 UnitArea total_area(const std::vector<UnitArea>& units) {

@@ -26,7 +26,7 @@ struct UnitArea {
 /// on chip; of an unbounded one, as many as a run needed.
 std::vector<UnitArea> design_area(const Design& design, const datapath::Registers& registers, std::size_t queue_places);
 
-/// Of a run's design.
+/// Of a run's design, all machines together.
 std::vector<UnitArea> area_of(const Simulation& simulation);
 
 /// The sum, named "total".

@@ -10,6 +10,7 @@
 #include "modules/datapath/reciprocal.h"
 #include "modules/datapath/widths.h"
 #include "testbench/machine/host_traffic.h"
+#include "testbench/machine/totals.h"
 #include "testbench/output/report/area.h"
 #include "testbench/output/report/saturation_figures.h"
 #include "testbench/output/report/timing_statistics.h"
@@ -98,22 +99,31 @@ Collector memory_figures(const char* name, const datapath::TableLayout& table, s
     return c;
 }
 
-void add_cache_figures(Collector& c, const TableCache& cache, std::uint64_t finished) {
+void add_cache_figures(Collector& c, const Simulation& simulation, const std::unique_ptr<TableCache> Pipeline::*cache,
+                       std::uint64_t finished) {
     const auto real = [](std::uint64_t value) { return static_cast<double>(value); };
-    c.add("cache_hits", cache.hits(), "entry", "entries whose line was there, or on its way");
-    c.add("cache_fills", cache.fills(), "line", "lines fetched from off-chip memory");
-    c.add("cache_hit_rate", 100 * ratio(real(cache.hits()), real(cache.entries_read())), "percent", "of entries read");
-    c.add("bytes_fetched", cache.bytes_fetched(), "byte", "of these lines");
-    c.add("bytes_fetched_per_triangle", ratio(real(cache.bytes_fetched()), real(finished)), "byte/triangle",
-          "per finished triangle");
+    std::uint64_t hits = 0, fills = 0, entries = 0, bytes = 0;
+    for (const auto& machine : simulation.machines) {
+        const TableCache& its = *(machine->pipeline.*cache);
+        hits += its.hits();
+        fills += its.fills();
+        entries += its.entries_read();
+        bytes += its.bytes_fetched();
+    }
+    c.add("cache_hits", hits, "entry", "entries whose line was there, or on its way");
+    c.add("cache_fills", fills, "line", "lines fetched from off-chip memory");
+    c.add("cache_hit_rate", 100 * ratio(real(hits), real(entries)), "percent", "of entries read");
+    c.add("bytes_fetched", bytes, "byte", "of these lines");
+    c.add("bytes_fetched_per_triangle", ratio(real(bytes), real(finished)), "byte/triangle", "per finished triangle");
 }
 
 Collector host_figures(const MachineSetup& setup, std::uint64_t finished, std::uint64_t vertices) {
     const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
     const auto bytes = [](std::uint64_t bits) { return (bits + 7) / 8; };
     const std::uint64_t base = base_mesh_bytes(setup);
-    const std::uint64_t tables = setup.registers.displacement_map.bytes() + setup.registers.normal_map.bytes() +
-                                 setup.registers.summed_height_table.bytes();
+    const std::uint64_t tables =
+        setup.machines * (setup.registers.displacement_map.bytes() + setup.registers.normal_map.bytes() +
+                          setup.registers.summed_height_table.bytes());
     const std::uint64_t whole = bytes(finished * 3 * widths.finished_vertex);
     const std::uint64_t indexed = bytes(vertices * widths.finished_vertex) + finished * 3 * 4;
     Collector c("host");
@@ -123,7 +133,7 @@ Collector host_figures(const MachineSetup& setup, std::uint64_t finished, std::u
     c.add("table_bytes", tables, "byte",
           "displacement map, normal map, Summed Height Table; once, the normal map again when the scale "
           "changes");
-    c.add("register_bytes", register_words(setup.registers).size() * sizeof(std::uint32_t), "byte",
+    c.add("register_bytes", setup.machines * register_words(setup.registers).size() * sizeof(std::uint32_t), "byte",
           "registers, as 32 bit words; once, later those that change");
     c.add("tessellated_vertices", vertices, "vertex", "distinct vertices of the finished mesh, by t, P' and N'");
     c.add("tessellated_mesh_bytes", indexed, "byte",
@@ -159,9 +169,8 @@ Collector area_figures(const Simulation& simulation) {
 }
 
 /// Repeated work of the machine, beside what the mesh needs.
-Collector useful_work_figures(const Pipeline& p, const Decisions::Evaluated& evaluated, std::uint64_t base_triangles,
-                              const MeshCounts& mesh) {
-    const std::uint64_t made = p.transform.positions(), normals = p.transform.normals(), tested = p.edges_tested();
+Collector useful_work_figures(const Totals& totals, const Decisions::Evaluated& evaluated, const MeshCounts& mesh) {
+    const std::uint64_t made = totals.positions, normals = totals.normals, tested = totals.counts.edges_tested;
     const auto per = [](std::uint64_t done, std::uint64_t needed) {
         return ratio(static_cast<double>(done), static_cast<double>(needed));
     };
@@ -172,7 +181,7 @@ Collector useful_work_figures(const Pipeline& p, const Decisions::Evaluated& eva
         "vertices_made", made, "vertex",
         "displaced and transformed: three a base triangle, and the midpoint of each edge tested; of families, of each "
         "edge split");
-    c.add("vertices_thrown_away", thrown_away_vertices(p, base_triangles), "vertex",
+    c.add("vertices_thrown_away", totals.thrown_away_vertices(), "vertex",
           "of these: midpoints of edges that were not split");
     c.add("made_per_vertex", per(made, mesh.vertices), "times", "vertices made per distinct vertex");
     c.add("normals_transformed", normals, "normal",
@@ -210,16 +219,12 @@ Collector mesh_figures(const EmittedMesh& mesh) {
 
 }  // namespace
 
-std::uint64_t thrown_away_vertices(const Pipeline& pipeline, std::uint64_t base_triangles) {
-    return pipeline.transform.positions() - 3 * base_triangles - pipeline.pass_or_tessellate.counts().edges_split;
-}
-
 std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulation& simulation,
                                        const MeshCounts& mesh) {
-    const Pipeline& p = simulation.pipeline;
-    const DecidingUnit::Counts& counts = p.pass_or_tessellate.counts();
-    const Decisions::Counts& decided = simulation.decisions.counts();
-    const std::uint64_t edges = p.edges_tested();
+    const Totals totals(simulation);
+    const DecidingUnit::Counts& counts = totals.counts;
+    const Decisions::Counts& decided = totals.decided;
+    const std::uint64_t edges = counts.edges_tested;
     const auto edges_real = static_cast<double>(edges);
     std::vector<Figure> all;
     const auto take = [&](Collector c) {
@@ -239,20 +244,20 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     take(std::move(run));
     take(format_figures(setup));
     take(stream_figures(setup));
-    Decisions::Evaluated evaluated = simulation.decisions.evaluated();
+    Decisions::Evaluated evaluated = totals.evaluated;
     if (!setup.registers.tests.summed_height_test)
         evaluated.summed_height = 0;
-    take(useful_work_figures(p, evaluated, setup.base_triangles.size(), mesh));
+    take(useful_work_figures(totals, evaluated, mesh));
     take(host_figures(setup, counts.finished, mesh.vertices));
 
     Collector get("get_triangle");
-    get.add("host_triangles", p.get_triangle.host_triangles(), "triangle", "taken from the host");
-    get.add("queue_triangles", p.get_triangle.queue_triangles(), "triangle", "taken from the Triangle Queue");
+    get.add("host_triangles", totals.host_triangles, "triangle", "taken from the host");
+    get.add("queue_triangles", totals.queue_triangles, "triangle", "taken from the Triangle Queue");
     take(std::move(get));
 
     Collector transform("transform");
-    transform.add("positions", p.transform.positions(), "vertex", "positions transformed");
-    transform.add("normals", p.transform.normals(), "normal", "normals transformed");
+    transform.add("positions", totals.positions, "vertex", "positions transformed");
+    transform.add("normals", totals.normals, "normal", "normals transformed");
     take(std::move(transform));
 
     Collector decide("pass_or_tessellate");
@@ -283,7 +288,7 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     take(std::move(decide));
 
     Collector tessellation("tessellation");
-    const auto& made = p.tessellation.made_into();
+    const auto& made = totals.made_into;
     tessellation.add("made_into_2", made[2], "triangle", "one edge split");
     tessellation.add("made_into_3", made[3], "triangle", "two edges split");
     tessellation.add("made_into_4", made[4], "triangle", "three edges split");
@@ -291,32 +296,32 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     take(std::move(tessellation));
 
     Collector queue("triangle_queue");
-    queue.add("taken", p.triangle_queue.taken(), "triangle", "triangles put in");
-    queue.add("high_water_mark", p.triangle_queue.high_water_mark(), "triangle", "most triangles waiting at a time");
+    queue.add("taken", totals.queued, "triangle", "triangles put in");
+    queue.add("high_water_mark", totals.most_queued, "triangle", "most triangles waiting at a time, in one machine");
     queue.add("high_water_bytes",
-              (p.triangle_queue.high_water_mark() * datapath::stream_widths(setup.registers.formats).triangle + 7) / 8,
-              "byte", "memory that this takes");
+              (totals.most_queued * datapath::stream_widths(setup.registers.formats).triangle + 7) / 8, "byte",
+              "memory that this takes");
     take(std::move(queue));
 
     Collector lighting("lighting");
-    lighting.add("triangles", simulation.rasteriser.triangles(), "triangle", "lit and sent to the rasteriser");
+    lighting.add("triangles", totals.lit, "triangle", "lit and sent to the rasteriser");
     take(std::move(lighting));
 
     const auto table = [&](const char* name, const datapath::TableLayout& layout, std::uint64_t reads,
-                           const TableCache* cache) {
+                           const std::unique_ptr<TableCache> Pipeline::*cache) {
         Collector figures = memory_figures(name, layout, reads, edges_real);
-        if (cache != nullptr && timed)
-            add_cache_figures(figures, *cache, counts.finished);
+        if (simulation.pipeline.*cache != nullptr && timed)
+            add_cache_figures(figures, simulation, cache, counts.finished);
         take(std::move(figures));
     };
-    table("displacement_map", setup.registers.displacement_map, p.displacement_map_reads(),
-          p.displacement_map_cache.get());
-    table("normal_map", setup.registers.normal_map, p.normal_map_reads(), p.normal_map_cache.get());
-    table("summed_height_table", setup.registers.summed_height_table, p.summed_height_table_reads(),
-          p.summed_height_table_cache.get());
+    table("displacement_map", setup.registers.displacement_map, totals.displacement_map_reads,
+          &Pipeline::displacement_map_cache);
+    table("normal_map", setup.registers.normal_map, totals.normal_map_reads, &Pipeline::normal_map_cache);
+    table("summed_height_table", setup.registers.summed_height_table, totals.summed_height_table_reads,
+          &Pipeline::summed_height_table_cache);
 
     Collector saturated("saturations");
-    for (const SaturationFigure& figure : saturation_figures(setup, p.saturations()))
+    for (const SaturationFigure& figure : saturation_figures(setup, totals.saturations))
         saturated.add(figure.name, figure.count, figure.unit, figure.description);
     take(std::move(saturated));
 

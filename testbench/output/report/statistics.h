@@ -22,9 +22,6 @@ struct Figure {
 /// mesh: counts of the simulation's mesh.
 std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulation& simulation, const MeshCounts& mesh);
 
-/// Midpoints that were displaced and transformed while their edge was tested, and not inserted.
-std::uint64_t thrown_away_vertices(const Pipeline& pipeline, std::uint64_t base_triangles);
-
 /// {"group": {"name": {"value": ..., "unit": "...", "description": "..."}}}
 std::string statistics_json(const std::vector<Figure>& figures);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <string_view>
 #include <utility>
 
 namespace tessera {
@@ -51,8 +52,8 @@ std::string whom(const Unit& unit) {
 
 std::string unit_name(const sc_core::sc_object& unit) {
     const std::string name = unit.name();
-    const std::size_t dot = name.find('.');
-    return dot == std::string::npos ? name : name.substr(dot + 1);
+    constexpr std::string_view first_machine = "tessera.";
+    return name.rfind(first_machine, 0) == 0 ? name.substr(first_machine.size()) : name;
 }
 
 double utilisation(const Unit& unit, std::uint64_t cycles) {
@@ -214,7 +215,11 @@ std::string timing_tables(const Pipeline& pipeline, std::uint64_t cycles) {
     return text + "\n" + queues;
 }
 
-std::string timing_text(const Pipeline& pipeline, std::uint64_t cycles) {
+std::string timing_text(const Simulation& simulation) {
+    const std::uint64_t cycles = simulation.cycles();
+    std::string tables;
+    for (const auto& machine : simulation.machines)
+        tables += timing_tables(machine->pipeline, cycles) + "\n";
     return fmt::format(
                "{} cycles. In each a unit is in one state, the first of these that applies, in per cent of "
                "all cycles:\n"
@@ -231,7 +236,7 @@ std::string timing_text(const Pipeline& pipeline, std::uint64_t cycles) {
                "up "
                "longest in each state. Queues and wires do no work:\nthey have a rate and a level.\n\n",
                cycles) +
-           timing_tables(pipeline, cycles) + "\nbottleneck: " + bottleneck_text(pipeline, cycles) + "\n";
+           tables + "bottleneck: " + bottleneck_text(simulation.last_machine().pipeline, cycles) + "\n";
 }
 
 std::string queue_levels_csv(const LevelHistory& history) {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "modules/pipeline.h"
+#include "testbench/machine/simulation.h"
 
 namespace tessera {
 
@@ -11,7 +11,8 @@ namespace tessera {
 /// port slots taken over port slots there were. 0 to 1, 0 for a run without cycles.
 double utilisation(const Unit& unit, std::uint64_t cycles);
 
-/// "summed_height_table" of "tessera.summed_height_table": a unit's name within the machine.
+/// "summed_height_table" of "tessera.summed_height_table": a unit's name within the machine; in a machine but the
+/// first the whole name, "tessera_1.summed_height_table".
 std::string unit_name(const sc_core::sc_object& unit);
 
 /// Does no work of its own and only passes items on: the Triangle Queue, Collect Tests.
@@ -51,8 +52,8 @@ std::string bottleneck_text(const Pipeline& pipeline, std::uint64_t cycles);
 /// level. Tables for people.
 std::string timing_tables(const Pipeline& pipeline, std::uint64_t cycles);
 
-/// timing.txt: what the columns mean, those tables, and the bottleneck.
-std::string timing_text(const Pipeline& pipeline, std::uint64_t cycles);
+/// timing.txt: what the columns mean, those tables of each machine, and the bottleneck of the last to finish.
+std::string timing_text(const Simulation& simulation);
 
 /// The Triangle Queue's level over time: first cycle and highest level of at most 1024 stretches.
 std::string queue_levels_csv(const LevelHistory& history);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "modules/datapath/pack_triangle.h"
+#include "testbench/machine/totals.h"
 #include "testbench/output/report/timing_report.h"
 
 namespace tessera {
@@ -35,8 +36,9 @@ class Group {
 };
 
 void run_figures(const Simulation& simulation, std::vector<Figure>& figures) {
-    const Pipeline& p = simulation.pipeline;
-    const auto& counts = p.pass_or_tessellate.counts();
+    const Pipeline& p = simulation.last_machine().pipeline;
+    const Totals totals(simulation);
+    const DecidingUnit::Counts& counts = totals.counts;
     const std::uint64_t cycles = simulation.cycles();
     const Bottleneck bottleneck = find_bottleneck(p, cycles);
     Group run(figures, "timing");
@@ -46,14 +48,15 @@ void run_figures(const Simulation& simulation, std::vector<Figure>& figures) {
              "cycles times the clock's period");
     run.real("cycles_per_triangle", ratio(cycles, counts.finished), "cycle/triangle", "per finished triangle");
     run.real("cycles_per_pass", ratio(cycles, counts.passes), "cycle/pass", "per triangle that went through the tests");
-    run.real("cycles_per_edge", ratio(cycles, p.edges_tested()), "cycle/edge", "per edge tested");
-    run.real("base_triangle_share",
-             ratio(p.get_triangle.host_triangles(), p.get_triangle.host_triangles() + p.get_triangle.queue_triangles()),
-             "", "base triangles in all triangles that Get Triangle took");
+    run.real("cycles_per_edge", ratio(cycles, counts.edges_tested), "cycle/edge", "per edge tested");
+    run.real("base_triangle_share", ratio(totals.host_triangles, totals.host_triangles + totals.queue_triangles), "",
+             "base triangles in all triangles that Get Triangle took");
     run.count("most_triangles_ahead_of_parts", p.most_ahead_of_parts(), "triangle",
               "that waited for their first part where its parts come together");
-    run.text("bottleneck", bottleneck.binding ? bottleneck.first.names() : "none",
-             "the units or memories of the highest utilisation, if that is at least 85 %; none: latency binds");
+    run.text(
+        "bottleneck", bottleneck.binding ? bottleneck.first.names() : "none",
+        "the units or memories of the highest utilisation, if that is at least 85 %; none: latency binds; of several "
+        "machines, in the last to finish");
     run.real("bottleneck_bound", bottleneck.bound(), "times",
              "how many times faster at most without it, or, if latency binds, without any wait");
     run.text("bottleneck_in_words", bottleneck_text(p, cycles), "why");
@@ -94,10 +97,9 @@ void unit_figures(const Unit& unit, std::uint64_t cycles, std::vector<Figure>& f
     group.count("high_water_mark", activity.high_water_mark(), "item", "most at a time");
 }
 
-void queue_figures(const Simulation& simulation, std::vector<Figure>& figures) {
-    const TriangleQueue& queue = simulation.pipeline.triangle_queue;
+void queue_figures(const Simulation& simulation, const TriangleQueue& queue, std::vector<Figure>& figures) {
     const std::uint64_t entry = datapath::packed_triangle_bytes(simulation.setup.registers.formats);
-    Group group(figures, "timing.triangle_queue");
+    Group group(figures, "timing." + unit_name(queue));
     group.count("capacity", simulation.setup.design.queue.capacity, "triangle", "on chip; 0: unbounded");
     group.count("on_chip_high_water_mark", queue.on_chip_high_water_mark(), "triangle",
                 "most on chip, one on its way out not counted");
@@ -111,10 +113,12 @@ void queue_figures(const Simulation& simulation, std::vector<Figure>& figures) {
 std::vector<Figure> timing_figures(const Simulation& simulation) {
     std::vector<Figure> figures;
     run_figures(simulation, figures);
-    for (const Unit* unit : simulation.pipeline.units()) {
-        unit_figures(*unit, simulation.cycles(), figures);
-        if (unit == &simulation.pipeline.triangle_queue)
-            queue_figures(simulation, figures);
+    for (const auto& machine : simulation.machines) {
+        for (const Unit* unit : machine->pipeline.units()) {
+            unit_figures(*unit, simulation.cycles(), figures);
+            if (unit == &machine->pipeline.triangle_queue)
+                queue_figures(simulation, machine->pipeline.triangle_queue, figures);
+        }
     }
     return figures;
 }

@@ -8,7 +8,7 @@
 #include "testbench/check/transport/conservation.h"
 #include "testbench/common/hash.h"
 #include "testbench/common/random.h"
-#include "testbench/machine/simulation.h"
+#include "testbench/machine/totals.h"
 
 namespace tessera {
 
@@ -64,8 +64,7 @@ CaseResult run_case(const RandomCase& random_case, Mode mode) {
     Simulation simulation(setup, RandomCase::most_edges,
                           static_cast<std::uint64_t>(with_mode.job.limits.cycles_without_progress));
     Scoreboard scoreboard(setup.registers, golden);
-    simulation.pipeline.pass_or_tessellate.decided.bind(scoreboard);
-    simulation.pipeline.tessellation.inserted.bind(scoreboard);
+    simulation.observe_decisions(scoreboard);
 
     CaseResult result;
     const auto fail = [&](const std::string& what) { result.failure += (result.failure.empty() ? "" : "\n") + what; };
@@ -85,12 +84,13 @@ CaseResult run_case(const RandomCase& random_case, Mode mode) {
         fail(fmt::format("{} mismatches: {}", conformance.mismatches, conformance.first_mismatch));
 
     result.mesh_digest = digest_of(mesh);
-    const std::uint64_t passes = simulation.pipeline.pass_or_tessellate.counts().passes;
-    if (conformance.edges != simulation.pipeline.edges_tested() || 3 * passes != invariants.edges)
+    const Totals totals(simulation);
+    const std::uint64_t passes = totals.counts.passes;
+    if (conformance.edges != totals.counts.edges_tested || 3 * passes != invariants.edges)
         fail(
             fmt::format("the machine tested {} edges in {} passes, the scoreboard saw {}, the datapath by itself "
                         "evaluates {}",
-                        simulation.pipeline.edges_tested(), passes, conformance.edges, invariants.edges));
+                        totals.counts.edges_tested, passes, conformance.edges, invariants.edges));
     for (const Conservation& equation : conservation(simulation))
         if (!equation.holds())
             fail(fmt::format("{}: {} and {}", equation.name, equation.left, equation.right));
@@ -108,7 +108,7 @@ CaseResult run_case(const RandomCase& random_case, Mode mode) {
     figures.open_input_edges = invariants.open_texture_seam_edges + invariants.open_crease_edges;
     figures.flips = conformance.flipped_edges;
     figures.mismatches = conformance.mismatches;
-    figures.spilled = simulation.pipeline.triangle_queue.spilled();
+    figures.spilled = totals.spilled;
     figures.cycles = simulation.cycles();
     return result;
 }

@@ -139,6 +139,8 @@ void choose_evaluations(Random& random, Job& job) {
         table.banks = 1U << random.natural(0, 6);
     }
     job.hardware.one_texel_from_map = random.coin();
+    if (random.chance(15))
+        job.hardware.machines = random.integer(2, 4);
     if (random.chance(60))
         return;
     for (MemoryTiming* memory : {&job.timing.displacement_map, &job.timing.normal_map, &table})

@@ -130,5 +130,6 @@ TEST_CASE("timed run: the mesh files are functional mode's, byte for byte, stall
     CHECK(mesh_of("stalled", {"timing.stalls_per_mille=500", "timing.stalls_seed=7", "hardware.queue_order=lifo",
                               "hardware.queue_capacity=4"}) == functional);
     CHECK(mesh_of("modern", {"hardware.design=modern"}) == functional);
+    CHECK(mesh_of("four_machines", {"hardware.design=modern", "hardware.machines=4"}) == functional);
     CHECK(mesh_of("modern_functional", {"hardware.design=modern", "mode=functional"}) == functional);
 }

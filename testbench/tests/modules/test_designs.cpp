@@ -180,6 +180,14 @@ const CaseTable designs(
         {"families, three lanes, all tables behind caches",
          "hardware.work=family hardware.test_order=cheap_first hardware.one_texel_from_map=true hardware.edge_lanes=3 timing.displacement_map_cache_bytes=4096 "
          "timing.normal_map_cache_bytes=4096 timing.summed_height_table_cache_bytes=8192"},
+        {"three machines", "hardware.machines=3"},
+        {"three machines, functional", "hardware.machines=3 mode=functional"},
+        {"three machines of families, three lanes, a queue of one place that spills, random stalls",
+         "hardware.machines=3 hardware.design=modern hardware.queue_capacity=1 timing.stalls_seed=7 "
+         "timing.stalls_per_mille=200 timing.stalls_longest=15"},
+        {"sixteen machines of families, three lanes, all tables behind caches",
+         "hardware.machines=16 hardware.design=modern timing.displacement_map_cache_bytes=4096 "
+         "timing.normal_map_cache_bytes=4096 timing.summed_height_table_cache_bytes=8192"},
         {"all of these, a queue of one place that spills",
          "hardware.one_texel_from_map=true hardware.test_order=cheap_first hardware.final_edges=true "
          "hardware.queue_capacity=1 timing.summed_height_table_banks=8 timing.summed_height_table_interleave=xor "
@@ -187,7 +195,7 @@ const CaseTable designs(
     },
     [](const Row& row) {
         const CheckedRun run(with_settings(timed_job(), row.settings));
-        const Pipeline& p = run.pipeline;
+        const Totals totals(run.simulation);
         REQUIRE(run.counts.edges_split > 1000);
         for (const Conservation& equation : conservation(run.simulation)) {
             INFO(equation.name);
@@ -198,24 +206,25 @@ const CaseTable designs(
         Expected expected{run.setup};
         bare.walk(expected);
         const bool summed_height = run.setup.registers.tests.summed_height_test;
-        CHECK(2 * p.edges_tested() == expected.edges);
-        CHECK(p.summed_height_table_reads() == (summed_height ? 6 * (expected.summed_height - expected.by_codes) : 0));
+        CHECK(2 * totals.counts.edges_tested == expected.edges);
+        CHECK(totals.summed_height_table_reads ==
+              (summed_height ? 6 * (expected.summed_height - expected.by_codes) : 0));
         if (expected.from_map && summed_height) {
             CHECK(expected.by_codes > 1000);
             CHECK((expected.families || expected.by_codes < expected.summed_height));  // whose base edges have none
         }
         const std::uint64_t corners = (run.setup.design.tests_units == 1 ? 3 : 6) * run.setup.base_triangles.size();
-        CHECK(2 * p.normal_map_reads() == 2 * corners + expected.normal);
-        const Decisions::Counts& counts = run.simulation.decisions.counts();
+        CHECK(2 * totals.normal_map_reads == 2 * corners + expected.normal);
+        const Decisions::Counts& counts = totals.decided;
         CHECK(counts.split_by_both == expected.split_by_both);
         CHECK(counts.stopped_by_view_alone == expected.stopped_by_view_alone);
         CHECK(counts.stopped_by_several == expected.stopped_by_several);
         if (run.setup.registers.formats.final_edges)
-            CHECK(p.edges_tested() == 3 * run.setup.base_triangles.size() + 4 * run.counts.edges_split);
-        if (run.setup.design.transport == Transport::non_blocking)
-            CHECK(p.pass_or_tessellate.most_incomplete() <= run.setup.design.timing.pass_or_tessellate.buffer);
+            CHECK(totals.counts.edges_tested == 3 * run.setup.base_triangles.size() + 4 * run.counts.edges_split);
         if (expected.families)
-            CHECK(p.edges_tested() == 3 * run.counts.finished);
+            CHECK(totals.counts.edges_tested == 3 * run.counts.finished);
+        for (const auto& machine : run.simulation.machines)
+            CHECK(machine->pipeline.pass_or_tessellate.counts().finished > 0);
     });
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "testbench/machine/totals.h"
 #include "testbench/output/report/timing_report.h"
 #include "testbench/tests/support/case_table.h"
 #include "testbench/tests/support/job_settings.h"
@@ -168,6 +169,28 @@ TEST_CASE("half donut, the paper's design: 36 cycles a pass") {
     const std::uint64_t its_passes = simulation.pipeline.pass_or_tessellate.counts().passes;
     CHECK(its_passes > 10'000);
     CHECK(simulation.cycles() == fill + 3 + 36 * its_passes + drain);
+}
+
+TEST_CASE("two machines of the paper's design: half the passes each, in half the cycles") {
+    const MachineSetup setup = full_split("hardware.machines=2");
+    Simulation simulation(setup, 1'000'000);
+    run_timed(simulation);
+    REQUIRE(simulation.machines.size() == 2);
+    for (const auto& machine : simulation.machines) {
+        CHECK(machine->host.sent() == base / 2);
+        CHECK(machine->pipeline.pass_or_tessellate.counts().passes == passes / 2);
+        CHECK(machine->pipeline.clock.last_cycle() + 1 == fill + 3 + 36 * passes / 2 + drain);
+    }
+    CHECK(simulation.cycles() == fill + 3 + 36 * passes / 2 + drain);
+    CHECK(simulation.sent() == base);
+    const Totals totals(simulation);
+    CHECK(totals.counts.passes == passes);
+    CHECK(totals.counts.finished == finished);
+    CHECK(totals.lit == finished);
+    CHECK(totals.host_triangles == base);
+    CHECK(totals.queued == totals.queue_triangles);
+    CHECK(totals.summed_height_table_reads == 36 * passes);
+    CHECK(simulation.monitor.mesh.triangles.size() == finished);
 }
 
 // Four banks instead: a rectangle's corners lie in banks as they fall, so no better than four ports, and with one port

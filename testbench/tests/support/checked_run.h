@@ -3,6 +3,7 @@
 
 #include "testbench/check/conformance/scoreboard.h"
 #include "testbench/check/mesh/invariants.h"
+#include "testbench/machine/totals.h"
 #include "testbench/tests/support/bare_mesh.h"
 #include "testbench/tests/support/timed_checks.h"
 
@@ -16,19 +17,20 @@ struct CheckedRun {
         : setup(std::move(its_setup)), simulation(setup, 1'000'000, 1'000'000, units) {
         const GoldenInputs golden(setup);
         Scoreboard scoreboard(setup.registers, golden);
-        auto& decided = simulation.pipeline.pass_or_tessellate.decided;
-        auto& inserted = simulation.pipeline.tessellation.inserted;
-        decided.bind(scoreboard);
-        inserted.bind(scoreboard);
+        simulation.observe_decisions(scoreboard);
         run_to_the_end(simulation);
-        decided.unbind(scoreboard);
-        inserted.unbind(scoreboard);
+        for (const auto& machine : simulation.machines) {
+            machine->pipeline.pass_or_tessellate.decided.unbind(scoreboard);
+            machine->pipeline.tessellation.inserted.unbind(scoreboard);
+        }
+        const Totals totals(simulation);
+        counts = totals.counts;
 
         conformance = scoreboard.result();
         CHECK(conformance.quantities.front().count >= 3 * counts.edges_split);  // P_ij of each inserted vertex
         INFO(conformance.first_mismatch);
         CHECK(conformance.mismatches == 0);
-        CHECK(conformance.edges == pipeline.edges_tested());
+        CHECK(conformance.edges == counts.edges_tested);
         invariants = check_invariants(mesh, setup);
         INFO(invariants.first_violation);
         CHECK(invariants.passed());
@@ -37,7 +39,7 @@ struct CheckedRun {
         expect_mesh(mesh, bare.mesh);
         CHECK(counts.finished == mesh.triangles.size());
         CHECK(counts.finished == setup.base_triangles.size() + counts.edges_split);
-        CHECK(simulation.rasteriser.triangles() + counts.culled == counts.finished);
+        CHECK(totals.lit + counts.culled == counts.finished);
     }
 
     /// No triangle without area, none turned over, no seam of the texture open.
@@ -51,7 +53,7 @@ struct CheckedRun {
     Simulation simulation;
     const Pipeline& pipeline = simulation.pipeline;
     const EmittedMesh& mesh = simulation.monitor.mesh;
-    const DecidingUnit::Counts& counts = pipeline.pass_or_tessellate.counts();
+    DecidingUnit::Counts counts;  // of all machines
     ConformanceResult conformance;
     InvariantResult invariants;
 };

@@ -93,25 +93,24 @@ inline void require_conservation(const Simulation& simulation) {
         INFO(equation.name);
         CHECK(equation.left == equation.right);
     }
-    const Pipeline& p = simulation.pipeline;
-    const auto& made = p.tessellation.made_into();
-    const std::uint64_t untested = p.family_tessellation != nullptr ? p.get_triangle.host_triangles() : 0;
-    CHECK(p.tessellation.activity().items_in() == untested + made[1] + made[2] + made[3] + made[4]);
-    const Decisions::Evaluated& evaluated = simulation.decisions.evaluated();
-    if (simulation.setup.registers.tests.summed_height_test)
-        CHECK(p.summed_height_table_reads() >= 12 * (evaluated.summed_height - evaluated.summed_height_by_codes));
+    for (const auto& machine : simulation.machines) {
+        const Pipeline& p = machine->pipeline;
+        const auto& made = p.tessellation.made_into();
+        const std::uint64_t untested = p.family_tessellation != nullptr ? p.get_triangle.host_triangles() : 0;
+        CHECK(p.tessellation.activity().items_in() == untested + made[1] + made[2] + made[3] + made[4]);
+        const Decisions::Evaluated& evaluated = machine->decisions.evaluated();
+        if (simulation.setup.registers.tests.summed_height_test)
+            CHECK(p.summed_height_table_reads() >= 12 * (evaluated.summed_height - evaluated.summed_height_by_codes));
+    }
 }
 
-/// Call after a timed run that drained.
-inline void require_timed_identities(const Simulation& simulation) {
-    const Pipeline& p = simulation.pipeline;
+inline void require_timed_identities(const Simulation& simulation, const HostedMachine& machine) {
+    const Pipeline& p = machine.pipeline;
     for (const Unit* unit : p.units()) {
         require_cycles_add_up(*unit, simulation.cycles());
         require_empty(*unit);
     }
-    require_conservation(simulation);
-    CHECK(simulation.host.idle());
-    CHECK(p.idle());
+    CHECK(machine.drained());
     CHECK(p.clock.idle());
     CHECK_FALSE(p.clock.stalled());
     CHECK(p.passes_under_way() == 0);
@@ -123,6 +122,13 @@ inline void require_timed_identities(const Simulation& simulation) {
     CHECK(p.pass_or_tessellate.most_incomplete() <= simulation.setup.design.timing.pass_or_tessellate.buffer);
     const std::uint64_t slots = p.summed_height_table.slots_taken();
     CHECK(slots <= simulation.cycles() * p.summed_height_table.slots_per_cycle());
+}
+
+/// Call after a timed run that drained.
+inline void require_timed_identities(const Simulation& simulation) {
+    require_conservation(simulation);
+    for (const auto& machine : simulation.machines)
+        require_timed_identities(simulation, *machine);
 }
 
 /// Runs the simulation to its end and checks all of the above.

@@ -129,3 +129,14 @@ TEST_CASE("area: what each parameter changes") {
     CHECK(more % 44 == 0);
     CHECK(more / 44 > 400);
 }
+
+TEST_CASE("area: three machines have three times one's hardware") {
+    MachineSetup setup = setup_of(with_settings(timed_job(), "hardware.queue_capacity=40"));
+    setup.machines = 3;
+    const Simulation three(setup, 1000);
+    const UnitArea all = total_area(area_of(three)), one = total_area(design_area(setup.design, setup.registers, 40));
+    CHECK(all.multipliers == 3 * one.multipliers);
+    CHECK(all.register_bits == 3 * one.register_bits);
+    CHECK(all.memory_bits == 3 * one.memory_bits);
+    CHECK(all.ports == 3 * one.ports);
+}

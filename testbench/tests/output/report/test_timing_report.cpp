@@ -234,13 +234,35 @@ TEST_CASE("timing.txt of one triangle: latency binds") {
     setup.base_triangles.resize(1);
     Simulation simulation(setup, 1000);
     run_timed(simulation);
-    const std::string text = timing_text(simulation.pipeline, simulation.cycles());
+    const std::string text = timing_text(simulation);
     CHECK_THAT(text, StartsWith("86 cycles. "));
     CHECK_THAT(text, Contains(timing_tables(simulation.pipeline, 86)));
     CHECK_THAT(text,
                Contains("\nbottleneck: none: bound by latency; of the busiest (summed_height_table) 41.9 % of the "
                         "throughput is used; at most 2.4 times faster "));
     CHECK_THAT(text, EndsWith("(an item stays 20.0 cycles in transform)\n"));
+}
+
+// The second machine has no base triangle.
+TEST_CASE("timing.txt of two machines: a table of each, and the bottleneck of the one that was last to finish") {
+    Job job = timed_job();
+    job.mesh.columns = job.mesh.rows = 1;
+    job.map.source = MapSource::constant;
+    job.hardware.machines = 2;
+    MachineSetup setup = setup_of(job);
+    setup.base_triangles.resize(1);
+    Simulation simulation(setup, 1000);
+    run_timed(simulation);
+    const HostedMachine &first = *simulation.machines[0], &second = *simulation.machines[1];
+    CHECK(&simulation.last_machine() == &first);
+    CHECK(second.pipeline.get_triangle.host_triangles() == 0);
+    const std::string text = timing_text(simulation);
+    CHECK_THAT(text, StartsWith("86 cycles. "));
+    CHECK_THAT(text, Contains("\n\n" + timing_tables(first.pipeline, 86) + "\n" + timing_tables(second.pipeline, 86) +
+                              "\nbottleneck: none: bound by latency; of the busiest (summed_height_table) "));
+    CHECK(line_of(text, "transform") != "");
+    CHECK(unit_name(second.pipeline.transform) == "tessera_1.transform");
+    CHECK(line_of(text, "tessera_1.transform") != "");
 }
 
 TEST_CASE("queue_levels.csv: first cycle of each stretch and its highest level") {

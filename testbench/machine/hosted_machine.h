@@ -1,0 +1,33 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <tlm>
+
+#include "testbench/machine/host.h"
+#include "testbench/machine/mesh_monitor.h"
+#include "testbench/machine/rasteriser.h"
+
+namespace tessera {
+
+/// One of the run's machines, with its host, rasteriser and decisions. Its finished triangles go to the monitor, which
+/// all machines share.
+class HostedMachine : private tlm::tlm_analysis_if<datapath::Triangle> {
+  public:
+    /// number: of setup.machines. `setup` and `monitor` must outlive it. units: see Pipeline.
+    HostedMachine(const MachineSetup& setup, std::size_t number, MeshMonitor& monitor, UnitFactory* units);
+
+    Pipeline pipeline;
+    Host host;
+    Rasteriser rasteriser;
+    Decisions decisions;
+
+    /// Nothing is left to send, and nothing in flight.
+    bool drained() const { return host.idle() && pipeline.idle(); }
+
+  private:
+    void write(const datapath::Triangle& finished) override { monitor_.record(finished, &decisions); }
+
+    MeshMonitor& monitor_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,30 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "testbench/machine/simulation.h"
+
+namespace tessera {
+
+/// The counts of a run, all machines together.
+struct Totals {
+    DecidingUnit::Counts counts;
+    Decisions::Counts decided;
+    Decisions::Evaluated evaluated;
+    std::uint64_t base_triangles = 0;  ///< of the job
+    std::uint64_t host_triangles = 0, queue_triangles = 0;
+    std::uint64_t positions = 0, normals = 0;
+    std::array<std::uint64_t, 5> made_into{};
+    std::uint64_t queued = 0, spilled = 0;
+    std::size_t most_queued = 0, most_queued_on_chip = 0;  ///< in one machine's queue
+    std::uint64_t lit = 0;
+    std::uint64_t displacement_map_reads = 0, normal_map_reads = 0, summed_height_table_reads = 0;
+    datapath::Saturations saturations;
+
+    explicit Totals(const Simulation& simulation);
+    /// Vertices made for edges that were not split.
+    std::uint64_t thrown_away_vertices() const { return positions - 3 * base_triangles - counts.edges_split; }
+};
+
+}  // namespace tessera
