@@ -8,7 +8,9 @@ namespace tessera {
 
 /// A set-associative cache's lines: their tags, their bytes, and which of a set was used last.
 ///
-/// Size:   max(1, bytes / line bytes) lines, in sets of `ways`. Line n of the memory may lie in set n mod sets.
+/// Size:   max(1, bytes / line bytes) lines, in sets of `ways`.
+/// Set:    of line n (n ^ n / sets ^ n / sets^2) mod sets: with a power of two the exclusive OR of three groups of bits.
+///         A column of a table whose pitch is a power of two lies in all sets; n mod sets would put it in a few.
 /// Victim: of a set the line used least recently, but for those that are being filled.
 class LineCache {
   public:
@@ -57,11 +59,15 @@ class LineCache {
         return victim;
     }
 
+    static constexpr std::uint64_t set_number(std::uint64_t number, std::uint64_t sets) {
+        return (number ^ number / sets ^ number / sets / sets) % sets;
+    }
+
   private:
     static std::uint64_t lines_of(std::uint64_t bytes, unsigned line_bytes) {
         return std::max<std::uint64_t>(1, bytes / line_bytes);
     }
-    Line* set_of(std::uint64_t number) { return &lines_[number % sets_ * ways_]; }
+    Line* set_of(std::uint64_t number) { return &lines_[set_number(number, sets_) * ways_]; }
 
     std::uint64_t ways_;
     std::uint64_t sets_;

@@ -24,7 +24,7 @@ STYLES = [("#d55e00", "o"), ("#0072b2", "s"), ("#009e73", "^"), ("#cc79a7", "D")
 
 
 def thousands(value, _position=None):
-    return f"{value:,.0f}" if value >= 10 else f"{value:g}"
+    return f"{value:,.0f}" if value >= 10 else f"{value:.3g}"
 
 
 def lines(series, x_label, y_label, log_x=False, log_y=False, emphasised=()):

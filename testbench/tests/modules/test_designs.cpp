@@ -180,6 +180,12 @@ const CaseTable designs(
         {"families, three lanes, all tables behind caches",
          "hardware.work=family hardware.test_order=cheap_first hardware.one_texel_from_map=true hardware.edge_lanes=3 timing.displacement_map_cache_bytes=4096 "
          "timing.normal_map_cache_bytes=4096 timing.summed_height_table_cache_bytes=8192"},
+        {"families, three lanes, one family, caches of one line of one entry, a queue of one place that spills",
+         "hardware.design=modern timing.pass_or_tessellate_buffer=1 hardware.queue_capacity=1 "
+         "timing.displacement_map_cache_bytes=1 timing.normal_map_cache_bytes=1 timing.summed_height_table_cache_bytes=1 "
+         "timing.displacement_map_line_bytes=1 timing.normal_map_line_bytes=1 timing.summed_height_table_line_bytes=1 "
+         "timing.displacement_map_cache_fills=1 timing.normal_map_cache_fills=1 "
+         "timing.summed_height_table_cache_fills=1"},
         {"three machines", "hardware.machines=3"},
         {"three machines, functional", "hardware.machines=3 mode=functional"},
         {"three machines of families, three lanes, a queue of one place that spills, random stalls",

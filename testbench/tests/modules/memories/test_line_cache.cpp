@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <list>
+#include <set>
 #include <vector>
 
 #include "modules/memories/line_cache.h"
@@ -45,7 +46,7 @@ TEST_CASE("line cache: hits are those of a list of each set's lines in the order
         unsigned hits = 0;
         for (int k = 0; k < 5000; ++k) {
             const std::uint64_t number = random.natural(0, static_cast<unsigned>(3 * sets * ways));
-            std::list<std::uint64_t>& set = expected[number % sets];
+            std::list<std::uint64_t>& set = expected[(number ^ number / sets ^ number / (sets * sets)) % sets];
             const auto found = std::find(set.begin(), set.end(), number);
             const bool hit = found != set.end();
             if (hit)
@@ -57,6 +58,17 @@ TEST_CASE("line cache: hits are those of a list of each set's lines in the order
             REQUIRE(access(cache, number) == hit);
         }
         CHECK(hits > 500);
+    }
+}
+
+TEST_CASE("line cache: a column of a table whose pitch is a power of two lies in all sets") {
+    constexpr std::uint64_t sets = 64;
+    for (const std::uint64_t pitch : {1U, 2U, 8U, 16U, 32U, 64U, 128U}) {
+        CAPTURE(pitch);
+        std::set<std::uint64_t> seen;
+        for (std::uint64_t row = 0; row < sets; ++row)
+            seen.insert(LineCache::set_number(row * pitch, sets));
+        CHECK(seen.size() == sets);
     }
 }
 

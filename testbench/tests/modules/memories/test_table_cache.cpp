@@ -94,10 +94,10 @@ const CaseTable answers(
         // one line: 16 takes the place of 0 in 34, 0 of 16 in 58
         {"a cache of one line evicts it", behind({1, 64, 4, 4}), {{0}, {16}, {0}}, {35, 59, 83}, 3},
         {"one line serves a gather of two, one after the other", behind({1, 64, 4, 4}), {{0, 16}}, {60}, 2},
-        // lines 0 and 2 share a set of one
+        // lines 0 and 3 share a set of one
         {"a set that is full evicts, another does not",
          behind({128, 64, 1, 4}),
-         {{0}, {16}, {32}, {16}},
+         {{0}, {16}, {48}, {16}},
          {35, 39, 59, 59},
          3},
         // Of 10 bytes only 8 are whole entries: 1 cycle of the channel
