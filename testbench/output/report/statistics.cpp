@@ -120,10 +120,9 @@ void add_cache_figures(Collector& c, const Simulation& simulation, const std::un
 Collector host_figures(const MachineSetup& setup, std::uint64_t finished, std::uint64_t vertices) {
     const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
     const auto bytes = [](std::uint64_t bits) { return (bits + 7) / 8; };
-    const std::uint64_t base = base_mesh_bytes(setup);
-    const std::uint64_t tables =
-        setup.machines * (setup.registers.displacement_map.bytes() + setup.registers.normal_map.bytes() +
-                          setup.registers.summed_height_table.bytes());
+    const HostTraffic traffic = first_frame_traffic(setup);
+    const std::uint64_t base = traffic.base_mesh;
+    const std::uint64_t tables = traffic.displacement_map + traffic.normal_map + traffic.summed_height_table;
     const std::uint64_t whole = bytes(finished * 3 * widths.finished_vertex);
     const std::uint64_t indexed = bytes(vertices * widths.finished_vertex) + finished * 3 * 4;
     Collector c("host");
@@ -133,8 +132,7 @@ Collector host_figures(const MachineSetup& setup, std::uint64_t finished, std::u
     c.add("table_bytes", tables, "byte",
           "displacement map, normal map, Summed Height Table; once, the normal map again when the scale "
           "changes");
-    c.add("register_bytes", setup.machines * register_words(setup.registers).size() * sizeof(std::uint32_t), "byte",
-          "registers, as 32 bit words; once, later those that change");
+    c.add("register_bytes", traffic.registers, "byte", "registers, as 32 bit words; once, later those that change");
     c.add("tessellated_vertices", vertices, "vertex", "distinct vertices of the finished mesh, by t, P' and N'");
     c.add("tessellated_mesh_bytes", indexed, "byte",
           "the same mesh sent whole and indexed: distinct vertices of P', N', t, three 32 bit indices per "
