@@ -66,7 +66,8 @@ constexpr unsigned register_stages(const UnitTiming& timing, unsigned servers = 
 /// Of the Summed Height Test's reads: of the table or, of codes, of the displacement map.
 constexpr unsigned summed_height_latency(const Design& design, const datapath::Formats& formats) {
     const Timing& t = design.timing;
-    const unsigned table = t.read_latency(t.summed_height_table);
+    // where the table overlaps the reads of so many rectangles, with places for their edges
+    const unsigned table = t.read_latency(t.summed_height_table) + t.summed_height_table.window / 3;
     return formats.codes ? std::max(table, t.read_latency(t.displacement_map)) : table;
 }
 

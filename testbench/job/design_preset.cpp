@@ -39,7 +39,7 @@ void apply_design(Job& job) {
         hardware.edge_lanes = 3;
         hardware.queue_order = QueueOrder::lifo;
         hardware.queue_capacity = 256;
-        timing.pass_or_tessellate.buffer = 64;
+        timing.pass_or_tessellate.buffer = 96;
         timing.edges_in_sequence = 128;
         timing.displacement_map.ports = 2;
         timing.normal_map.ports = 2;

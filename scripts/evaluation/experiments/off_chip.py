@@ -10,7 +10,7 @@ MAPS = {job: {} for job in JOBS} | {"half_donut, a map of 4096 x 4096": {"map.wi
 
 def caches(bandwidth):
     settings = {"timing.off_chip_latency": 100, "timing.off_chip_bandwidth": bandwidth,
-                "timing.pass_or_tessellate_buffer": 64, "timing.edges_in_sequence": 200, "timing.results_buffer": 32}
+                "timing.edges_in_sequence": 192, "timing.results_buffer": 32}
     for table, size in TABLES.items():
         settings[f"timing.{table}_cache_bytes"] = 1024 * size
         settings[f"timing.{table}_cache_fills"] = 96
@@ -48,7 +48,7 @@ def measure(study):
         FAILED if wrong else MEASURED))
     section.charts.append(cycles_chart(cycles))
     section.tables.append(Table(
-        "off_chip", "Per finished triangle, with 64 byte lines, 4 ways, up to 96 lines and 64 triangles under way",
+        "off_chip", "Per finished triangle, with 64 byte lines, 4 ways, up to 96 lines and 96 families under way",
         [("job", ""), ("off-chip memory", "bytes a cycle"), ("cycles", ""), ("displacement map hits", "%"),
          ("normal map hits", "%"), ("Summed Height Table hits", "%"), ("fetched", "bytes"), ("finished mesh", "bytes"),
          ("tables", "MB"), ("bottleneck", "")], rows))

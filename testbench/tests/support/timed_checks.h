@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <string>
@@ -71,6 +72,17 @@ inline void require_cycles_add_up(const Unit& unit, std::uint64_t cycles) {
     CHECK(activity.item_cycles() <= activity.high_water_mark() * cycles);
 }
 
+/// Of a unit; the last item's may reach beyond the run's end.
+inline std::uint64_t longest_interval(const Timing& t) {
+    std::uint64_t longest = 1;
+    for (const UnitTiming& unit :
+         {t.get_triangle, t.calculate_new_p, t.displace_vertex, t.transform, t.calculate_new_u, t.tex_coord_test,
+          t.summed_height_test, t.normal_test, t.view_test, t.pass_or_tessellate, t.tessellation, t.triangle_queue,
+          t.lighting})
+        longest = std::max<std::uint64_t>(longest, unit.interval);
+    return longest;
+}
+
 inline void require_empty(const Unit& unit) {
     INFO(unit.name());
     CHECK(unit.activity().items_in() == unit.activity().items_out());
@@ -109,6 +121,8 @@ inline void require_timed_identities(const Simulation& simulation, const HostedM
     for (const Unit* unit : p.units()) {
         require_cycles_add_up(*unit, simulation.cycles());
         require_empty(*unit);
+        INFO(unit->name());
+        CHECK(unit->occupied_cycles() < simulation.cycles() + longest_interval(simulation.setup.design.timing));
     }
     CHECK(machine.drained());
     CHECK(p.clock.idle());
