@@ -75,10 +75,9 @@ inline void require_cycles_add_up(const Unit& unit, std::uint64_t cycles) {
 /// Of a unit; the last item's may reach beyond the run's end.
 inline std::uint64_t longest_interval(const Timing& t) {
     std::uint64_t longest = 1;
-    for (const UnitTiming& unit :
-         {t.get_triangle, t.calculate_new_p, t.displace_vertex, t.transform, t.calculate_new_u, t.tex_coord_test,
-          t.summed_height_test, t.normal_test, t.view_test, t.pass_or_tessellate, t.tessellation, t.triangle_queue,
-          t.lighting})
+    for (const UnitTiming& unit : {t.get_triangle, t.calculate_new_p, t.displace_vertex, t.transform, t.calculate_new_u,
+                                   t.tex_coord_test, t.summed_height_test, t.normal_test, t.view_test,
+                                   t.pass_or_tessellate, t.tessellation, t.triangle_queue, t.lighting})
         longest = std::max<std::uint64_t>(longest, unit.interval);
     return longest;
 }
