@@ -96,6 +96,8 @@ class Pipeline : public sc_core::sc_module {
     /// Of the tables that have one.
     const std::vector<TableCache*>& caches() const { return caches_; }
 
+    Transport transport() const { return transport_; }
+
     /// Items are held back at random.
     bool random_stalls() const { return random_stalls_; }
 
