@@ -57,8 +57,8 @@ function(tessera_check_systemc_links)
       "SystemC was found, but a C++${CMAKE_CXX_STANDARD} program does not link with it. The installed SystemC \
 was most likely built for another C++ standard (the symbol sc_api_version_*_cxx2xxxxx in its library \
 names which). Use the same for tessera and all that is linked with it: Debian 12's libsystemc-dev is built for C++17, \
-which is tessera's default; for another SystemC configure with -DCMAKE_CXX_STANDARD=..., 17 or later, or rebuild SystemC \
-with -DCMAKE_CXX_STANDARD=17. The linker's own words are in CMakeFiles/CMakeError.log in the build folder." PARENT_SCOPE)
+which is tessera's default. For another SystemC configure with -DCMAKE_CXX_STANDARD=..., 17 or later, or rebuild \
+SystemC with -DCMAKE_CXX_STANDARD=17. The linker's own words are in CMakeFiles/CMakeError.log in the build folder." PARENT_SCOPE)
   endif()
 endfunction()
 if(SystemC_FOUND)
