@@ -1,13 +1,13 @@
-# Compiler settings every target of ours shares.
-#  * warnings are errors in our code; libraries come in as SYSTEM includes
+# Compiler settings every target of ours shares. Clients of the libraries see none of them.
+#  * warnings are errors in our code, built by itself; libraries come in as SYSTEM includes
 #  * -fno-plt, -falign-functions: a twentieth of timed mode, which calls the SystemC kernel eight times an edge
 #  * -ffp-contract=off: the golden model's doubles must not depend on the compiler fusing a multiply-add
 add_library(tessera_options INTERFACE)
 target_compile_features(tessera_options INTERFACE cxx_std_17)
 target_compile_options(tessera_options INTERFACE
-  -Wall -Wextra -Wpedantic -Werror -Wshadow -Wconversion -Wsign-conversion -Wold-style-cast -Wnon-virtual-dtor
+  -Wall -Wextra -Wpedantic $<$<BOOL:${PROJECT_IS_TOP_LEVEL}>:-Werror> -Wshadow -Wconversion -Wsign-conversion -Wold-style-cast -Wnon-virtual-dtor
   -Wcast-align -ffp-contract=off -fno-plt -falign-functions=32)
-target_include_directories(tessera_options INTERFACE ${CMAKE_SOURCE_DIR})
+target_include_directories(tessera_options INTERFACE ${PROJECT_SOURCE_DIR})
 if(TESSERA_SANITIZE)
   set(sanitize -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   # The instrumentation hides from gcc's warnings what the code makes sure of: no errors here.
@@ -43,7 +43,7 @@ if(TESSERA_FUZZ)
   target_link_options(tessera_options INTERFACE ${fuzz})
 endif()
 
-# tessera_add_library(name SOURCES ... LIBRARIES ...): a static library with our settings.
+# tessera_add_library(name SOURCES ... LIBRARIES ...): a static library of the testbench with our settings.
 function(tessera_add_library name)
   cmake_parse_arguments(arg "" "" "SOURCES;LIBRARIES;PRIVATE_LIBRARIES" ${ARGN})
   add_library(${name} STATIC ${arg_SOURCES})

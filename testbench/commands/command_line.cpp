@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdlib>
 
+#include "modules/version.h"
 #include "testbench/commands/bake_options.h"
 #include "testbench/commands/render_options.h"
 #include "testbench/commands/tune_options.h"
@@ -73,7 +74,7 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     std::string data = default_data_folder().lexically_normal().string();
 
     CLI::App app{"tessera: a SystemC model of hardware that renders displacement maps by adaptive tessellation"};
-    app.set_version_flag("--version", TESSERA_VERSION);
+    app.set_version_flag("--version", std::string("tessera ") + version);
     app.require_subcommand(0, 1);  // a missing verb is reported below
     app.footer(
         "exit codes: 0 fine, 1 conformance or an invariant violated, 2 bad input or usage, 3 deadlock,\n"

@@ -43,12 +43,12 @@ enum class Trial {
     run,      ///< run it, exit code 0
     parse,    ///< a script that takes long or needs more tools than tests do: it is there and its syntax is right
     build,    ///< builds and runs another program of ours: its folder has that target
-    foreign,  ///< it fetches or installs
+    foreign,  ///< it fetches or installs; or test_packaging runs it
 };
 
 Trial trial_of(const std::string& command) {
     const auto says = [&](const char* words) { return std::regex_search(command, std::regex(words)); };
-    if (says("^(git|sudo|apt|apt-get|docker|cd) "))
+    if (says("^(git|sudo|apt|apt-get|docker|cd|g\\+\\+) "))
         return Trial::foreign;
     if (says("^(\\.ci/|scripts/(check|install)|scripts/figures$)"))
         return Trial::parse;

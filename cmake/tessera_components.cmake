@@ -1,0 +1,112 @@
+# The libraries that other projects use. Each is a component of the installed package: tessera::NAME.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+# tessera_find_packages(NAME PACKAGE...): sets tessera_builds_NAME, whether the component can and is to be built.
+macro(tessera_find_packages name)
+  set(tessera_builds_${name} TRUE)
+  set(tessera_required "")
+  if(TESSERA_TESTBENCH OR "${name}" IN_LIST TESSERA_COMPONENTS)
+    set(tessera_required REQUIRED)
+  elseif(TESSERA_COMPONENTS)
+    tessera_leave_out(${name} "TESSERA_COMPONENTS was ${TESSERA_COMPONENTS}")
+  endif()
+  foreach(package ${ARGN})
+    if(tessera_builds_${name})
+      find_package(${package} ${tessera_required})
+      if(NOT ${package}_FOUND)
+        tessera_leave_out(${name} "${package} was not found")
+      endif()
+    endif()
+  endforeach()
+endmacro()
+
+macro(tessera_leave_out name reason)
+  set(tessera_builds_${name} FALSE)
+  message(STATUS "No tessera::${name}: ${reason}")
+  set_property(GLOBAL APPEND_STRING PROPERTY tessera_config "set(tessera_left_out_${name} \"${reason}\")\n")
+endmacro()
+
+# tessera_add_component(NAME SOURCES ... LIBRARIES ... PRIVATE_LIBRARIES ... PACKAGES ... EXCEPT ...): tessera_NAME, with
+# the headers of this folder; without SOURCES header only. LIBRARIES: also the client's. PRIVATE_LIBRARIES: only to
+# compile it, so header only. PACKAGES: those of LIBRARIES. EXCEPT: subfolders that are components of their own.
+function(tessera_add_component name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LIBRARIES;PRIVATE_LIBRARIES;PACKAGES;EXCEPT" ${ARGN})
+  set(target tessera_${name})
+  if(arg_SOURCES)
+    set(scope PUBLIC)
+    add_library(${target} STATIC ${arg_SOURCES})
+    foreach(library tessera_options ${arg_PRIVATE_LIBRARIES})
+      target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:${library}>)
+    endforeach()
+  else()
+    set(scope INTERFACE)
+    add_library(${target} INTERFACE)
+  endif()
+  add_library(tessera::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  target_compile_features(${target} ${scope} cxx_std_17)
+  target_include_directories(${target} ${scope}
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/tessera>)
+  target_link_libraries(${target} ${scope} ${arg_LIBRARIES})
+
+  # What a component needs comes before it.
+  set(needs ${arg_LIBRARIES})
+  list(FILTER needs INCLUDE REGEX "^tessera_")
+  list(TRANSFORM needs REPLACE "^tessera_" "")
+  foreach(need ${needs})
+    get_property(further GLOBAL PROPERTY tessera_needs_${need})
+    list(PREPEND needs ${further})
+  endforeach()
+  set_property(GLOBAL PROPERTY tessera_needs_${name} ${needs})
+  set_property(GLOBAL APPEND PROPERTY tessera_components ${name})
+  set_property(GLOBAL APPEND_STRING PROPERTY tessera_config
+    "set(tessera_needs_${name} ${needs})\nset(tessera_packages_${name} ${arg_PACKAGES})\n")
+  if(TESSERA_INSTALL)
+    file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+    list(TRANSFORM arg_EXCEPT REPLACE "(.+)" "PATTERN;\\1;EXCLUDE")
+    install(DIRECTORY ./ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tessera/${folder} COMPONENT tessera
+            FILES_MATCHING PATTERN "*.h" ${arg_EXCEPT})
+    install(TARGETS ${target} EXPORT tessera_${name}
+            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT tessera)
+    install(EXPORT tessera_${name} NAMESPACE tessera:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/tessera
+            COMPONENT tessera)
+  endif()
+endfunction()
+
+# Call after the last component.
+function(tessera_install_package)
+  get_property(components GLOBAL PROPERTY tessera_components)
+  foreach(component ${TESSERA_COMPONENTS})
+    if(NOT component IN_LIST components)
+      message(FATAL_ERROR "TESSERA_COMPONENTS names ${component}; tessera has: ${components}")
+    endif()
+  endforeach()
+  if(NOT TESSERA_INSTALL)
+    return()
+  endif()
+  get_property(config GLOBAL PROPERTY tessera_config)
+  set(folder ${CMAKE_INSTALL_LIBDIR}/cmake/tessera)
+  configure_file(cmake/tesseraConfig.cmake.in tesseraConfig.cmake @ONLY)
+  write_basic_package_version_file(tesseraConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+
+  file(RELATIVE_PATH prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+  string(REGEX REPLACE "/$" "" prefix ${prefix})
+  set(libraries "")
+  set(packages "")
+  foreach(component ${components})
+    get_target_property(type tessera_${component} TYPE)
+    if(type STREQUAL "STATIC_LIBRARY")
+      string(PREPEND libraries " -ltessera_${component}")
+    endif()
+  endforeach()
+  if(tessera_builds_modules)
+    set(packages systemc)
+  endif()
+  configure_file(cmake/tessera.pc.in tessera.pc @ONLY)
+
+  install(FILES ${PROJECT_BINARY_DIR}/tesseraConfig.cmake ${PROJECT_BINARY_DIR}/tesseraConfigVersion.cmake
+                cmake/FindSystemC.cmake
+          DESTINATION ${folder} COMPONENT tessera)
+  install(FILES ${PROJECT_BINARY_DIR}/tessera.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT tessera)
+endfunction()

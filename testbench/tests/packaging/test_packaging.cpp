@@ -1,0 +1,253 @@
+#include <catch2/catch.hpp>
+#include <regex>
+
+#include "modules/version.h"
+#include "testbench/tests/support/program_runner.h"
+
+// The libraries in other projects: installed, and as a folder of theirs.
+
+using namespace tessera;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+const fs::path example = source_folder() / "testbench/examples/first_machine";
+const fs::path careful_client = source_folder() / "testbench/tests/packaging/careful_client";
+const Arguments from_sources{"-DTESSERA_SOURCE=" + source_folder().string()};
+const std::string strict = "-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Werror";
+
+ProgramEnd run(const std::vector<std::string>& command, const fs::path& folder, const Environment& environment = {}) {
+    return run_program(command, folder, {}, environment);
+}
+
+std::string require_success(const std::vector<std::string>& command, const fs::path& folder,
+                            const Environment& environment = {}) {
+    const ProgramEnd end = run(command, folder, environment);
+    INFO(command.front() << ": " << end.text());
+    REQUIRE(end.exit_code == 0);
+    return end.out;
+}
+
+/// Configures `source` in folder/build as this build was, but without the packages of the testbench.
+Arguments configuring(const fs::path& source, const Arguments& settings, const fs::path& prefix = {}) {
+    Arguments command{"cmake",
+                      "-S",
+                      source.string(),
+                      "-B",
+                      "build",
+                      "-G",
+                      "Ninja",
+                      "-DCMAKE_CXX_COMPILER=" TESSERA_COMPILER,
+                      "-DCMAKE_PREFIX_PATH=" + prefix.string() + ";" TESSERA_PREFIX_PATH,
+                      "-DFETCHCONTENT_FULLY_DISCONNECTED=ON"};
+    for (const char* const package : {"glm", "fmt", "Catch2", "CLI11", "OpenEXR", "nlohmann_json"})
+        command.push_back("-DCMAKE_DISABLE_FIND_PACKAGE_" + std::string(package) + "=ON");
+    return command + settings;
+}
+
+/// This build's installation, moved from where it was installed to.
+fs::path install_in(const fs::path& folder) {
+    const fs::path first = folder / "installed", moved = folder / "moved/elsewhere";
+    require_success({"cmake", "--install", TESSERA_BUILD_FOLDER, "--prefix", first.string()}, folder);
+    fs::create_directories(moved.parent_path());
+    fs::rename(first, moved);
+    return moved;
+}
+
+/// Builds and runs the programs in folder/build: what they print.
+std::string build_and_run(const fs::path& folder) {
+    require_success({"cmake", "--build", "build", "-j2"}, folder);
+    CHECK_THAT(require_success({"build/arithmetic"}, folder), Contains(version));
+    const std::string printed = require_success({"build/first_machine"}, folder);
+    CHECK_THAT(printed, Contains("functional") && Contains("timed"));
+    return printed;
+}
+
+/// An environment and settings in which SystemC is not found.
+const Environment no_systemc{{"PKG_CONFIG_LIBDIR", "nowhere"}, {"PKG_CONFIG_PATH", "nowhere"}};
+const Arguments no_systemc_package{"-DCMAKE_DISABLE_FIND_PACKAGE_SystemCLanguage=ON"};
+
+std::string without_line_breaks(const std::string& text) {
+    return std::regex_replace(text, std::regex("\\s+"), " ");
+}
+
+/// Configuring must fail with these words.
+void expect_refusal(const fs::path& folder, const Arguments& command, const std::string& words,
+                    const Environment& environment = {}) {
+    fs::remove_all(folder / "build");
+    const ProgramEnd end = run(command, folder, environment);
+    INFO(end.text());
+    CHECK(end.exit_code != 0);
+    CHECK_THAT(without_line_breaks(end.err), Contains(words));
+}
+
+/// Whether a header includes SystemC, itself or by another.
+bool includes_systemc(const fs::path& headers, const std::string& name) {
+    const std::regex include("#include ([<\"])(.*)[>\"]");
+    std::smatch match;
+    for (const std::string& line : lines_of(read_all(headers / name))) {
+        if (std::regex_match(line, match, include) &&
+            (match[2] == "systemc" || (match[1] == "\"" && includes_systemc(headers, match[2]))))
+            return true;
+    }
+    return false;
+}
+
+/// Blocks of this language in the text, line by line.
+std::vector<std::string> code_in(const fs::path& markdown, const std::string& language) {
+    std::vector<std::string> code;
+    bool within = false;
+    for (const std::string& line : lines_of(read_all(markdown))) {
+        if (line.rfind("```", 0) == 0)
+            within = line == "```" + language;
+        else if (within && !line.empty())
+            code.push_back(line);
+    }
+    return code;
+}
+
+}  // namespace
+
+TEST_CASE("the example finds an installation that was moved, by CMake and by pkg-config") {
+    const TestFolder folder;
+    const fs::path moved = install_in(folder.path());
+    fs::copy(example, folder.path() / "example");
+    require_success(configuring("example", {"-DCMAKE_CXX_FLAGS=" + strict}, moved), folder.path());
+    const std::string printed = build_and_run(folder.path());
+
+    std::string command;
+    for (const std::string& line : code_in(source_folder() / "modules/README.md", "sh")) {
+        if (line.rfind("g++ ", 0) == 0)
+            command = TESSERA_COMPILER + line.substr(3);
+    }
+    REQUIRE_THAT(command, Contains("pkg-config"));
+#ifdef TESSERA_SYSTEMC_BY_PKG_CONFIG
+    require_success({"bash", "-euc", command}, folder.path() / "example",
+                    {{"PKG_CONFIG_PATH", (moved / "lib/pkgconfig").string()}});
+    CHECK(require_success({"example/first_machine"}, folder.path()) == printed);
+#endif
+    for (const auto& entry : fs::recursive_directory_iterator(moved)) {
+        INFO(entry.path());
+        CHECK((!entry.is_regular_file() || entry.path().extension() == ".a" ||
+               read_all(entry.path()).find(folder.path().string()) == std::string::npos));
+    }
+}
+
+TEST_CASE("the example takes the sources as a folder, and by FetchContent") {
+    const TestFolder folder;
+    const Arguments settings{"-DCMAKE_CXX_FLAGS=" + strict, "-DTESSERA_SOURCE=" + source_folder().string(),
+                             "-DFETCHCONTENT_SOURCE_DIR_TESSERA=" + source_folder().string(),
+                             // Both build tessera in the same folder: the second finds it built.
+                             "-DFETCHCONTENT_BASE_DIR=build"};
+    require_success(configuring(example, settings + Arguments{"-DTESSERA_BY=add_subdirectory"}), folder.path());
+    const std::string printed = build_and_run(folder.path());
+    require_success(configuring(example, settings + Arguments{"-DTESSERA_BY=FetchContent"}), folder.path());
+    CHECK(build_and_run(folder.path()) == printed);
+    CHECK_FALSE(fs::exists(folder.path() / "build/install_manifest.txt"));
+    require_success({"cmake", "--install", "build", "--prefix", "installed"}, folder.path());
+    CHECK_FALSE(fs::exists(folder.path() / "installed"));
+}
+
+TEST_CASE("a client keeps its variables and its warnings") {
+    const TestFolder folder;
+    const fs::path moved = install_in(folder.path());
+    const Arguments client = configuring(careful_client, {"-DCOMPONENTS=datapath;modules"}, moved);
+    for (const bool as_folder : {false, true}) {
+        INFO("as a folder: " << as_folder);
+        fs::remove_all(folder.path() / "build");
+        require_success(client + (as_folder ? from_sources : Arguments{}), folder.path());
+        unsigned commands = 0;
+        for (const std::string& line : lines_of(read_all(folder.path() / "build/compile_commands.json"))) {
+            if (line.find("\"command\"") == std::string::npos || line.find("warned_of.cpp") == std::string::npos)
+                continue;
+            ++commands;
+            CHECK_THAT(line, Contains("-DFLAG_OF_ITS_OWN") && !Contains(" -W") && !Contains(" -f"));
+        }
+        CHECK(commands == 2);
+        if (!as_folder)
+            require_success({"cmake", "--build", "build"}, folder.path());
+    }
+}
+
+TEST_CASE("each installed header compiles alone") {
+    const TestFolder folder;
+    const fs::path headers = install_in(folder.path()) / "include/tessera";
+    const std::string compile = TESSERA_COMPILER " -std=c++" TESSERA_STANDARD " " + strict + " ";
+    // SystemC takes most of the time: once, for all that include it.
+    write_all(folder.path() / "first.h", "#include <systemc>\n");
+    std::string alone, after_systemc;
+    unsigned count = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(headers)) {
+        if (!entry.is_regular_file())
+            continue;
+        const std::string name = entry.path().lexically_relative(headers).string();
+        CHECK_THAT(name, Catch::StartsWith("modules/") && Catch::EndsWith(".h"));
+        (includes_systemc(headers, name) ? after_systemc : alone) += name + "\n";
+        ++count;
+    }
+    CHECK(count > 80);
+    write_all(folder.path() / "alone", alone);
+    write_all(folder.path() / "after_systemc", after_systemc);
+    const std::string each = "xargs -P2 -I@ sh -c 'echo \"#include \\\"@\\\"\" | " + compile +
+                             "-fsyntax-only -I moved/elsewhere/include/tessera -x c++ ";
+    require_success({"bash", "-euo", "pipefail", "-c",
+                     compile + "-x c++-header first.h -o first.h.gch && " + each +
+                         "-include first.h -' <after_systemc && " + each + "-' <alone"},
+                    folder.path());
+}
+
+TEST_CASE("a component that is not there, a package it needs, another C++ standard: refused with the reason") {
+    const TestFolder folder;
+    const fs::path moved = install_in(folder.path());
+    const auto client = [&](const std::string& components, const Arguments& settings = {}) {
+        return configuring(careful_client, Arguments{"-DCOMPONENTS=" + components} + settings, moved);
+    };
+    expect_refusal(folder.path(), client("modules;shaders"), "No tessera::shaders: tessera has no such component");
+    expect_refusal(folder.path(), client("shaders", from_sources),
+                   "TESSERA_COMPONENTS names shaders; tessera has: datapath");
+    for (const Arguments& from : {Arguments{}, from_sources}) {
+        expect_refusal(folder.path(), client("modules", from + no_systemc_package), "apt-get install libsystemc-dev",
+                       no_systemc);
+        expect_refusal(folder.path(),
+                       client("modules", from + Arguments{"-DCMAKE_CXX_STANDARD=" TESSERA_OTHER_STANDARD}),
+                       "C++" TESSERA_OTHER_STANDARD " program does not link with it");
+        fs::remove_all(folder.path() / "build");
+        require_success(client("datapath", from + no_systemc_package + Arguments{"-DCMAKE_CXX_STANDARD=20"}),
+                        folder.path(), no_systemc);
+        require_success({"cmake", "--build", "build"}, folder.path());
+    }
+}
+
+TEST_CASE("what is left out of an installation is named with its reason") {
+    const TestFolder folder;
+    require_success(configuring(source_folder(), Arguments{"-DTESSERA_TESTBENCH=OFF"} + no_systemc_package),
+                    folder.path(), no_systemc);
+    require_success({"cmake", "--install", "build", "--prefix", "installed"}, folder.path());
+    CHECK_FALSE(fs::exists(folder.path() / "installed/include/tessera/modules/pipeline.h"));
+    CHECK(fs::exists(folder.path() / "installed/include/tessera/modules/version.h"));
+    CHECK_THAT(read_all(folder.path() / "installed/lib/pkgconfig/tessera.pc"), !Contains("systemc"));
+    expect_refusal(folder.path(), configuring(careful_client, {}, folder.path() / "installed"),
+                   "No tessera::modules: it was left out when tessera was built: SystemC was not found");
+}
+
+TEST_CASE("the version is the same everywhere") {
+    const TestFolder folder;
+    const fs::path moved = install_in(folder.path());
+    CHECK(std::to_string(version_major) + "." + std::to_string(version_minor) + "." + std::to_string(version_patch) ==
+          version);
+    CHECK_THAT(read_all(moved / "lib/pkgconfig/tessera.pc"), Contains("\nVersion: " + std::string(version) + "\n"));
+    CHECK_THAT(read_all(moved / "lib/cmake/tessera/tesseraConfigVersion.cmake"),
+               Contains("set(PACKAGE_VERSION \"" + std::string(version) + "\")"));
+    CHECK(succeed({"--version"}, folder.path()).out == "tessera " + std::string(version) + "\n");
+    CHECK_THAT(read_all(source_folder() / ".github/CITATION.cff"),
+               Contains("\nversion: " + std::string(version) + "\n"));
+}
+
+TEST_CASE("the README's CMake is the example's") {
+    const std::string cmake = read_all(example / "CMakeLists.txt");
+    const std::vector<std::string> shown = code_in(source_folder() / "modules/README.md", "cmake");
+    CHECK(shown.size() >= 5);
+    for (const std::string& line : shown)
+        CHECK_THAT(cmake, Contains(line.substr(line.find_first_not_of(' '))));
+}
