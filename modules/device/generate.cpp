@@ -79,7 +79,7 @@ std::vector<DeviceRegister> documented_registers() {
 
 std::string c_header(const std::vector<DeviceRegister>& registers) {
     std::ostringstream text;
-    text << "#pragma once\n/* Registers and records of tessera's device.\n"
+    text << "#pragma once\n/* clang-format off */\n/* Registers and records of tessera's device.\n"
             " * "
          << made_by
          << "\n"
@@ -96,8 +96,10 @@ std::string c_header(const std::vector<DeviceRegister>& registers) {
     for (const ErrorMeaning& error : error_meanings)
         text << "    TESSERA_ERROR_" << upper_case(error.name) << " = " << static_cast<int>(error.error) << ",  /* "
              << error.meaning << " */\n";
+    text << "};\n#define TESSERA_ERRORS " << error_meanings.size() << "\n#define TESSERA_ERROR_TEXTS";
+    for (const ErrorMeaning& error : error_meanings)
+        text << " \\\n    \"" << error.meaning << (&error == &error_meanings.back() ? "\"" : "\",");
     text
-        << "};\n#define TESSERA_ERRORS " << error_meanings.size()
         << "\n\n/* Records in bus memory: little-endian words. */\n"
         << c_record(false) << c_record(true)
         << "\n/* X(name, offset, bits, words, is signed, writable) of every register. */\n#define TESSERA_REGISTER_LIST(X)";
