@@ -207,7 +207,7 @@ inline Job small_job(bool timed, const std::string& settings = "") {
 inline DeviceDesign design_of(const MachineSetup& setup) {
     DeviceDesign design;
     design.machine = setup.design;
-    design.largest_map = {64, 64};
+    design.largest_map = {std::max(64u, setup.registers.map.width), std::max(64u, setup.registers.map.height)};
     return design;
 }
 

@@ -36,7 +36,7 @@ struct BusMemory : sc_core::sc_module {
     std::uint64_t failing_from = 1, failing_to = 0;  ///< answers accesses to these addresses by an error
     unsigned reads = 0, writes = 0, longest = 0, across = 0;
     unsigned burst_bytes = 64;
-    std::function<void()> on_read = [] {};
+    sc_core::sc_time longest_delay;  ///< with which it was called
 
     BusMemory(const sc_core::sc_module_name& name, std::uint64_t its_base, std::size_t size)
         : sc_module(name), base(its_base), bytes(size) {
@@ -55,8 +55,7 @@ struct BusMemory : sc_core::sc_module {
         (payload.is_write() ? writes : reads) += 1;
         longest = std::max(longest, payload.get_data_length());
         across += first / burst_bytes != (first + length - 1) / burst_bytes ? 1u : 0u;
-        if (payload.is_read())
-            on_read();
+        longest_delay = std::max(longest_delay, delay);
         if (waits)
             wait(latency);
         else
