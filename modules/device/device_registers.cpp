@@ -67,7 +67,7 @@ tlm::tlm_response_status Device::access(tlm::tlm_generic_payload& payload, const
 /// TLM_OK_RESPONSE, or why not.
 tlm::tlm_response_status Device::may_write(std::uint64_t offset, std::uint32_t word) const {
     const DeviceRegister& field = *file_.find(offset);
-    if (field.access == Access::read_only)
+    if (field.access == RegisterAccess::read_only)
         return tlm::TLM_COMMAND_ERROR_RESPONSE;
     const bool starts = offset == offset::control && (word & control_start) != 0 && (word & control_reset) == 0;
     if (((!field.while_busy || starts) && busy()) || reset_held())
@@ -142,7 +142,7 @@ unsigned Device::transport_dbg(tlm::tlm_generic_payload& payload) {
         const auto offset = static_cast<std::uint32_t>(first + moved);
         if (payload.is_read())
             datapath::store_word(read(offset), data);
-        else if (payload.is_write() && field->access == Access::read_write && !field->while_busy && !busy())
+        else if (payload.is_write() && field->access == RegisterAccess::read_write && !field->while_busy && !busy())
             file_.set_word(offset, datapath::load_word(data));
         else
             break;

@@ -30,15 +30,15 @@ std::string hex(std::uint64_t value, int digits) {
     return text.str();
 }
 
-const char* access_name(Access access) {
+const char* access_name(RegisterAccess access) {
     switch (access) {
-        case Access::read_only:
+        case RegisterAccess::read_only:
             return "ro";
-        case Access::read_write:
+        case RegisterAccess::read_write:
             return "rw";
-        case Access::command:
+        case RegisterAccess::command:
             return "command";
-        case Access::write_one_to_clear:
+        case RegisterAccess::write_one_to_clear:
             return "w1c";
     }
     return "";
@@ -105,7 +105,7 @@ std::string c_header(const std::vector<DeviceRegister>& registers) {
         << "\n/* X(name, offset, bits, words, is signed, writable) of every register. */\n#define TESSERA_REGISTER_LIST(X)";
     for (const DeviceRegister& r : registers)
         text << " \\\n    X(" << upper_case(r.name) << ", 0x" << hex(r.offset, 3) << "u, " << r.bits << ", " << r.words
-             << ", " << (r.is_signed ? 1 : 0) << ", " << (r.access == Access::read_only ? 0 : 1) << ")";
+             << ", " << (r.is_signed ? 1 : 0) << ", " << (r.access == RegisterAccess::read_only ? 0 : 1) << ")";
     text << "\n\n/* Every register's number: a place in that list. */\nenum tessera_register {\n"
             "#define TESSERA_NUMBER(name, offset, bits, words, is_signed, writable) TESSERA_REGISTER_##name,\n"
             "    TESSERA_REGISTER_LIST(TESSERA_NUMBER)\n#undef TESSERA_NUMBER\n"

@@ -28,13 +28,13 @@ std::uint64_t entry_sizes(const Formats& f) {
 }
 
 std::vector<DeviceRegister> control_registers(const Formats& f, const LargestMap& largest) {
-    constexpr Access ro = Access::read_only, rw = Access::read_write, w1c = Access::write_one_to_clear;
+    constexpr RegisterAccess ro = RegisterAccess::read_only, rw = RegisterAccess::read_write, w1c = RegisterAccess::write_one_to_clear;
     const char* const format = "bits, and from bit 8 on fraction bits";
     // name, offset, bits, words, signed, reset value, access, while busy, always present, meaning
     return {
         {"id", offset::id, 32, 1, false, 0x53534554, ro, false, true, "the letters TESS"},
         {"version", offset::version, 32, 1, false, 0x00010000, ro, false, true, "of this register map: 1.0"},
-        {"control", offset::control, 2, 1, false, 0, Access::command, true, true, "start, reset"},
+        {"control", offset::control, 2, 1, false, 0, RegisterAccess::command, true, true, "start, reset"},
         {"status", offset::status, 4, 1, false, 0, ro, false, true, "busy, done, error, resetting"},
         {"interrupt", offset::interrupt, 2, 1, false, 0, w1c, true, true, "pending: done, error"},
         {"interrupt_enable", offset::interrupt_enable, 2, 1, false, 0, rw, true, true,
@@ -136,7 +136,7 @@ std::vector<DeviceRegister> register_map(const datapath::Registers& reset, const
             const std::uint64_t mask = field.bits == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << field.bits) - 1;
             map.push_back({place->name, place->offset, field.bits, place->words,
                            field.kind == datapath::RegisterKind::signed_number,
-                           static_cast<std::uint64_t>(value) & mask, base ? Access::read_only : Access::read_write,
+                           static_cast<std::uint64_t>(value) & mask, base ? RegisterAccess::read_only : RegisterAccess::read_write,
                            false, !highlight, base ? "of the table in the device's own table memory" : field.meaning});
             ++place;
         }

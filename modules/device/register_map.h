@@ -8,7 +8,7 @@
 
 namespace tessera {
 
-enum class Access : std::uint8_t {
+enum class RegisterAccess : std::uint8_t {
     read_only,           ///< a write is refused
     read_write,          ///< refused while a frame is under way, unless `while_busy`
     command,             ///< a 1 acts and clears itself: reads 0
@@ -24,7 +24,7 @@ struct DeviceRegister {
     int words;             ///< 1 or 2
     bool is_signed;
     std::uint64_t reset;
-    Access access;
+    RegisterAccess access;
     bool while_busy;      ///< may be written while a frame is under way
     bool always_present;  ///< else: only in a design with a Highlight Test
     std::string meaning;

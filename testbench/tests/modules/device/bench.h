@@ -11,6 +11,7 @@
 #include "testbench/tests/modules/named_machine.h"
 #include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/timed_checks.h"
+#include "testbench/tests/support/timed_modules.h"
 
 /// Devices on a platform, beside the testbench's own machine, which says what they are to write.
 namespace tessera::testing {
@@ -146,7 +147,7 @@ inline tessera_register number_of(std::uint32_t offset) {
 /// Every register of the machine that software may write, by the driver.
 inline void set_machine(tessera_driver& driver, const datapath::Registers& registers) {
     for (const DeviceRegister& r : register_map(registers, {})) {
-        if (r.offset < offset::machine || r.access != Access::read_write)
+        if (r.offset < offset::machine || r.access != RegisterAccess::read_write)
             continue;
         std::uint64_t value = r.reset;
         if (r.is_signed && (value >> (r.bits - 1) & 1) != 0)

@@ -82,7 +82,7 @@ TEST_CASE("every register of the machine can be written and arrives, at its leas
     RegisterFile file(wide(), {});
     for (const bool greatest : {false, true}) {
         for (const DeviceRegister& r : register_map(wide(), {})) {
-            if (r.offset < offset::machine || r.access != Access::read_write)
+            if (r.offset < offset::machine || r.access != RegisterAccess::read_write)
                 continue;
             const std::uint64_t half = std::uint64_t{1} << (r.bits - 1);
             file.set(r.offset, r.is_signed ? (greatest ? half - 1 : half) : greatest ? ~std::uint64_t{0} : 0);
