@@ -50,7 +50,7 @@ Device::Device(const sc_core::sc_module_name& name, const datapath::Registers& i
       file_(initial, design.largest_map),
       reading_(bus, design.burst_bytes, design.machine.transport == Transport::blocking),
       writing_(bus, design.burst_bytes, design.machine.transport == Transport::blocking),
-      most_waiting_(design.machine.queue.capacity + design.machine.queue.off_chip_triangles) {
+      most_waiting_(std::max<std::uint64_t>(design.machine.queue.capacity, design.machine.queue.off_chip_triangles)) {
     registers.register_b_transport(this, &Device::b_transport);
     registers.register_transport_dbg(this, &Device::transport_dbg);
     streams_.to_get_triangle.bind(pipeline_.get_triangle.from_host);
@@ -187,10 +187,18 @@ void Device::stop(DeviceError error, std::uint64_t address) {
     stop_.notify(sc_core::SC_ZERO_TIME);
 }
 
-/// The machine has decided a triangle. Counted with those that may be added by triangles under way.
+/// The machine has decided a triangle. Those that wait are counted with the children of all that are under way, which
+/// can still be added when splitting ends: the queue would halt the machine for good if its memory were full.
 void Device::write(const datapath::TrianglePass&) {
-    const std::uint64_t under_way = design_.machine.transport == Transport::blocking ? 1 : pipeline_.passes_under_way();
-    if (pipeline_.triangle_queue.waiting() + 4 * under_way > most_waiting_ && !stopped_)
+    if (stopped_)
+        return;
+    const Pipeline& p = pipeline_;
+    std::uint64_t waiting = p.triangle_queue.waiting();
+    if (design_.machine.transport == Transport::non_blocking)
+        waiting +=
+            p.triangle_queue.from_tessellation.size() + 1 +
+            4 * (p.passes_under_way() + p.tessellation.activity().level() + p.pass_or_tessellate.activity().level());
+    if (waiting > most_waiting_)
         stop(DeviceError::queue_full, 0);
 }
 

@@ -47,8 +47,9 @@ struct DeviceDesign {
 /// Timing:    an access takes `register_cycles` for each word. While a frame is under way an access first waits its
 ///            initiator's delay out. DMA: dma_channel.h. Functional mode keeps to the global quantum; timed mode
 ///            waits each burst's delay out.
-/// Capacity:  `triangles_ahead` and `finished_triangles`. At most as many triangles may wait as the Triangle Queue and its
-///            off-chip memory hold (unbounded queue: as many as off-chip memory would): beyond that the frame is stopped.
+/// Capacity:  `triangles_ahead` and `finished_triangles`. Of triangles that wait, or can be added by those under way, as
+///            many as the Triangle Queue or its off-chip memory holds, whichever holds more (unbounded queue: as many as
+///            off-chip memory). Beyond that the frame is stopped.
 class Device : public sc_core::sc_module, private tlm::tlm_analysis_if<datapath::TrianglePass> {
   public:
     tlm_utils::simple_target_socket<Device> registers{"registers"};

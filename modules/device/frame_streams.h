@@ -30,7 +30,7 @@ class FrameStreams : public sc_core::sc_module, public CycleProcess {
                  std::size_t triangles_ahead, std::size_t finished_triangles);
 
     /// From a thread. Functional mode: on return the triangle is in the machine, and `delay` has grown. Timed mode: waits
-    /// for room; `delay` is not used.
+    /// for room, unless the clock has halted; `delay` is not used.
     void send(const datapath::Triangle& triangle, sc_core::sc_time& delay);
 
     bool has_finished() const { return !finished_.empty(); }

@@ -28,7 +28,8 @@ std::uint64_t entry_sizes(const Formats& f) {
 }
 
 std::vector<DeviceRegister> control_registers(const Formats& f, const LargestMap& largest) {
-    constexpr RegisterAccess ro = RegisterAccess::read_only, rw = RegisterAccess::read_write, w1c = RegisterAccess::write_one_to_clear;
+    constexpr RegisterAccess ro = RegisterAccess::read_only, rw = RegisterAccess::read_write,
+                             w1c = RegisterAccess::write_one_to_clear;
     const char* const format = "bits, and from bit 8 on fraction bits";
     // name, offset, bits, words, signed, reset value, access, while busy, always present, meaning
     return {
@@ -136,8 +137,9 @@ std::vector<DeviceRegister> register_map(const datapath::Registers& reset, const
             const std::uint64_t mask = field.bits == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << field.bits) - 1;
             map.push_back({place->name, place->offset, field.bits, place->words,
                            field.kind == datapath::RegisterKind::signed_number,
-                           static_cast<std::uint64_t>(value) & mask, base ? RegisterAccess::read_only : RegisterAccess::read_write,
-                           false, !highlight, base ? "of the table in the device's own table memory" : field.meaning});
+                           static_cast<std::uint64_t>(value) & mask,
+                           base ? RegisterAccess::read_only : RegisterAccess::read_write, false, !highlight,
+                           base ? "of the table in the device's own table memory" : field.meaning});
             ++place;
         }
     });

@@ -107,8 +107,9 @@ inline constexpr std::array<ErrorMeaning, 11> error_meanings{{
      "stopped: a base triangle's value beyond its format; the record's address"},
     {DeviceError::ring_write, "ring_write", "stopped: the bus answered a write to the ring by an error; the address"},
     {DeviceError::queue_full, "queue_full",
-     "stopped: more triangles wait than the Triangle Queue and its memory hold; 0"},
-    {DeviceError::machine_stopped, "machine_stopped", "stopped: the simulated time has ended; no reset helps; 0"},
+     "stopped: more triangles would wait than the Triangle Queue's memory holds; 0"},
+    {DeviceError::machine_stopped, "machine_stopped",
+     "stopped for good: the machine's clock has halted, and no reset helps; 0"},
 }};
 
 /// Columns and rows of the largest map that the table memories hold.

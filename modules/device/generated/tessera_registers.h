@@ -121,8 +121,8 @@ enum tessera_error {
     TESSERA_ERROR_TRIANGLE_READ = 6,  /* stopped: likewise of a base triangle; the address */
     TESSERA_ERROR_BAD_TRIANGLE = 7,  /* stopped: a base triangle's value beyond its format; the record's address */
     TESSERA_ERROR_RING_WRITE = 8,  /* stopped: the bus answered a write to the ring by an error; the address */
-    TESSERA_ERROR_QUEUE_FULL = 9,  /* stopped: more triangles wait than the Triangle Queue and its memory hold; 0 */
-    TESSERA_ERROR_MACHINE_STOPPED = 10,  /* stopped: the simulated time has ended; no reset helps; 0 */
+    TESSERA_ERROR_QUEUE_FULL = 9,  /* stopped: more triangles would wait than the Triangle Queue's memory holds; 0 */
+    TESSERA_ERROR_MACHINE_STOPPED = 10,  /* stopped for good: the machine's clock has halted, and no reset helps; 0 */
 };
 #define TESSERA_ERRORS 11
 #define TESSERA_ERROR_TEXTS \
@@ -135,8 +135,8 @@ enum tessera_error {
     "stopped: likewise of a base triangle; the address", \
     "stopped: a base triangle's value beyond its format; the record's address", \
     "stopped: the bus answered a write to the ring by an error; the address", \
-    "stopped: more triangles wait than the Triangle Queue and its memory hold; 0", \
-    "stopped: the simulated time has ended; no reset helps; 0"
+    "stopped: more triangles would wait than the Triangle Queue's memory holds; 0", \
+    "stopped for good: the machine's clock has halted, and no reset helps; 0"
 
 /* Records in bus memory: little-endian words. */
 struct tessera_base_vertex {

@@ -286,8 +286,8 @@ package tessera_registers;
     ERROR_TRIANGLE_READ = 4'd6,  // stopped: likewise of a base triangle; the address
     ERROR_BAD_TRIANGLE = 4'd7,  // stopped: a base triangle's value beyond its format; the record's address
     ERROR_RING_WRITE = 4'd8,  // stopped: the bus answered a write to the ring by an error; the address
-    ERROR_QUEUE_FULL = 4'd9,  // stopped: more triangles wait than the Triangle Queue and its memory hold; 0
-    ERROR_MACHINE_STOPPED = 4'd10  // stopped: the simulated time has ended; no reset helps; 0
+    ERROR_QUEUE_FULL = 4'd9,  // stopped: more triangles would wait than the Triangle Queue's memory holds; 0
+    ERROR_MACHINE_STOPPED = 4'd10  // stopped for good: the machine's clock has halted, and no reset helps; 0
   } error_e;
 
   // Words of a vertex's record in bus memory.

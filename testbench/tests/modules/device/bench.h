@@ -72,10 +72,10 @@ struct Bench {
     std::vector<DriverContext> contexts;
     std::vector<tessera_driver> drivers;
     std::uint64_t next = memory_base + 4;
+    const bool direct;  ///< the processor is joined to the one device's registers
 
-    /// direct: the processor is joined to the one device's registers.
-    Bench(const std::vector<datapath::Registers>& initial, const DeviceDesign& design, bool direct = false)
-        : router("router", initial.size()) {
+    Bench(const std::vector<datapath::Registers>& initial, const DeviceDesign& design, bool its_direct = false)
+        : router("router", initial.size()), direct(its_direct) {
         for (std::size_t k = 0; k < initial.size(); ++k) {
             devices.push_back(std::make_unique<Device>(("device_" + std::to_string(k)).c_str(), initial[k], design));
             interrupts.push_back(

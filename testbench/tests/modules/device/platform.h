@@ -32,6 +32,7 @@ struct BusMemory : sc_core::sc_module {
         std::uint64_t first = 0, end = 0;
     };
     std::vector<Range> writable;
+    std::function<Range()> writable_now;  ///< if set, in their place
     unsigned writes_outside = 0;
     std::uint64_t failing_from = 1, failing_to = 0;  ///< answers accesses to these addresses by an error
     unsigned reads = 0, writes = 0, longest = 0, across = 0;
@@ -50,6 +51,10 @@ struct BusMemory : sc_core::sc_module {
     }
 
   private:
+    bool may_write(std::uint64_t first, std::uint64_t end) const {
+        const auto inside = [&](const Range& range) { return first >= range.first && end <= range.end; };
+        return writable_now ? inside(writable_now()) : std::any_of(writable.begin(), writable.end(), inside);
+    }
     void b_transport(int, tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
         const std::uint64_t first = payload.get_address(), length = payload.get_data_length();
         (payload.is_write() ? writes : reads) += 1;
@@ -69,10 +74,7 @@ struct BusMemory : sc_core::sc_module {
         if (payload.is_read()) {
             std::copy_n(at, length, payload.get_data_ptr());
         } else {
-            writes_outside += std::any_of(writable.begin(), writable.end(),
-                                          [&](const Range& r) { return first >= r.first && first + length <= r.end; })
-                                  ? 0u
-                                  : 1u;
+            writes_outside += may_write(first, first + length) ? 0u : 1u;
             std::copy_n(payload.get_data_ptr(), length, at);
         }
         payload.set_response_status(tlm::TLM_OK_RESPONSE);

@@ -143,7 +143,9 @@ const CaseTable<Mode> stopped_frames{
     }};
 
 const CaseTable<Mode> bad_triangles{
-    "a base triangle beyond its formats stops the frame: ", {{"functional", false}, {"timed", true}}, [](const Mode& mode) {
+    "a base triangle beyond its formats stops the frame: ",
+    {{"functional", false}, {"timed", true}},
+    [](const Mode& mode) {
         const MachineSetup setup = setup_for(mode);
         Bench bench({formats_of(setup)}, design_of(setup));
         const FramePlaces places = bench.place(setup, 5000);

@@ -52,32 +52,32 @@ const std::vector<std::string> several{
     "map.source=noise map.width=9 map.height=5 tests.normal=false tests.generation_limit=4",
     ""};
 
-const CaseTable<Mode> frames_in_a_row{
-    "several frames in a row, with other thresholds, scales, maps and cameras: ",
-    {functional, timed,
-     {"timed, tables behind caches", true,
-      "timing.summed_height_table_cache_bytes=512 timing.normal_map_cache_bytes=512 "
-      "timing.displacement_map_cache_bytes=512"},
-     {"timed, modern design", true, "hardware.design=modern"}},
-    [](const Mode& mode) {
-        Frames frames(mode, several);
-        std::vector<LitKeys> found(several.size());
-        frames.bench->cpu.program = [&](Processor&) {
-            tessera_driver& driver = frames.bench->init();
-            for (std::size_t k = 0; k < several.size(); ++k) {
-                frames.set(driver, k);
-                found[k] = run_frame(driver);
-            }
-        };
-        frames.bench->run();
-        for (std::size_t k = 0; k < several.size(); ++k) {
-            INFO("frame " << k);
-            CHECK(found[k].size() > 20);
-            expect_same(found[k], frames.references[k]->keys);
-        }
-        CHECK(found[0] != found[1]);
-        CHECK(found[1] != found[2]);
-    }};
+const CaseTable<Mode> frames_in_a_row{"several frames in a row, with other thresholds, scales, maps and cameras: ",
+                                      {functional,
+                                       timed,
+                                       {"timed, tables behind caches", true,
+                                        "timing.summed_height_table_cache_bytes=512 timing.normal_map_cache_bytes=512 "
+                                        "timing.displacement_map_cache_bytes=512"},
+                                       {"timed, modern design", true, "hardware.design=modern"}},
+                                      [](const Mode& mode) {
+                                          Frames frames(mode, several);
+                                          std::vector<LitKeys> found(several.size());
+                                          frames.bench->cpu.program = [&](Processor&) {
+                                              tessera_driver& driver = frames.bench->init();
+                                              for (std::size_t k = 0; k < several.size(); ++k) {
+                                                  frames.set(driver, k);
+                                                  found[k] = run_frame(driver);
+                                              }
+                                          };
+                                          frames.bench->run();
+                                          for (std::size_t k = 0; k < several.size(); ++k) {
+                                              INFO("frame " << k);
+                                              CHECK(found[k].size() > 20);
+                                              expect_same(found[k], frames.references[k]->keys);
+                                          }
+                                          CHECK(found[0] != found[1]);
+                                          CHECK(found[1] != found[2]);
+                                      }};
 
 const CaseTable<Mode> without_fetch{
     "tables that are not fetched again are those of the frame before: ", {functional, timed}, [](const Mode& mode) {
@@ -112,74 +112,75 @@ void expect_reset(tessera_driver& driver, const datapath::Registers& initial) {
     }
 }
 
-const CaseTable<Mode> resets{
-    "a reset at any moment of a frame, and the next frame is right: ",
-    {functional, timed, {"timed, spilling", true, "hardware.queue_capacity=8"}, {"timed, modern design", true, "hardware.design=modern"}},
-    [](const Mode& mode) {
-        Frames frames(mode, {""}, 1, 20);
-        Bench& bench = *frames.bench;
-        datapath::Registers initial;
-        initial.formats = frames.setups[0].registers.formats;
-        std::vector<LitKeys> found;
-        bench.cpu.program = [&](Processor& cpu) {
-            tessera_driver& driver = bench.init();
-            for (unsigned k = 0; k < 24; ++k) {
-                INFO("reset " << k);
-                frames.set(driver, 0);
-                // nobody reads the ring, so that the frame does not end by itself
-                REQUIRE(tessera_start(&driver) == TESSERA_OK);
-                cpu.pass(sc_core::sc_time(40 << (k / 2), sc_core::SC_NS));
-                std::uint32_t status = 0;
-                REQUIRE(tessera_status(&driver, &status) == TESSERA_OK);
-                CHECK(status == status_busy);
-                if (k % 2 == 0) {
-                    CHECK(tessera_reset(&driver, 10000) == TESSERA_OK);
-                } else {
-                    bench.reset.write(true);
-                    cpu.pass(sc_core::sc_time(10, sc_core::SC_US));
-                    CHECK(tessera_start(&driver) == TESSERA_BUS);  // held
-                    bench.reset.write(false);
-                    CHECK(tessera_wait(&driver, 10000) == TESSERA_OK);
-                }
-                const unsigned writes = bench.memory.writes;
-                expect_reset(driver, initial);
-                CHECK(bench.memory.writes == writes);
-                if (k % 6 < 2) {
-                    frames.set(driver, 0);
-                    found.push_back(run_frame(driver));
-                }
-            }
-        };
-        bench.run();
-        CHECK(found.size() == 8);
-        for (const LitKeys& keys : found)
-            expect_same(keys, frames.references[0]->keys);
-    }};
+const CaseTable<Mode> resets{"a reset at any moment of a frame, and the next frame is right: ",
+                             {functional,
+                              timed,
+                              {"timed, spilling", true, "hardware.queue_capacity=8"},
+                              {"timed, modern design", true, "hardware.design=modern"}},
+                             [](const Mode& mode) {
+                                 Frames frames(mode, {""}, 1, 20);
+                                 Bench& bench = *frames.bench;
+                                 datapath::Registers initial;
+                                 initial.formats = frames.setups[0].registers.formats;
+                                 std::vector<LitKeys> found;
+                                 bench.cpu.program = [&](Processor& cpu) {
+                                     tessera_driver& driver = bench.init();
+                                     for (unsigned k = 0; k < 24; ++k) {
+                                         INFO("reset " << k);
+                                         frames.set(driver, 0);
+                                         // nobody reads the ring, so that the frame does not end by itself
+                                         REQUIRE(tessera_start(&driver) == TESSERA_OK);
+                                         cpu.pass(sc_core::sc_time(40 << (k / 2), sc_core::SC_NS));
+                                         std::uint32_t status = 0;
+                                         REQUIRE(tessera_status(&driver, &status) == TESSERA_OK);
+                                         CHECK(status == status_busy);
+                                         if (k % 2 == 0) {
+                                             CHECK(tessera_reset(&driver, 10000) == TESSERA_OK);
+                                         } else {
+                                             bench.reset.write(true);
+                                             cpu.pass(sc_core::sc_time(10, sc_core::SC_US));
+                                             CHECK(tessera_start(&driver) == TESSERA_BUS);  // held
+                                             bench.reset.write(false);
+                                             CHECK(tessera_wait(&driver, 10000) == TESSERA_OK);
+                                         }
+                                         const unsigned writes = bench.memory.writes;
+                                         expect_reset(driver, initial);
+                                         CHECK(bench.memory.writes == writes);
+                                         if (k % 6 < 2) {
+                                             frames.set(driver, 0);
+                                             found.push_back(run_frame(driver));
+                                         }
+                                     }
+                                 };
+                                 bench.run();
+                                 CHECK(found.size() == 8);
+                                 for (const LitKeys& keys : found)
+                                     expect_same(keys, frames.references[0]->keys);
+                             }};
 
-const CaseTable<Mode> two{
-    "two devices on one bus, at the same time: ", {functional, timed}, [](const Mode& mode) {
-        Frames frames(mode, {"", "map.source=noise displacement.scale=0.1"}, 2, 30);
-        std::array<LitKeys, 2> found;
-        frames.bench->cpu.program = [&](Processor&) {
-            std::array<bool, 2> busy{true, true};
-            for (std::size_t k = 0; k < 2; ++k)
-                frames.set(frames.bench->init(k), k);
-            for (std::size_t k = 0; k < 2; ++k)
-                REQUIRE(tessera_start(&frames.bench->drivers[k]) == TESSERA_OK);
-            CHECK((frames.bench->devices[0]->busy() && frames.bench->devices[1]->busy()));
-            while (busy[0] || busy[1]) {
-                for (std::size_t k = 0; k < 2; ++k) {
-                    const int result = tessera_wait(&frames.bench->drivers[k], 1);
-                    REQUIRE((result == TESSERA_OK || result == TESSERA_TIMEOUT));
-                    busy[k] = result == TESSERA_TIMEOUT;
-                    pop_all(frames.bench->drivers[k], found[k]);
-                }
-            }
-        };
-        frames.bench->run();
-        for (std::size_t k = 0; k < 2; ++k)
-            expect_same(found[k], frames.references[k]->keys);
-    }};
+const CaseTable<Mode> two{"two devices on one bus, at the same time: ", {functional, timed}, [](const Mode& mode) {
+                              Frames frames(mode, {"", "map.source=noise displacement.scale=0.1"}, 2, 30);
+                              std::array<LitKeys, 2> found;
+                              frames.bench->cpu.program = [&](Processor&) {
+                                  std::array<bool, 2> busy{true, true};
+                                  for (std::size_t k = 0; k < 2; ++k)
+                                      frames.set(frames.bench->init(k), k);
+                                  for (std::size_t k = 0; k < 2; ++k)
+                                      REQUIRE(tessera_start(&frames.bench->drivers[k]) == TESSERA_OK);
+                                  CHECK((frames.bench->devices[0]->busy() && frames.bench->devices[1]->busy()));
+                                  while (busy[0] || busy[1]) {
+                                      for (std::size_t k = 0; k < 2; ++k) {
+                                          const int result = tessera_wait(&frames.bench->drivers[k], 1);
+                                          REQUIRE((result == TESSERA_OK || result == TESSERA_TIMEOUT));
+                                          busy[k] = result == TESSERA_TIMEOUT;
+                                          pop_all(frames.bench->drivers[k], found[k]);
+                                      }
+                                  }
+                              };
+                              frames.bench->run();
+                              for (std::size_t k = 0; k < 2; ++k)
+                                  expect_same(found[k], frames.references[k]->keys);
+                          }};
 
 const CaseTable<Mode> interrupts{
     "the interrupt is high from a frame's end until it is acknowledged: ", {functional, timed}, [](const Mode& mode) {
