@@ -30,7 +30,7 @@ void FrameStreams::send(const datapath::Triangle& triangle, sc_core::sc_time& de
 }
 
 FrameStreams::Finished FrameStreams::take() {
-    const Finished first = finished_.front();
+    Finished first = finished_.front();
     finished_.pop_front();
     room_for_finished_.notify(sc_core::SC_ZERO_TIME);
     if (timed_)

@@ -79,13 +79,14 @@ std::vector<DeviceRegister> documented_registers() {
 
 std::string c_header(const std::vector<DeviceRegister>& registers) {
     std::ostringstream text;
-    text << "#pragma once\n/* clang-format off */\n/* Registers and records of tessera's device.\n"
-            " * "
-         << made_by
-         << "\n"
-            " * Offsets are the same in every design; widths are those of the default formats. */\n"
-            "#include <stdint.h>\n\n"
-            "/* Offsets in bytes. Of a register of two words the lower one comes first. */\n";
+    text
+        << "#pragma once\n/* clang-format off */\n/* NOLINTBEGIN(readability-identifier-naming): C's names */\n/* Registers and records of tessera's device.\n"
+           " * "
+        << made_by
+        << "\n"
+           " * Offsets are the same in every design; widths are those of the default formats. */\n"
+           "#include <stdint.h>\n\n"
+           "/* Offsets in bytes. Of a register of two words the lower one comes first. */\n";
     for (const DeviceRegister& r : registers)
         text << "#define TESSERA_" << upper_case(r.name) << " 0x" << hex(r.offset, 3) << "u\n";
     text << "#define TESSERA_REGISTER_BYTES 0x" << hex(register_bytes, 3) << "u\n\n/* Bits of control registers. */\n";
@@ -109,7 +110,7 @@ std::string c_header(const std::vector<DeviceRegister>& registers) {
     text << "\n\n/* Every register's number: a place in that list. */\nenum tessera_register {\n"
             "#define TESSERA_NUMBER(name, offset, bits, words, is_signed, writable) TESSERA_REGISTER_##name,\n"
             "    TESSERA_REGISTER_LIST(TESSERA_NUMBER)\n#undef TESSERA_NUMBER\n"
-            "    TESSERA_REGISTERS  /* how many */\n};\n";
+            "    TESSERA_REGISTERS  /* how many */\n};\n/* NOLINTEND(readability-identifier-naming) */\n";
     return text.str();
 }
 

@@ -28,6 +28,7 @@ struct tessera_driver {
 };
 
 /* Results. A positive one is the device's error, enum tessera_error. */
+/* NOLINTBEGIN(readability-identifier-naming): C's names */
 enum tessera_result {
     TESSERA_OK = 0,
     TESSERA_BUS = -1,        /* the bus, or the device, answered an access by an error */
@@ -36,6 +37,7 @@ enum tessera_result {
     TESSERA_READ_ONLY = -4,  /* such a register cannot be set */
     TESSERA_NO_REGISTER = -5 /* there is none of that number */
 };
+/* NOLINTEND(readability-identifier-naming) */
 
 /* Identifies the device. To be called first; it changes nothing. */
 int tessera_init(struct tessera_driver* driver, const struct tessera_platform* platform);

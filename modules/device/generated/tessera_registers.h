@@ -1,5 +1,6 @@
 #pragma once
 /* clang-format off */
+/* NOLINTBEGIN(readability-identifier-naming): C's names */
 /* Registers and records of tessera's device.
  * Generated from modules/device/register_map.cpp; do not edit.
  * Offsets are the same in every design; widths are those of the default formats. */
@@ -263,3 +264,4 @@ enum tessera_register {
 #undef TESSERA_NUMBER
     TESSERA_REGISTERS  /* how many */
 };
+/* NOLINTEND(readability-identifier-naming) */
