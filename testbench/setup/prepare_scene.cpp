@@ -92,7 +92,7 @@ PreparedScene prepare(const Scene& scene) {
     PreparedScene prepared = prepare_model(scene.settings, mesh, height_map(scene), "map");
     prepared.remarks.insert(prepared.remarks.begin(), mesh.repairs.begin(), mesh.repairs.end());
     if (mesh.dropped_degenerate > 0)
-        prepared.remarks.push_back(fmt::format("{} triangles without area were left out", mesh.dropped_degenerate));
+        prepared.remarks.push_back(fmt::format("triangles left out for want of an area: {}", mesh.dropped_degenerate));
     return prepared;
 }
 

@@ -2,7 +2,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "modules/datapath/map_entry.h"
 #include "modules/device/records.h"
 #include "testbench/machine/machine_setup.h"
 
@@ -13,35 +12,15 @@ struct FrameImage {
     std::vector<unsigned char> displacement_map, normal_map, summed_height_table, triangles;
 };
 
-/// Appends entries, little endian.
-inline void append(std::vector<unsigned char>& table, std::uint64_t entry, std::uint32_t bytes) {
-    for (std::uint32_t k = 0; k < bytes; ++k)
-        table.push_back(static_cast<unsigned char>(entry >> (8 * k)));
-}
-
-/// The three tables and the base triangles of a setup, as the host of testbench/machine would write them.
 inline FrameImage image_of(const MachineSetup& setup) {
     FrameImage image;
     const datapath::Registers& r = setup.registers;
-    for (std::uint32_t y = 0; y < r.map.height; ++y) {
-        for (std::uint32_t x = 0; x < r.map.width; ++x) {
-            append(image.displacement_map, setup.map.code(x, y), r.displacement_map.entry_bytes);
-            const datapath::Direction n =
-                map_normal(setup.map, x, y, setup.height_per_code, setup.texel_size, r.formats.normal);
-            append(image.normal_map, datapath::pack_normal(n, r.formats.normal.bits), r.normal_map.entry_bytes);
-        }
-    }
-    const auto mask = static_cast<std::uint64_t>(r.formats.summed_height.highest);
-    std::vector<std::uint64_t> sums(r.map.width + 1);
-    for (std::uint32_t y = 0; y <= r.map.height; ++y) {
-        std::uint64_t along = 0;
-        for (std::uint32_t x = 0; x <= r.map.width; ++x) {
-            if (y > 0 && x > 0)
-                along += setup.map.code(x - 1, y - 1);
-            sums[x] = (sums[x] + along) & mask;
-            append(image.summed_height_table, sums[x], r.summed_height_table.entry_bytes);
-        }
-    }
+    write_tables(setup, [&](std::uint64_t address, const unsigned char* bytes, std::size_t count) {
+        auto& table = address >= r.summed_height_table.base ? image.summed_height_table
+                      : address >= r.normal_map.base        ? image.normal_map
+                                                            : image.displacement_map;
+        table.insert(table.end(), bytes, bytes + count);
+    });
     image.triangles.resize(setup.base_triangles.size() * base_triangle_bytes);
     for (std::size_t k = 0; k < setup.base_triangles.size(); ++k)
         write_base_triangle(setup.base_triangles[k], &image.triangles[k * base_triangle_bytes]);

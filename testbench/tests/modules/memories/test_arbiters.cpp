@@ -213,7 +213,7 @@ TEST_CASE("a table with other columns: its entries lie in the banks of those") {
     const BankOfEntry made(timing, other);
     unsigned different = 0;
     for (std::uint64_t address = layout.base; address < layout.base + layout.bytes(); address += 4)
-        different += moved(address) != made(address) ? 1 : 0;
+        different += moved(address) != made(address) ? 1u : 0u;
     CHECK(different > 0);
     moved.lay_out(11);
     for (std::uint64_t address = layout.base; address < layout.base + layout.bytes(); address += 4)
