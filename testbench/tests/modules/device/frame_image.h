@@ -20,15 +20,21 @@ inline void append(std::vector<unsigned char>& table, std::uint64_t entry, std::
 }
 
 /// The three tables and the base triangles of a setup, as the host of testbench/machine would write them.
-inline FrameImage image_of(const MachineSetup& setup) {
+/// beyond: what bits of an entry beyond its format hold.
+inline FrameImage image_of(const MachineSetup& setup, bool beyond = false) {
     FrameImage image;
+    const auto filled = [&](std::uint64_t entry, int bits) {
+        return beyond ? entry | ~std::uint64_t{0} << bits : entry;
+    };
     const datapath::Registers& r = setup.registers;
     for (std::uint32_t y = 0; y < r.map.height; ++y) {
         for (std::uint32_t x = 0; x < r.map.width; ++x) {
-            append(image.displacement_map, setup.map.code(x, y), r.displacement_map.entry_bytes);
+            append(image.displacement_map, filled(setup.map.code(x, y), r.formats.displacement.bits),
+                   r.displacement_map.entry_bytes);
             const datapath::Direction n =
                 map_normal(setup.map, x, y, setup.height_per_code, setup.texel_size, r.formats.normal);
-            append(image.normal_map, datapath::pack_normal(n, r.formats.normal.bits), r.normal_map.entry_bytes);
+            append(image.normal_map, filled(datapath::pack_normal(n, r.formats.normal.bits), 3 * r.formats.normal.bits),
+                   r.normal_map.entry_bytes);
         }
     }
     const auto mask = static_cast<std::uint64_t>(r.formats.summed_height.highest);
@@ -39,7 +45,8 @@ inline FrameImage image_of(const MachineSetup& setup) {
             if (y > 0 && x > 0)
                 along += setup.map.code(x - 1, y - 1);
             sums[x] = (sums[x] + along) & mask;
-            append(image.summed_height_table, sums[x], r.summed_height_table.entry_bytes);
+            append(image.summed_height_table, filled(sums[x], r.formats.summed_height.bits),
+                   r.summed_height_table.entry_bytes);
         }
     }
     image.triangles.resize(setup.base_triangles.size() * base_triangle_bytes);
