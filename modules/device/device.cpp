@@ -103,27 +103,30 @@ void Device::run_frames() {
 
 /// False: the frame is to stop.
 bool Device::fetch_tables() {
-    const std::uint64_t tables = file_.value(offset::fetch);
-    return ((tables & 1) == 0 ||
-            fetch(displacement_map_, file_.value(offset::displacement_map_address), live_.displacement_map)) &&
-           ((tables & 2) == 0 || fetch(normal_map_, file_.value(offset::normal_map_address), live_.normal_map)) &&
-           ((tables & 4) == 0 ||
-            fetch(summed_height_table_, file_.value(offset::summed_height_table_address), live_.summed_height_table)) &&
-           !stopped_;
+    const datapath::Formats& f = live_.formats;
+    return fetch(0, displacement_map_, offset::displacement_map_address, live_.displacement_map, f.displacement.bits) &&
+           fetch(1, normal_map_, offset::normal_map_address, live_.normal_map, 3 * f.normal.bits) &&
+           fetch(2, summed_height_table_, offset::summed_height_table_address, live_.summed_height_table,
+                 f.summed_height.bits);
 }
 
-/// Burst by burst, into the table memory by its debug transport.
-bool Device::fetch(tlm_utils::simple_initiator_socket<Device>& table, std::uint64_t from,
-                   const datapath::TableLayout& layout) {
+/// Burst by burst, into the table memory by its debug transport. The memory has no more than `bits` bits of an entry.
+bool Device::fetch(unsigned number, TableSocket& table, std::uint32_t source, const datapath::TableLayout& layout,
+                   int bits) {
+    if ((file_.value(offset::fetch) >> number & 1) == 0)
+        return !stopped_;
+    const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
     std::vector<unsigned char> data(design_.burst_bytes);
     std::uint64_t length = 0;
     for (std::uint64_t done = 0; done < layout.bytes() && !stopped_; done += length) {
-        const std::uint64_t address = from + done;
+        const std::uint64_t address = file_.value(source) + done;
         length = std::min<std::uint64_t>(layout.bytes() - done, design_.burst_bytes - address % design_.burst_bytes);
         if (!reading_.read(address, data.data(), length)) {
             stop(DeviceError::table_read, reading_.failed_at());
             return false;
         }
+        for (std::uint64_t k = 0; k < length; ++k)
+            data[k] &= static_cast<unsigned char>(mask >> 8 * ((done + k) % layout.entry_bytes));
         tlm::tlm_generic_payload entries;
         entries.set_command(tlm::TLM_WRITE_COMMAND);
         entries.set_address(layout.base + done);

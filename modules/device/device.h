@@ -35,7 +35,8 @@ struct DeviceDesign {
 ///            `reset`: optional; while high the device is in reset.
 /// Out:       `bus`: base protocol, b_transport with annotated delay; two transfers may be under way at a time, one reading
 ///            and one writing. `interrupt`: optional; level.
-/// Frame:     start validates all registers, copies the tables that `fetch` names into the table memories, sends the base
+/// Frame:     start validates all registers, copies the tables that `fetch` names into the table memories, which
+///            drop bits of an entry that its format does not have, sends the base
 ///            triangles to the machine, and writes each finished triangle that is not culled to the ring (records.h). done
 ///            and interrupt follow when all are written. While the ring is full (write index - read index = size) the
 ///            machine is held back. Indices and counters begin at 0 with each frame.
@@ -63,10 +64,11 @@ class Device : public sc_core::sc_module, private tlm::tlm_analysis_if<datapath:
            UnitFactory* factory = nullptr);
 
     /// For statistics, and to observe the units. Its registers change at the start of a frame.
-    const Pipeline& pipeline() const { return pipeline_; }
+    Pipeline& pipeline() { return pipeline_; }
     bool busy() const { return (status_ & status_busy) != 0; }
 
   private:
+    using TableSocket = tlm_utils::simple_initiator_socket<Device>;
     struct Failure {
         DeviceError error = DeviceError::none;
         std::uint64_t address = 0;
@@ -86,8 +88,8 @@ class Device : public sc_core::sc_module, private tlm::tlm_analysis_if<datapath:
     // the frame
     void run_frames();
     bool fetch_tables();
-    bool fetch(tlm_utils::simple_initiator_socket<Device>& table, std::uint64_t from,
-               const datapath::TableLayout& layout);
+    bool fetch(unsigned number, TableSocket& table, std::uint32_t source, const datapath::TableLayout& layout,
+               int bits);
     void send_triangles();
     void write_records();
     void write_record(const FrameStreams::Finished& finished);
@@ -109,9 +111,9 @@ class Device : public sc_core::sc_module, private tlm::tlm_analysis_if<datapath:
     Pipeline pipeline_;
     FrameStreams streams_;
     RegisterFile file_;
-    tlm_utils::simple_initiator_socket<Device> displacement_map_{"displacement_map"};
-    tlm_utils::simple_initiator_socket<Device> normal_map_{"normal_map"};
-    tlm_utils::simple_initiator_socket<Device> summed_height_table_{"summed_height_table"};
+    TableSocket displacement_map_{"displacement_map"};
+    TableSocket normal_map_{"normal_map"};
+    TableSocket summed_height_table_{"summed_height_table"};
     DmaChannel reading_;
     DmaChannel writing_;
 

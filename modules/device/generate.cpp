@@ -80,7 +80,7 @@ std::vector<DeviceRegister> documented_registers() {
 std::string c_header(const std::vector<DeviceRegister>& registers) {
     std::ostringstream text;
     text
-        << "#pragma once\n/* clang-format off */\n/* NOLINTBEGIN(readability-identifier-naming): C's names */\n/* Registers and records of tessera's device.\n"
+        << "#pragma once\n/* clang-format off */\n/* NOLINTBEGIN(readability-identifier-naming,modernize-deprecated-headers): C's */\n/* Registers and records of tessera's device.\n"
            " * "
         << made_by
         << "\n"
@@ -107,10 +107,11 @@ std::string c_header(const std::vector<DeviceRegister>& registers) {
     for (const DeviceRegister& r : registers)
         text << " \\\n    X(" << upper_case(r.name) << ", 0x" << hex(r.offset, 3) << "u, " << r.bits << ", " << r.words
              << ", " << (r.is_signed ? 1 : 0) << ", " << (r.access == RegisterAccess::read_only ? 0 : 1) << ")";
-    text << "\n\n/* Every register's number: a place in that list. */\nenum tessera_register {\n"
-            "#define TESSERA_NUMBER(name, offset, bits, words, is_signed, writable) TESSERA_REGISTER_##name,\n"
-            "    TESSERA_REGISTER_LIST(TESSERA_NUMBER)\n#undef TESSERA_NUMBER\n"
-            "    TESSERA_REGISTERS  /* how many */\n};\n/* NOLINTEND(readability-identifier-naming) */\n";
+    text
+        << "\n\n/* Every register's number: a place in that list. */\nenum tessera_register {\n"
+           "#define TESSERA_NUMBER(name, offset, bits, words, is_signed, writable) TESSERA_REGISTER_##name,\n"
+           "    TESSERA_REGISTER_LIST(TESSERA_NUMBER)\n#undef TESSERA_NUMBER\n"
+           "    TESSERA_REGISTERS  /* how many */\n};\n/* NOLINTEND(readability-identifier-naming,modernize-deprecated-headers) */\n";
     return text.str();
 }
 

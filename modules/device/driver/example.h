@@ -7,7 +7,7 @@ extern "C" {
 #endif
 
 /* Bus addresses of what the frames need, and the function that takes their triangles. */
-struct example_scene {
+struct example_scene { /* NOLINT(readability-identifier-naming): C's names */
     uint64_t displacement_map, normal_map, summed_height_table, triangles, ring;
     uint32_t triangle_count, ring_records;
     void* drawing;

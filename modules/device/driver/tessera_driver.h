@@ -1,6 +1,7 @@
 #pragma once
 /* A driver of tessera's device, in C99. It allocates nothing, keeps no global state, and reaches the device through the
  * caller's functions alone. modules/device/README.md has an example. */
+/* NOLINTBEGIN(readability-identifier-naming,modernize-deprecated-headers): C's names and headers */
 #include <stddef.h>
 #include <stdint.h>
 
@@ -28,7 +29,6 @@ struct tessera_driver {
 };
 
 /* Results. A positive one is the device's error, enum tessera_error. */
-/* NOLINTBEGIN(readability-identifier-naming): C's names */
 enum tessera_result {
     TESSERA_OK = 0,
     TESSERA_BUS = -1,        /* the bus, or the device, answered an access by an error */
@@ -37,7 +37,6 @@ enum tessera_result {
     TESSERA_READ_ONLY = -4,  /* such a register cannot be set */
     TESSERA_NO_REGISTER = -5 /* there is none of that number */
 };
-/* NOLINTEND(readability-identifier-naming) */
 
 /* Identifies the device. To be called first; it changes nothing. */
 int tessera_init(struct tessera_driver* driver, const struct tessera_platform* platform);
@@ -82,3 +81,4 @@ const char* tessera_text(int result);
 #ifdef __cplusplus
 }
 #endif
+/* NOLINTEND(readability-identifier-naming,modernize-deprecated-headers) */

@@ -1,6 +1,6 @@
 #pragma once
 /* clang-format off */
-/* NOLINTBEGIN(readability-identifier-naming): C's names */
+/* NOLINTBEGIN(readability-identifier-naming,modernize-deprecated-headers): C's */
 /* Registers and records of tessera's device.
  * Generated from modules/device/register_map.cpp; do not edit.
  * Offsets are the same in every design; widths are those of the default formats. */
@@ -264,4 +264,4 @@ enum tessera_register {
 #undef TESSERA_NUMBER
     TESSERA_REGISTERS  /* how many */
 };
-/* NOLINTEND(readability-identifier-naming) */
+/* NOLINTEND(readability-identifier-naming,modernize-deprecated-headers) */

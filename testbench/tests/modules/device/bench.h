@@ -100,8 +100,8 @@ struct Bench {
             contexts.push_back({&cpu, direct ? 0 : Router::registers + k * register_bytes, direct ? &memory : nullptr});
     }
     /// Places a setup's frame, each part at a multiple of 4, and a ring, which alone may be written.
-    FramePlaces place(const MachineSetup& setup, std::uint32_t ring_size) {
-        const FrameImage image = image_of(setup);
+    FramePlaces place(const MachineSetup& setup, std::uint32_t ring_size, bool beyond = false) {
+        const FrameImage image = image_of(setup, beyond);
         const auto put = [&](const std::vector<unsigned char>& data) {
             const std::uint64_t at = memory.put(next, data);
             next = (next + data.size() + 3) / 4 * 4 + 4;

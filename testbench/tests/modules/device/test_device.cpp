@@ -17,10 +17,19 @@ struct Row {
     bool approximately_timed = false;
     int quantum_ns = 0;
     unsigned burst_bytes = 64;
+    bool beyond = false;  // bits of table entries beyond their formats are set
 };
 
 /// small_job() made the default job again.
 const char* const whole_job = "mesh.columns=0 mesh.rows=0 map.width=264 map.height=264 tests.generation_limit=12";
+
+const char* const narrow_formats =
+    "formats.position_bits=24 formats.position_fraction=12 formats.normal_bits=11 formats.normal_fraction=9 "
+    "formats.displacement_bits=12 formats.summed_height_bits=26 tests.highlight=true";
+const char* const narrow_and_codes =
+    "formats.position_bits=24 formats.position_fraction=12 formats.normal_bits=11 formats.normal_fraction=9 "
+    "formats.displacement_bits=5 formats.summed_height_bits=19 hardware.one_texel_from_map=true "
+    "hardware.queue_capacity=8";
 
 void same_as_testbench(const Row& row) {
     const MachineSetup setup = setup_of(small_job(row.timed, row.settings));
@@ -34,7 +43,7 @@ void same_as_testbench(const Row& row) {
     initial.formats = setup.registers.formats;
     Bench bench({initial}, design, row.approximately_timed);
     bench.cpu.approximately_timed = row.approximately_timed;
-    const FramePlaces places = bench.place(setup, row.ring_size);
+    const FramePlaces places = bench.place(setup, row.ring_size, row.beyond);
     LitKeys found;
     bench.cpu.program = [&](Processor&) {
         tessera_driver& driver = bench.init();
@@ -74,6 +83,8 @@ const CaseTable<Row> same{
          "mesh.source=sphere hardware.culling=back map.source=noise tests.generation_limit=3 "
          "hardware.queue_capacity=8",
          true},
+        {"functional, the default job", whole_job, false},
+        {"timed, the default job", whole_job, true},
         {"functional, modern design", "hardware.design=modern", false},
         {"timed, modern design", "hardware.design=modern", true},
         {"timed, tables behind caches",
@@ -82,10 +93,10 @@ const CaseTable<Row> same{
          true},
         {"functional, watermark 50", "hardware.queue_watermark=50", false, 3},
         {"timed, watermark 50", "hardware.queue_watermark=50", true, 3},
-        {"functional, narrow formats",
-         "formats.position_bits=24 formats.position_fraction=12 formats.normal_bits=12 "
-         "formats.normal_fraction=10 formats.displacement_bits=12 tests.highlight=true",
-         false},
+        {"functional, narrow formats", narrow_formats, false},
+        {"functional, narrow formats, more in memory", narrow_formats, false, 100, false, 0, 4, true},
+        {"timed, narrow formats, more in memory, spilling, codes in vertices", narrow_and_codes, true, 100, false, 0,
+         64, true},
     },
     same_as_testbench};
 

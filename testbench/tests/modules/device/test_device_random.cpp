@@ -16,7 +16,12 @@ struct Mode {
     std::string name;
     bool timed;
     bool approximately_timed = false;
+    std::string settings = "";
 };
+
+const char* const modern =
+    "hardware.design=modern hardware.one_texel_from_map=true formats.displacement_bits=5 formats.normal_bits=11 "
+    "formats.normal_fraction=9 formats.position_bits=24 formats.position_fraction=12 tests.highlight=true";
 
 std::uint64_t from_environment(const char* name, std::uint64_t value) {
     const char* const text = std::getenv(name);
@@ -32,7 +37,15 @@ class Dice : public Random {
 };
 
 MachineSetup limited_setup(const Mode& mode) {
-    return setup_of(small_job(mode.timed, "hardware.queue_capacity=32 hardware.off_chip_triangles=2000"));
+    return setup_of(
+        small_job(mode.timed, "hardware.queue_capacity=32 hardware.off_chip_triangles=2000 " + mode.settings));
+}
+
+/// Every item goes through its packed form: a value beyond its format would be an SC_ERROR.
+DeviceDesign packed_design(const MachineSetup& setup) {
+    DeviceDesign design = design_of(setup);
+    design.machine.packed_streams = true;
+    return design;
 }
 
 datapath::Registers formats_of(const MachineSetup& setup) {
@@ -78,12 +91,16 @@ void watch_ring(Bench& bench) {
 
 const CaseTable<Mode> random_accesses{
     "random register accesses: ",
-    {{"functional", false}, {"timed", true}, {"timed, approximately timed processor", true, true}},
+    {{"functional", false},
+     {"timed", true},
+     {"timed, approximately timed processor", true, true},
+     {"functional, modern design, narrow formats", false, false, modern},
+     {"timed, modern design, narrow formats", true, false, modern}},
     [](const Mode& mode) {
         const std::uint64_t count = from_environment("TESSERA_DEVICE_ACCESSES", 100000);
         const MachineSetup setup = limited_setup(mode);
         Reference reference("reference", setup);
-        Bench bench({formats_of(setup)}, design_of(setup), true);
+        Bench bench({formats_of(setup)}, packed_design(setup), true);
         const FramePlaces places = bench.place(setup, 40);
         const std::vector<unsigned char> image = bench.memory.bytes;
         watch_ring(bench);
@@ -137,11 +154,13 @@ const CaseTable<Mode> random_accesses{
     }};
 
 const CaseTable<Mode> random_addresses{
-    "random DMA addresses, counts and map sizes: ", {{"functional", false}, {"timed", true}}, [](const Mode& mode) {
+    "random DMA addresses, counts and map sizes: ",
+    {{"functional", false}, {"timed", true}, {"timed, modern design, narrow formats", true, false, modern}},
+    [](const Mode& mode) {
         const std::uint64_t count = from_environment("TESSERA_DEVICE_FRAMES", 300);
         const MachineSetup setup = limited_setup(mode);
         Reference reference("reference", setup);
-        Bench bench({formats_of(setup)}, design_of(setup));
+        Bench bench({formats_of(setup)}, packed_design(setup));
         const FramePlaces right = bench.place(setup, 60);
         const std::vector<unsigned char> image = bench.memory.bytes;
         watch_ring(bench);
