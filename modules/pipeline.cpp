@@ -69,9 +69,9 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
       transport_(design.transport),
       random_stalls_(design.timing.stalls.per_mille > 0) {
     if ((design.work == Work::family) != registers.formats.families)
-        SC_REPORT_ERROR("tessera/pipeline",
-                        (std::string(this->name()) + ": Design::work and Formats::families disagree: set both, or neither")
-                            .c_str());
+        SC_REPORT_ERROR("tessera/pipeline", (std::string(this->name()) +
+                                             ": Design::work and Formats::families disagree: set both, or neither")
+                                                .c_str());
     UnitFactory& units = factory == nullptr ? standard_units() : *factory;
     tessellation_tests.init(design.tests_units, [&](const char* unit_name, std::size_t number) {
         return new TessellationTests(unit_name, {clock, registers, design}, units, static_cast<unsigned>(number));

@@ -97,8 +97,8 @@ void check_map(const Job& job, Faults& faults) {
 }
 
 void check_light(const Job::Hardware& hardware, Faults& faults) {
-    faults.unless(hardware.light != std::array<double, 3>{}, "`hardware.light` = {} has no direction: give it one, such as [0, 0, 1]",
-                  toml_value(hardware.light));
+    faults.unless(hardware.light != std::array<double, 3>{},
+                  "`hardware.light` = {} has no direction: give it one, such as [0, 0, 1]", toml_value(hardware.light));
 }
 
 void check_hardware(const Job::Hardware& hardware, Faults& faults) {

@@ -1,8 +1,8 @@
 #pragma once
-#include "testbench/setup/height_map.h"
-#include "testbench/setup/mesh/base_mesh.h"
 #include "testbench/job/job.h"
 #include "testbench/machine/resolve_job.h"
+#include "testbench/setup/height_map.h"
+#include "testbench/setup/mesh/base_mesh.h"
 
 namespace tessera {
 

@@ -11,7 +11,7 @@ namespace tessera {
 struct MachineSetup : PreparedScene {
     ModelScale model_scale;  ///< scale and centre
     Design design;
-    unsigned machines = 1;                   ///< of that design, side by side; base triangle b goes to machine b mod so many
+    unsigned machines = 1;  ///< of that design, side by side; base triangle b goes to machine b mod so many
     bool summed_height_bits_chosen = false;  ///< by `auto`
 };
 

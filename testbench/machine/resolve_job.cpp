@@ -9,9 +9,9 @@
 #include <stdexcept>
 
 #include "testbench/common/error.h"
-#include "testbench/setup/map_displacement.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/job/toml_text.h"
+#include "testbench/setup/map_displacement.h"
 #include "testbench/setup/unit_vector.h"
 
 namespace tessera {

@@ -2,9 +2,9 @@
 #include <string>
 #include <vector>
 
+#include "testbench/job/job.h"
 #include "testbench/setup/height_map.h"
 #include "testbench/setup/mesh/base_mesh.h"
-#include "testbench/job/job.h"
 
 namespace tessera {
 

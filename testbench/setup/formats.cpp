@@ -30,10 +30,11 @@ datapath::Formats make_formats(const FormatSettings& settings) {
     formats.position = Format::make_signed(bits(settings.position_bits), bits(settings.position_fraction));
     formats.view_distance = formats.position;
     formats.normal = Format::make_signed(bits(settings.normal_bits), bits(settings.normal_fraction));
-    formats.texture =
-        Format::make_unsigned(bits(settings.texture_integer + settings.texture_fraction) + 1, bits(settings.texture_fraction));
+    formats.texture = Format::make_unsigned(bits(settings.texture_integer + settings.texture_fraction) + 1,
+                                            bits(settings.texture_fraction));
     formats.displacement = Format::make_unsigned(bits(settings.displacement_bits), bits(settings.displacement_bits));
-    formats.summed_height = Format::make_unsigned(bits(settings.summed_height_bits == 0 ? 32 : settings.summed_height_bits), 0);
+    formats.summed_height =
+        Format::make_unsigned(bits(settings.summed_height_bits == 0 ? 32 : settings.summed_height_bits), 0);
     formats.screen = Format::make_signed(bits(settings.screen_bits), bits(settings.screen_fraction));
     formats.generation_bits = bits(settings.generation_bits);
     check_intermediates(formats);

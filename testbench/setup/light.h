@@ -12,7 +12,7 @@ namespace tessera {
 glm::dvec3 towards_light(const LightSettings& light);
 
 /// Lighting's registers: the direction in view space, in the normal's format; ambient light in 256ths.
-datapath::LightParameters make_light(const LightSettings& light, const ViewAxes& view,
-                                     const datapath::Format& normal, std::uint64_t& saturated);
+datapath::LightParameters make_light(const LightSettings& light, const ViewAxes& view, const datapath::Format& normal,
+                                     std::uint64_t& saturated);
 
 }  // namespace tessera

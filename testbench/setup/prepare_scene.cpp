@@ -45,8 +45,7 @@ BaseMesh base_mesh(const Scene& scene) {
     for (std::size_t k = 0; k < scene.triangles.size(); ++k) {
         for (const std::uint32_t corner : scene.triangles[k]) {
             if (corner >= scene.vertices.size())
-                throw InputError(
-                    fmt::format("triangles[{}] names vertex {} of {}", k, corner, scene.vertices.size()));
+                throw InputError(fmt::format("triangles[{}] names vertex {} of {}", k, corner, scene.vertices.size()));
         }
         const auto& [a, b, c] = scene.triangles[k];
         const auto position = [&](std::uint32_t corner) { return mesh.vertices[corner].position; };
@@ -70,7 +69,8 @@ HeightMap height_map(const Scene& scene) {
                                      scene.map_width, scene.map_height, most));
     const std::size_t texels = static_cast<std::size_t>(scene.map_width) * static_cast<std::size_t>(scene.map_height);
     if (scene.map.size() != texels)
-        throw InputError(fmt::format("the map has {} values, but map_width x map_height = {}", scene.map.size(), texels));
+        throw InputError(
+            fmt::format("the map has {} values, but map_width x map_height = {}", scene.map.size(), texels));
     const auto is_finite = [](float value) { return std::isfinite(value); };
     if (!std::all_of(scene.map.begin(), scene.map.end(), is_finite) || !std::isfinite(scene.map_low) ||
         !std::isfinite(scene.map_high) || scene.map_low > scene.map_high)

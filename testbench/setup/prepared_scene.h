@@ -30,7 +30,7 @@ struct PreparedScene {
     double scale = 1;
     std::array<double, 3> centre{};
 
-    double height_per_code = 0;               ///< world units: S * code / 2^bits, S as rounded
+    double height_per_code = 0;              ///< world units: S * code / 2^bits, S as rounded
     std::array<double, 2> texel_size{1, 1};  ///< world size of a texel along u and v
 
     std::uint64_t largest_rectangle_sum = 0;  ///< bound on any rectangle's sum over this mesh, in codes

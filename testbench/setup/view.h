@@ -3,8 +3,8 @@
 #include <glm/glm.hpp>
 
 #include "modules/datapath/parameters.h"
-#include "testbench/setup/scene_settings.h"
 #include "testbench/setup/model_scale.h"
+#include "testbench/setup/scene_settings.h"
 
 namespace tessera {
 

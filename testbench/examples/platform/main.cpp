@@ -116,8 +116,7 @@ int sc_main(int argc, char** argv) {
         return 2;
     }
     tessera::DeviceDesign design;
-    design.machine.transport =
-        mode == "timed" ? tessera::Transport::non_blocking : tessera::Transport::blocking;
+    design.machine.transport = mode == "timed" ? tessera::Transport::non_blocking : tessera::Transport::blocking;
     design.largest_map = {64, 64};
     tessera::Device device("device", tessera::prepare(scene_of(0, frames)).registers, design);
     Memory memory("memory", 4u << 20);

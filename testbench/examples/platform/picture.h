@@ -31,7 +31,8 @@ class Picture {
         const double area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
         const auto [left, right] = std::minmax_element(x.begin(), x.end());
         const auto [bottom, top] = std::minmax_element(y.begin(), y.end());
-        for (int row = std::max(0, static_cast<int>(*bottom)); area != 0 && row < std::min(height_ - 0.0, *top); ++row) {
+        for (int row = std::max(0, static_cast<int>(*bottom)); area != 0 && row < std::min(height_ - 0.0, *top);
+             ++row) {
             for (int column = std::max(0, static_cast<int>(*left)); column < std::min(width_ - 0.0, *right); ++column) {
                 const auto part = [&](std::size_t a, std::size_t b) {
                     return ((x[b] - x[a]) * (row + 0.5 - y[a]) - (column + 0.5 - x[a]) * (y[b] - y[a])) / area;
@@ -60,8 +61,8 @@ class Picture {
             depth += weight[k] * triangle.vertex[k].w;
             light += weight[k] * (triangle.vertex[k].light & 255u);
         }
-        const auto place =
-            static_cast<std::size_t>(height_ - 1 - row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column);
+        const auto place = static_cast<std::size_t>(height_ - 1 - row) * static_cast<std::size_t>(width_) +
+                           static_cast<std::size_t>(column);
         if (depth < nearest_[place]) {
             nearest_[place] = depth;
             grey_[place] = static_cast<unsigned char>(light + 0.5);

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "golden/golden_model.h"
-#include "testbench/setup/height_map.h"
-#include "testbench/setup/mesh/base_mesh.h"
 #include "testbench/job/job.h"
 #include "testbench/machine/machine_setup.h"
+#include "testbench/setup/height_map.h"
+#include "testbench/setup/mesh/base_mesh.h"
 
 namespace tessera {
 

@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "testbench/common/error.h"
-#include "testbench/setup/height_map.h"
 #include "testbench/input/map/map_file.h"
+#include "testbench/setup/height_map.h"
 
 namespace tessera {
 namespace {

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
-#include "testbench/setup/mesh/base_mesh.h"
 #include "testbench/job/job.h"
+#include "testbench/setup/mesh/base_mesh.h"
 
 namespace tessera {
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "testbench/setup/mesh/base_mesh.h"
 #include "testbench/input/mesh/mesh_limits.h"
+#include "testbench/setup/mesh/base_mesh.h"
 
 namespace tessera {
 

@@ -8,9 +8,9 @@
 #include <cstdint>
 
 #include "testbench/common/error.h"
-#include "testbench/setup/mesh/triangle_geometry.h"
 #include "testbench/input/surface/displaced_surface.h"
 #include "testbench/input/surface/texel_centres.h"
+#include "testbench/setup/mesh/triangle_geometry.h"
 
 namespace tessera {
 namespace {

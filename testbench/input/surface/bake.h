@@ -2,9 +2,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "testbench/setup/mesh/base_mesh.h"
 #include "testbench/input/surface/surface_file.h"
 #include "testbench/job/job.h"
+#include "testbench/setup/mesh/base_mesh.h"
 
 namespace tessera {
 

@@ -4,9 +4,9 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "testbench/job/job.h"
 #include "testbench/setup/map_displacement.h"
 #include "testbench/setup/mesh/base_mesh.h"
-#include "testbench/job/job.h"
 
 namespace tessera {
 

@@ -37,7 +37,8 @@ Scene scene_of(const Inputs& inputs) {
 
 Scene square() {
     Scene scene;
-    scene.vertices = {{{0, 0, 0}, {0, 0}, {}}, {{1, 0, 0}, {1, 0}, {}}, {{1, 1, 0}, {1, 1}, {}}, {{0, 1, 0}, {0, 1}, {}}};
+    scene.vertices = {
+        {{0, 0, 0}, {0, 0}, {}}, {{1, 0, 0}, {1, 0}, {}}, {{1, 1, 0}, {1, 1}, {}}, {{0, 1, 0}, {0, 1}, {}}};
     scene.triangles = {{0, 1, 2}, {0, 2, 3}};
     scene.map_width = scene.map_height = 4;
     scene.map.assign(16, 0.5f);
@@ -107,10 +108,14 @@ TEST_CASE("a scene that cannot be is refused, with the value and what to do") {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     const Case cases[] = {
         {"`displacement.scale` = nan: must be", [](Scene& s) { s.settings.displacement = {}; }},
-        {"`camera.eye` = [nan, nan, nan]: set three numbers", [](Scene& s) { s.settings.camera.eye = automatic_vector; }},
+        {"`camera.eye` = [nan, nan, nan]: set three numbers",
+         [](Scene& s) { s.settings.camera.eye = automatic_vector; }},
         {"`camera.near_plane` = nan: must be", [](Scene& s) { s.settings.camera.near_plane = automatic; }},
         {"are the same point", [](Scene& s) { s.settings.camera.target = s.settings.camera.eye; }},
-        {"is parallel to the view direction", [](Scene& s) { s.settings.camera.up = {0, 2, -1.5}; }},
+        {"is parallel to the view direction",
+         [](Scene& s) {
+             s.settings.camera.up = {0, 2, -1.5};
+         }},
         {"`formats.position_bits` = 40: must be 8 to 32", [](Scene& s) { s.settings.formats.position_bits = 40; }},
         {"`tests.normal_threshold` = nan", [](Scene& s) { s.settings.tests.normal_threshold = nan; }},
         {"`tests.generation_limit` = 9, but `formats.generation_bits` = 3",
@@ -121,13 +126,20 @@ TEST_CASE("a scene that cannot be is refused, with the value and what to do") {
         {"`light.direction` has no direction", [](Scene& s) { s.settings.light.direction = {}; }},
         {"vertices[2] has a value that is not finite", [](Scene& s) { s.vertices[2].position[1] = nan; }},
         {"triangles[1] names vertex 4 of 4", [](Scene& s) { s.triangles[1][2] = 4; }},
-        {"of 2 triangles none has an area", [](Scene& s) { s.triangles = {{0, 1, 1}, {2, 2, 2}}; }},
+        {"of 2 triangles none has an area",
+         [](Scene& s) {
+             s.triangles = {{0, 1, 1}, {2, 2, 2}};
+         }},
         {"of 0 triangles none has an area", [](Scene& s) { s.triangles.clear(); }},
         {"a map of 0 x 4 texels", [](Scene& s) { s.map_width = 0; }},
         {"the map has 16 values, but map_width x map_height = 20", [](Scene& s) { s.map_width = 5; }},
         {"the map has a value that is not finite", [](Scene& s) { s.map[3] = static_cast<float>(nan); }},
         {"map_low > map_high", [](Scene& s) { s.map_low = 2; }},
-        {"Transform's sums hold eyes up to", [](Scene& s) { s.settings.camera.eye = {0, 0, 1e12}; s.settings.camera.up = {0, 1, 0}; }},
+        {"Transform's sums hold eyes up to",
+         [](Scene& s) {
+             s.settings.camera.eye = {0, 0, 1e12};
+             s.settings.camera.up = {0, 1, 0};
+         }},
     };
     CHECK_NOTHROW(prepare(square()));
     for (const Case& c : cases) {

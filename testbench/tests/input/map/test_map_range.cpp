@@ -3,10 +3,10 @@
 
 #include "testbench/input/map/built_in_maps.h"
 #include "testbench/input/map/map_range.h"
-#include "testbench/setup/map_displacement.h"
 #include "testbench/input/mesh/built_in.h"
 #include "testbench/machine/machine_setup.h"
 #include "testbench/machine/resolve_job.h"
+#include "testbench/setup/map_displacement.h"
 
 // map.range on a map of 2 x 2 texels of 16-bit metres, 1000 to 1600 of 65535.
 
