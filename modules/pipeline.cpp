@@ -65,8 +65,13 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
           make_cache("normal_map_cache", registers.normal_map, design.timing.normal_map, design.timing.stalls)),
       summed_height_table_cache(make_cache("summed_height_table_cache", registers.summed_height_table,
                                            design.timing.summed_height_table, design.timing.stalls)),
+      registers_(registers),
       transport_(design.transport),
       random_stalls_(design.timing.stalls.per_mille > 0) {
+    if ((design.work == Work::family) != registers.formats.families)
+        SC_REPORT_ERROR("tessera/pipeline",
+                        (std::string(this->name()) + ": Design::work and Formats::families disagree: set both, or neither")
+                            .c_str());
     UnitFactory& units = factory == nullptr ? standard_units() : *factory;
     tessellation_tests.init(design.tests_units, [&](const char* unit_name, std::size_t number) {
         return new TessellationTests(unit_name, {clock, registers, design}, units, static_cast<unsigned>(number));
@@ -211,6 +216,17 @@ bool Pipeline::idle() const {
         return triangle_queue.drained() && pass_or_tessellate.joined();
     return std::all_of(units_.begin(), units_.end(),
                        [](const Unit* unit) { return unit->idle() && unit->describe_contents().empty(); });
+}
+
+void Pipeline::tables_changed() {
+    const auto lay_out = [](TableMemory& table, TableCache* cache, std::uint32_t columns) {
+        table.lay_out(columns);
+        if (cache != nullptr)
+            cache->lay_out(columns);
+    };
+    lay_out(displacement_map, displacement_map_cache.get(), registers_.displacement_map.columns);
+    lay_out(normal_map, normal_map_cache.get(), registers_.normal_map.columns);
+    lay_out(summed_height_table, summed_height_table_cache.get(), registers_.summed_height_table.columns);
 }
 
 std::uint64_t Pipeline::passes_under_way() const {

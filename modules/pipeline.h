@@ -81,12 +81,17 @@ class Pipeline : public sc_core::sc_module {
     std::unique_ptr<TableCache> normal_map_cache;
     std::unique_ptr<TableCache> summed_height_table_cache;
 
-    /// `registers` must outlive the pipeline. factory: null: the units of this folder.
+    /// `registers` must outlive the pipeline. factory: null: the units of this folder. Fixed from now on: the formats, but
+    /// for the view distance's fraction; the tables' bases, the size of their entries, and the memories' capacities, which
+    /// are those of the tables that `registers` describe.
     Pipeline(const sc_core::sc_module_name& name, const datapath::Registers& registers, const Design& design,
              UnitFactory* factory = nullptr);
 
     /// Nothing is in flight.
     bool idle() const;
+
+    /// To be called while idle when a table's content or columns have changed.
+    void tables_changed();
 
     /// Notified whenever nothing is left to do and nothing is in flight.
     const sc_core::sc_event& drained() const { return drained_; }
@@ -95,6 +100,8 @@ class Pipeline : public sc_core::sc_module {
     const std::vector<Unit*>& units() const { return units_; }
     /// Of the tables that have one.
     const std::vector<TableCache*>& caches() const { return caches_; }
+
+    Transport transport() const { return transport_; }
 
     /// Items are held back at random.
     bool random_stalls() const { return random_stalls_; }
@@ -120,6 +127,7 @@ class Pipeline : public sc_core::sc_module {
     void see_whether_drained();
 
     sc_core::sc_event drained_{"drained"};
+    const datapath::Registers& registers_;
     Transport transport_;
     bool random_stalls_;
     std::vector<Unit*> units_;

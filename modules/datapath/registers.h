@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <type_traits>
 
 #include "modules/datapath/edge_tests.h"
 #include "modules/datapath/parameters.h"
@@ -21,21 +22,21 @@ struct Register {
     const char* meaning;
 };
 
-/// The table of registers: calls visit(Register, std::array of its values) for each, once for a group of similar ones.
+/// The table of registers: calls visit(Register, its value...) for each, once for a group of similar ones. The values are
+/// references to the members of `r`, which may be assigned unless it is constant.
 /// Formats and the size of table entries are fixed in a design; a table's columns and rows follow from the map's size.
-template <class Visit>
-constexpr void visit_registers(const Registers& r, Visit&& visit) {
-    const Formats& f = r.formats;
-    const auto field = [&](const char* name, RegisterKind kind, int bits, const char* meaning, auto... values) {
-        visit(Register{name, kind, bits, meaning}, std::array{static_cast<std::int64_t>(values)...});
+template <class AnyRegisters, class Visit>
+constexpr void describe_registers(AnyRegisters& r, Visit&& visit) {
+    const Formats f = r.formats;
+    const auto field = [&](const char* name, RegisterKind kind, int bits, const char* meaning, auto&... values) {
+        visit(Register{name, kind, bits, meaning}, values...);
     };
     constexpr RegisterKind choice = RegisterKind::choice;
     constexpr RegisterKind number = RegisterKind::unsigned_number, with_sign = RegisterKind::signed_number;
-    const auto direction = [&](const char* name, const char* meaning, const std::array<std::int32_t, 3>& d) {
+    const auto direction = [&](const char* name, const char* meaning, auto& d) {
         field(name, with_sign, f.normal.bits, meaning, d[0], d[1], d[2]);
     };
-    const auto row = [&](const char* name, const char* offset_name, const char* meaning,
-                         const std::array<std::int64_t, 4>& values) {
+    const auto row = [&](const char* name, const char* offset_name, const char* meaning, auto& values) {
         field(name, with_sign, matrix_entry_bits, meaning, values[0], values[1], values[2]);
         field(offset_name, with_sign, matrix_offset_bits, "its fourth entry", values[3]);
     };
@@ -79,15 +80,25 @@ constexpr void visit_registers(const Registers& r, Visit&& visit) {
     row("transform.row_y", "transform.row_y.offset", "screen y, likewise", r.transform.row_y);
     row("transform.row_w", "transform.row_w.offset", "w, likewise", r.transform.row_w);
     field("transform.exponent", number, 5, "shift: x and y are multiplied by its power of two", r.transform.exponent);
-    field("transform.view_distance_shift", number, 5, "shift: fraction bits that w has less than the position",
-          f.position.fraction - f.view_distance.fraction);
+    int shift = f.position.fraction - f.view_distance.fraction;
+    field("transform.view_distance_shift", number, 5, "shift: fraction bits that w has less than the position", shift);
+    if constexpr (!std::is_const_v<AnyRegisters>)
+        r.formats.view_distance.fraction = f.position.fraction - shift;
     field("transform.near_plane", number, 63, "w as row_w gives it", r.transform.near_plane);
-    const auto& n = r.transform.normal_rows;
+    auto& n = r.transform.normal_rows;
     field("transform.normal_rows", with_sign, f.normal.bits, "world to view, normal's format", n[0][0], n[0][1],
           n[0][2], n[1][0], n[1][1], n[1][2], n[2][0], n[2][1], n[2][2]);
 
     direction("light.direction", "in view space, normal's format", r.light.direction);
     field("light.ambient", number, 9, "of 256", r.light.ambient);
+}
+
+/// The same with the values of a group as a std::array of std::int64_t.
+template <class Visit>
+constexpr void visit_registers(const Registers& registers, Visit&& visit) {
+    describe_registers(registers, [&](const Register& field, const auto&... values) {
+        visit(field, std::array{static_cast<std::int64_t>(values)...});
+    });
 }
 
 /// Whether the value fits the register.

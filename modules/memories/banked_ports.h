@@ -60,6 +60,9 @@ class BankedPorts {
         return last + latency_;
     }
 
+    /// The table's columns from now on.
+    void lay_out(std::uint32_t columns) { bank_of_.lay_out(columns); }
+
     unsigned latency() const { return latency_; }
     /// Port slots taken: entries times the cycles a port needs for one.
     std::uint64_t slots_taken() const { return slots_taken_; }

@@ -33,6 +33,9 @@ class BankOfEntry {
           banks_(timing.banks),
           interleave_(timing.interleave) {}
 
+    /// The table's columns from now on.
+    void lay_out(std::uint32_t columns) { columns_ = columns; }
+
     std::size_t operator()(std::uint64_t address) const {
         if (banks_ == 1)
             return 0;

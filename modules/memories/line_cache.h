@@ -32,6 +32,12 @@ class LineCache {
 
     std::uint64_t lines() const { return lines_.size(); }
 
+    /// Forgets all lines; none may be being filled.
+    void clear() {
+        for (Line& line : lines_)
+            line.state = State::empty;
+    }
+
     /// Null: not there, and not being filled.
     Line* find(std::uint64_t number) {
         Line* const set = set_of(number);

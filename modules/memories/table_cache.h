@@ -28,6 +28,12 @@ class TableCache : public MemoryServer {
     TableCache(const sc_core::sc_module_name& name, CycleScheduler& clock, const datapath::TableLayout& layout,
                const MemoryTiming& timing, const StallParameters& stalls);
 
+    /// Between runs: the table's content or columns have changed. Forgets all lines.
+    void lay_out(std::uint32_t columns) {
+        ports_.lay_out(columns);
+        cache_.clear();
+    }
+
     /// Entries found, or on their way, at lookup; entries that began a fill.
     std::uint64_t hits() const { return hits_; }
     std::uint64_t fills() const { return table.requests(); }

@@ -26,6 +26,10 @@ class TableMemory : public MemoryServer {
     TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock, const datapath::TableLayout& layout,
                 const MemoryTiming& timing, const StallParameters& stalls, Channel* off_chip = nullptr);
 
+    bool covers(std::uint64_t address) const { return storage_.covers(address, 1); }
+    /// Between runs: the table's columns from now on. Its base, the size of its entries and the memory's capacity stay.
+    void lay_out(std::uint32_t columns) { ports_.lay_out(columns); }
+
     /// Entries read by transactions; reads through DMI are counted by the reader.
     std::uint64_t transactions() const { return transactions_; }
     /// Port slots, or cycles of the channel.

@@ -7,7 +7,7 @@
 #include <cctype>
 
 #include "testbench/commands/parse_side.h"
-#include "testbench/input/map/height_map.h"
+#include "testbench/setup/height_map.h"
 
 namespace tessera {
 

@@ -1,24 +1,23 @@
 #pragma once
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <string>
 
 #include "modules/timing/test_order.h"
 #include "modules/timing/timing.h"
 #include "modules/timing/work.h"
+#include "testbench/setup/scene_settings.h"
 
 namespace tessera {
 
 enum class MeshSource { plane, cylinder, sphere, file, patches, run };
 enum class MapSource { half_donut, text, noise, constant, ramp, file };
-enum class Addressing { clamp, repeat };
-enum class Triangulation { shorter, first, second };
+using Addressing = datapath::AddressMode;
+using datapath::Triangulation;
 enum class QueueOrder { fifo, lifo };
 enum class Culling { none, back };
-enum class SummedHeightUnit { sum, area };
+using datapath::SummedHeightUnit;
 enum class Overflow { spill, stall, error };
 enum class Mode { functional, timed };
 enum class DesignPreset { paper, modern };
@@ -26,18 +25,6 @@ enum class DesignPreset { paper, modern };
 /// Whether a mesh of this source is what mesh.file names.
 constexpr bool reads_file(MeshSource source) {
     return source == MeshSource::file || source == MeshSource::patches || source == MeshSource::run;
-}
-
-/// A number, or vector, that the job leaves to the program ("auto"): testbench/machine/resolve_job.h finds it from mesh
-/// and map.
-inline constexpr double automatic = std::numeric_limits<double>::quiet_NaN();
-inline constexpr std::array<double, 3> automatic_vector{automatic, automatic, automatic};
-
-inline bool is_automatic(double value) {
-    return std::isnan(value);
-}
-inline bool is_automatic(const std::array<double, 3>& value) {
-    return std::isnan(value[0]) && std::isnan(value[1]) && std::isnan(value[2]);
 }
 
 /// Which map values displacement.scale spans.
@@ -82,51 +69,22 @@ struct Job {
         std::filesystem::path path;  // not a key, as above
     } map;
 
-    struct Displacement {
-        double scale = automatic;  // model units from the low to the high end of map.range
-        double bias = 0;           // model units, at the low end
-    } displacement;
+    using Displacement = DisplacementSettings;
+    Displacement displacement;  // model units; automatic values: testbench/machine/resolve_job.h
 
     struct Frames {
         std::int64_t count = 1;  // 1: a plain run
         double first_scale = 0;  // model units; the last frame's is displacement.scale
     } frames;
 
-    struct Camera {
-        std::array<double, 3> eye = automatic_vector;
-        std::array<double, 3> target = automatic_vector;
-        std::array<double, 3> up = automatic_vector;
-        double field_of_view = 36;      // vertical, degrees
-        double near_plane = automatic;  // model units
-        std::int64_t viewport_width = 1024;
-        std::int64_t viewport_height = 768;
-    } camera;
+    using Camera = CameraSettings;
+    Camera camera;
 
-    struct Tests {
-        bool normal = true;
-        double normal_threshold = 0.12;  // difference of one component of two unit normals
-        bool summed_height = true;
-        double summed_height_threshold = 0.03;  // full-scale texels (sum) or full scale (area)
-        SummedHeightUnit summed_height_unit = SummedHeightUnit::sum;
-        bool view = true;
-        double view_threshold = 5;  // pixels, Manhattan
-        bool tex_coord = true;
-        bool generation = true;
-        std::int64_t generation_limit = 12;
-        bool highlight = false;
-        double highlight_angle = 25;               // degrees from the half vector
-        double highlight_normal_threshold = 0.05;  // difference of one component of two unit normals
-    } tests;
+    using Tests = TestSettings;
+    Tests tests;
 
-    struct Formats {
-        std::int64_t position_bits = 32, position_fraction = 16;
-        std::int64_t normal_bits = 16, normal_fraction = 14;
-        std::int64_t texture_integer = 12, texture_fraction = 12;
-        std::int64_t displacement_bits = 16;
-        std::int64_t summed_height_bits = 0;  // 0 = auto: the narrowest of 32, 40, 48 the mesh needs
-        std::int64_t screen_bits = 24, screen_fraction = 8;
-        std::int64_t generation_bits = 4;
-    } formats;
+    using Formats = FormatSettings;
+    Formats formats;
 
     struct Hardware {
         DesignPreset design = DesignPreset::paper;  // sets the keys of design_preset.h

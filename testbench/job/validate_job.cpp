@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -13,34 +11,11 @@
 #include "testbench/job/job_choices.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/job/toml_text.h"
+#include "testbench/setup/check_settings.h"
 
 namespace tessera {
 
 namespace {
-
-using Vector = std::array<double, 3>;
-
-Vector difference(const Vector& a, const Vector& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-Vector cross(const Vector& a, const Vector& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-double length(const Vector& v) {
-    return std::hypot(v[0], v[1], v[2]);
-}
-
-/// The same direction, the largest component 1: products of what is very short would be 0.
-Vector direction(const Vector& v) {
-    const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
-    return {v[0] / largest, v[1] / largest, v[2] / largest};
-}
-
-std::string text_of(const Vector& v) {
-    return toml_value(v);
-}
 
 class Faults {
   public:
@@ -121,63 +96,9 @@ void check_map(const Job& job, Faults& faults) {
     }
 }
 
-void check_camera(const Job& job, Faults& faults) {
-    const Job::Camera& camera = job.camera;
-    const bool known = !is_automatic(camera.eye) && !is_automatic(camera.target);
-    const Vector view = difference(camera.target, camera.eye);
-    const double size = std::max(length(camera.eye), length(camera.target));
-    const bool apart = !known || length(view) > 1e-9 * size;
-    faults.unless(apart, "`camera.eye` = {} and `camera.target` = {} are the same point: move one of them",
-                  text_of(camera.eye), text_of(camera.target));
-    const double up = is_automatic(camera.up) ? 1 : length(camera.up);
-    faults.unless(up > 0, "`camera.up` = {} has no direction: give it one, such as [0, 0, 1]", text_of(camera.up));
-    // Below a sine of 1e-6 the picture's roll would be rounding error.
-    const auto sine = [](const Vector& a, const Vector& b) { return length(cross(a, b)) / (length(a) * length(b)); };
-    const bool parallel =
-        known && !is_automatic(camera.up) && apart && up > 0 && sine(direction(view), direction(camera.up)) <= 1e-6;
-    faults.unless(!parallel,
-                  "`camera.up` = {} is parallel to the view direction {} (camera.target - camera.eye): turn up by "
-                  "a right angle",
-                  text_of(camera.up), text_of(view));
-    const Job::Formats& formats = job.formats;
-    const std::int64_t integer_bits = formats.screen_bits - formats.screen_fraction - 1;
-    if (integer_bits >= 0) {
-        const std::int64_t most = std::int64_t{1} << integer_bits;
-        faults.unless(camera.viewport_width <= most && camera.viewport_height <= most,
-                      "`camera.viewport_width` = {} by `camera.viewport_height` = {}, but `formats.screen_bits` = {} "
-                      "with "
-                      "`formats.screen_fraction` = {} reaches only {} pixels: make the viewport smaller, or the format "
-                      "wider",
-                      camera.viewport_width, camera.viewport_height, formats.screen_bits, formats.screen_fraction,
-                      most);
-    }
-}
-
-void check_formats(const Job& job, Faults& faults) {
-    const Job::Formats& formats = job.formats;
-    faults.unless(formats.position_fraction < formats.position_bits,
-                  "`formats.position_fraction` = {} must be less than `formats.position_bits` = {}: lower it, or raise "
-                  "position_bits",
-                  formats.position_fraction, formats.position_bits);
-    faults.unless(formats.screen_fraction < formats.screen_bits,
-                  "`formats.screen_fraction` = {} must be less than `formats.screen_bits` = {}: lower it, or raise "
-                  "screen_bits",
-                  formats.screen_fraction, formats.screen_bits);
-    faults.unless(formats.normal_bits - formats.normal_fraction >= 2,
-                  "`formats.normal_fraction` = {} leaves {} of `formats.normal_bits` = {} for sign and "
-                  "integer, and 1.0 "
-                  "needs 2: lower it, or raise normal_bits",
-                  formats.normal_fraction, formats.normal_bits - formats.normal_fraction, formats.normal_bits);
-    const std::int64_t generations = std::int64_t{1} << formats.generation_bits;
-    faults.unless(job.tests.generation_limit < generations,
-                  "`tests.generation_limit` = {}, but `formats.generation_bits` = {} counts to {}: lower the limit, or "
-                  "raise generation_bits",
-                  job.tests.generation_limit, formats.generation_bits, generations - 1);
-}
-
 void check_light(const Job::Hardware& hardware, Faults& faults) {
-    faults.unless(length(hardware.light) > 0, "`hardware.light` = {} has no direction: give it one, such as [0, 0, 1]",
-                  text_of(hardware.light));
+    faults.unless(hardware.light != std::array<double, 3>{}, "`hardware.light` = {} has no direction: give it one, such as [0, 0, 1]",
+                  toml_value(hardware.light));
 }
 
 void check_hardware(const Job::Hardware& hardware, Faults& faults) {
@@ -226,8 +147,8 @@ void validate(const Job& job) {
     Faults faults;
     check_mesh(job.mesh, faults);
     check_map(job, faults);
-    check_camera(job, faults);
-    check_formats(job, faults);
+    for (const std::string& fault : setting_faults(job.camera, job.formats, job.tests))
+        faults.unless(false, "{}", fault);
     check_light(job.hardware, faults);
     check_hardware(job.hardware, faults);
     check_timing(job.timing, faults);

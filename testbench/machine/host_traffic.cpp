@@ -42,7 +42,8 @@ HostTraffic next_frame_traffic(const MachineSetup& before, const MachineSetup& n
         traffic.displacement_map = 0;
         traffic.summed_height_table = 0;
         // the normals follow from heights and texels' sizes, of which only the quotients matter
-        if (before.height_per_code / before.texel_size == now.height_per_code / now.texel_size)
+        if (before.height_per_code / before.texel_size[0] == now.height_per_code / now.texel_size[0] &&
+            before.height_per_code / before.texel_size[1] == now.height_per_code / now.texel_size[1])
             traffic.normal_map = 0;
     }
     const std::vector<std::uint32_t> old_words = register_words(before.registers),

@@ -15,16 +15,13 @@ std::string numbered(const char* name, std::size_t number) {
 
 HostedMachine::HostedMachine(const MachineSetup& setup, std::size_t number, MeshMonitor& monitor, UnitFactory* units)
     : pipeline(numbered("tessera", number).c_str(), setup.registers, setup.design, units),
-      host(numbered("host", number).c_str(), setup, pipeline.clock, number),
+      host(numbered("host", number).c_str(), pipeline, setup.base_triangles, tables_of(setup), number, setup.machines),
       rasteriser(numbered("rasteriser", number).c_str(), pipeline.clock, setup.design.timing.stalls),
       decisions(setup),
       monitor_(monitor) {
     if (units != nullptr)
         units->made(host);
-    host.to_get_triangle.bind(pipeline.get_triangle.from_host);
-    host.displacement_map.bind(pipeline.displacement_map.host);
-    host.normal_map.bind(pipeline.normal_map.host);
-    host.summed_height_table.bind(pipeline.summed_height_table.host);
+    host.bind();
     pipeline.lighting.to_rasteriser.bind(rasteriser.from_lighting);
     pipeline.pass_or_tessellate.decided.bind(decisions);
     pipeline.pass_or_tessellate.finished.bind(*this);

@@ -3,11 +3,17 @@
 #include <cstdint>
 #include <tlm>
 
-#include "testbench/machine/host.h"
+#include "modules/host.h"
+#include "modules/rasteriser.h"
+#include "testbench/machine/machine_setup.h"
 #include "testbench/machine/mesh_monitor.h"
-#include "testbench/machine/rasteriser.h"
 
 namespace tessera {
+
+/// Fills a host's tables from the setup, which must outlive it.
+inline Host::FillTables tables_of(const MachineSetup& setup) {
+    return [&setup](const TableWriter& writer) { write_tables(setup, writer); };
+}
 
 /// One of the run's machines, with its host, rasteriser and decisions. Its finished triangles go to the monitor, which
 /// all machines share.

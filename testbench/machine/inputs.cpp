@@ -1,7 +1,7 @@
 #include "testbench/machine/inputs.h"
 
 #include "testbench/input/map/built_in_maps.h"
-#include "testbench/input/map/map_displacement.h"
+#include "testbench/input/map/map_range.h"
 #include "testbench/input/map/read_height_map.h"
 #include "testbench/input/mesh/make_base_mesh.h"
 #include "testbench/job/validate_job.h"

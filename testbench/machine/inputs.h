@@ -1,6 +1,6 @@
 #pragma once
-#include "testbench/input/map/height_map.h"
-#include "testbench/input/mesh/base_mesh.h"
+#include "testbench/setup/height_map.h"
+#include "testbench/setup/mesh/base_mesh.h"
 #include "testbench/job/job.h"
 #include "testbench/machine/resolve_job.h"
 

@@ -9,10 +9,10 @@
 #include <stdexcept>
 
 #include "testbench/common/error.h"
-#include "testbench/input/map/map_displacement.h"
+#include "testbench/setup/map_displacement.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/job/toml_text.h"
-#include "testbench/machine/setup/unit_vector.h"
+#include "testbench/setup/unit_vector.h"
 
 namespace tessera {
 

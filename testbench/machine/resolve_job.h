@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
-#include "testbench/input/map/height_map.h"
-#include "testbench/input/mesh/base_mesh.h"
+#include "testbench/setup/height_map.h"
+#include "testbench/setup/mesh/base_mesh.h"
 #include "testbench/job/job.h"
 
 namespace tessera {

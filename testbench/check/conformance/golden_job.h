@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "golden/golden_setup.h"
-#include "testbench/input/map/height_map.h"
-#include "testbench/input/mesh/base_mesh.h"
+#include "testbench/setup/height_map.h"
+#include "testbench/setup/mesh/base_mesh.h"
 #include "testbench/job/job.h"
 #include "testbench/machine/machine_setup.h"
 

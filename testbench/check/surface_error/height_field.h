@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "testbench/input/map/height_map.h"
-#include "testbench/input/mesh/base_mesh.h"
+#include "testbench/setup/height_map.h"
+#include "testbench/setup/mesh/base_mesh.h"
 #include "testbench/input/surface/displaced_surface.h"
 #include "testbench/run_folder/recorded_mesh.h"
 

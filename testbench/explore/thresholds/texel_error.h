@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "modules/datapath/vertex.h"
-#include "testbench/input/map/height_map.h"
+#include "testbench/setup/height_map.h"
 #include "testbench/input/surface/displaced_surface.h"
 #include "testbench/machine/machine_setup.h"
 #include "testbench/output/report/mesh_units.h"

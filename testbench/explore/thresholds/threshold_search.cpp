@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "testbench/explore/thresholds/threshold_level.h"
-#include "testbench/machine/setup/thresholds.h"
+#include "testbench/setup/thresholds.h"
 
 namespace tessera {
 

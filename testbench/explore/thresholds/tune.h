@@ -6,8 +6,8 @@
 
 #include "testbench/explore/thresholds/base_choice.h"
 #include "testbench/explore/thresholds/threshold_search.h"
-#include "testbench/input/map/height_map.h"
-#include "testbench/input/mesh/base_mesh.h"
+#include "testbench/setup/height_map.h"
+#include "testbench/setup/mesh/base_mesh.h"
 #include "testbench/job/job.h"
 
 namespace tessera {

@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <string>
 
-#include "testbench/input/map/height_map.h"
-#include "testbench/input/mesh/base_mesh.h"
+#include "testbench/setup/height_map.h"
+#include "testbench/setup/mesh/base_mesh.h"
 #include "testbench/machine/emitted_mesh.h"
 #include "testbench/machine/machine_setup.h"
 #include "testbench/run_folder/recorded_mesh.h"

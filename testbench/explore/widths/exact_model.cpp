@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "testbench/check/conformance/golden_inputs.h"
-#include "testbench/input/map/map_displacement.h"
-#include "testbench/input/mesh/whole_periods.h"
+#include "testbench/setup/map_displacement.h"
+#include "testbench/setup/mesh/whole_periods.h"
 
 namespace tessera {
 
@@ -81,7 +81,7 @@ ExactModel::ExactModel(const Job& job, const BaseMesh& original, const HeightMap
     parameters_.view_threshold = tests.view_threshold;
     parameters_.highlight_cosine = std::cos(tests.highlight_angle * pi / 180);
     parameters_.highlight_normal_threshold = tests.highlight_normal_threshold;
-    map_.derive_normals(parameters_.scale, setup.texel_size);
+    map_.derive_normals(parameters_.scale, {setup.texel_size[0], setup.texel_size[1]});
 
     const double texels = std::ldexp(1.0, static_cast<int>(job.formats.texture_integer));
     const BaseMesh mesh =

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "golden/golden_model.h"
-#include "testbench/input/map/height_map.h"
-#include "testbench/input/mesh/base_mesh.h"
+#include "testbench/setup/height_map.h"
+#include "testbench/setup/mesh/base_mesh.h"
 #include "testbench/job/job.h"
 #include "testbench/machine/machine_setup.h"
 

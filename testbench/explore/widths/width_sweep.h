@@ -7,8 +7,8 @@
 
 #include "testbench/explore/widths/quantity.h"
 #include "testbench/explore/widths/width_run.h"
-#include "testbench/input/map/height_map.h"
-#include "testbench/input/mesh/base_mesh.h"
+#include "testbench/setup/height_map.h"
+#include "testbench/setup/mesh/base_mesh.h"
 #include "testbench/job/job.h"
 #include "testbench/output/report/saturation_figures.h"
 

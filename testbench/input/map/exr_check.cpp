@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "testbench/common/error.h"
-#include "testbench/input/map/height_map.h"
+#include "testbench/setup/height_map.h"
 #include "testbench/input/map/map_file.h"
 
 namespace tessera {

@@ -7,7 +7,7 @@
 #include <system_error>
 
 #include "testbench/common/error.h"
-#include "testbench/input/map/height_map.h"
+#include "testbench/setup/height_map.h"
 
 namespace tessera {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 #include <filesystem>
 
-#include "testbench/input/map/height_map.h"
+#include "testbench/setup/height_map.h"
 
 namespace tessera {
 

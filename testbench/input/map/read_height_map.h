@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <string>
 
-#include "testbench/input/map/height_map.h"
+#include "testbench/setup/height_map.h"
 
 namespace tessera {
 

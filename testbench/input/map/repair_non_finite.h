@@ -1,5 +1,5 @@
 #pragma once
-#include "testbench/input/map/height_map.h"
+#include "testbench/setup/height_map.h"
 
 namespace tessera {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "testbench/input/mesh/base_mesh.h"
+#include "testbench/setup/mesh/base_mesh.h"
 
 namespace tessera {
 

@@ -7,8 +7,8 @@
 
 #include "testbench/common/error.h"
 #include "testbench/input/mesh/mesh_limits.h"
-#include "testbench/input/mesh/tangent_frames.h"
-#include "testbench/input/mesh/texture_scale.h"
+#include "testbench/setup/mesh/tangent_frames.h"
+#include "testbench/setup/mesh/texture_scale.h"
 
 namespace tessera {
 namespace {

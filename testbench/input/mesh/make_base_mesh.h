@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "testbench/input/mesh/base_mesh.h"
+#include "testbench/setup/mesh/base_mesh.h"
 #include "testbench/job/job.h"
 
 namespace tessera {

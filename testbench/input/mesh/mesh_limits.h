@@ -20,8 +20,4 @@ constexpr std::int64_t largest_grid = 4096;                   ///< columns or ro
 constexpr double smallest_size = 1e-30, largest_size = 1e30;  ///< width, depth, radius, height: model units
 constexpr double largest_coordinate = 3.4028234663852886e38;  ///< in a file: the limit of single precision
 
-/// A triangle this flat (approximately height over longest edge) counts as one without area. Doubles have 16 digits, so
-/// rounding would determine the direction of a flatter one.
-constexpr double flattest_triangle = 1e-12;
-
 }  // namespace tessera

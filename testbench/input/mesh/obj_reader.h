@@ -2,7 +2,7 @@
 #include <string>
 #include <string_view>
 
-#include "testbench/input/mesh/base_mesh.h"
+#include "testbench/setup/mesh/base_mesh.h"
 
 namespace tessera {
 

@@ -4,13 +4,13 @@
 
 #include "testbench/common/error.h"
 #include "testbench/input/mesh/bezier_patches.h"
-#include "testbench/input/mesh/equal_groups.h"
+#include "testbench/setup/mesh/equal_groups.h"
 #include "testbench/input/mesh/mesh_limits.h"
-#include "testbench/input/mesh/smooth_normals.h"
+#include "testbench/setup/mesh/smooth_normals.h"
 #include "testbench/input/mesh/surface_flaws.h"
-#include "testbench/input/mesh/tangent_frames.h"
-#include "testbench/input/mesh/texture_scale.h"
-#include "testbench/input/mesh/triangle_geometry.h"
+#include "testbench/setup/mesh/tangent_frames.h"
+#include "testbench/setup/mesh/texture_scale.h"
+#include "testbench/setup/mesh/triangle_geometry.h"
 
 namespace tessera {
 namespace {

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "testbench/input/mesh/triangle_geometry.h"
+#include "testbench/setup/mesh/triangle_geometry.h"
 
 namespace tessera {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 #include <filesystem>
 
-#include "testbench/input/mesh/base_mesh.h"
+#include "testbench/setup/mesh/base_mesh.h"
 
 namespace tessera {
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "testbench/input/mesh/equal_groups.h"
-#include "testbench/input/mesh/triangle_geometry.h"
+#include "testbench/setup/mesh/equal_groups.h"
+#include "testbench/setup/mesh/triangle_geometry.h"
 
 namespace tessera {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "testbench/input/mesh/base_mesh.h"
+#include "testbench/setup/mesh/base_mesh.h"
 #include "testbench/input/mesh/mesh_limits.h"
 
 namespace tessera {

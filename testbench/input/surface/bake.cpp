@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "testbench/common/error.h"
-#include "testbench/input/mesh/triangle_geometry.h"
+#include "testbench/setup/mesh/triangle_geometry.h"
 #include "testbench/input/surface/displaced_surface.h"
 #include "testbench/input/surface/texel_centres.h"
 

@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "testbench/input/mesh/base_mesh.h"
+#include "testbench/setup/mesh/base_mesh.h"
 #include "testbench/input/surface/surface_file.h"
 #include "testbench/job/job.h"
 

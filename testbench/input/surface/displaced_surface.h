@@ -4,8 +4,8 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "testbench/input/map/map_displacement.h"
-#include "testbench/input/mesh/base_mesh.h"
+#include "testbench/setup/map_displacement.h"
+#include "testbench/setup/mesh/base_mesh.h"
 #include "testbench/job/job.h"
 
 namespace tessera {

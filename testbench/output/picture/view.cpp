@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "testbench/machine/setup/unit_vector.h"
+#include "testbench/setup/unit_vector.h"
 
 namespace tessera {
 namespace {

@@ -5,7 +5,7 @@
 #include "testbench/common/error.h"
 #include "testbench/input/mesh/bezier_patches.h"
 #include "testbench/input/mesh/mesh_limits.h"
-#include "testbench/input/mesh/triangle_geometry.h"
+#include "testbench/setup/mesh/triangle_geometry.h"
 #include "testbench/prove/fuzz/fuzz_target.h"
 
 namespace tessera::fuzz {

@@ -1,5 +1,5 @@
 #pragma once
-#include "testbench/input/mesh/base_mesh.h"
+#include "testbench/setup/mesh/base_mesh.h"
 
 namespace tessera::fuzz {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "testbench/common/random.h"
-#include "testbench/input/map/height_map.h"
+#include "testbench/setup/height_map.h"
 
 namespace tessera {
 

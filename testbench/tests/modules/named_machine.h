@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "testbench/machine/host.h"
+#include "modules/rasteriser.h"
+#include "testbench/machine/hosted_machine.h"
 #include "testbench/machine/mesh_monitor.h"
-#include "testbench/machine/rasteriser.h"
 #include "testbench/tests/support/bare_mesh.h"
 
 namespace tessera::testing {
@@ -29,13 +29,10 @@ struct NamedMachine : sc_core::sc_module {
         : sc_module(name),
           setup(its_setup),
           pipeline("pipeline", setup.registers, setup.design, units),
-          host("host", setup, pipeline.clock),
+          host("host", pipeline, setup.base_triangles, tables_of(setup)),
           rasteriser("rasteriser", pipeline.clock, setup.design.timing.stalls),
           monitor("monitor", setup.registers.back_face_culling, 1'000'000) {
-        host.to_get_triangle.bind(pipeline.get_triangle.from_host);
-        host.displacement_map.bind(pipeline.displacement_map.host);
-        host.normal_map.bind(pipeline.normal_map.host);
-        host.summed_height_table.bind(pipeline.summed_height_table.host);
+        host.bind();
         pipeline.lighting.to_rasteriser.bind(rasteriser.from_lighting);
         pipeline.pass_or_tessellate.finished.bind(monitor);
         pipeline.clock.halt_without_progress_for(1'000'000);

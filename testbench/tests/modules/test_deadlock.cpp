@@ -157,12 +157,9 @@ struct Wall : sc_core::sc_module, CycleProcess {
 TEST_CASE("a rasteriser that takes nothing is a deadlock that begins at Lighting") {
     const MachineSetup setup = setup_of(full_split_job(3, 2));
     Pipeline pipeline("tessera", setup.registers, setup.design);
-    Host host("host", setup, pipeline.clock);
+    Host host("host", pipeline, setup.base_triangles, tables_of(setup));
     Wall wall("wall", pipeline.clock);
-    host.to_get_triangle.bind(pipeline.get_triangle.from_host);
-    host.displacement_map.bind(pipeline.displacement_map.host);
-    host.normal_map.bind(pipeline.normal_map.host);
-    host.summed_height_table.bind(pipeline.summed_height_table.host);
+    host.bind();
     pipeline.lighting.to_rasteriser.bind(wall.in);
     sc_core::sc_start();
     CHECK(pipeline.clock.idle());

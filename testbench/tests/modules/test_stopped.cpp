@@ -167,3 +167,15 @@ TEST_CASE("drained: a machine in a deadlock is not") {
     CHECK_THAT(simulation.run(), Catch::StartsWith("deadlock: "));
     CHECK(watch.notified == 0);
 }
+
+TEST_CASE("a design of families on formats of triangles is refused") {
+    MachineSetup setup = setup_of(one_quad_job());
+    setup.design.work = Work::family;
+    std::string message;
+    try {
+        const Pipeline pipeline("tessera", setup.registers, setup.design);
+    } catch (const sc_core::sc_report& report) {
+        message = report.get_msg();
+    }
+    CHECK(message == "tessera: Design::work and Formats::families disagree: set both, or neither");
+}

@@ -96,7 +96,7 @@ struct Case {
         setup.height_per_code =
             std::ldexp(static_cast<double>(registers.displacement.scale), -formats.position.fraction - setup.map.bits);
         const double world = std::ldexp(static_cast<double>(highest), -formats.position.fraction);
-        setup.texel_size = glm::dvec2{real(random, 0.01, 2), real(random, 0.01, 2)} * world;
+        setup.texel_size = {real(random, 0.01, 2) * world, real(random, 0.01, 2) * world};
 
         datapath::TestParameters& tests = registers.tests;
         tests.normal_threshold = random.natural(0, 1u << formats.normal.fraction);

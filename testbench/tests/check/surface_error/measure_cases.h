@@ -10,8 +10,8 @@
 #include "testbench/check/surface_error/mesh_samples.h"
 #include "testbench/check/surface_error/reference_lattice.h"
 #include "testbench/geometry/nearest_triangle.h"
-#include "testbench/input/map/height_map.h"
-#include "testbench/input/mesh/base_mesh.h"
+#include "testbench/setup/height_map.h"
+#include "testbench/setup/mesh/base_mesh.h"
 
 namespace tessera {
 

@@ -14,7 +14,7 @@
 #include "testbench/input/mesh/obj_reader.h"
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/inputs.h"
-#include "testbench/machine/setup/thresholds.h"
+#include "testbench/setup/thresholds.h"
 
 using namespace tessera;
 using Catch::Contains;

@@ -2,7 +2,8 @@
 #include <catch2/catch.hpp>
 
 #include "testbench/input/map/built_in_maps.h"
-#include "testbench/input/map/map_displacement.h"
+#include "testbench/input/map/map_range.h"
+#include "testbench/setup/map_displacement.h"
 #include "testbench/input/mesh/built_in.h"
 #include "testbench/machine/machine_setup.h"
 #include "testbench/machine/resolve_job.h"

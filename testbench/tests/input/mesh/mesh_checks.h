@@ -5,9 +5,9 @@
 #include <map>
 #include <utility>
 
-#include "testbench/input/mesh/base_mesh.h"
-#include "testbench/input/mesh/equal_groups.h"
-#include "testbench/input/mesh/triangle_geometry.h"
+#include "testbench/setup/mesh/base_mesh.h"
+#include "testbench/setup/mesh/equal_groups.h"
+#include "testbench/setup/mesh/triangle_geometry.h"
 
 namespace tessera {
 

@@ -10,7 +10,7 @@
 #include "testbench/input/mesh/obj_reader.h"
 #include "testbench/input/mesh/polygon_cutter.h"
 #include "testbench/input/mesh/surface_flaws.h"
-#include "testbench/input/mesh/tangent_frames.h"
+#include "testbench/setup/mesh/tangent_frames.h"
 #include "testbench/tests/input/mesh/mesh_checks.h"
 
 using namespace tessera;

@@ -7,7 +7,7 @@
 #include "testbench/common/error.h"
 #include "testbench/input/map/built_in_maps.h"
 #include "testbench/input/mesh/built_in.h"
-#include "testbench/input/mesh/whole_periods.h"
+#include "testbench/setup/mesh/whole_periods.h"
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/resolve_job.h"
 

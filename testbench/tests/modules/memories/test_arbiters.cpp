@@ -202,3 +202,20 @@ TEST_CASE("storage: what was never written is 0, what was is there, and nothing 
     CHECK(all[10] == 1);
     CHECK(all[49] == 4);
 }
+
+TEST_CASE("a table with other columns: its entries lie in the banks of those") {
+    MemoryTiming timing;
+    timing.banks = 4;
+    timing.interleave = Interleave::exclusive_or;
+    BankOfEntry moved(timing, layout);
+    datapath::TableLayout other = layout;
+    other.columns = 11;
+    const BankOfEntry made(timing, other);
+    unsigned different = 0;
+    for (std::uint64_t address = layout.base; address < layout.base + layout.bytes(); address += 4)
+        different += moved(address) != made(address) ? 1u : 0u;
+    CHECK(different > 0);
+    moved.lay_out(11);
+    for (std::uint64_t address = layout.base; address < layout.base + layout.bytes(); address += 4)
+        CHECK(moved(address) == made(address));
+}

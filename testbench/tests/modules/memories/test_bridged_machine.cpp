@@ -71,7 +71,7 @@ struct BridgedMachine {
     BridgedMachine(const MachineSetup& setup, Maker make)
         : units(setup.design.timing, std::move(make)),
           pipeline("bridged", setup.registers, setup.design, &units),
-          host("bridged_host", setup, pipeline.clock),
+          host("bridged_host", pipeline, setup.base_triangles, tables_of(setup)),
           rasteriser("bridged_rasteriser", pipeline.clock, setup.design.timing.stalls),
           monitor("bridged_monitor", setup.registers.back_face_culling, 1'000'000) {
         host.to_get_triangle.bind(pipeline.get_triangle.from_host);

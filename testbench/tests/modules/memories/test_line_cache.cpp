@@ -83,3 +83,13 @@ TEST_CASE("line cache: a line that is being filled is found, and keeps its place
     CHECK(cache.allocate(12) == first);
     CHECK(cache.find(10) == nullptr);
 }
+
+TEST_CASE("a cache that is cleared has no line") {
+    LineCache cache(512, 2, 64);
+    for (std::uint64_t number = 0; number < 8; ++number)
+        access(cache, number);
+    CHECK(cache.find(7) != nullptr);
+    cache.clear();
+    for (std::uint64_t number = 0; number < 8; ++number)
+        CHECK(cache.find(number) == nullptr);
+}

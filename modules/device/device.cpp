@@ -1,0 +1,281 @@
+#include "modules/device/device.h"
+
+#include <string>
+
+#include "modules/device/records.h"
+
+namespace tessera {
+
+namespace {
+
+/// Registers for the largest map, from which the table memories take their capacities.
+datapath::Registers for_largest_map(datapath::Registers registers, const LargestMap& largest) {
+    registers.map.width = largest.width;
+    registers.map.height = largest.height;
+    lay_out_tables_of(registers);
+    return registers;
+}
+
+void require(bool condition, const char* instance, const char* rule) {
+    if (!condition)
+        SC_REPORT_ERROR("tessera/device", (std::string(instance) + ": " + rule).c_str());
+}
+
+/// Before anything is built from it.
+const DeviceDesign& checked(const DeviceDesign& design, const datapath::Registers& initial, const char* instance) {
+    const std::uint64_t most_texels = std::uint64_t{1}
+                                      << (initial.formats.texture.bits - 1 - initial.formats.texture.fraction);
+    const LargestMap& map = design.largest_map;
+    require(map.width >= 1 && map.height >= 1 && map.width <= most_texels && map.height <= most_texels, instance,
+            "the largest map has no texels, or more columns or rows than the texture coordinate's format holds");
+    require(
+        design.burst_bytes >= 4 && design.burst_bytes <= 4096 && (design.burst_bytes & (design.burst_bytes - 1)) == 0,
+        instance, "a burst is a power of two of bytes, 4 to 4096");
+    require(design.triangles_ahead >= 1 && design.finished_triangles >= 1, instance,
+            "at least one base triangle is fetched ahead, and at least one finished triangle waits");
+    require(design.machine.queue.capacity == 0 || design.machine.queue.overflow == QueueOverflow::spill, instance,
+            "a queue that neither spills nor is unbounded could stop the machine for good");
+    return design;
+}
+
+}  // namespace
+
+Device::Device(const sc_core::sc_module_name& name, const datapath::Registers& initial, const DeviceDesign& design,
+               UnitFactory* factory)
+    : sc_module(name),
+      design_(checked(design, initial, this->name())),
+      live_(for_largest_map(initial, design.largest_map)),
+      pipeline_("machine", live_, design.machine, factory),
+      streams_("streams", pipeline_.clock, design.machine, design.triangles_ahead, design.finished_triangles),
+      file_(initial, design.largest_map),
+      reading_(bus, design.burst_bytes, design.machine.transport == Transport::blocking),
+      writing_(bus, design.burst_bytes, design.machine.transport == Transport::blocking),
+      most_waiting_(std::max<std::uint64_t>(design.machine.queue.capacity, design.machine.queue.off_chip_triangles)) {
+    registers.register_b_transport(this, &Device::b_transport);
+    registers.register_transport_dbg(this, &Device::transport_dbg);
+    streams_.to_get_triangle.bind(pipeline_.get_triangle.from_host);
+    pipeline_.lighting.to_rasteriser.bind(streams_.from_lighting);
+    pipeline_.pass_or_tessellate.decided.bind(*this);
+    displacement_map_.bind(pipeline_.displacement_map.host);
+    normal_map_.bind(pipeline_.normal_map.host);
+    summed_height_table_.bind(pipeline_.summed_height_table.host);
+    SC_HAS_PROCESS(Device);
+    SC_THREAD(run_frames);
+    SC_THREAD(write_records);
+    SC_METHOD(reset_changed);
+    dont_initialize();
+    sensitive << reset;
+    SC_METHOD(drive_interrupt);
+    sensitive << interrupt_changed_;
+}
+
+void Device::start(const sc_core::sc_time& delay) {
+    const datapath::Registers machine = file_.machine();
+    status_ &= ~(status_done | status_error);
+    failure_ = check(machine);
+    if (failure_.error != DeviceError::none) {
+        status_ |= status_error;
+        raise(interrupt_error);
+        return;
+    }
+    live_ = machine;
+    pipeline_.tables_changed();
+    finished_before_ = pipeline_.pass_or_tessellate.counts().finished;
+    triangles_sent_ = write_index_ = read_index_ = 0;
+    ring_place_ = 0;
+    stopped_ = false;
+    streams_.discard(false);
+    status_ |= status_busy;
+    started_.notify(delay);
+}
+
+void Device::run_frames() {
+    for (;;) {
+        wait(started_);
+        reading_.synchronise();
+        if (fetch_tables())
+            send_triangles();
+        reading_.synchronise();
+        wait_until_empty();
+        end_frame();
+    }
+}
+
+/// False: the frame is to stop.
+bool Device::fetch_tables() {
+    const datapath::Formats& f = live_.formats;
+    return fetch(0, displacement_map_, offset::displacement_map_address, live_.displacement_map, f.displacement.bits) &&
+           fetch(1, normal_map_, offset::normal_map_address, live_.normal_map, 3 * f.normal.bits) &&
+           fetch(2, summed_height_table_, offset::summed_height_table_address, live_.summed_height_table,
+                 f.summed_height.bits);
+}
+
+/// Burst by burst, into the table memory by its debug transport. The memory has no more than `bits` bits of an entry.
+bool Device::fetch(unsigned number, TableSocket& table, std::uint32_t source, const datapath::TableLayout& layout,
+                   int bits) {
+    if ((file_.value(offset::fetch) >> number & 1) == 0)
+        return !stopped_;
+    const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
+    std::vector<unsigned char> data(design_.burst_bytes);
+    std::uint64_t length = 0;
+    for (std::uint64_t done = 0; done < layout.bytes() && !stopped_; done += length) {
+        const std::uint64_t address = file_.value(source) + done;
+        length = std::min<std::uint64_t>(layout.bytes() - done, design_.burst_bytes - address % design_.burst_bytes);
+        if (!reading_.read(address, data.data(), length)) {
+            stop(DeviceError::table_read, reading_.failed_at());
+            return false;
+        }
+        for (std::uint64_t k = 0; k < length; ++k)
+            data[k] &= static_cast<unsigned char>(mask >> 8 * ((done + k) % layout.entry_bytes));
+        tlm::tlm_generic_payload entries;
+        entries.set_command(tlm::TLM_WRITE_COMMAND);
+        entries.set_address(layout.base + done);
+        entries.set_data_ptr(data.data());
+        entries.set_data_length(static_cast<unsigned>(length));
+        entries.set_streaming_width(static_cast<unsigned>(length));
+        table->transport_dbg(entries);
+    }
+    return !stopped_;
+}
+
+void Device::send_triangles() {
+    const std::uint64_t count = file_.value(offset::triangles_count), first = file_.value(offset::triangles_address);
+    std::array<unsigned char, base_triangle_bytes> record{};
+    for (std::uint64_t k = 0; k < count && !stopped_; ++k) {
+        const std::uint64_t address = first + k * base_triangle_bytes;
+        datapath::Triangle triangle;
+        if (!reading_.read(address, record.data(), record.size())) {
+            stop(DeviceError::triangle_read, reading_.failed_at());
+        } else if (!read_base_triangle(record.data(), live_.formats, triangle)) {
+            stop(DeviceError::bad_triangle, address);
+        } else if (!stopped_) {
+            triangle.base = static_cast<std::uint32_t>(k);
+            ++triangles_sent_;
+            sc_core::sc_time delay = reading_.local_time();
+            streams_.send(triangle, delay);
+            reading_.set_local_time(delay);
+        }
+    }
+}
+
+void Device::wait_until_empty() {
+    while (!(pipeline_.idle() && streams_.idle() && !record_under_way_)) {
+        if (pipeline_.clock.halted()) {
+            stop(DeviceError::machine_stopped, 0);
+            return;
+        }
+        wait(pipeline_.drained() | pipeline_.clock.quiet() | written_);
+    }
+}
+
+void Device::end_frame() {
+    if ((status_ & status_resetting) != 0) {
+        reset_registers();
+        return;
+    }
+    const bool done = failure_.error == DeviceError::none;
+    status_ = done ? status_done : status_error;
+    raise(done ? interrupt_done : interrupt_error);
+}
+
+/// The first error counts. No edge is split from now on, so that the machine is empty soon: what the software set may
+/// split without end.
+void Device::stop(DeviceError error, std::uint64_t address) {
+    if (!stopped_)
+        failure_ = {error, address};
+    stopped_ = true;
+    live_.tests.generation_test = true;
+    live_.tests.generation_limit = 0;
+    streams_.discard(true);
+    stop_.notify(sc_core::SC_ZERO_TIME);
+}
+
+/// The machine has decided a triangle. Those that wait are counted with the children of all that are under way, which
+/// can still be added when splitting ends: the queue would halt the machine for good if its memory were full.
+void Device::write(const datapath::TrianglePass&) {
+    if (stopped_)
+        return;
+    const Pipeline& p = pipeline_;
+    std::uint64_t waiting = p.triangle_queue.waiting();
+    if (design_.machine.transport == Transport::non_blocking)
+        waiting +=
+            p.triangle_queue.from_tessellation.size() + 1 +
+            4 * (p.passes_under_way() + p.tessellation.activity().level() + p.pass_or_tessellate.activity().level());
+    if (waiting > most_waiting_)
+        stop(DeviceError::queue_full, 0);
+}
+
+bool Device::ring_full() const {
+    return write_index_ - read_index_ >= file_.value(offset::ring_size);
+}
+
+void Device::write_records() {
+    for (;;) {
+        while (!streams_.has_finished() || ring_full()) {
+            writing_.synchronise();
+            if (streams_.has_finished() && !ring_full())
+                break;
+            record_under_way_ = false;
+            written_.notify(sc_core::SC_ZERO_TIME);
+            wait(streams_.come() | ring_read_ | stop_);
+        }
+        record_under_way_ = true;
+        write_record(streams_.take());
+    }
+}
+
+void Device::write_record(const FrameStreams::Finished& finished) {
+    const sc_core::sc_time now = sc_core::sc_time_stamp() + writing_.local_time();
+    if (finished.time > now)
+        writing_.set_local_time(finished.time - sc_core::sc_time_stamp());
+    if (stopped_)
+        return;
+    std::array<unsigned char, finished_triangle_bytes> record{};
+    write_finished_triangle(finished.triangle, record.data());
+    const std::uint64_t address = file_.value(offset::ring_address) + ring_place_ * finished_triangle_bytes;
+    if (!writing_.write(address, record.data(), record.size())) {
+        stop(DeviceError::ring_write, writing_.failed_at());
+        return;
+    }
+    ++write_index_;
+    ring_place_ = ring_place_ + 1 == file_.value(offset::ring_size) ? 0 : ring_place_ + 1;
+}
+
+void Device::begin_reset() {
+    if (!busy()) {
+        reset_registers();
+        return;
+    }
+    status_ |= status_resetting;
+    pending_interrupts_ = 0;
+    interrupt_changed_.notify(sc_core::SC_ZERO_TIME);
+    stop(DeviceError::none, 0);
+}
+
+void Device::reset_registers() {
+    file_.reset();
+    failure_ = {};
+    status_ = 0;
+    pending_interrupts_ = 0;
+    triangles_sent_ = write_index_ = read_index_ = 0;
+    finished_before_ = pipeline_.pass_or_tessellate.counts().finished;
+    interrupt_changed_.notify(sc_core::SC_ZERO_TIME);
+}
+
+void Device::reset_changed() {
+    if (reset_held())
+        begin_reset();
+}
+
+void Device::raise(std::uint32_t interrupt_bits) {
+    pending_interrupts_ |= interrupt_bits;
+    interrupt_changed_.notify(sc_core::SC_ZERO_TIME);
+}
+
+/// One process drives the signal, whoever changes the registers.
+void Device::drive_interrupt() {
+    if (interrupt.size() > 0)
+        interrupt->write((pending_interrupts_ & file_.value(offset::interrupt_enable)) != 0);
+}
+
+}  // namespace tessera

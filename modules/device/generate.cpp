@@ -1,0 +1,213 @@
+#include "modules/device/generate.h"
+
+#include <cctype>
+#include <iomanip>
+#include <sstream>
+
+#include "modules/device/records.h"
+
+namespace tessera {
+
+namespace {
+
+const char* const made_by = "Generated from modules/device/register_map.cpp; do not edit.";
+
+/// "tests.half_vector[0]" as TESTS_HALF_VECTOR_0.
+std::string upper_case(const std::string& name) {
+    std::string result;
+    for (const char c : name) {
+        if (c != ']')
+            result += std::isalnum(static_cast<unsigned char>(c)) != 0
+                          ? static_cast<char>(std::toupper(static_cast<unsigned char>(c)))
+                          : '_';
+    }
+    return result;
+}
+
+std::string hex(std::uint64_t value, int digits) {
+    std::ostringstream text;
+    text << std::hex << std::setw(digits) << std::setfill('0') << value;
+    return text.str();
+}
+
+const char* access_name(RegisterAccess access) {
+    switch (access) {
+        case RegisterAccess::read_only:
+            return "ro";
+        case RegisterAccess::read_write:
+            return "rw";
+        case RegisterAccess::command:
+            return "command";
+        case RegisterAccess::write_one_to_clear:
+            return "w1c";
+    }
+    return "";
+}
+
+template <class Each>
+void for_each_word(Each&& each) {
+    datapath::Vertex vertex;
+    LitTriangle::Corner corner;
+    describe_base_vertex(vertex, [&](const char* name, auto&, bool is_signed, const char* meaning) {
+        each(false, name, is_signed, meaning);
+    });
+    describe_finished_vertex(corner, [&](const char* name, auto&, bool is_signed, const char* meaning) {
+        each(true, name, is_signed, meaning);
+    });
+}
+
+/// struct tessera_base_vertex, or of the finished triangle.
+std::string c_record(bool finished) {
+    const std::string name = finished ? "finished" : "base";
+    std::string text = "struct tessera_" + name + "_vertex {\n";
+    for_each_word([&](bool of_finished, const char* word, bool is_signed, const std::string& meaning) {
+        if (of_finished == finished)
+            text += std::string("    ") + (is_signed ? "int32_t " : "uint32_t ") + word + ";" +
+                    (meaning.empty() ? "" : "  /* " + meaning + " */") + "\n";
+    });
+    return text + "};\nstruct tessera_" + name + "_triangle {\n    struct tessera_" + name +
+           "_vertex vertices[3];\n};\n";
+}
+
+}  // namespace
+
+std::vector<DeviceRegister> documented_registers() {
+    datapath::Registers registers;
+    registers.formats.highlight_tag = true;
+    return register_map(registers, {});
+}
+
+std::string c_header(const std::vector<DeviceRegister>& registers) {
+    std::ostringstream text;
+    text
+        << "#pragma once\n/* clang-format off */\n/* NOLINTBEGIN(readability-identifier-naming,modernize-deprecated-headers): C's */\n/* Registers and records of tessera's device.\n"
+           " * "
+        << made_by
+        << "\n"
+           " * Offsets are the same in every design; widths are those of the default formats. */\n"
+           "#include <stdint.h>\n\n"
+           "/* Offsets in bytes. Of a register of two words the lower one comes first. */\n";
+    for (const DeviceRegister& r : registers)
+        text << "#define TESSERA_" << upper_case(r.name) << " 0x" << hex(r.offset, 3) << "u\n";
+    text << "#define TESSERA_REGISTER_BYTES 0x" << hex(register_bytes, 3) << "u\n\n/* Bits of control registers. */\n";
+    for (const RegisterBit& bit : register_bits)
+        text << "#define TESSERA_" << upper_case(bit.register_name) << "_" << upper_case(bit.name) << " (1u << "
+             << bit.bit << ")  /* " << bit.meaning << " */\n";
+    text << "\n/* Register `error`. */\nenum tessera_error {\n";
+    for (const ErrorMeaning& error : error_meanings)
+        text << "    TESSERA_ERROR_" << upper_case(error.name) << " = " << static_cast<int>(error.error) << ",  /* "
+             << error.meaning << " */\n";
+    text << "};\n#define TESSERA_ERRORS " << error_meanings.size() << "\n#define TESSERA_ERROR_TEXTS";
+    for (const ErrorMeaning& error : error_meanings)
+        text << " \\\n    \"" << error.meaning << (&error == &error_meanings.back() ? "\"" : "\",");
+    text
+        << "\n\n/* Records in bus memory: little-endian words. */\n"
+        << c_record(false) << c_record(true)
+        << "\n/* X(name, offset, bits, words, is signed, writable) of every register. */\n#define TESSERA_REGISTER_LIST(X)";
+    for (const DeviceRegister& r : registers)
+        text << " \\\n    X(" << upper_case(r.name) << ", 0x" << hex(r.offset, 3) << "u, " << r.bits << ", " << r.words
+             << ", " << (r.is_signed ? 1 : 0) << ", " << (r.access == RegisterAccess::read_only ? 0 : 1) << ")";
+    text
+        << "\n\n/* Every register's number: a place in that list. */\nenum tessera_register {\n"
+           "#define TESSERA_NUMBER(name, offset, bits, words, is_signed, writable) TESSERA_REGISTER_##name,\n"
+           "    TESSERA_REGISTER_LIST(TESSERA_NUMBER)\n#undef TESSERA_NUMBER\n"
+           "    TESSERA_REGISTERS  /* how many */\n};\n/* NOLINTEND(readability-identifier-naming,modernize-deprecated-headers) */\n";
+    return text.str();
+}
+
+std::string systemverilog_package(const std::vector<DeviceRegister>& registers) {
+    std::ostringstream text;
+    text << "// Registers of tessera's device. " << made_by << "\npackage tessera_registers;\n\n"
+         << "  // Offset in bytes, width in bits in the default formats, reset value.\n";
+    for (const DeviceRegister& r : registers) {
+        const std::string name = upper_case(r.name);
+        text << "  localparam logic [11:0] " << name << " = 12'h" << hex(r.offset, 3) << ";\n"
+             << "  localparam int unsigned " << name << "_BITS = " << r.bits << ";\n"
+             << "  localparam logic [" << r.bits - 1 << ":0] " << name << "_RESET = " << r.bits << "'h"
+             << hex(r.reset, 1) << ";\n";
+    }
+    text << "\n  // Bits of control registers.\n";
+    for (const RegisterBit& bit : register_bits)
+        text << "  localparam int unsigned " << upper_case(bit.register_name) << "_" << upper_case(bit.name)
+             << "_BIT = " << bit.bit << ";  // " << bit.meaning << "\n";
+    text << "\n  // Register error.\n  typedef enum logic [3:0] {\n";
+    for (const ErrorMeaning& error : error_meanings)
+        text << "    ERROR_" << upper_case(error.name) << " = 4'd" << static_cast<int>(error.error)
+             << (&error == &error_meanings.back() ? "" : ",") << "  // " << error.meaning << "\n";
+    text << "  } error_e;\n\n  // Words of a vertex's record in bus memory.\n";
+    int word = 0;
+    bool before = false;
+    for_each_word([&](bool finished, const char* name, bool, const char*) {
+        word = finished != before ? 0 : word;
+        before = finished;
+        text << "  localparam int unsigned " << (finished ? "FINISHED_" : "BASE_") << upper_case(name)
+             << "_WORD = " << word++ << ";\n";
+    });
+    text << "\nendpackage\n";
+    return text.str();
+}
+
+std::string registers_as_json(const std::vector<DeviceRegister>& registers) {
+    std::ostringstream text;
+    text << "{\n  \"generated\": \"" << made_by << "\",\n  \"bytes\": " << register_bytes << ",\n  \"registers\": [\n";
+    for (const DeviceRegister& r : registers) {
+        text << "    {\"name\": \"" << r.name << "\", \"offset\": " << r.offset << ", \"bits\": " << r.bits
+             << ", \"words\": " << r.words << ", \"signed\": " << (r.is_signed ? "true" : "false")
+             << ", \"reset\": \"0x" << hex(r.reset, 1) << "\", \"access\": \"" << access_name(r.access)
+             << "\", \"while_busy\": " << (r.while_busy ? "true" : "false")
+             << ", \"highlight_only\": " << (r.always_present ? "false" : "true") << ", \"meaning\": \"" << r.meaning
+             << "\"}" << (&r == &registers.back() ? "\n" : ",\n");
+    }
+    text << "  ],\n  \"bits\": [\n";
+    for (const RegisterBit& bit : register_bits)
+        text << "    {\"register\": \"" << bit.register_name << "\", \"name\": \"" << bit.name
+             << "\", \"bit\": " << bit.bit << ", \"meaning\": \"" << bit.meaning << "\"}"
+             << (&bit == &register_bits.back() ? "\n" : ",\n");
+    text << "  ],\n  \"errors\": [\n";
+    for (const ErrorMeaning& error : error_meanings)
+        text << "    {\"value\": " << static_cast<int>(error.error) << ", \"name\": \"" << error.name
+             << "\", \"meaning\": \"" << error.meaning << "\"}" << (&error == &error_meanings.back() ? "\n" : ",\n");
+    text << "  ],\n  \"base_triangle_bytes\": " << base_triangle_bytes
+         << ",\n  \"finished_triangle_bytes\": " << finished_triangle_bytes << "\n}\n";
+    return text.str();
+}
+
+std::string registers_page(const std::vector<DeviceRegister>& registers) {
+    std::ostringstream text;
+    text
+        << "# The device's registers\n\n"
+        << made_by
+        << "\n\nOffsets are in bytes and the same in every design. Widths and reset values are those of the default\n"
+           "formats. A register of more than 32 bits has a second word, which follows the lower one. Bits beyond the\n"
+           "width read as 0, of a signed register as its sign, and are dropped when written. `ro`: a write is refused.\n"
+           "`rw`: refused while a frame is under way, unless marked *. `command`: a 1 acts and reads as 0. `w1c`: a 1\n"
+           "clears the bit.\n\n"
+           "| offset | register | bits | access | reset | meaning |\n| --- | --- | --- | --- | --- | --- |\n";
+    for (const DeviceRegister& r : registers)
+        text << "| 0x" << hex(r.offset, 3) << " | `" << r.name << "` | " << (r.is_signed ? "signed " : "") << r.bits
+             << " | " << access_name(r.access) << (r.while_busy ? "*" : "") << " | " << (r.reset < 10 ? "" : "0x")
+             << hex(r.reset, 1) << " | " << r.meaning
+             << (r.always_present ? "" : " (only in a design with a Highlight Test)") << " |\n";
+    text << "\n## Bits\n\n| register | bit | name | meaning |\n| --- | --- | --- | --- |\n";
+    for (const RegisterBit& bit : register_bits)
+        text << "| `" << bit.register_name << "` | " << bit.bit << " | `" << bit.name << "` | " << bit.meaning
+             << " |\n";
+    text << "\n## Errors\n\nRegister `error`; what `error_address` holds stands last.\n\n| value | name | meaning |\n"
+            "| --- | --- | --- |\n";
+    for (const ErrorMeaning& error : error_meanings)
+        text << "| " << static_cast<int>(error.error) << " | `" << error.name << "` | " << error.meaning << " |\n";
+    text << "\n## Records\n\nLittle-endian words, three vertices one after another: " << base_triangle_bytes
+         << " bytes of a base triangle, " << finished_triangle_bytes << " of a\nfinished one, in all formats.\n\n"
+         << "| record | word | name | meaning |\n| --- | --- | --- | --- |\n";
+    int word = 0;
+    bool before = false;
+    for_each_word([&](bool finished, const char* name, bool is_signed, const char* meaning) {
+        word = finished != before ? 0 : word;
+        before = finished;
+        text << "| " << (finished ? "finished" : "base") << " | " << word++ << " | `" << name << "`"
+             << (is_signed ? ", signed" : "") << " | " << meaning << " |\n";
+    });
+    return text.str();
+}
+
+}  // namespace tessera

@@ -1,0 +1,129 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "modules/datapath/parameters.h"
+
+namespace tessera {
+
+enum class RegisterAccess : std::uint8_t {
+    read_only,           ///< a write is refused
+    read_write,          ///< refused while a frame is under way, unless `while_busy`
+    command,             ///< a 1 acts and clears itself: reads 0
+    write_one_to_clear,  ///< a 1 clears the bit
+};
+
+/// A register as software sees it. Bits beyond `bits` read as 0 (of a signed register: as its sign) and are dropped when
+/// written.
+struct DeviceRegister {
+    std::string name;
+    std::uint32_t offset;  ///< in bytes, a multiple of 4
+    int bits;              ///< up to 64; more than 32 may take a second word, which follows the lower one
+    int words;             ///< 1 or 2
+    bool is_signed;
+    std::uint64_t reset;
+    RegisterAccess access;
+    bool while_busy;      ///< may be written while a frame is under way
+    bool always_present;  ///< else: only in a design with a Highlight Test
+    std::string meaning;
+};
+
+/// One bit of a control register.
+struct RegisterBit {
+    const char* register_name;
+    const char* name;
+    unsigned bit;
+    const char* meaning;
+};
+
+/// Offsets of the control registers that the device itself refers to.
+namespace offset {
+inline constexpr std::uint32_t id = 0x000, version = 0x004, control = 0x008, status = 0x00c, interrupt = 0x010,
+                               interrupt_enable = 0x014, error = 0x018, error_address = 0x020, fetch = 0x028,
+                               displacement_map_address = 0x030, normal_map_address = 0x038,
+                               summed_height_table_address = 0x040, triangles_address = 0x048, triangles_count = 0x050,
+                               triangles_sent = 0x054, triangles_finished = 0x058, ring_address = 0x060,
+                               ring_size = 0x068, ring_write_index = 0x06c, ring_read_index = 0x070;
+inline constexpr std::uint32_t machine = 0x100;  ///< from here on those of the machine
+}  // namespace offset
+
+inline constexpr std::uint32_t register_bytes = 0x400;  ///< the device's part of the bus's address space
+
+inline constexpr std::uint32_t control_start = 1, control_reset = 2;
+inline constexpr std::uint32_t status_busy = 1, status_done = 2, status_error = 4, status_resetting = 8;
+inline constexpr std::uint32_t interrupt_done = 1, interrupt_error = 2;
+
+inline constexpr std::array<RegisterBit, 15> register_bits{{
+    {"control", "start", 0, "begins a frame"},
+    {"control", "reset", 1, "stops a frame and gives all registers their reset values"},
+    {"status", "busy", 0, "a frame is under way, or a reset waits for the machine to be empty"},
+    {"status", "done", 1, "the last frame is complete: all its triangles are in memory"},
+    {"status", "error", 2, "the last frame was refused or stopped: see error"},
+    {"status", "resetting", 3, "busy with a reset"},
+    {"interrupt", "done", 0, "a frame was completed"},
+    {"interrupt", "error", 1, "a frame was refused or stopped"},
+    {"fetch", "displacement_map", 0, "the next frame fetches this table"},
+    {"fetch", "normal_map", 1, "likewise"},
+    {"fetch", "summed_height_table", 2, "likewise"},
+    {"features", "highlight", 0, "a Highlight Test"},
+    {"features", "final_edges", 1, "a queue entry says which of its edges are final"},
+    {"features", "codes", 2, "a vertex carries its displacement code"},
+    {"features", "families", 3, "a machine of families"},
+}};
+
+/// Why a frame was refused or stopped: register `error`. What `error_address` then holds stands in the meaning.
+enum class DeviceError : std::uint8_t {
+    none,
+    bad_value,
+    bad_map_size,
+    bad_address,
+    bad_ring_size,
+    table_read,
+    triangle_read,
+    bad_triangle,
+    ring_write,
+    queue_full,
+    machine_stopped,
+};
+
+struct ErrorMeaning {
+    DeviceError error;
+    const char* name;
+    const char* meaning;
+};
+inline constexpr std::array<ErrorMeaning, 11> error_meanings{{
+    {DeviceError::none, "none", "no error"},
+    {DeviceError::bad_value, "bad_value", "refused: a value that its register does not allow; its offset"},
+    {DeviceError::bad_map_size, "bad_map_size",
+     "refused: a map of no texels or a larger one than the device's; the offset"},
+    {DeviceError::bad_address, "bad_address",
+     "refused: not a multiple of 4, or what lies there reaches beyond 2^64; the offset of the register"},
+    {DeviceError::bad_ring_size, "bad_ring_size", "refused: a ring without a place; the offset"},
+    {DeviceError::table_read, "table_read", "stopped: the bus answered a read of a table by an error; the address"},
+    {DeviceError::triangle_read, "triangle_read", "stopped: likewise of a base triangle; the address"},
+    {DeviceError::bad_triangle, "bad_triangle",
+     "stopped: a base triangle's value beyond its format; the record's address"},
+    {DeviceError::ring_write, "ring_write", "stopped: the bus answered a write to the ring by an error; the address"},
+    {DeviceError::queue_full, "queue_full",
+     "stopped: more triangles would wait than the Triangle Queue's memory holds; 0"},
+    {DeviceError::machine_stopped, "machine_stopped",
+     "stopped for good: the machine's clock has halted, and no reset helps; 0"},
+}};
+
+/// Columns and rows of the largest map that the table memories hold.
+struct LargestMap {
+    std::uint32_t width = 1024;
+    std::uint32_t height = 1024;
+};
+
+/// The table of all registers, in the order of their offsets: those of control, below 0x100, then those of the machine
+/// (datapath::describe_registers), each choice in a word of its own. `reset`: the formats, and the machine's reset values.
+/// The offsets are the same in every design; widths follow from the formats.
+std::vector<DeviceRegister> register_map(const datapath::Registers& reset, const LargestMap& largest);
+
+/// Layouts of the tables for the map's size. Bases stay; entries follow from the formats.
+void lay_out_tables_of(datapath::Registers& registers);
+
+}  // namespace tessera

@@ -1,0 +1,62 @@
+#pragma once
+#include <tlm_utils/simple_initiator_socket.h>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <systemc>
+#include <vector>
+
+#include "modules/pipeline.h"
+
+namespace tessera {
+
+/// Takes bytes that belong at an address of the machine's memory.
+using TableWriter = std::function<void(std::uint64_t address, const unsigned char* bytes, std::size_t count)>;
+
+/// The host CPU (paper figure 7): fills the three tables through the memories' debug transport before simulation
+/// starts, then sends base triangles, one after another, to Get Triangle.
+/// Of several machines each has a host of its own, which sends every so many-th base triangle.
+/// Get Triangle blocks it while the Triangle Queue is at its watermark. In timed mode it offers the next triangle in
+/// the cycle in which the last was accepted: the host's bus is not modelled.
+class Host : public sc_core::sc_module, public CycleProcess {
+  public:
+    /// Calls the writer it is given with all bytes of the tables, at the addresses of the registers' layouts.
+    using FillTables = std::function<void(const TableWriter&)>;
+
+    StreamOutput<datapath::Triangle> to_get_triangle{"to_get_triangle"};
+    tlm_utils::simple_initiator_socket<Host> displacement_map{"displacement_map"};
+    tlm_utils::simple_initiator_socket<Host> normal_map{"normal_map"};
+    tlm_utils::simple_initiator_socket<Host> summed_height_table{"summed_height_table"};
+
+    /// Sends triangles[first], triangles[first + step], ... `machine` and `triangles` must outlive the host. It is
+    /// bound to the machine by bind().
+    Host(const sc_core::sc_module_name& name, Pipeline& machine, const std::vector<datapath::Triangle>& triangles,
+         FillTables fill_tables, std::size_t first = 0, std::size_t step = 1);
+
+    void bind();
+
+    /// Sends the triangles again when the simulation continues: another frame.
+    void send_again();
+
+    bool idle() const { return sent_ == total() && to_get_triangle.free(); }
+    std::uint64_t sent() const { return sent_; }
+    std::uint64_t total() const { return (triangles_.size() + step_ - 1 - first_) / step_; }
+
+  private:
+    void start_of_simulation() override;
+    void send_triangles();
+    void step() override;
+    void write_table(std::uint64_t address, const unsigned char* bytes, std::size_t count);
+
+    const datapath::Triangle& next() const { return triangles_[first_ + sent_ * step_]; }
+
+    Pipeline& machine_;
+    const std::vector<datapath::Triangle>& triangles_;
+    FillTables fill_tables_;
+    std::size_t first_, step_;
+    datapath::Triangle offered_;
+    sc_core::sc_event again_{"again"};
+    std::uint64_t sent_ = 0;
+};
+
+}  // namespace tessera

@@ -1,0 +1,102 @@
+#include "testbench/setup/base_triangles.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "testbench/common/error.h"
+#include "testbench/setup/mesh/whole_periods.h"
+#include "testbench/setup/rounding.h"
+
+namespace tessera {
+
+using datapath::Format;
+
+namespace {
+
+std::uint32_t to_texture(double coordinate, std::uint32_t size, datapath::AddressMode mode, const Format& format,
+                         bool& clamped) {
+    double texels = coordinate * size;
+    if (mode == datapath::AddressMode::clamp && (texels < 0 || texels > size)) {
+        clamped = true;
+        texels = std::clamp(texels, 0.0, static_cast<double>(size));
+    }
+    const double fixed = std::nearbyint(std::ldexp(texels, format.fraction));
+    // the border bit holds 2^integer itself and nothing beyond
+    if (fixed < 0 || fixed > std::ldexp(1.0, format.bits - 1))
+        throw InputError(fmt::format(
+            "texture coordinate {} is {} texels of a map of {}, beyond the 0..{} that the texture "
+            "coordinate's format holds: let each triangle repeat the map less often, or use a smaller map or "
+            "a larger formats.texture_integer",
+            coordinate, texels, size, 1 << (format.bits - 1 - format.fraction)));
+    return static_cast<std::uint32_t>(fixed);
+}
+
+/// Texture coordinates as near to 0 as whole periods bring them, so that they fit their format.
+BaseMesh with_low_texture(const BaseMesh& mesh, const datapath::MapGeometry& map, const Format& format) {
+    const double texels = std::ldexp(1.0, format.bits - 1 - format.fraction);
+    return bring_down_texture(
+        mesh, {map.address_u == datapath::AddressMode::repeat, map.address_v == datapath::AddressMode::repeat},
+        {texels / map.width, texels / map.height});
+}
+
+}  // namespace
+
+BaseTriangles round_base_triangles(const BaseMesh& original, const ModelScale& model_scale,
+                                   const datapath::Formats& formats, const datapath::MapGeometry& map) {
+    const BaseMesh mesh = with_low_texture(original, map, formats.texture);
+    BaseTriangles result;
+    bool clamped_u = false, clamped_v = false;
+    std::vector<datapath::Vertex> vertices;
+    vertices.reserve(mesh.vertices.size());
+    for (const BaseVertex& base : mesh.vertices) {
+        const glm::dvec3 world = model_scale.to_world(base.position);
+        datapath::Vertex vertex;
+        vertex.position = {to_format(world.x, formats.position, result.saturated_positions),
+                           to_format(world.y, formats.position, result.saturated_positions),
+                           to_format(world.z, formats.position, result.saturated_positions)};
+        vertex.normal = to_direction(base.normal, formats.normal, result.saturated_directions);
+        vertex.tangent = to_direction(base.tangent, formats.normal, result.saturated_directions);
+        vertex.handedness = base.handedness < 0 ? std::int8_t{-1} : std::int8_t{1};
+        bool beyond_u = false, beyond_v = false;
+        vertex.texture = {to_texture(base.texture.x, map.width, map.address_u, formats.texture, beyond_u),
+                          to_texture(base.texture.y, map.height, map.address_v, formats.texture, beyond_v)};
+        result.texture_clamped += beyond_u || beyond_v ? 1 : 0;
+        clamped_u = clamped_u || beyond_u;
+        clamped_v = clamped_v || beyond_v;
+        vertices.push_back(vertex);
+    }
+    const auto same = [](const datapath::Vertex& a, const datapath::Vertex& b) {
+        return a.position == b.position && a.texture == b.texture;
+    };
+    for (const auto& corners : mesh.triangles) {
+        datapath::Triangle triangle;
+        triangle.vertices = {vertices[corners[0]], vertices[corners[1]], vertices[corners[2]]};
+        const auto& v = triangle.vertices;
+        if (same(v[0], v[1]) || same(v[1], v[2]) || same(v[2], v[0])) {
+            ++result.dropped;
+            continue;
+        }
+        triangle.base = static_cast<std::uint32_t>(result.triangles.size());
+        result.triangles.push_back(triangle);
+    }
+    if (result.triangles.empty())
+        throw InputError(
+            "every base triangle collapses when rounded to the position's and texture coordinate's formats: "
+            "use wider formats (formats.position_bits, formats.texture_fraction)");
+    if (result.dropped > 0)
+        result.remarks.push_back(fmt::format(
+            "{} base triangles collapsed when rounded to the hardware's formats and were dropped", result.dropped));
+    if (result.texture_clamped > 0)
+        result.remarks.push_back(
+            fmt::format("{} base vertices have texture coordinates outside 0..1, and were set to the map's border; if "
+                        "they tile, {}",
+                        result.texture_clamped,
+                        !clamped_v   ? "set map.address_u = \"repeat\""
+                        : !clamped_u ? "set map.address_v = \"repeat\""
+                                     : "set map.address_u = \"repeat\" and map.address_v = \"repeat\""));
+    return result;
+}
+
+}  // namespace tessera

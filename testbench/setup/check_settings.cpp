@@ -1,0 +1,178 @@
+#include "testbench/setup/check_settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "modules/datapath/format.h"
+#include "testbench/common/error.h"
+
+namespace tessera {
+
+namespace {
+
+using Vector = std::array<double, 3>;
+
+Vector difference(const Vector& a, const Vector& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+Vector cross(const Vector& a, const Vector& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+double length(const Vector& v) {
+    return std::hypot(v[0], v[1], v[2]);
+}
+
+/// The same direction, the largest component 1: products of what is very short would be 0.
+Vector direction(const Vector& v) {
+    const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
+    return {v[0] / largest, v[1] / largest, v[2] / largest};
+}
+
+/// 1 as "1.0".
+std::string number(double value) {
+    std::string text = fmt::format("{}", value);
+    return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
+}
+
+std::string text_of(const Vector& v) {
+    return fmt::format("[{}, {}, {}]", number(v[0]), number(v[1]), number(v[2]));
+}
+
+class Faults {
+  public:
+    template <typename... Args>
+    void unless(bool fine, fmt::format_string<Args...> format, Args&&... args) {
+        if (!fine)
+            texts.push_back(fmt::format(format, std::forward<Args>(args)...));
+    }
+    void range(const char* name, double value, double least, double most) {
+        unless(value >= least && value <= most, "`{}` = {}: must be {} to {}", name, value, least, most);
+    }
+
+    std::vector<std::string> texts;
+};
+
+void check_camera(const CameraSettings& camera, const FormatSettings& formats, Faults& faults) {
+    const bool known = !is_automatic(camera.eye) && !is_automatic(camera.target);
+    const Vector view = difference(camera.target, camera.eye);
+    const double size = std::max(length(camera.eye), length(camera.target));
+    const bool apart = !known || length(view) > 1e-9 * size;
+    faults.unless(apart, "`camera.eye` = {} and `camera.target` = {} are the same point: move one of them",
+                  text_of(camera.eye), text_of(camera.target));
+    const double up = is_automatic(camera.up) ? 1 : length(camera.up);
+    faults.unless(up > 0, "`camera.up` = {} has no direction: give it one, such as [0, 0, 1]", text_of(camera.up));
+    // Below a sine of 1e-6 the picture's roll would be rounding error.
+    const auto sine = [](const Vector& a, const Vector& b) { return length(cross(a, b)) / (length(a) * length(b)); };
+    const bool parallel =
+        known && !is_automatic(camera.up) && apart && up > 0 && sine(direction(view), direction(camera.up)) <= 1e-6;
+    faults.unless(!parallel,
+                  "`camera.up` = {} is parallel to the view direction {} (camera.target - camera.eye): turn up by "
+                  "a right angle",
+                  text_of(camera.up), text_of(view));
+    const std::int64_t integer_bits = formats.screen_bits - formats.screen_fraction - 1;
+    if (integer_bits >= 0) {
+        const std::int64_t most = std::int64_t{1} << integer_bits;
+        faults.unless(camera.viewport_width <= most && camera.viewport_height <= most,
+                      "`camera.viewport_width` = {} by `camera.viewport_height` = {}, but `formats.screen_bits` = {} "
+                      "with "
+                      "`formats.screen_fraction` = {} reaches only {} pixels: make the viewport smaller, or the format "
+                      "wider",
+                      camera.viewport_width, camera.viewport_height, formats.screen_bits, formats.screen_fraction,
+                      most);
+    }
+}
+
+void check_formats(const FormatSettings& formats, const TestSettings& tests, Faults& faults) {
+    faults.unless(formats.position_fraction < formats.position_bits,
+                  "`formats.position_fraction` = {} must be less than `formats.position_bits` = {}: lower it, or raise "
+                  "position_bits",
+                  formats.position_fraction, formats.position_bits);
+    faults.unless(formats.screen_fraction < formats.screen_bits,
+                  "`formats.screen_fraction` = {} must be less than `formats.screen_bits` = {}: lower it, or raise "
+                  "screen_bits",
+                  formats.screen_fraction, formats.screen_bits);
+    faults.unless(formats.normal_bits - formats.normal_fraction >= 2,
+                  "`formats.normal_fraction` = {} leaves {} of `formats.normal_bits` = {} for sign and "
+                  "integer, and 1.0 "
+                  "needs 2: lower it, or raise normal_bits",
+                  formats.normal_fraction, formats.normal_bits - formats.normal_fraction, formats.normal_bits);
+    const std::int64_t generations = std::int64_t{1} << formats.generation_bits;
+    faults.unless(tests.generation_limit < generations,
+                  "`tests.generation_limit` = {}, but `formats.generation_bits` = {} counts to {}: lower the limit, or "
+                  "raise generation_bits",
+                  tests.generation_limit, formats.generation_bits, generations - 1);
+}
+
+/// A coordinate or direction that is set and finite.
+void check_vector(const char* name, const Vector& v, Faults& faults) {
+    faults.unless(std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]),
+                  "`{}` = [{}, {}, {}]: set three numbers", name, v[0], v[1], v[2]);
+}
+
+void check_ranges(const SceneSettings& settings, Faults& faults) {
+    const FormatSettings& f = settings.formats;
+    using Limits = datapath::FormatLimits;
+    const auto bits = [&](const char* name, std::int64_t value, const Limits::Range& range) {
+        faults.range(name, static_cast<double>(value), range.least, range.most);
+    };
+    bits("formats.position_bits", f.position_bits, Limits::position_bits);
+    bits("formats.position_fraction", f.position_fraction, Limits::position_fraction);
+    bits("formats.normal_bits", f.normal_bits, Limits::normal_bits);
+    bits("formats.normal_fraction", f.normal_fraction, Limits::normal_fraction);
+    bits("formats.texture_integer", f.texture_integer, Limits::texture_integer);
+    bits("formats.texture_fraction", f.texture_fraction, Limits::texture_fraction);
+    bits("formats.displacement_bits", f.displacement_bits, Limits::displacement_bits);
+    if (f.summed_height_bits != 0)
+        bits("formats.summed_height_bits", f.summed_height_bits, Limits::summed_height_bits);
+    bits("formats.screen_bits", f.screen_bits, Limits::screen_bits);
+    bits("formats.screen_fraction", f.screen_fraction, Limits::screen_fraction);
+    bits("formats.generation_bits", f.generation_bits, Limits::generation_bits);
+    const TestSettings& t = settings.tests;
+    faults.range("tests.normal_threshold", t.normal_threshold, 0, 2);
+    faults.range("tests.summed_height_threshold", t.summed_height_threshold, 0, 1e9);
+    faults.range("tests.view_threshold", t.view_threshold, 0, 1e6);
+    faults.range("tests.generation_limit", static_cast<double>(t.generation_limit), 0, 15);
+    faults.range("tests.highlight_angle", t.highlight_angle, 0, 90);
+    faults.range("tests.highlight_normal_threshold", t.highlight_normal_threshold, 0, 2);
+    const CameraSettings& c = settings.camera;
+    check_vector("camera.eye", c.eye, faults);
+    check_vector("camera.target", c.target, faults);
+    check_vector("camera.up", c.up, faults);
+    faults.range("camera.field_of_view", c.field_of_view, 0.1, 179);
+    faults.range("camera.near_plane", c.near_plane, 1e-12, 1e12);
+    faults.range("camera.viewport_width", static_cast<double>(c.viewport_width), 1, 16384);
+    faults.range("camera.viewport_height", static_cast<double>(c.viewport_height), 1, 16384);
+    faults.range("displacement.scale", settings.displacement.scale, -1e12, 1e12);
+    faults.range("displacement.bias", settings.displacement.bias, -1e12, 1e12);
+    check_vector("light.direction", settings.light.direction, faults);
+    faults.unless(settings.light.direction != Vector{}, "`light.direction` has no direction: set it");
+    faults.range("light.ambient", settings.light.ambient, 0, 1);
+}
+
+}  // namespace
+
+std::vector<std::string> setting_faults(const CameraSettings& camera, const FormatSettings& formats,
+                                        const TestSettings& tests) {
+    Faults faults;
+    check_camera(camera, formats, faults);
+    check_formats(formats, tests, faults);
+    return faults.texts;
+}
+
+void check_settings(const SceneSettings& settings) {
+    Faults faults;
+    check_ranges(settings, faults);
+    if (faults.texts.empty())
+        faults.texts = setting_faults(settings.camera, settings.formats, settings.tests);
+    if (!faults.texts.empty())
+        throw InputError(fmt::format("{}", fmt::join(faults.texts, "\n")));
+}
+
+}  // namespace tessera

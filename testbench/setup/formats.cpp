@@ -1,0 +1,43 @@
+#include "testbench/setup/formats.h"
+
+#include <fmt/core.h>
+
+#include "modules/datapath/all_intermediates.h"
+#include "testbench/common/error.h"
+
+namespace tessera {
+
+using datapath::Format;
+
+namespace {
+
+/// That the model's integers hold every intermediate: so in all formats within the ranges of their keys.
+void check_intermediates(const datapath::Formats& formats) {
+    datapath::visit_intermediates(formats, [](const char* function, const auto& widths) {
+        if (const char* const name = datapath::first_too_wide(widths))
+            throw InputError(
+                fmt::format("[formats]: {} in {} (modules/datapath) is wider than the model's integers: "
+                            "narrow the formats to the ranges of their keys",
+                            name, function));
+    });
+}
+
+}  // namespace
+
+datapath::Formats make_formats(const FormatSettings& settings) {
+    const auto bits = [](std::int64_t value) { return static_cast<int>(value); };
+    datapath::Formats formats;
+    formats.position = Format::make_signed(bits(settings.position_bits), bits(settings.position_fraction));
+    formats.view_distance = formats.position;
+    formats.normal = Format::make_signed(bits(settings.normal_bits), bits(settings.normal_fraction));
+    formats.texture =
+        Format::make_unsigned(bits(settings.texture_integer + settings.texture_fraction) + 1, bits(settings.texture_fraction));
+    formats.displacement = Format::make_unsigned(bits(settings.displacement_bits), bits(settings.displacement_bits));
+    formats.summed_height = Format::make_unsigned(bits(settings.summed_height_bits == 0 ? 32 : settings.summed_height_bits), 0);
+    formats.screen = Format::make_signed(bits(settings.screen_bits), bits(settings.screen_fraction));
+    formats.generation_bits = bits(settings.generation_bits);
+    check_intermediates(formats);
+    return formats;
+}
+
+}  // namespace tessera

@@ -1,0 +1,18 @@
+#pragma once
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "modules/datapath/parameters.h"
+#include "testbench/setup/scene_settings.h"
+#include "testbench/setup/view.h"
+
+namespace tessera {
+
+/// Unit length, world space.
+glm::dvec3 towards_light(const LightSettings& light);
+
+/// Lighting's registers: the direction in view space, in the normal's format; ambient light in 256ths.
+datapath::LightParameters make_light(const LightSettings& light, const ViewAxes& view,
+                                     const datapath::Format& normal, std::uint64_t& saturated);
+
+}  // namespace tessera

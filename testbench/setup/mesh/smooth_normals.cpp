@@ -1,0 +1,60 @@
+#include "testbench/setup/mesh/smooth_normals.h"
+
+#include <fmt/format.h>
+
+#include "testbench/setup/mesh/equal_groups.h"
+#include "testbench/setup/mesh/triangle_geometry.h"
+
+namespace tessera {
+
+void complete_smooth_normals(BaseMesh& mesh) {
+    constexpr double cancelled = 1e-9;  // relative to the sum of angles; below it, rounding
+    std::vector<PositionKey> keys;
+    keys.reserve(mesh.vertices.size());
+    for (const BaseVertex& vertex : mesh.vertices) {
+        keys.push_back(position_key(vertex.position));
+    }
+    const std::vector<std::uint32_t> group = first_equal(keys);
+
+    struct Sum {
+        glm::dvec3 direction{0}, first{0};
+        double angle = 0;
+    };
+    std::vector<Sum> sums(mesh.vertices.size());
+    for (const auto& t : mesh.triangles) {
+        const std::array<glm::dvec3, 3> p{mesh.vertices[t[0]].position, mesh.vertices[t[1]].position,
+                                          mesh.vertices[t[2]].position};
+        const glm::dvec3 normal = triangle_normal(p[0], p[1], p[2]);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const glm::dvec3 a = unit_or_zero(p[(k + 1) % 3] - p[k]), b = unit_or_zero(p[(k + 2) % 3] - p[k]);
+            const double angle = std::atan2(safe_length(glm::cross(a, b)), glm::dot(a, b));
+            Sum& sum = sums[group[t[k]]];
+            if (sum.angle == 0) {
+                sum.first = normal;
+            }
+            sum.direction += angle * normal;
+            sum.angle += angle;
+        }
+    }
+
+    std::size_t cancelling = 0;
+    std::vector<char> counted(mesh.vertices.size(), 0);
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        if (mesh.vertices[i].normal != glm::dvec3(0)) {
+            continue;
+        }
+        const Sum& sum = sums[group[i]];
+        const bool cancels = !(safe_length(sum.direction) > cancelled * sum.angle);
+        mesh.vertices[i].normal = cancels ? sum.first : unit_or_zero(sum.direction);
+        cancelling += cancels && counted[group[i]] == 0;
+        counted[group[i]] = 1;
+    }
+    if (cancelling > 0) {
+        mesh.repairs.push_back(
+            fmt::format("At {} point(s) the normals of the triangles around cancel: the first "
+                        "triangle's was taken.",
+                        cancelling));
+    }
+}
+
+}  // namespace tessera

@@ -1,0 +1,47 @@
+#include "testbench/setup/mesh/texture_scale.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "testbench/setup/mesh/texture_gradient.h"
+
+namespace tessera {
+
+void measure_texture_scale(BaseMesh& mesh) {
+    double largest_area = 0;
+    for (const auto& triangle : mesh.triangles) {
+        if (const auto gradient = texture_gradient(mesh, triangle)) {
+            largest_area = std::max(largest_area, gradient->area);
+        }
+    }
+    if (!(largest_area > 0)) {
+        mesh.texture_scale = {};
+        mesh.repairs.push_back(
+            "No triangle has an area in texture space: the world size of a texel was taken as that of a "
+            "map one model unit wide and high.");
+        return;
+    }
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    BaseMesh::TextureScale scale{0, 0, infinity, 0, infinity, 0};
+    double total = 0;
+    for (const auto& triangle : mesh.triangles) {
+        const auto gradient = texture_gradient(mesh, triangle);
+        if (!gradient) {
+            continue;
+        }
+        const double weight = gradient->area / largest_area;  // relative: sums of squares of huge models stay finite
+        const double u = safe_length(gradient->dp_du), v = safe_length(gradient->dp_dv);
+        total += weight;
+        scale.mean_u += weight * u;
+        scale.mean_v += weight * v;
+        scale.smallest_u = std::min(scale.smallest_u, u);
+        scale.largest_u = std::max(scale.largest_u, u);
+        scale.smallest_v = std::min(scale.smallest_v, v);
+        scale.largest_v = std::max(scale.largest_v, v);
+    }
+    scale.mean_u /= total;
+    scale.mean_v /= total;
+    mesh.texture_scale = scale;
+}
+
+}  // namespace tessera

@@ -1,0 +1,62 @@
+#include "testbench/setup/model_scale.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "testbench/common/error.h"
+#include "testbench/setup/map_displacement.h"
+#include "testbench/setup/rounding.h"
+
+namespace tessera {
+
+using datapath::Format;
+
+DisplacementRange displacement_range(const DisplacementSettings& settings, const HeightMap& map) {
+    const MapDisplacement displacement = MapDisplacement::from(settings, map);
+    return {displacement.of(map.range_low), displacement.scale * (map.range_high - map.range_low)};
+}
+
+ModelScale fit_model(const BaseMesh& mesh, const DisplacementRange& displacement, const Format& position,
+                     const std::string& map) {
+    glm::dvec3 low(mesh.vertices.front().position), high(low);
+    for (const BaseVertex& vertex : mesh.vertices) {
+        low = glm::min(low, vertex.position);
+        high = glm::max(high, vertex.position);
+    }
+    ModelScale result;
+    result.centre = (low + high) / 2.0;
+    const glm::dvec3 half = (high - low) / 2.0;
+    const double reach = std::max({half.x, half.y, half.z}) +
+                         std::max(std::abs(displacement.bias), std::abs(displacement.bias + displacement.range));
+    // S and bias are registers of the same format; S is up to twice the range (bits = 1, see make_displacement)
+    const double registers = std::max(2 * std::abs(displacement.range), std::abs(displacement.bias)) / 2;
+    const double limit = std::ldexp(1.0, position.bits - position.fraction - 2);
+    if (reach > 0)
+        result.scale = std::ldexp(1.0, static_cast<int>(std::floor(std::log2(limit / std::max(reach, registers)))));
+    // fewer steps than this across the whole mesh, and the surface is rounding
+    constexpr double fewest_steps = 16;
+    const double steps = std::ldexp(std::max({half.x, half.y, half.z}) * result.scale, position.fraction);
+    if (steps < fewest_steps)
+        throw InputError(fmt::format(
+            "{}: the displacement, {:.3g} to {:.3g} model units, is so large against the mesh, half of which "
+            "is {:.3g}, that the mesh spans {:.3g} steps of its position format (at least {} are needed): "
+            "lower displacement.scale or displacement.bias, check the map's values, or raise "
+            "formats.position_bits",
+            map, displacement.bias, displacement.bias + displacement.range, std::max({half.x, half.y, half.z}), steps,
+            fewest_steps));
+    return result;
+}
+
+datapath::DisplacementParameters make_displacement(const DisplacementRange& displacement, const ModelScale& model_scale,
+                                                   std::uint32_t highest_code, const Format& position,
+                                                   std::uint64_t& saturated) {
+    // d = code / 2^bits reaches 1 - 2^-bits only; S makes up for it
+    const double codes = static_cast<double>(highest_code);
+    const double full = displacement.range * (codes + 1) / codes * model_scale.scale;
+    return {to_format(full, position, saturated),
+            to_format(displacement.bias * model_scale.scale, position, saturated)};
+}
+
+}  // namespace tessera

@@ -1,0 +1,102 @@
+#include "testbench/setup/prepare_model.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "modules/datapath/registers.h"
+#include "testbench/common/error.h"
+#include "testbench/setup/base_triangles.h"
+#include "testbench/setup/formats.h"
+#include "testbench/setup/light.h"
+#include "testbench/setup/model_scale.h"
+#include "testbench/setup/table_layout.h"
+#include "testbench/setup/thresholds.h"
+#include "testbench/setup/view.h"
+
+namespace tessera {
+
+namespace {
+
+/// Which keys to change where a value does not fit its register.
+const char* remedy(std::string_view register_name) {
+    if (register_name == "map.width" || register_name == "map.height")
+        return "use a smaller map or raise formats.texture_integer";
+    if (register_name == "tests.generation_limit")
+        return "lower tests.generation_limit or raise formats.generation_bits";
+    return "change the value or formats that it is made of";
+}
+
+/// That every value fits its register.
+void check_registers(const datapath::Registers& registers) {
+    datapath::visit_registers(registers, [](const datapath::Register& field, const auto& values) {
+        for (const std::int64_t value : values) {
+            if (!datapath::holds(field, value))
+                throw InputError(fmt::format("the register {} has {} bits and cannot hold {}: {}", field.name,
+                                             field.bits, value, remedy(field.name)));
+        }
+    });
+}
+
+void take_base_triangles(BaseTriangles&& made, PreparedScene& scene) {
+    scene.base_triangles = std::move(made.triangles);
+    scene.base_dropped = made.dropped;
+    scene.texture_clamped = made.texture_clamped;
+    scene.input_saturations.position = made.saturated_positions;
+    scene.input_saturations.normal = made.saturated_directions;
+    scene.remarks.insert(scene.remarks.end(), made.remarks.begin(), made.remarks.end());
+}
+
+}  // namespace
+
+PreparedScene prepare_model(const SceneSettings& settings, const BaseMesh& mesh, const HeightMap& map,
+                            const std::string& map_name) {
+    PreparedScene scene;
+    datapath::Registers& registers = scene.registers;
+    datapath::Formats& formats = registers.formats;
+    std::uint64_t& saturated = scene.input_saturations.registers;
+    formats = make_formats(settings.formats);
+    scene.map = quantise_map(map, formats.displacement.bits, settings.address_u, settings.address_v);
+    registers.map = scene.map.geometry;
+
+    const DisplacementRange displacement = displacement_range(settings.displacement, map);
+    const ModelScale model_scale = fit_model(mesh, displacement, formats.position, map_name);
+    scene.scale = model_scale.scale;
+    scene.centre = {model_scale.centre.x, model_scale.centre.y, model_scale.centre.z};
+    registers.displacement =
+        make_displacement(displacement, model_scale, scene.map.highest_code(), formats.position, saturated);
+    scene.height_per_code =
+        std::ldexp(static_cast<double>(registers.displacement.scale), -formats.position.fraction - scene.map.bits);
+    scene.texel_size = {mesh.texture_scale.mean_u / registers.map.width * scene.scale,
+                        mesh.texture_scale.mean_v / registers.map.height * scene.scale};
+
+    take_base_triangles(round_base_triangles(mesh, model_scale, formats, registers.map), scene);
+    scene.largest_rectangle_sum =
+        bound_rectangle_sum(scene.base_triangles, registers.map, formats, scene.map.highest_code());
+    formats.summed_height = datapath::Format::make_unsigned(
+        summed_height_bits(settings.formats.summed_height_bits, scene.largest_rectangle_sum), 0);
+    lay_out_tables(registers);
+
+    const ViewAxes view = view_axes(settings.camera);
+    registers.tests = make_tests(settings.tests, formats);
+    formats.highlight_tag = settings.tests.highlight;
+    formats.families = settings.families;
+    formats.final_edges = settings.final_edges && !formats.families;
+    formats.codes = settings.one_texel_from_map;
+    if (settings.tests.highlight && !set_highlight_test(settings.tests, towards_light(settings.light), view.backward,
+                                                        formats, registers.tests, saturated))
+        scene.remarks.emplace_back(
+            "hardware.light shines straight towards the viewer: there is no highlight, and the Highlight "
+            "Test never asks for a split");
+    registers.transform = make_transform(settings.camera, model_scale, formats, saturated);
+    formats.view_distance = view_distance_format(registers.transform, formats.position);
+    registers.light = make_light(settings.light, view, formats.normal, saturated);
+    registers.triangulation = settings.triangulation;
+    registers.back_face_culling = settings.back_face_culling;
+    check_registers(registers);
+    return scene;
+}
+
+}  // namespace tessera

@@ -1,0 +1,50 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "modules/datapath/parameters.h"
+#include "modules/datapath/vertex.h"
+#include "testbench/setup/quantised_map.h"
+#include "testbench/setup/scene_settings.h"
+
+namespace tessera {
+
+/// Host values that did not fit their format and were saturated. fit_model() leaves room, so that none should.
+struct InputSaturations {
+    std::uint64_t position = 0;   ///< components of base vertices
+    std::uint64_t normal = 0;     ///< components of base vertices' normals and tangents
+    std::uint64_t registers = 0;  ///< displacement's scale and bias, directions of view and light
+};
+
+/// What the host of the machine has: everything rounded to the hardware's formats.
+struct PreparedScene {
+    datapath::Registers registers;
+    QuantisedMap map;
+    std::vector<datapath::Triangle> base_triangles;
+
+    /// The machine's world = scale * (model - centre); scale is a power of two.
+    double scale = 1;
+    std::array<double, 3> centre{};
+
+    double height_per_code = 0;               ///< world units: S * code / 2^bits, S as rounded
+    std::array<double, 2> texel_size{1, 1};  ///< world size of a texel along u and v
+
+    std::uint64_t largest_rectangle_sum = 0;  ///< bound on any rectangle's sum over this mesh, in codes
+    std::uint64_t base_dropped = 0;           ///< triangles that rounding made name one vertex twice
+    std::uint64_t texture_clamped = 0;        ///< vertices whose u or v lay outside a clamped map
+    InputSaturations input_saturations;
+    std::vector<std::string> remarks;  ///< one sentence each, for a report
+};
+
+/// Takes bytes that belong at an address of the machine's memory.
+using TableSink = std::function<void(std::uint64_t address, const unsigned char* bytes, std::size_t count)>;
+
+/// The displacement map, the normal map and the Summed Height Table, row by row, little endian, where the registers'
+/// layouts place them.
+void write_tables(const PreparedScene& scene, const TableSink& sink);
+
+}  // namespace tessera

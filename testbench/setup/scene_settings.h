@@ -1,0 +1,89 @@
+#pragma once
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "modules/datapath/parameters.h"
+
+namespace tessera {
+
+/// A number, or vector, that has yet to be set.
+inline constexpr double automatic = std::numeric_limits<double>::quiet_NaN();
+inline constexpr std::array<double, 3> automatic_vector{automatic, automatic, automatic};
+
+inline bool is_automatic(double value) {
+    return std::isnan(value);
+}
+inline bool is_automatic(const std::array<double, 3>& value) {
+    return std::isnan(value[0]) && std::isnan(value[1]) && std::isnan(value[2]);
+}
+
+/// From map value to height along the normal.
+struct DisplacementSettings {
+    double scale = automatic;  ///< model units from the map's low to its high end
+    double bias = 0;           ///< model units at the low end
+};
+
+/// The view, on which the View Test depends.
+struct CameraSettings {
+    std::array<double, 3> eye = automatic_vector;     ///< model units
+    std::array<double, 3> target = automatic_vector;  ///< model units
+    std::array<double, 3> up = automatic_vector;      ///< of any length
+    double field_of_view = 36;                        ///< vertical, degrees
+    double near_plane = automatic;                    ///< distance from the eye, model units
+    std::int64_t viewport_width = 1024;               ///< pixels
+    std::int64_t viewport_height = 768;
+};
+
+/// The edge tests: split = (normal or summed_height or highlight) and view and tex_coord and generation.
+struct TestSettings {
+    bool normal = true;
+    double normal_threshold = 0.12;  ///< difference of one component of two unit normals
+    bool summed_height = true;
+    double summed_height_threshold = 0.03;  ///< full-scale texels (sum) or full scale (area)
+    datapath::SummedHeightUnit summed_height_unit = datapath::SummedHeightUnit::sum;
+    bool view = true;
+    double view_threshold = 5;  ///< pixels, Manhattan
+    bool tex_coord = true;
+    bool generation = true;
+    std::int64_t generation_limit = 12;
+    bool highlight = false;
+    double highlight_angle = 25;               ///< degrees from the half vector
+    double highlight_normal_threshold = 0.05;  ///< difference of one component of two unit normals
+};
+
+/// Fixed-point formats; bits count the sign where there is one. Ranges: datapath::FormatLimits.
+struct FormatSettings {
+    std::int64_t position_bits = 32, position_fraction = 16;
+    std::int64_t normal_bits = 16, normal_fraction = 14;
+    std::int64_t texture_integer = 12, texture_fraction = 12;
+    std::int64_t displacement_bits = 16;
+    std::int64_t summed_height_bits = 0;  ///< 0: the narrowest of 32, 40, 48 the mesh needs
+    std::int64_t screen_bits = 24, screen_fraction = 8;
+    std::int64_t generation_bits = 4;
+};
+
+struct LightSettings {
+    std::array<double, 3> direction{0.3, -0.4, 0.866};  ///< towards the light, world space, of any length
+    double ambient = 0.2;                               ///< of full scale, falls on every surface
+};
+
+/// What the registers follow from, beside mesh and map.
+struct SceneSettings {
+    DisplacementSettings displacement;
+    CameraSettings camera;
+    TestSettings tests;
+    FormatSettings formats;
+    LightSettings light;
+    datapath::AddressMode address_u = datapath::AddressMode::clamp;  ///< beyond the map's left and right border
+    datapath::AddressMode address_v = datapath::AddressMode::clamp;  ///< beyond its lower and upper border
+    datapath::Triangulation triangulation = datapath::Triangulation::shorter;
+    bool back_face_culling = false;
+
+    bool families = false;            ///< Design::work is Work::family
+    bool final_edges = false;         ///< edges that are known not to split are not tested again
+    bool one_texel_from_map = false;  ///< vertices carry their displacement codes
+};
+
+}  // namespace tessera

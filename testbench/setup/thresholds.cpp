@@ -1,0 +1,91 @@
+#include "testbench/setup/thresholds.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "testbench/common/error.h"
+#include "testbench/setup/rounding.h"
+
+namespace tessera {
+
+namespace {
+
+/// A threshold on its way into a register.
+struct Threshold {
+    const char* key;
+    double value;
+    bool used;     // by a test that is on
+    double scale;  // register's value per unit of the threshold
+    double limit;  // the register's highest value
+    const char* format_key;
+};
+
+/// Rounded down. Refused is what does not fit, and what would be 0 without being meant to: a test against 0
+/// asks another question, and rounding answers it.
+std::uint64_t to_register(const Threshold& threshold) {
+    const double fixed = std::floor(threshold.value * threshold.scale);
+    if (fixed > threshold.limit)
+        throw InputError(fmt::format("{} = {} does not fit its register; the largest is {}", threshold.key,
+                                     threshold.value, threshold.limit / threshold.scale));
+    if (threshold.used && threshold.value > 0 && fixed < 1)
+        throw InputError(
+            fmt::format("{} = {} is less than one step of its register, {}, and would be 0 there: set it to 0, or at "
+                        "least to that step, or raise {}",
+                        threshold.key, threshold.value, 1 / threshold.scale, threshold.format_key));
+    return static_cast<std::uint64_t>(fixed);
+}
+
+/// A threshold on the difference of one component of two normals.
+std::uint32_t to_normal_register(const char* key, double value, bool used, const datapath::Formats& formats) {
+    return static_cast<std::uint32_t>(
+        to_register({key, value, used, std::ldexp(1.0, formats.normal.fraction),
+                     static_cast<double>(2 * formats.normal.highest + 1), "formats.normal_fraction"}));
+}
+
+}  // namespace
+
+datapath::TestParameters make_tests(const TestSettings& tests, const datapath::Formats& formats) {
+    datapath::TestParameters result;
+    result.normal_test = tests.normal;
+    result.summed_height_test = tests.summed_height;
+    result.view_test = tests.view;
+    result.tex_coord_test = tests.tex_coord;
+    result.generation_test = tests.generation;
+    result.normal_threshold =
+        to_normal_register("tests.normal_threshold", tests.normal_threshold, tests.normal, formats);
+    const bool area = tests.summed_height_unit == datapath::SummedHeightUnit::area;
+    const double highest_code = static_cast<double>(formats.displacement.highest);
+    result.summed_height_unit = area ? datapath::SummedHeightUnit::area : datapath::SummedHeightUnit::sum;
+    // sum: compared with |2 S_ij - S_i - S_j|, four times the paper's difference
+    result.summed_height_threshold = to_register(
+        {"tests.summed_height_threshold", tests.summed_height_threshold, tests.summed_height,
+         highest_code * (area ? 1 : 4), area ? std::ldexp(1.0, 18) : std::ldexp(1.0, 50), "formats.displacement_bits"});
+    result.view_threshold = static_cast<std::uint32_t>(
+        to_register({"tests.view_threshold", tests.view_threshold, tests.view, std::ldexp(1.0, formats.screen.fraction),
+                     std::ldexp(1.0, formats.screen.bits), "formats.screen_fraction"}));
+    result.generation_limit = static_cast<std::uint32_t>(tests.generation_limit);
+    return result;
+}
+
+bool set_highlight_test(const TestSettings& tests, const glm::dvec3& to_light, const glm::dvec3& to_viewer,
+                        const datapath::Formats& formats, datapath::TestParameters& registers,
+                        std::uint64_t& saturated) {
+    constexpr double pi = 3.14159265358979323846;
+    registers.highlight_test = true;
+    const glm::dvec3 sum = to_light + to_viewer;
+    // Shorter, and its direction would be that of rounding errors.
+    constexpr double shortest = 1e-9;
+    const bool is_there = glm::length(sum) > shortest;
+    if (is_there) {
+        const datapath::Direction half = to_direction(glm::normalize(sum), formats.normal, saturated);
+        registers.half_vector = {half.x, half.y, half.z};
+    }
+    // To nearest, so that the cosines of 0, 60 and 90 degrees are what they should be.
+    registers.highlight_cosine = to_fixed(std::cos(tests.highlight_angle * pi / 180), 2 * formats.normal.fraction);
+    registers.highlight_normal_threshold =
+        to_normal_register("tests.highlight_normal_threshold", tests.highlight_normal_threshold, true, formats);
+    return is_there;
+}
+
+}  // namespace tessera

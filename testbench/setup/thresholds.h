@@ -1,0 +1,20 @@
+#pragma once
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "modules/datapath/parameters.h"
+#include "testbench/setup/scene_settings.h"
+
+namespace tessera {
+
+/// In: [tests]. Out: the edge tests' registers, thresholds rounded down to their formats; without the Highlight Test's.
+/// Throws InputError if a threshold lies beyond its register, or below its step without being 0.
+datapath::TestParameters make_tests(const TestSettings& tests, const datapath::Formats& formats);
+
+/// Sets the Highlight Test's registers. In: the directions to light and viewer, unit length, world space. False: they
+/// are opposite, and the test never asks for a split. Throws as make_tests() does.
+bool set_highlight_test(const TestSettings& tests, const glm::dvec3& to_light, const glm::dvec3& to_viewer,
+                        const datapath::Formats& formats, datapath::TestParameters& registers,
+                        std::uint64_t& saturated);
+
+}  // namespace tessera

@@ -1,0 +1,28 @@
+#pragma once
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "modules/datapath/parameters.h"
+#include "testbench/setup/scene_settings.h"
+#include "testbench/setup/model_scale.h"
+
+namespace tessera {
+
+/// View space's axes in world space, unit length: x right, y up, z towards the viewer.
+struct ViewAxes {
+    glm::dvec3 right, up, backward;
+};
+
+ViewAxes view_axes(const CameraSettings& camera);
+
+/// In: a camera in model units, resolved. Out: Transform's registers: world to pixels (x right, y up, (0, 0) the
+/// viewport's lower left corner), the near plane, and the rotation of normals to view space; saturated entries of the
+/// rotation are counted. Throws InputError if the eye is too far from the mesh's centre for Transform's sums.
+datapath::TransformParameters make_transform(const CameraSettings& camera, const ModelScale& model_scale,
+                                             const datapath::Formats& formats, std::uint64_t& saturated);
+
+/// The format of distances along the view axis: as wide as a position; the point moved up until the distance of the
+/// farthest corner of the position's range fits.
+datapath::Format view_distance_format(const datapath::TransformParameters& transform, const datapath::Format& position);
+
+}  // namespace tessera

@@ -1,0 +1,215 @@
+#pragma once
+#include <array>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "testbench/tests/modules/device/frame_image.h"
+#include "testbench/tests/modules/device/platform.h"
+#include "testbench/tests/modules/named_machine.h"
+#include "testbench/tests/support/job_settings.h"
+#include "testbench/tests/support/timed_checks.h"
+#include "testbench/tests/support/timed_modules.h"
+
+/// Devices on a platform, beside the testbench's own machine, which says what they are to write.
+namespace tessera::testing {
+
+using LitKey = std::array<std::uint32_t, 18>;  // a record's words
+using LitKeys = std::multiset<LitKey>;
+
+inline LitKey key_of(const unsigned char* record) {
+    LitKey key{};
+    for (std::size_t k = 0; k < key.size(); ++k)
+        key[k] = datapath::load_word(record + 4 * k);
+    return key;
+}
+inline LitKey key_of(const tessera_finished_triangle& triangle) {
+    LitKey key{};
+    std::size_t place = 0;
+    for (const tessera_finished_vertex& v : triangle.vertices) {
+        for (const std::int32_t word : {v.x, v.y, v.w})
+            key[place++] = static_cast<std::uint32_t>(word);
+        for (const std::uint32_t word : {v.u, v.v, v.light})
+            key[place++] = word;
+    }
+    return key;
+}
+
+/// What the testbench's rasteriser takes of a setup.
+struct Reference : tlm::tlm_analysis_if<LitTriangle> {
+    NamedMachine machine;
+    LitKeys keys;
+
+    Reference(const std::string& name, const MachineSetup& setup) : machine(name.c_str(), setup) {
+        machine.rasteriser.taken.bind(*this);
+    }
+
+  private:
+    void write(const LitTriangle& lit) override {
+        std::array<unsigned char, finished_triangle_bytes> record{};
+        write_finished_triangle(lit, record.data());
+        keys.insert(key_of(record.data()));
+    }
+};
+
+/// Where a frame lies in bus memory.
+struct FramePlaces {
+    std::uint64_t displacement_map, normal_map, summed_height_table, triangles, ring;
+    std::uint32_t triangle_count, ring_size;
+};
+
+struct Bench {
+    static constexpr std::uint64_t memory_base = 0x1000'0000;
+
+    BusMemory memory{"memory", memory_base, std::size_t{8} << 20};
+    Router router;
+    Processor cpu{"cpu"};
+    std::vector<std::unique_ptr<Device>> devices;
+    std::vector<std::unique_ptr<sc_core::sc_signal<bool>>> interrupts;
+    sc_core::sc_signal<bool> reset{"reset"};
+    std::vector<DriverContext> contexts;
+    std::vector<tessera_driver> drivers;
+    std::uint64_t next = memory_base + 4;
+    const bool direct;  ///< the processor is joined to the one device's registers
+
+    Bench(const std::vector<datapath::Registers>& initial, const DeviceDesign& design, bool its_direct = false)
+        : router("router", initial.size()), direct(its_direct) {
+        for (std::size_t k = 0; k < initial.size(); ++k) {
+            devices.push_back(std::make_unique<Device>(("device_" + std::to_string(k)).c_str(), initial[k], design));
+            interrupts.push_back(
+                std::make_unique<sc_core::sc_signal<bool>>(("interrupt_" + std::to_string(k)).c_str()));
+            devices[k]->bus.bind(router.from);
+            devices[k]->interrupt.bind(*interrupts[k]);
+            devices[k]->reset.bind(reset);
+            if (direct)
+                router.to_devices[k].bind(memory.socket);  // unused
+            else
+                router.to_devices[k].bind(devices[k]->registers);
+        }
+        router.to_memory.bind(memory.socket);
+        if (direct)
+            cpu.bus.bind(devices[0]->registers);
+        else
+            cpu.bus.bind(router.from);
+        cpu.interrupt.bind(*interrupts[0]);
+        memory.burst_bytes = design.burst_bytes;
+        drivers.resize(initial.size());
+        for (std::size_t k = 0; k < initial.size(); ++k)
+            contexts.push_back({&cpu, direct ? 0 : Router::registers + k * register_bytes, direct ? &memory : nullptr});
+    }
+    /// Places a setup's frame, each part at a multiple of 4, and a ring, which alone may be written.
+    FramePlaces place(const MachineSetup& setup, std::uint32_t ring_size, bool beyond = false) {
+        const FrameImage image = image_of(setup, beyond);
+        const auto put = [&](const std::vector<unsigned char>& data) {
+            const std::uint64_t at = memory.put(next, data);
+            next = (next + data.size() + 3) / 4 * 4 + 4;
+            return at;
+        };
+        FramePlaces places{};
+        places.displacement_map = put(image.displacement_map);
+        places.normal_map = put(image.normal_map);
+        places.summed_height_table = put(image.summed_height_table);
+        places.triangles = put(image.triangles);
+        places.triangle_count = static_cast<std::uint32_t>(setup.base_triangles.size());
+        places.ring_size = ring_size;
+        places.ring = put(std::vector<unsigned char>(std::size_t{ring_size} * finished_triangle_bytes, 0xcd));
+        memory.writable.push_back({places.ring, places.ring + std::uint64_t{ring_size} * finished_triangle_bytes});
+        return places;
+    }
+
+    tessera_driver& init(std::size_t device = 0) {
+        const tessera_platform platform = contexts[device].platform();
+        REQUIRE(tessera_init(&drivers[device], &platform) == TESSERA_OK);
+        return drivers[device];
+    }
+
+    void run() {
+        sc_core::sc_start();
+        CHECK(cpu.finished);
+        CHECK(memory.writes_outside == 0);
+        CHECK(memory.across == 0);
+        CHECK(memory.longest <= memory.burst_bytes);
+    }
+};
+
+/// The driver's number of a register.
+inline tessera_register number_of(std::uint32_t offset) {
+    static const std::map<std::uint32_t, tessera_register> numbers{
+#define TESSERA_PAIR(name, its_offset, bits, words, is_signed, writable) {its_offset, TESSERA_REGISTER_##name},
+        TESSERA_REGISTER_LIST(TESSERA_PAIR)
+#undef TESSERA_PAIR
+    };
+    return numbers.at(offset);
+}
+
+/// Every register of the machine that software may write, by the driver.
+inline void set_machine(tessera_driver& driver, const datapath::Registers& registers) {
+    for (const DeviceRegister& r : register_map(registers, {})) {
+        if (r.offset < offset::machine || r.access != RegisterAccess::read_write)
+            continue;
+        std::uint64_t value = r.reset;
+        if (r.is_signed && (value >> (r.bits - 1) & 1) != 0)
+            value |= ~((std::uint64_t{1} << (r.bits - 1)) - 1);
+        INFO(r.name);
+        REQUIRE(tessera_set(&driver, number_of(r.offset), static_cast<std::int64_t>(value)) == TESSERA_OK);
+    }
+}
+
+inline void set_places(tessera_driver& driver, const FramePlaces& places) {
+    REQUIRE(tessera_set_tables(&driver, places.displacement_map, places.normal_map, places.summed_height_table) == 0);
+    REQUIRE(tessera_set_triangles(&driver, places.triangles, places.triangle_count) == 0);
+    REQUIRE(tessera_set_ring(&driver, places.ring, places.ring_size) == 0);
+}
+
+inline void pop_all(tessera_driver& driver, LitKeys& keys) {
+    std::uint32_t count = 0;
+    REQUIRE(tessera_ring_count(&driver, &count) == TESSERA_OK);
+    for (; count > 0; --count) {
+        tessera_finished_triangle triangle;
+        REQUIRE(tessera_ring_pop(&driver, &triangle) == TESSERA_OK);
+        keys.insert(key_of(triangle));
+    }
+}
+
+/// Starts a frame and reads the ring until it has ended: its triangles. result: of the driver.
+inline LitKeys run_frame(tessera_driver& driver, int& result) {
+    LitKeys keys;
+    result = tessera_start(&driver);
+    while (result == TESSERA_OK && (result = tessera_wait(&driver, 1)) == TESSERA_TIMEOUT) {
+        pop_all(driver, keys);
+        result = TESSERA_OK;
+    }
+    pop_all(driver, keys);
+    return keys;
+}
+/// One that succeeds.
+inline LitKeys run_frame(tessera_driver& driver) {
+    int result = TESSERA_OK;
+    const LitKeys keys = run_frame(driver, result);
+    INFO(tessera_text(result));
+    REQUIRE(result == TESSERA_OK);
+    return keys;
+}
+
+inline void expect_same(const LitKeys& found, const LitKeys& expected) {
+    CHECK(found.size() == expected.size());
+    CHECK((found == expected));  // not to be printed
+}
+
+/// The default job, smaller, in either mode.
+inline Job small_job(bool timed, const std::string& settings = "") {
+    return with_settings({}, std::string("mode=") + (timed ? "timed" : "functional") +
+                                 " mesh.columns=4 mesh.rows=3 map.width=40 map.height=24 tests.generation_limit=5 " +
+                                 settings);
+}
+
+inline DeviceDesign design_of(const MachineSetup& setup) {
+    DeviceDesign design;
+    design.machine = setup.design;
+    design.largest_map = {std::max(64u, setup.registers.map.width), std::max(64u, setup.registers.map.height)};
+    return design;
+}
+
+}  // namespace tessera::testing

@@ -1,0 +1,103 @@
+#include "testbench/tests/modules/device/bench.h"
+
+#include "testbench/tests/support/case_table.h"
+
+// The device writes the triangles that the testbench's rasteriser takes.
+
+using namespace tessera;
+using namespace tessera::testing;
+
+namespace {
+
+struct Row {
+    std::string name;
+    std::string settings;
+    bool timed;
+    std::uint32_t ring_size = 100;
+    bool approximately_timed = false;
+    int quantum_ns = 0;
+    unsigned burst_bytes = 64;
+    bool beyond = false;  // bits of table entries beyond their formats are set
+};
+
+/// small_job() made the default job again.
+const char* const whole_job = "mesh.columns=0 mesh.rows=0 map.width=264 map.height=264 tests.generation_limit=12";
+
+const char* const narrow_formats =
+    "formats.position_bits=24 formats.position_fraction=12 formats.normal_bits=11 formats.normal_fraction=9 "
+    "formats.displacement_bits=12 formats.summed_height_bits=26 tests.highlight=true";
+const char* const narrow_and_codes =
+    "formats.position_bits=24 formats.position_fraction=12 formats.normal_bits=11 formats.normal_fraction=9 "
+    "formats.displacement_bits=5 formats.summed_height_bits=19 hardware.one_texel_from_map=true "
+    "hardware.queue_capacity=8";
+
+void same_as_testbench(const Row& row) {
+    const MachineSetup setup = setup_of(small_job(row.timed, row.settings));
+    if (row.quantum_ns > 0)
+        tlm::tlm_global_quantum::instance().set(sc_core::sc_time(row.quantum_ns, sc_core::SC_NS));
+    Reference reference("reference", setup);
+    DeviceDesign design = design_of(setup);
+    design.burst_bytes = row.burst_bytes;
+    // what the registers hold at first is not what the frame needs
+    datapath::Registers initial;
+    initial.formats = setup.registers.formats;
+    Bench bench({initial}, design, row.approximately_timed);
+    bench.cpu.approximately_timed = row.approximately_timed;
+    const FramePlaces places = bench.place(setup, row.ring_size, row.beyond);
+    LitKeys found;
+    bench.cpu.program = [&](Processor&) {
+        tessera_driver& driver = bench.init();
+        set_machine(driver, setup.registers);
+        set_places(driver, places);
+        found = run_frame(driver);
+        std::int64_t sent = 0;
+        CHECK(tessera_get(&driver, TESSERA_REGISTER_TRIANGLES_SENT, &sent) == TESSERA_OK);
+        CHECK(sent == places.triangle_count);
+    };
+    bench.run();
+    CHECK(reference.machine.finished());
+    CHECK(found.size() > 100);
+    expect_same(found, reference.keys);
+    CHECK_FALSE(bench.devices[0]->busy());
+}
+
+const CaseTable<Row> same{
+    "the device writes the testbench's triangles: ",
+    {
+        {"functional", "", false},
+        {"timed", "", true},
+        {"functional, approximately timed processor", "", false, 100, true},
+        {"timed, approximately timed processor", "", true, 100, true},
+        {"functional, a ring of one record", "", false, 1},
+        {"timed, a ring of one record", "", true, 1},
+        {"functional, a ring of 7", "", false, 7},
+        {"timed, a ring of 7, bursts of 4 bytes", "", true, 7, false, 0, 4},
+        {"functional, a large ring", "", false, 20000},
+        {"timed, a large ring, bursts of 4096 bytes", "", true, 20000, false, 0, 4096},
+        {"functional, quantum 1 us", "", false, 100, false, 1000},
+        {"functional, quantum 1 ms", "", false, 1000, false, 1000000},
+        {"timed, quantum 1 us", "", true, 100, false, 1000},
+        {"functional, culled, a sphere",
+         "mesh.source=sphere hardware.culling=back map.source=noise tests.generation_limit=3", false},
+        {"timed, culled, a sphere, spilling",
+         "mesh.source=sphere hardware.culling=back map.source=noise tests.generation_limit=3 "
+         "hardware.queue_capacity=8",
+         true},
+        {"functional, the default job", whole_job, false},
+        {"timed, the default job", whole_job, true},
+        {"functional, modern design", "hardware.design=modern", false},
+        {"timed, modern design", "hardware.design=modern", true},
+        {"timed, tables behind caches",
+         "timing.summed_height_table_cache_bytes=1024 timing.normal_map_cache_bytes=1024 "
+         "timing.displacement_map_cache_bytes=1024",
+         true},
+        {"functional, watermark 50", "hardware.queue_watermark=50", false, 3},
+        {"timed, watermark 50", "hardware.queue_watermark=50", true, 3},
+        {"functional, narrow formats", narrow_formats, false},
+        {"functional, narrow formats, more in memory", narrow_formats, false, 100, false, 0, 4, true},
+        {"timed, narrow formats, more in memory, spilling, codes in vertices", narrow_and_codes, true, 100, false, 0,
+         64, true},
+    },
+    same_as_testbench};
+
+}  // namespace

@@ -1,0 +1,370 @@
+#include "testbench/tests/modules/device/bench.h"
+
+#include "testbench/tests/support/case_table.h"
+
+// What software does wrong: refused accesses, refused frames, stopped frames.
+
+using namespace tessera;
+using namespace tessera::testing;
+
+namespace {
+
+struct Mode {
+    std::string name;
+    bool timed;
+};
+
+MachineSetup setup_for(const Mode& mode, const std::string& settings = "") {
+    return setup_of(small_job(mode.timed, settings));
+}
+
+datapath::Registers formats_of(const MachineSetup& setup) {
+    datapath::Registers registers;
+    registers.formats = setup.registers.formats;
+    return registers;
+}
+
+/// A register of a frame that is otherwise right, its value, and what start says.
+struct Refusal {
+    tessera_register number;
+    std::int64_t value;
+    DeviceError error;
+};
+
+const std::vector<Refusal> refusals{
+    {TESSERA_REGISTER_MAP_WIDTH, 0, DeviceError::bad_map_size},
+    {TESSERA_REGISTER_MAP_WIDTH, 65, DeviceError::bad_map_size},
+    {TESSERA_REGISTER_MAP_HEIGHT, 0, DeviceError::bad_map_size},
+    {TESSERA_REGISTER_MAP_HEIGHT, 4096, DeviceError::bad_map_size},
+    {TESSERA_REGISTER_TRIANGULATION, 3, DeviceError::bad_value},
+    {TESSERA_REGISTER_LIGHT_AMBIENT, 257, DeviceError::bad_value},
+    {TESSERA_REGISTER_TESTS_SUMMED_HEIGHT_THRESHOLD, (std::int64_t{1} << 50) + 1, DeviceError::bad_value},
+    {TESSERA_REGISTER_RING_SIZE, 0, DeviceError::bad_ring_size},
+    {TESSERA_REGISTER_RING_ADDRESS, 0x10000002, DeviceError::bad_address},
+    {TESSERA_REGISTER_RING_ADDRESS, -4, DeviceError::bad_address},
+    {TESSERA_REGISTER_TRIANGLES_ADDRESS, 0x10000001, DeviceError::bad_address},
+    {TESSERA_REGISTER_TRIANGLES_ADDRESS, -100, DeviceError::bad_address},
+    {TESSERA_REGISTER_DISPLACEMENT_MAP_ADDRESS, 0x10000003, DeviceError::bad_address},
+    {TESSERA_REGISTER_NORMAL_MAP_ADDRESS, -16, DeviceError::bad_address},
+    {TESSERA_REGISTER_SUMMED_HEIGHT_TABLE_ADDRESS, -8, DeviceError::bad_address},
+};
+
+const CaseTable<Mode> refused_frames{
+    "a frame with a wrong register is refused, changes nothing, and the next one is right: ",
+    {{"functional", false}, {"timed", true}},
+    [](const Mode& mode) {
+        const MachineSetup setup = setup_for(mode);
+        Reference reference("reference", setup);
+        Bench bench({formats_of(setup)}, design_of(setup));
+        const FramePlaces places = bench.place(setup, 50);
+        LitKeys found;
+        bench.cpu.program = [&](Processor&) {
+            tessera_driver& driver = bench.init();
+            for (const Refusal& refusal : refusals) {
+                INFO(tessera_register_name(refusal.number) << " = " << refusal.value);
+                set_machine(driver, setup.registers);
+                set_places(driver, places);
+                REQUIRE(tessera_set(&driver, refusal.number, refusal.value) == TESSERA_OK);
+                CHECK(tessera_start(&driver) == static_cast<int>(refusal.error));
+                std::uint64_t address = 0;
+                std::uint32_t status = 0;
+                CHECK(tessera_last_error(&driver, &address) == static_cast<int>(refusal.error));
+                CHECK(number_of(static_cast<std::uint32_t>(address)) == refusal.number);
+                REQUIRE(tessera_status(&driver, &status) == TESSERA_OK);
+                CHECK(status == TESSERA_STATUS_ERROR);
+                std::int64_t value = 0;
+                REQUIRE(tessera_get(&driver, refusal.number, &value) == TESSERA_OK);
+                CHECK(value == refusal.value);
+            }
+            CHECK((bench.memory.reads == 0 && bench.memory.writes == 0));
+            // with the unit `area` the same threshold is too large, and the greatest is not
+            set_machine(driver, setup.registers);
+            set_places(driver, places);
+            REQUIRE(tessera_set(&driver, TESSERA_REGISTER_TESTS_SUMMED_HEIGHT_UNIT, 1) == 0);
+            REQUIRE(tessera_set(&driver, TESSERA_REGISTER_TESTS_SUMMED_HEIGHT_THRESHOLD, (1 << 18) + 1) == 0);
+            CHECK(tessera_start(&driver) == static_cast<int>(DeviceError::bad_value));
+            set_machine(driver, setup.registers);
+            found = run_frame(driver);
+        };
+        bench.run();
+        expect_same(found, reference.keys);
+    }};
+
+const CaseTable<Mode> stopped_frames{
+    "a bus error stops the frame: nothing more is written, the cause is there, and the next one is right: ",
+    {{"functional", false}, {"timed", true}},
+    [](const Mode& mode) {
+        const MachineSetup setup = setup_for(mode);
+        Reference reference("reference", setup);
+        Bench bench({formats_of(setup)}, design_of(setup));
+        const FramePlaces places = bench.place(setup, 5000);
+        struct Failing {
+            const char* what;
+            std::uint64_t at;
+            DeviceError error;
+        };
+        const std::vector<Failing> failing{
+            {"displacement map", places.displacement_map + 700, DeviceError::table_read},
+            {"normal map", places.normal_map, DeviceError::table_read},
+            {"Summed Height Table", places.summed_height_table + 41 * 25 * 4 - 1, DeviceError::table_read},
+            {"first triangle", places.triangles, DeviceError::triangle_read},
+            {"last triangle", places.triangles + places.triangle_count * base_triangle_bytes - 1,
+             DeviceError::triangle_read},
+            {"first record", places.ring, DeviceError::ring_write},
+            {"record 10", places.ring + 10 * finished_triangle_bytes + 71, DeviceError::ring_write},
+            {"record 300", places.ring + 300 * finished_triangle_bytes + 30, DeviceError::ring_write}};
+        LitKeys found;
+        bench.cpu.program = [&](Processor& cpu) {
+            tessera_driver& driver = bench.init();
+            set_machine(driver, setup.registers);
+            set_places(driver, places);
+            for (const Failing& its : failing) {
+                INFO(its.what);
+                bench.memory.failing_from = bench.memory.failing_to = its.at;
+                REQUIRE(tessera_start(&driver) == TESSERA_OK);
+                CHECK(tessera_wait(&driver, 100000) == static_cast<int>(its.error));
+                std::uint64_t address = 0;
+                CHECK(tessera_last_error(&driver, &address) == static_cast<int>(its.error));
+                CHECK((address <= its.at && its.at - address < bench.memory.burst_bytes));
+                const unsigned writes = bench.memory.writes;
+                cpu.pass(sc_core::sc_time(1, sc_core::SC_MS));
+                CHECK(bench.memory.writes == writes);
+                std::uint32_t count = 0;
+                REQUIRE(tessera_ring_count(&driver, &count) == TESSERA_OK);
+                if (its.error == DeviceError::ring_write)
+                    CHECK(count == (its.at - places.ring) / finished_triangle_bytes);
+            }
+            bench.memory.failing_from = 1;
+            bench.memory.failing_to = 0;
+            found = run_frame(driver);
+        };
+        bench.run();
+        expect_same(found, reference.keys);
+    }};
+
+const CaseTable<Mode> bad_triangles{
+    "a base triangle beyond its formats stops the frame: ",
+    {{"functional", false}, {"timed", true}},
+    [](const Mode& mode) {
+        const MachineSetup setup = setup_for(mode);
+        Bench bench({formats_of(setup)}, design_of(setup));
+        const FramePlaces places = bench.place(setup, 5000);
+        bench.cpu.program = [&](Processor&) {
+            tessera_driver& driver = bench.init();
+            set_machine(driver, setup.registers);
+            set_places(driver, places);
+            for (const unsigned word : {3u, 9u, 10u, 35u}) {
+                const std::uint64_t record = places.triangles + 5 * base_triangle_bytes;
+                unsigned char* const at = &bench.memory.bytes[record + 4 * word - bench.memory.base];
+                const std::uint32_t was = datapath::load_word(at);
+                datapath::store_word(0x7fffffff, at);
+                REQUIRE(tessera_start(&driver) == TESSERA_OK);
+                CHECK(tessera_wait(&driver, 100000) == static_cast<int>(DeviceError::bad_triangle));
+                std::uint64_t address = 0;
+                std::int64_t sent = 0;
+                CHECK(tessera_last_error(&driver, &address) > 0);
+                CHECK(address == record);
+                REQUIRE(tessera_get(&driver, TESSERA_REGISTER_TRIANGLES_SENT, &sent) == TESSERA_OK);
+                CHECK(sent <= 5);
+                datapath::store_word(was, at);
+            }
+        };
+        bench.run();
+    }};
+
+const CaseTable<Mode> endless{
+    "a frame that splits without end is stopped when the queue is full, or by a reset: ",
+    {{"functional", false}, {"timed", true}},
+    [](const Mode& mode) {
+        const std::string off_chip = "hardware.queue_capacity=64 hardware.off_chip_triangles=2000 ";
+        const MachineSetup setup = setup_for(mode, off_chip);
+        Reference reference("reference", setup);
+        Bench bench({formats_of(setup)}, design_of(setup));
+        const FramePlaces places = bench.place(setup, 5000);
+        LitKeys found;
+        bench.cpu.program = [&](Processor& cpu) {
+            tessera_driver& driver = bench.init();
+            for (const bool by_reset : {false, true}) {
+                set_machine(driver, setup.registers);
+                set_places(driver, places);
+                for (const tessera_register test :
+                     {TESSERA_REGISTER_TESTS_VIEW_TEST, TESSERA_REGISTER_TESTS_TEX_COORD_TEST,
+                      TESSERA_REGISTER_TESTS_GENERATION_TEST, TESSERA_REGISTER_TESTS_NORMAL_THRESHOLD,
+                      TESSERA_REGISTER_TESTS_SUMMED_HEIGHT_THRESHOLD})
+                    REQUIRE(tessera_set(&driver, test, 0) == TESSERA_OK);
+                REQUIRE(tessera_start(&driver) == TESSERA_OK);
+                if (by_reset) {
+                    cpu.pass(sc_core::sc_time(20, sc_core::SC_US));
+                    CHECK(bench.devices[0]->busy());
+                    CHECK(tessera_reset(&driver, 100000) == TESSERA_OK);
+                } else {
+                    CHECK(tessera_wait(&driver, 1000000) == static_cast<int>(DeviceError::queue_full));
+                }
+            }
+            set_machine(driver, setup.registers);
+            set_places(driver, places);
+            found = run_frame(driver);
+        };
+        bench.run();
+        expect_same(found, reference.keys);
+    }};
+
+/// An access, and its response.
+struct BusAccess {
+    std::string what;
+    tlm::tlm_command command;
+    std::uint64_t address;
+    unsigned length;
+    tlm::tlm_response_status response;
+    unsigned width = ~0u;
+    bool enables = false;
+};
+
+constexpr tlm::tlm_command reading = tlm::TLM_READ_COMMAND, writing = tlm::TLM_WRITE_COMMAND;
+const std::vector<BusAccess> accesses{
+    {"a word", reading, 0, 4, tlm::TLM_OK_RESPONSE},
+    {"a register of two words", reading, 0x20, 8, tlm::TLM_OK_RESPONSE},
+    {"five words", writing, 0x28 + 8, 32, tlm::TLM_OK_RESPONSE},
+    {"a byte", reading, 0, 1, tlm::TLM_BURST_ERROR_RESPONSE},
+    {"half a word", reading, 2, 2, tlm::TLM_BURST_ERROR_RESPONSE},
+    {"a word between two", reading, 2, 4, tlm::TLM_BURST_ERROR_RESPONSE},
+    {"nothing", reading, 0, 0, tlm::TLM_BURST_ERROR_RESPONSE},
+    {"six bytes", writing, 0x30, 6, tlm::TLM_BURST_ERROR_RESPONSE},
+    {"a stream", reading, 0, 8, tlm::TLM_BURST_ERROR_RESPONSE, 4},
+    {"byte enables", writing, 0x30, 4, tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE, ~0u, true},
+    {"neither read nor write", tlm::TLM_IGNORE_COMMAND, 0, 4, tlm::TLM_COMMAND_ERROR_RESPONSE},
+    {"no register", reading, 0x1c, 4, tlm::TLM_ADDRESS_ERROR_RESPONSE},
+    {"a hole among registers", reading, 0x18, 12, tlm::TLM_ADDRESS_ERROR_RESPONSE},
+    {"beyond the last", reading, 0x3fc, 4, tlm::TLM_ADDRESS_ERROR_RESPONSE},
+    {"across the end", reading, 0x3fc, 8, tlm::TLM_ADDRESS_ERROR_RESPONSE},
+    {"far beyond", reading, ~std::uint64_t{3}, 4, tlm::TLM_ADDRESS_ERROR_RESPONSE},
+    {"a read-only register", writing, 0, 4, tlm::TLM_COMMAND_ERROR_RESPONSE},
+    {"the last of a burst is read-only", writing, 0x50, 8, tlm::TLM_COMMAND_ERROR_RESPONSE},
+    {"a read index beyond the write index", writing, offset::ring_read_index, 4, tlm::TLM_GENERIC_ERROR_RESPONSE},
+};
+
+}  // namespace
+
+TEST_CASE("register accesses: each is done as a whole, or refused with its response and changes nothing") {
+    const MachineSetup setup = setup_for({"", false});
+    Bench bench({formats_of(setup)}, design_of(setup), true);
+    bench.cpu.program = [&](Processor& cpu) {
+        const auto snapshot = [&] {
+            std::map<std::uint32_t, std::uint32_t> words;
+            for (const DeviceRegister& r : register_map(formats_of(setup), {64, 64}))
+                for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(r.words); ++k)
+                    CHECK(cpu.read32(r.offset + 4 * k, words[r.offset + 4 * k]) == 0);
+            return words;
+        };
+        for (const bool timed : {false, true}) {
+            cpu.keeper.sync();
+            cpu.approximately_timed = timed;
+            for (const BusAccess& access : accesses) {
+                INFO(access.what << (timed ? ", approximately timed" : ""));
+                std::vector<unsigned char> data(64, 0x55), enables(64, 0xff);
+                const auto before = snapshot();
+                CHECK(cpu.access(access.command, access.address, data.data(), access.length,
+                                 access.enables ? enables.data() : nullptr, access.width) == access.response);
+                if (access.response != tlm::TLM_OK_RESPONSE) {
+                    CHECK(snapshot() == before);
+                    CHECK(data == std::vector<unsigned char>(64, 0x55));
+                } else if (access.command == writing) {
+                    CHECK(snapshot() != before);
+                    std::fill(data.begin(), data.end(), 0);
+                    CHECK(cpu.access(writing, access.address, data.data(), access.length) == tlm::TLM_OK_RESPONSE);
+                }
+            }
+        }
+    };
+    bench.run();
+}
+
+TEST_CASE("while a frame is under way only reset, interrupts and the read index may be written") {
+    const MachineSetup setup = setup_for({"", true});
+    Bench bench({formats_of(setup)}, design_of(setup));
+    const FramePlaces places = bench.place(setup, 10);
+    bench.cpu.program = [&](Processor& cpu) {
+        tessera_driver& driver = bench.init();
+        set_machine(driver, setup.registers);
+        set_places(driver, places);
+        REQUIRE(tessera_start(&driver) == TESSERA_OK);
+        for (const DeviceRegister& r : register_map(formats_of(setup), {64, 64})) {
+            INFO(r.name);
+            std::uint32_t word = 0;
+            REQUIRE(cpu.read32(Router::registers + r.offset, word) == 0);
+            const bool may = r.while_busy;
+            CHECK((cpu.write32(Router::registers + r.offset, r.offset == offset::control ? 0 : word) == 0) == may);
+        }
+        CHECK(tessera_start(&driver) == TESSERA_BUS);
+        CHECK(bench.devices[0]->busy());
+        cpu.pass(sc_core::sc_time(100, sc_core::SC_US));
+        std::uint32_t count = 0;
+        REQUIRE(tessera_ring_count(&driver, &count) == TESSERA_OK);
+        CHECK(count == 10);  // full
+        for (const std::uint32_t index : {11u, 0xffffffffu, 0x80000000u})
+            CHECK(cpu.write32(Router::registers + offset::ring_read_index, index) != 0);
+        CHECK(cpu.write32(Router::registers + offset::ring_read_index, 3) == 0);
+        CHECK(cpu.write32(Router::registers + offset::ring_read_index, 2) != 0);
+        cpu.pass(sc_core::sc_time(100, sc_core::SC_US));
+        REQUIRE(cpu.read32(Router::registers + offset::ring_write_index, count) == 0);
+        CHECK(count == 13);
+        CHECK(tessera_reset(&driver, 10000) == TESSERA_OK);
+    };
+    bench.run();
+}
+
+TEST_CASE("debug transport reads all registers, writes plain ones, and starts nothing; DMI is refused") {
+    const MachineSetup setup = setup_for({"", false});
+    Bench bench({formats_of(setup)}, design_of(setup), true);
+    bench.cpu.program = [&](Processor& cpu) {
+        const auto debug = [&](tlm::tlm_command command, std::uint64_t address, std::vector<unsigned char>& data) {
+            tlm::tlm_generic_payload payload;
+            payload.set_command(command);
+            payload.set_address(address);
+            payload.set_data_ptr(data.data());
+            payload.set_data_length(static_cast<unsigned>(data.size()));
+            return cpu.bus->transport_dbg(payload);
+        };
+        std::vector<unsigned char> word(4, 0xff), two(8, 0x12), odd(7);
+        CHECK(debug(reading, 0, two) == 8);
+        CHECK((two[0] == 'T' && two[1] == 'E' && two[2] == 'S' && two[3] == 'S'));
+        CHECK(debug(writing, offset::control, word) == 0);
+        CHECK(debug(writing, offset::id, word) == 0);
+        CHECK(debug(writing, offset::interrupt, word) == 0);
+        CHECK(debug(writing, offset::ring_address, two) == 8);
+        CHECK(debug(reading, offset::ring_address, odd) == 4);
+        CHECK(debug(reading, 0x1c, word) == 0);
+        CHECK(debug(reading, 1, word) == 0);
+        CHECK(debug(reading, ~std::uint64_t{0}, word) == 0);
+        std::uint32_t value = 0;
+        CHECK(cpu.read32(offset::ring_address + 4, value) == 0);
+        CHECK(value == datapath::load_word(&two[4]));
+        CHECK_FALSE(bench.devices[0]->busy());
+        tlm::tlm_generic_payload payload;
+        tlm::tlm_dmi dmi;
+        CHECK_FALSE(cpu.bus->get_direct_mem_ptr(payload, dmi));
+    };
+    bench.run();
+}
+
+TEST_CASE("a device that cannot work is refused while it is built") {
+    const MachineSetup setup = setup_for({"", true});
+    const auto refused = [&](DeviceDesign design) {
+        return error_of([&] { const Device device("device", setup.registers, design); });
+    };
+    DeviceDesign design = design_of(setup);
+    design.largest_map = {4097, 1};
+    CHECK_THAT(refused(design), Catch::Contains("device: ") && Catch::Contains("largest map"));
+    design = design_of(setup);
+    for (const unsigned bytes : {0u, 2u, 48u, 8192u}) {
+        design.burst_bytes = bytes;
+        CHECK_THAT(refused(design), Catch::Contains("burst"));
+    }
+    design = design_of(setup);
+    design.machine.queue.capacity = 10;
+    design.machine.queue.overflow = QueueOverflow::stall;
+    CHECK_THAT(refused(design), Catch::Contains("queue"));
+    design = design_of(setup);
+    design.finished_triangles = 0;
+    CHECK_THAT(refused(design), Catch::Contains("at least one"));
+}

@@ -1,0 +1,54 @@
+#include <fstream>
+#include <sstream>
+
+#include "modules/device/driver/example.h"
+#include "testbench/tests/modules/device/bench.h"
+
+// The example of modules/device/README.md.
+
+using namespace tessera;
+using namespace tessera::testing;
+
+TEST_CASE("the README's example draws three frames, and is the README's") {
+    const MachineSetup setup = setup_of(small_job(true));
+    std::vector<MachineSetup> setups(3, setup);
+    std::vector<std::unique_ptr<Reference>> references;
+    for (std::size_t k = 0; k < setups.size(); ++k) {
+        setups[k].registers.displacement.scale /= 1 << k;
+        references.push_back(std::make_unique<Reference>("reference_" + std::to_string(k), setups[k]));
+    }
+    Bench bench({setup.registers}, design_of(setup));
+    const FramePlaces places = bench.place(setup, 64);
+    std::vector<LitKeys> found(3);
+    bench.cpu.program = [&](Processor&) {
+        const tessera_platform platform = bench.contexts[0].platform();
+        const example_scene scene{
+            places.displacement_map,
+            places.normal_map,
+            places.summed_height_table,
+            places.triangles,
+            places.ring,
+            places.triangle_count,
+            places.ring_size,
+            &found,
+            [](void* drawing, int frame, const tessera_finished_triangle* triangle) {
+                (*static_cast<std::vector<LitKeys>*>(drawing))[static_cast<std::size_t>(frame)].insert(
+                    key_of(*triangle));
+            }};
+        CHECK(draw_three_frames(&platform, &scene) == TESSERA_OK);
+    };
+    bench.run();
+    for (std::size_t k = 0; k < 3; ++k)
+        expect_same(found[k], references[k]->keys);
+    CHECK(found[0] != found[1]);
+
+    const auto text_of = [](const std::string& name) {
+        std::stringstream text;
+        text << std::ifstream(TESSERA_SOURCE_DIR "/modules/device/" + name).rdbuf();
+        return text.str();
+    };
+    const std::string example = text_of("driver/example.c");
+    const std::size_t begin = example.find("/* Three frames");
+    REQUIRE(begin != std::string::npos);
+    CHECK_THAT(text_of("README.md"), Catch::Contains("```c\n" + example.substr(begin) + "```\n"));
+}

@@ -1,0 +1,148 @@
+#include "testbench/setup/prepare_scene.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "modules/datapath/registers.h"
+#include "testbench/common/error.h"
+#include "testbench/machine/inputs.h"
+#include "testbench/machine/machine_setup.h"
+
+using namespace tessera;
+using Catch::Contains;
+
+namespace {
+
+/// What a job's files hold, as another program would have it.
+Scene scene_of(const Inputs& inputs) {
+    Scene scene;
+    for (const BaseVertex& v : inputs.mesh.vertices)
+        scene.vertices.push_back({{v.position.x, v.position.y, v.position.z}, {v.texture.x, v.texture.y}, {}});
+    scene.triangles = inputs.mesh.triangles;
+    scene.map_width = inputs.map.width;
+    scene.map_height = inputs.map.height;
+    scene.map = inputs.map.values;
+    const Job& job = inputs.resolved.job;
+    SceneSettings& settings = scene.settings;
+    settings.displacement = job.displacement;
+    settings.camera = job.camera;
+    settings.tests = job.tests;
+    settings.formats = job.formats;
+    settings.light = {job.hardware.light, job.hardware.ambient};
+    return scene;
+}
+
+Scene square() {
+    Scene scene;
+    scene.vertices = {{{0, 0, 0}, {0, 0}, {}}, {{1, 0, 0}, {1, 0}, {}}, {{1, 1, 0}, {1, 1}, {}}, {{0, 1, 0}, {0, 1}, {}}};
+    scene.triangles = {{0, 1, 2}, {0, 2, 3}};
+    scene.map_width = scene.map_height = 4;
+    scene.map.assign(16, 0.5f);
+    scene.settings.displacement.scale = 0.25;
+    scene.settings.camera = {{0.5, -1.5, 1.5}, {0.5, 0.5, 0}, {0, 0, 1}, 36, 0.01, 640, 480};
+    return scene;
+}
+
+std::vector<std::int64_t> register_values(const datapath::Registers& registers) {
+    std::vector<std::int64_t> all;
+    datapath::visit_registers(registers, [&](const datapath::Register&, const auto& values) {
+        all.insert(all.end(), values.begin(), values.end());
+    });
+    return all;
+}
+
+std::vector<unsigned char> tables_of(const PreparedScene& scene) {
+    std::vector<unsigned char> all;
+    write_tables(scene, [&](std::uint64_t, const unsigned char* bytes, std::size_t count) {
+        all.insert(all.end(), bytes, bytes + count);
+    });
+    return all;
+}
+
+}  // namespace
+
+// The plane's and the sphere's normals are those that prepare() calculates.
+TEST_CASE("a scene of plain structs gives the registers, tables and triangles of the job") {
+    for (const MeshSource source : {MeshSource::plane, MeshSource::cylinder}) {
+        Job job;
+        job.mesh.source = source;
+        job.map.width = job.map.height = 60;
+        const Inputs inputs = load_inputs(job);
+        const MachineSetup expected = make_setup(inputs.resolved.job, inputs.mesh, inputs.map);
+        Scene scene = scene_of(inputs);
+        if (source == MeshSource::cylinder) {
+            for (std::size_t k = 0; k < scene.vertices.size(); ++k) {
+                const glm::dvec3& n = inputs.mesh.vertices[k].normal;
+                scene.vertices[k].normal = {3 * n.x, 3 * n.y, 3 * n.z};
+            }
+        }
+        const PreparedScene found = prepare(scene);
+        CHECK(register_values(found.registers) == register_values(expected.registers));
+        CHECK(found.map.codes == expected.map.codes);
+        CHECK((tables_of(found) == tables_of(expected)));
+        REQUIRE(found.base_triangles.size() == expected.base_triangles.size());
+        unsigned different = 0;
+        for (std::size_t k = 0; k < found.base_triangles.size(); ++k) {
+            for (std::size_t corner = 0; corner < 3; ++corner) {
+                const datapath::Vertex &a = found.base_triangles[k].vertices[corner],
+                                       &b = expected.base_triangles[k].vertices[corner];
+                different += a.position == b.position && a.texture == b.texture && a.normal == b.normal &&
+                                     a.tangent == b.tangent && a.handedness == b.handedness
+                                 ? 0
+                                 : 1;
+            }
+        }
+        CHECK(different == 0);
+    }
+}
+
+TEST_CASE("a scene that cannot be is refused, with the value and what to do") {
+    struct Case {
+        const char* text;
+        std::function<void(Scene&)> spoil;
+    };
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    const Case cases[] = {
+        {"`displacement.scale` = nan: must be", [](Scene& s) { s.settings.displacement = {}; }},
+        {"`camera.eye` = [nan, nan, nan]: set three numbers", [](Scene& s) { s.settings.camera.eye = automatic_vector; }},
+        {"`camera.near_plane` = nan: must be", [](Scene& s) { s.settings.camera.near_plane = automatic; }},
+        {"are the same point", [](Scene& s) { s.settings.camera.target = s.settings.camera.eye; }},
+        {"is parallel to the view direction", [](Scene& s) { s.settings.camera.up = {0, 2, -1.5}; }},
+        {"`formats.position_bits` = 40: must be 8 to 32", [](Scene& s) { s.settings.formats.position_bits = 40; }},
+        {"`tests.normal_threshold` = nan", [](Scene& s) { s.settings.tests.normal_threshold = nan; }},
+        {"`tests.generation_limit` = 9, but `formats.generation_bits` = 3",
+         [](Scene& s) {
+             s.settings.formats.generation_bits = 3;
+             s.settings.tests.generation_limit = 9;
+         }},
+        {"`light.direction` has no direction", [](Scene& s) { s.settings.light.direction = {}; }},
+        {"vertices[2] has a value that is not finite", [](Scene& s) { s.vertices[2].position[1] = nan; }},
+        {"triangles[1] names vertex 4 of 4", [](Scene& s) { s.triangles[1][2] = 4; }},
+        {"of 2 triangles none has an area", [](Scene& s) { s.triangles = {{0, 1, 1}, {2, 2, 2}}; }},
+        {"of 0 triangles none has an area", [](Scene& s) { s.triangles.clear(); }},
+        {"a map of 0 x 4 texels", [](Scene& s) { s.map_width = 0; }},
+        {"the map has 16 values, but map_width x map_height = 20", [](Scene& s) { s.map_width = 5; }},
+        {"the map has a value that is not finite", [](Scene& s) { s.map[3] = static_cast<float>(nan); }},
+        {"map_low > map_high", [](Scene& s) { s.map_low = 2; }},
+        {"Transform's sums hold eyes up to", [](Scene& s) { s.settings.camera.eye = {0, 0, 1e12}; s.settings.camera.up = {0, 1, 0}; }},
+    };
+    CHECK_NOTHROW(prepare(square()));
+    for (const Case& c : cases) {
+        INFO(c.text);
+        Scene scene = square();
+        c.spoil(scene);
+        CHECK_THROWS_WITH(prepare(scene), Contains(c.text));
+        CHECK_THROWS_AS(prepare(scene), InputError);
+    }
+}
+
+TEST_CASE("triangles without area are left out of a scene, with a remark") {
+    Scene scene = square();
+    scene.triangles.push_back({0, 1, 1});
+    const PreparedScene prepared = prepare(scene);
+    CHECK(prepared.base_triangles.size() == 2);
+    CHECK(prepared.remarks.back() == "triangles left out for want of an area: 1");
+}
