@@ -176,7 +176,8 @@ const CaseTable<Mode> endless{
     "a frame that splits without end is stopped when the queue is full, or by a reset: ",
     {{"functional", false}, {"timed", true}},
     [](const Mode& mode) {
-        const std::string off_chip = "hardware.queue_capacity=64 hardware.off_chip_triangles=2000 ";
+        const std::string off_chip =
+            "hardware.queue_capacity=64 hardware.off_chip_triangles=400 tests.generation_limit=2 ";
         const MachineSetup setup = setup_for(mode, off_chip);
         Reference reference("reference", setup);
         Bench bench({formats_of(setup)}, design_of(setup));
@@ -192,6 +193,7 @@ const CaseTable<Mode> endless{
                       TESSERA_REGISTER_TESTS_GENERATION_TEST, TESSERA_REGISTER_TESTS_NORMAL_THRESHOLD,
                       TESSERA_REGISTER_TESTS_SUMMED_HEIGHT_THRESHOLD})
                     REQUIRE(tessera_set(&driver, test, 0) == TESSERA_OK);
+                REQUIRE(tessera_set(&driver, TESSERA_REGISTER_TESTS_GENERATION_LIMIT, 15) == TESSERA_OK);
                 REQUIRE(tessera_start(&driver) == TESSERA_OK);
                 if (by_reset) {
                     cpu.pass(sc_core::sc_time(20, sc_core::SC_US));
