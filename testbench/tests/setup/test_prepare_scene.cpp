@@ -92,8 +92,8 @@ TEST_CASE("a scene of plain structs gives the registers, tables and triangles of
                                        &b = expected.base_triangles[k].vertices[corner];
                 different += a.position == b.position && a.texture == b.texture && a.normal == b.normal &&
                                      a.tangent == b.tangent && a.handedness == b.handedness
-                                 ? 0
-                                 : 1;
+                                 ? 0u
+                                 : 1u;
             }
         }
         CHECK(different == 0);
