@@ -16,6 +16,7 @@ const fs::path example = source_folder() / "testbench/examples/first_machine";
 const fs::path platform = source_folder() / "testbench/examples/platform";
 const fs::path careful_client = source_folder() / "testbench/tests/packaging/careful_client";
 const Arguments from_sources{"-DTESSERA_SOURCE=" + source_folder().string()};
+const Arguments with_glm_and_fmt{"-DCMAKE_DISABLE_FIND_PACKAGE_glm=OFF", "-DCMAKE_DISABLE_FIND_PACKAGE_fmt=OFF"};
 const std::string strict = "-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Werror";
 
 ProgramEnd run(const std::vector<std::string>& command, const fs::path& folder, const Environment& environment = {}) {
@@ -137,11 +138,11 @@ TEST_CASE("the example finds an installation that was moved, by CMake and by pkg
 
 TEST_CASE("the example takes the sources as a folder, and by FetchContent") {
     const TestFolder folder;
-    const Arguments settings{"-DCMAKE_CXX_FLAGS=" + strict, "-DTESSERA_SOURCE=" + source_folder().string(),
-                             "-DFETCHCONTENT_SOURCE_DIR_TESSERA=" + source_folder().string(),
-                             // Both build tessera in the same folder: the second finds it built.
-                             "-DFETCHCONTENT_BASE_DIR=build", "-DCMAKE_DISABLE_FIND_PACKAGE_glm=OFF",
-                             "-DCMAKE_DISABLE_FIND_PACKAGE_fmt=OFF"};
+    const Arguments settings =
+        with_glm_and_fmt + Arguments{"-DCMAKE_CXX_FLAGS=" + strict, "-DTESSERA_SOURCE=" + source_folder().string(),
+                                     "-DFETCHCONTENT_SOURCE_DIR_TESSERA=" + source_folder().string(),
+                                     // Both build tessera in the same folder: the second finds it built.
+                                     "-DFETCHCONTENT_BASE_DIR=build"};
     require_success(configuring(example, settings + Arguments{"-DTESSERA_BY=add_subdirectory"}), folder.path());
     const std::string printed = build_and_run(folder.path());
     require_success(configuring(example, settings + Arguments{"-DTESSERA_BY=FetchContent"}), folder.path());
@@ -180,11 +181,11 @@ TEST_CASE("the first platform, as its page has it built") {
 TEST_CASE("a client keeps its variables and its warnings") {
     const TestFolder folder;
     const fs::path moved = install_in(folder.path());
-    const Arguments client = configuring(careful_client, {"-DCOMPONENTS=datapath;modules"}, moved);
+    const Arguments client = configuring(careful_client, {"-DCOMPONENTS=datapath;modules;setup;device"}, moved);
     for (const bool as_folder : {false, true}) {
         INFO("as a folder: " << as_folder);
         fs::remove_all(folder.path() / "build");
-        require_success(client + (as_folder ? from_sources : Arguments{}), folder.path());
+        require_success(client + (as_folder ? from_sources + with_glm_and_fmt : Arguments{}), folder.path());
         unsigned commands = 0;
         for (const std::string& line : lines_of(read_all(folder.path() / "build/compile_commands.json"))) {
             if (line.find("\"command\"") == std::string::npos || line.find("warned_of.cpp") == std::string::npos)
@@ -192,7 +193,7 @@ TEST_CASE("a client keeps its variables and its warnings") {
             ++commands;
             CHECK_THAT(line, Contains("-DFLAG_OF_ITS_OWN") && !Contains(" -W") && !Contains(" -f"));
         }
-        CHECK(commands == 2);
+        CHECK(commands == 4);
         if (!as_folder)
             require_success({"cmake", "--build", "build"}, folder.path());
     }
@@ -236,6 +237,7 @@ TEST_CASE("a component that is not there, a package it needs, another C++ standa
     expect_refusal(folder.path(), client("modules;shaders"), "No tessera::shaders: tessera has no such component");
     expect_refusal(folder.path(), client("shaders", from_sources),
                    "TESSERA_COMPONENTS names shaders; tessera has: datapath");
+    expect_refusal(folder.path(), client("setup", from_sources), "No tessera::setup: glm was not found");
     for (const Arguments& from : {Arguments{}, from_sources}) {
         expect_refusal(folder.path(), client("modules", from + no_systemc_package), "apt-get install libsystemc-dev",
                        no_systemc);
@@ -257,8 +259,12 @@ TEST_CASE("what is left out of an installation is named with its reason") {
     CHECK_FALSE(fs::exists(folder.path() / "installed/include/tessera/modules/pipeline.h"));
     CHECK(fs::exists(folder.path() / "installed/include/tessera/modules/version.h"));
     CHECK_THAT(read_all(folder.path() / "installed/lib/pkgconfig/tessera.pc"), !Contains("systemc"));
-    expect_refusal(folder.path(), configuring(careful_client, {}, folder.path() / "installed"),
-                   "No tessera::modules: it was left out when tessera was built: SystemC was not found");
+    const std::pair<std::string, std::string> reasons[] = {
+        {"modules", "SystemC was not found"}, {"device", "it needs tessera::modules"}, {"setup", "glm was not found"}};
+    for (const auto& [component, reason] : reasons)
+        expect_refusal(folder.path(),
+                       configuring(careful_client, {"-DCOMPONENTS=" + component}, folder.path() / "installed"),
+                       "No tessera::" + component + ": it was left out when tessera was built: " + reason);
 }
 
 TEST_CASE("the version is the same everywhere") {
