@@ -35,9 +35,10 @@ void Host::start_of_simulation() {
 }
 
 void Host::write_table(std::uint64_t address, const unsigned char* bytes, std::size_t count) {
-    auto& socket = machine_.normal_map.covers(address)            ? normal_map
-                   : machine_.summed_height_table.covers(address) ? summed_height_table
-                                                                  : displacement_map;
+    const auto within = [&](const datapath::TableLayout& table) { return address - table.base < table.bytes(); };
+    auto& socket = within(machine_.registers().normal_map)            ? normal_map
+                   : within(machine_.registers().summed_height_table) ? summed_height_table
+                                                                      : displacement_map;
     std::vector<unsigned char> row(bytes, bytes + count);
     tlm::tlm_generic_payload payload;
     payload.set_command(tlm::TLM_WRITE_COMMAND);

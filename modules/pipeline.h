@@ -102,6 +102,7 @@ class Pipeline : public sc_core::sc_module {
     const std::vector<TableCache*>& caches() const { return caches_; }
 
     Transport transport() const { return transport_; }
+    const datapath::Registers& registers() const { return registers_; }
 
     /// Items are held back at random.
     bool random_stalls() const { return random_stalls_; }

@@ -26,7 +26,6 @@ class TableMemory : public MemoryServer {
     TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock, const datapath::TableLayout& layout,
                 const MemoryTiming& timing, const StallParameters& stalls, Channel* off_chip = nullptr);
 
-    bool covers(std::uint64_t address) const { return storage_.covers(address, 1); }
     /// Between runs: the table's columns from now on. Its base, the size of its entries and the memory's capacity stay.
     void lay_out(std::uint32_t columns) { ports_.lay_out(columns); }
 

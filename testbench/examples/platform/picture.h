@@ -23,10 +23,10 @@ class Picture {
     void draw(const tessera_finished_triangle& triangle, int screen_fraction) {
         std::array<double, 3> x, y;
         for (std::size_t k = 0; k < 3; ++k) {
-            if ((triangle.vertex[k].light & 256u) == 0)
+            if ((triangle.vertices[k].light & 256u) == 0)
                 return;  // not in front of the near plane
-            x[k] = std::ldexp(triangle.vertex[k].x, -screen_fraction);
-            y[k] = std::ldexp(triangle.vertex[k].y, -screen_fraction);
+            x[k] = std::ldexp(triangle.vertices[k].x, -screen_fraction);
+            y[k] = std::ldexp(triangle.vertices[k].y, -screen_fraction);
         }
         const double area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
         const auto [left, right] = std::minmax_element(x.begin(), x.end());
@@ -58,8 +58,8 @@ class Picture {
     void shade(int column, int row, const std::array<double, 3>& weight, const tessera_finished_triangle& triangle) {
         double depth = 0, light = 0;
         for (std::size_t k = 0; k < 3; ++k) {
-            depth += weight[k] * triangle.vertex[k].w;
-            light += weight[k] * (triangle.vertex[k].light & 255u);
+            depth += weight[k] * triangle.vertices[k].w;
+            light += weight[k] * (triangle.vertices[k].light & 255u);
         }
         const auto place = static_cast<std::size_t>(height_ - 1 - row) * static_cast<std::size_t>(width_) +
                            static_cast<std::size_t>(column);
