@@ -63,8 +63,6 @@ Device::Device(const sc_core::sc_module_name& name, const datapath::Registers& i
     SC_THREAD(run_frames);
     SC_THREAD(write_records);
     SC_METHOD(reset_changed);
-    dont_initialize();
-    sensitive << reset;
     SC_METHOD(drive_interrupt);
     sensitive << interrupt_changed_;
 }
@@ -263,6 +261,9 @@ void Device::reset_registers() {
 }
 
 void Device::reset_changed() {
+    if (reset.size() == 0)
+        return;  // without static sensitivity: never called again
+    next_trigger(reset->value_changed_event());
     if (reset_held())
         begin_reset();
 }
