@@ -1,5 +1,6 @@
+#include "testbench/job/job_paths.h"
+#include "testbench/job/read_job.h"
 #include "testbench/tests/modules/device/bench.h"
-
 #include "testbench/tests/support/case_table.h"
 
 // The device writes the triangles that the testbench's rasteriser takes.
@@ -31,8 +32,7 @@ const char* const narrow_and_codes =
     "formats.displacement_bits=5 formats.summed_height_bits=19 hardware.one_texel_from_map=true "
     "hardware.queue_capacity=8";
 
-void same_as_testbench(const Row& row) {
-    const MachineSetup setup = setup_of(small_job(row.timed, row.settings));
+void same_as_testbench(const Row& row, const MachineSetup& setup) {
     if (row.quantum_ns > 0)
         tlm::tlm_global_quantum::instance().set(sc_core::sc_time(row.quantum_ns, sc_core::SC_NS));
     Reference reference("reference", setup);
@@ -98,6 +98,27 @@ const CaseTable<Row> same{
         {"timed, narrow formats, more in memory, spilling, codes in vertices", narrow_and_codes, true, 100, false, 0,
          64, true},
     },
-    same_as_testbench};
+    [](const Row& row) { same_as_testbench(row, setup_of(small_job(row.timed, row.settings))); }};
+
+const CaseTable<Row> examples{"the device writes the triangles of an example job: ",
+                              {
+                                  {"half_donut, functional", "half_donut", false, 5000},
+                                  {"half_donut, timed", "half_donut", true, 5000},
+                                  {"crater_lake_24, functional", "crater_lake_24", false, 5000},
+                                  {"crater_lake_24, timed", "crater_lake_24", true, 5000},
+                                  {"crater_lake_704, functional", "crater_lake_704", false, 5000},
+                                  {"crater_lake_704, timed", "crater_lake_704", true, 5000},
+                                  {"head, functional", "head", false, 5000},
+                                  {"head, timed", "head", true, 5000},
+                                  {"teapot, functional", "teapot", false, 5000},
+                                  {"teapot, timed", "teapot", true, 5000},
+                              },
+                              [](const Row& row) {
+                                  Job job =
+                                      read_job(TESSERA_SOURCE_DIR "/testbench/examples/jobs/" + row.settings + ".toml");
+                                  resolve_paths(job, {});
+                                  job.mode = row.timed ? Mode::timed : Mode::functional;
+                                  same_as_testbench(row, setup_of(job));
+                              }};
 
 }  // namespace
