@@ -53,7 +53,10 @@ class Faults {
             texts.push_back(fmt::format(format, std::forward<Args>(args)...));
     }
     void range(const char* name, double value, double least, double most) {
-        unless(value >= least && value <= most, "`{}` = {}: must be {} to {}", name, value, least, most);
+        if (is_automatic(value))
+            texts.push_back(fmt::format("`{}` is not set, or not a number: set it", name));
+        else
+            unless(value >= least && value <= most, "`{}` = {}: must be {} to {}", name, value, least, most);
     }
 
     std::vector<std::string> texts;
@@ -113,7 +116,7 @@ void check_formats(const FormatSettings& formats, const TestSettings& tests, Fau
 /// A coordinate or direction that is set and finite.
 void check_vector(const char* name, const Vector& v, Faults& faults) {
     faults.unless(std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]),
-                  "`{}` = [{}, {}, {}]: set three numbers", name, v[0], v[1], v[2]);
+                  "`{}` is not set, or not finite: set three numbers", name);
 }
 
 void check_ranges(const SceneSettings& settings, Faults& faults) {

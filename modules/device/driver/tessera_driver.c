@@ -15,7 +15,12 @@ static int read_register(struct tessera_driver* driver, uint32_t offset, uint32_
 }
 
 static int write_register(struct tessera_driver* driver, uint32_t offset, uint32_t value) {
-    return driver->platform.write32(driver->platform.context, offset, value) == 0 ? TESSERA_OK : TESSERA_BUS;
+    uint32_t status = 0;
+    if (driver->platform.write32(driver->platform.context, offset, value) == 0)
+        return TESSERA_OK;
+    return read_register(driver, TESSERA_STATUS, &status) == TESSERA_OK && (status & TESSERA_STATUS_BUSY) != 0
+               ? TESSERA_BUSY
+               : TESSERA_BUS;
 }
 
 static int write_long(struct tessera_driver* driver, uint32_t offset, uint64_t value) {
@@ -49,8 +54,10 @@ int tessera_init(struct tessera_driver* driver, const struct tessera_platform* p
 int tessera_reset(struct tessera_driver* driver, uint32_t polls) {
     uint32_t status = 0;
     const int result = write_register(driver, TESSERA_CONTROL, TESSERA_CONTROL_RESET);
+    if (result != TESSERA_OK)
+        return result;
     driver->ring_size = driver->ring_place = driver->read_index = 0;
-    return result != TESSERA_OK ? result : poll(driver, TESSERA_STATUS_BUSY, polls, &status);
+    return poll(driver, TESSERA_STATUS_BUSY, polls, &status);
 }
 
 int tessera_set(struct tessera_driver* driver, enum tessera_register number, int64_t value) {
@@ -102,18 +109,23 @@ int tessera_set_triangles(struct tessera_driver* driver, uint64_t address, uint3
 }
 
 int tessera_set_ring(struct tessera_driver* driver, uint64_t address, uint32_t records) {
-    const int result = write_long(driver, TESSERA_RING_ADDRESS, address);
-    driver->ring_address = address;
-    driver->ring_size = records;
-    return result != TESSERA_OK ? result : write_register(driver, TESSERA_RING_SIZE, records);
+    int result = write_long(driver, TESSERA_RING_ADDRESS, address);
+    if (result == TESSERA_OK)
+        result = write_register(driver, TESSERA_RING_SIZE, records);
+    if (result == TESSERA_OK) {
+        driver->ring_address = address;
+        driver->ring_size = records;
+    }
+    return result;
 }
 
 int tessera_start(struct tessera_driver* driver) {
     uint32_t status = 0;
     int result = write_register(driver, TESSERA_CONTROL, TESSERA_CONTROL_START);
+    if (result != TESSERA_OK)
+        return result;
     driver->ring_place = driver->read_index = 0;
-    if (result == TESSERA_OK)
-        result = read_register(driver, TESSERA_STATUS, &status);
+    result = read_register(driver, TESSERA_STATUS, &status);
     if (result == TESSERA_OK && (status & TESSERA_STATUS_ERROR) != 0)
         result = tessera_last_error(driver, NULL);
     return result;
@@ -182,9 +194,9 @@ int tessera_last_error(struct tessera_driver* driver, uint64_t* address) {
 
 const char* tessera_text(int result) {
     static const char* const own[] = {"no error", "the bus answered by an error", "no such device", "still busy",
-                                      "a read-only register", "no such register"};
+                                      "a read-only register", "no such register", "refused: a frame, or a reset, is under way"};
     static const char* const of_device[TESSERA_ERRORS] = {TESSERA_ERROR_TEXTS};
     if (result > 0 && result < TESSERA_ERRORS)
         return of_device[result];
-    return result <= 0 && result >= TESSERA_NO_REGISTER ? own[-result] : "unknown error";
+    return result <= 0 && result >= TESSERA_BUSY ? own[-result] : "unknown error";
 }

@@ -17,7 +17,7 @@ struct tessera_platform {
     int (*read32)(void* context, uint32_t offset, uint32_t* value); /* of the device's registers */
     int (*write32)(void* context, uint32_t offset, uint32_t value);
     int (*read_memory)(void* context, uint64_t address, unsigned char* bytes, size_t count);
-    void (*pause)(void* context); /* between two polls: waits for a while, or for the interrupt; may be null */
+    void (*pause)(void* context); /* after a poll that found the device busy: waits for a while; may be null */
 };
 
 struct tessera_driver {
@@ -31,11 +31,12 @@ struct tessera_driver {
 /* Results. A positive one is the device's error, enum tessera_error. */
 enum tessera_result {
     TESSERA_OK = 0,
-    TESSERA_BUS = -1,        /* the bus, or the device, answered an access by an error */
-    TESSERA_NO_DEVICE = -2,  /* no such device, or a register map of another major version */
-    TESSERA_TIMEOUT = -3,    /* still busy after all polls */
-    TESSERA_READ_ONLY = -4,  /* such a register cannot be set */
-    TESSERA_NO_REGISTER = -5 /* there is none of that number */
+    TESSERA_BUS = -1,         /* the bus, or the device, answered an access by an error */
+    TESSERA_NO_DEVICE = -2,   /* no such device, or a register map of another major version */
+    TESSERA_TIMEOUT = -3,     /* still busy after all polls */
+    TESSERA_READ_ONLY = -4,   /* such a register cannot be set */
+    TESSERA_NO_REGISTER = -5, /* there is none of that number */
+    TESSERA_BUSY = -6         /* refused: a frame, or a reset, is under way */
 };
 
 /* Identifies the device. To be called first; it changes nothing. */

@@ -6,6 +6,7 @@
 
 #include "bus.h"
 #include "modules/device/device.h"
+#include "modules/device/program_registers.h"
 #include "modules/device/records.h"
 #include "picture.h"
 #include "processor.h"
@@ -33,6 +34,7 @@ tessera::Scene scene_of(int frame, int frames) {
             scene.map.push_back(static_cast<float>(std::exp(-(std::pow(x - 31.5, 2) + std::pow(y - 31.5, 2)) / 200)));
     }
     tessera::SceneSettings& settings = scene.settings;
+    settings.formats.summed_height_bits = 32;  // of the device: not to be chosen for each frame
     settings.displacement.scale = 0.4 * (frame + 1) / frames;
     const double angle = 0.5 * frame / frames;
     settings.camera.eye = {0.5 + 1.6 * std::sin(angle), 0.5 - 1.6 * std::cos(angle), 1.2};
@@ -64,23 +66,10 @@ Places write_frame(const tessera::PreparedScene& scene, Memory& memory) {
     return {tables, triangles, next};
 }
 
-/// The machine's registers, word by word.
-int write_registers(const tessera_platform& platform, const tessera::datapath::Registers& registers) {
-    int failed = 0;
-    for (const tessera::DeviceRegister& r : tessera::register_map(registers, {})) {
-        if (r.offset < tessera::offset::machine || r.access != tessera::RegisterAccess::read_write)
-            continue;
-        for (int word = 0; word < r.words; ++word)
-            failed |= platform.write32(platform.context, r.offset + 4 * static_cast<std::uint32_t>(word),
-                                       static_cast<std::uint32_t>(r.reset >> 32 * word));
-    }
-    return failed;
-}
-
 /// Draws a frame and reads its triangles. Returns how many; negative: the device's error.
 int draw(tessera_driver& driver, const tessera::PreparedScene& scene, const Places& places, Picture& picture) {
     const tessera::datapath::Registers& r = scene.registers;
-    int result = write_registers(driver.platform, r) != 0 ? TESSERA_BUS : TESSERA_OK;
+    int result = tessera::program_registers(driver.platform, r);
     tessera_set_tables(&driver, places.tables + r.displacement_map.base, places.tables + r.normal_map.base,
                        places.tables + r.summed_height_table.base);
     tessera_fetch_tables(&driver, 7);
@@ -90,7 +79,7 @@ int draw(tessera_driver& driver, const tessera::PreparedScene& scene, const Plac
     if (result == TESSERA_OK)
         result = tessera_start(&driver);
     if (result == TESSERA_OK)
-        result = tessera_wait(&driver, 2);
+        result = tessera_wait(&driver, ~0u);
     std::uint32_t interrupts = 0, count = 0;
     tessera_acknowledge(&driver, &interrupts);
     tessera_ring_count(&driver, &count);
@@ -151,5 +140,7 @@ int sc_main(int argc, char** argv) {
         }
     };
     sc_core::sc_start();
+    if (device.busy())
+        std::fprintf(stderr, "platform: the simulation ended in the middle of a frame: is the ring full?\n");
     return drawn == frames ? 0 : 1;
 }

@@ -38,10 +38,11 @@ class Processor : public sc_core::sc_module {
             time_.sync();
         return payload.is_response_ok() ? 0 : 1;
     }
+    /// Or for 10 us: no interrupt says that the ring is full.
     void wait_for_interrupt() {
         time_.sync();
         if (!interrupt.read())
-            wait(interrupt.posedge_event());
+            wait(sc_core::sc_time(10, sc_core::SC_US), interrupt.posedge_event());
     }
 
     /// What the driver needs to reach the device.

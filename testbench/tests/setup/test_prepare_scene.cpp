@@ -107,17 +107,18 @@ TEST_CASE("a scene that cannot be is refused, with the value and what to do") {
     };
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     const Case cases[] = {
-        {"`displacement.scale` = nan: must be", [](Scene& s) { s.settings.displacement = {}; }},
-        {"`camera.eye` = [nan, nan, nan]: set three numbers",
+        {"`displacement.scale` is not set", [](Scene& s) { s.settings.displacement = {}; }},
+        {"`camera.eye` is not set, or not finite: set three numbers",
          [](Scene& s) { s.settings.camera.eye = automatic_vector; }},
-        {"`camera.near_plane` = nan: must be", [](Scene& s) { s.settings.camera.near_plane = automatic; }},
+        {"`camera.near_plane` is not set", [](Scene& s) { s.settings.camera.near_plane = automatic; }},
         {"are the same point", [](Scene& s) { s.settings.camera.target = s.settings.camera.eye; }},
         {"is parallel to the view direction",
          [](Scene& s) {
              s.settings.camera.up = {0, 2, -1.5};
          }},
         {"`formats.position_bits` = 40: must be 8 to 32", [](Scene& s) { s.settings.formats.position_bits = 40; }},
-        {"`tests.normal_threshold` = nan", [](Scene& s) { s.settings.tests.normal_threshold = nan; }},
+        {"`tests.normal_threshold` is not set, or not a number",
+         [](Scene& s) { s.settings.tests.normal_threshold = nan; }},
         {"`tests.generation_limit` = 9, but `formats.generation_bits` = 3",
          [](Scene& s) {
              s.settings.formats.generation_bits = 3;

@@ -1,5 +1,5 @@
+#include "modules/device/program_registers.h"
 #include "testbench/tests/modules/device/bench.h"
-
 #include "testbench/tests/support/case_table.h"
 
 // What software does wrong: refused accesses, refused frames, stopped frames.
@@ -297,7 +297,7 @@ TEST_CASE("while a frame is under way only reset, interrupts and the read index 
             const bool may = r.while_busy;
             CHECK((cpu.write32(Router::registers + r.offset, r.offset == offset::control ? 0 : word) == 0) == may);
         }
-        CHECK(tessera_start(&driver) == TESSERA_BUS);
+        CHECK(tessera_start(&driver) == TESSERA_BUSY);
         CHECK(bench.devices[0]->busy());
         cpu.pass(sc_core::sc_time(100, sc_core::SC_US));
         std::uint32_t count = 0;
@@ -311,6 +311,57 @@ TEST_CASE("while a frame is under way only reset, interrupts and the read index 
         REQUIRE(cpu.read32(Router::registers + offset::ring_write_index, count) == 0);
         CHECK(count == 13);
         CHECK(tessera_reset(&driver, 10000) == TESSERA_OK);
+    };
+    bench.run();
+}
+
+TEST_CASE("what the driver is refused in the middle of a frame leaves it as it was: the frame's triangles are read") {
+    const MachineSetup setup = setup_for({"", true});
+    Reference reference("reference", setup);
+    Bench bench({formats_of(setup)}, design_of(setup));
+    const FramePlaces places = bench.place(setup, 16);
+    LitKeys found;
+    bench.cpu.program = [&](Processor&) {
+        tessera_driver& driver = bench.init();
+        const tessera_platform platform = bench.contexts[0].platform();
+        CHECK(program_registers(platform, setup.registers) == TESSERA_OK);
+        set_places(driver, places);
+        REQUIRE(tessera_start(&driver) == TESSERA_OK);
+        int result = TESSERA_TIMEOUT;
+        for (unsigned k = 0; result == TESSERA_TIMEOUT; ++k) {
+            result = tessera_wait(&driver, 1);
+            if (k == 3 && result == TESSERA_TIMEOUT) {
+                CHECK(tessera_start(&driver) == TESSERA_BUSY);
+                CHECK(tessera_set_ring(&driver, places.ring, 7) == TESSERA_BUSY);
+                CHECK(program_registers(platform, setup.registers) == TESSERA_BUS);
+            }
+            pop_all(driver, found);
+        }
+        CHECK(result == TESSERA_OK);
+    };
+    bench.run();
+    CHECK(found.size() > 100);
+    expect_same(found, reference.keys);
+}
+
+TEST_CASE("registers of other formats than the device's are not written") {
+    const MachineSetup setup = setup_for({"", false});
+    Bench bench({formats_of(setup)}, design_of(setup));
+    bench.cpu.program = [&](Processor&) {
+        bench.init();
+        const tessera_platform platform = bench.contexts[0].platform();
+        for (const char* const other :
+             {"formats.summed_height_bits=40", "formats.displacement_bits=8", "formats.position_fraction=15",
+              "formats.screen_fraction=7", "hardware.one_texel_from_map=true", "hardware.work=family"}) {
+            INFO(other);
+            CHECK(program_registers(platform, setup_for({"", false}, other).registers) == TESSERA_NO_DEVICE);
+        }
+        std::int64_t width = 1;
+        CHECK(tessera_get(&bench.drivers[0], TESSERA_REGISTER_MAP_WIDTH, &width) == TESSERA_OK);
+        CHECK(width == formats_of(setup).map.width);
+        CHECK(program_registers(platform, setup.registers) == TESSERA_OK);
+        CHECK(tessera_get(&bench.drivers[0], TESSERA_REGISTER_MAP_WIDTH, &width) == TESSERA_OK);
+        CHECK(width == setup.registers.map.width);
     };
     bench.run();
 }

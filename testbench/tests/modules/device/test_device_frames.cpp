@@ -139,7 +139,7 @@ const CaseTable<Mode> resets{"a reset at any moment of a frame, and the next fra
                                          } else {
                                              bench.reset.write(true);
                                              cpu.pass(sc_core::sc_time(10, sc_core::SC_US));
-                                             CHECK(tessera_start(&driver) == TESSERA_BUS);  // held
+                                             CHECK(tessera_start(&driver) < TESSERA_OK);  // held
                                              bench.reset.write(false);
                                              CHECK(tessera_wait(&driver, 10000) == TESSERA_OK);
                                          }
