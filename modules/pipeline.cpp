@@ -41,6 +41,18 @@ UnitFactory& standard_units() {
     return factory;
 }
 
+void check(const std::string& name, const datapath::Registers& registers, const Design& design) {
+    if ((design.work == Work::family) != registers.formats.families)
+        SC_REPORT_ERROR("tessera/pipeline",
+                        (name + ": Design::work and Formats::families disagree: set both, or neither").c_str());
+    const bool lanes = design.work == Work::family && design.test_order == TestOrder::cheap_first;
+    if (!lanes && (design.edge_lanes != 1 || design.normal_tests != 1))
+        SC_REPORT_ERROR("tessera/pipeline",
+                        (name + ": Design::edge_lanes and normal_tests other than 1 need Work::family " +
+                         "and TestOrder::cheap_first")
+                            .c_str());
+}
+
 }  // namespace
 
 Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Registers& registers, const Design& design,
@@ -68,10 +80,7 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
       registers_(registers),
       transport_(design.transport),
       random_stalls_(design.timing.stalls.per_mille > 0) {
-    if ((design.work == Work::family) != registers.formats.families)
-        SC_REPORT_ERROR("tessera/pipeline", (std::string(this->name()) +
-                                             ": Design::work and Formats::families disagree: set both, or neither")
-                                                .c_str());
+    check(this->name(), registers, design);
     UnitFactory& units = factory == nullptr ? standard_units() : *factory;
     tessellation_tests.init(design.tests_units, [&](const char* unit_name, std::size_t number) {
         return new TessellationTests(unit_name, {clock, registers, design}, units, static_cast<unsigned>(number));

@@ -168,14 +168,19 @@ TEST_CASE("drained: a machine in a deadlock is not") {
     CHECK(watch.notified == 0);
 }
 
-TEST_CASE("a design of families on formats of triangles is refused") {
+TEST_CASE("a design whose parts disagree is refused") {
     MachineSetup setup = setup_of(one_quad_job());
+    const auto message = [&] {
+        try {
+            const Pipeline pipeline("tessera", setup.registers, setup.design);
+        } catch (const sc_core::sc_report& report) {
+            return std::string(report.get_msg());
+        }
+        return std::string();
+    };
     setup.design.work = Work::family;
-    std::string message;
-    try {
-        const Pipeline pipeline("tessera", setup.registers, setup.design);
-    } catch (const sc_core::sc_report& report) {
-        message = report.get_msg();
-    }
-    CHECK(message == "tessera: Design::work and Formats::families disagree: set both, or neither");
+    CHECK(message() == "tessera: Design::work and Formats::families disagree: set both, or neither");
+    setup.registers.formats.families = true;
+    setup.design.edge_lanes = 3;
+    CHECK_THAT(message(), Contains("need Work::family and TestOrder::cheap_first"));
 }
