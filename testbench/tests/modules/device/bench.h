@@ -205,6 +205,13 @@ inline Job small_job(bool timed, const std::string& settings = "") {
                                  settings);
 }
 
+/// The formats alone: what a device is built with before a frame sets its registers.
+inline datapath::Registers formats_of(const MachineSetup& setup) {
+    datapath::Registers registers;
+    registers.formats = setup.registers.formats;
+    return registers;
+}
+
 inline DeviceDesign design_of(const MachineSetup& setup) {
     DeviceDesign design;
     design.machine = setup.design;

@@ -39,8 +39,7 @@ void same_as_testbench(const Row& row, const MachineSetup& setup) {
     DeviceDesign design = design_of(setup);
     design.burst_bytes = row.burst_bytes;
     // what the registers hold at first is not what the frame needs
-    datapath::Registers initial;
-    initial.formats = setup.registers.formats;
+    const datapath::Registers initial = formats_of(setup);
     Bench bench({initial}, design, row.approximately_timed);
     bench.cpu.approximately_timed = row.approximately_timed;
     const FramePlaces places = bench.place(setup, row.ring_size, row.beyond);

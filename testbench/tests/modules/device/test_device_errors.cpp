@@ -18,12 +18,6 @@ MachineSetup setup_for(const Mode& mode, const std::string& settings = "") {
     return setup_of(small_job(mode.timed, settings));
 }
 
-datapath::Registers formats_of(const MachineSetup& setup) {
-    datapath::Registers registers;
-    registers.formats = setup.registers.formats;
-    return registers;
-}
-
 /// A register of a frame that is otherwise right, its value, and what start says.
 struct Refusal {
     tessera_register number;

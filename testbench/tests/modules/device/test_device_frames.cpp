@@ -31,8 +31,7 @@ struct Frames {
             setups.push_back(setup_of(small_job(mode.timed, mode.settings + ' ' + its)));
         for (std::size_t k = 0; k < setups.size(); ++k)
             references.push_back(std::make_unique<Reference>("reference_" + std::to_string(k), setups[k]));
-        datapath::Registers initial;
-        initial.formats = setups[0].registers.formats;
+        const datapath::Registers initial = formats_of(setups[0]);
         bench = std::make_unique<Bench>(std::vector(devices, initial), design_of(setups[0]));
         for (const MachineSetup& setup : setups)
             places.push_back(bench->place(setup, ring_size));
@@ -120,8 +119,7 @@ const CaseTable<Mode> resets{"a reset at any moment of a frame, and the next fra
                              [](const Mode& mode) {
                                  Frames frames(mode, {""}, 1, 20);
                                  Bench& bench = *frames.bench;
-                                 datapath::Registers initial;
-                                 initial.formats = frames.setups[0].registers.formats;
+                                 const datapath::Registers initial = formats_of(frames.setups[0]);
                                  std::vector<LitKeys> found;
                                  bench.cpu.program = [&](Processor& cpu) {
                                      tessera_driver& driver = bench.init();

@@ -48,12 +48,6 @@ DeviceDesign packed_design(const MachineSetup& setup) {
     return design;
 }
 
-datapath::Registers formats_of(const MachineSetup& setup) {
-    datapath::Registers registers;
-    registers.formats = setup.registers.formats;
-    return registers;
-}
-
 /// Words in which most bits are zero, or ones, or anything.
 std::uint32_t random_word(Dice& dice) {
     const std::uint64_t word = dice.any();

@@ -13,8 +13,7 @@ void expect_frames(double resolution, sc_core::sc_time_unit unit) {
     sc_core::sc_set_time_resolution(resolution, unit);
     const MachineSetup setup = setup_of(small_job(true, "tests.generation_limit=3"));
     Reference reference("reference", setup);
-    datapath::Registers initial;
-    initial.formats = setup.registers.formats;
+    const datapath::Registers initial = formats_of(setup);
     Bench bench({initial}, design_of(setup));
     const FramePlaces places = bench.place(setup, 30);
     LitKeys found;
