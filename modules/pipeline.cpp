@@ -58,7 +58,10 @@ void check(const std::string& name, const datapath::Registers& registers, const 
 Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Registers& registers, const Design& design,
                    UnitFactory* factory)
     : sc_module(name),
-      clock("clock", clock_period(this->name(), design.timing.cycle_picoseconds)),
+      clock("clock",
+            design.clock != nullptr ? design.clock->period()
+                                    : clock_period(this->name(), design.timing.cycle_picoseconds),
+            design.clock != nullptr ? first_rising_edge(*design.clock) : sc_core::SC_ZERO_TIME),
       made_(make({clock, registers, design}, factory == nullptr ? standard_units() : *factory)),
       tessellation_tests("tessellation_tests"),
       off_chip_memory("off_chip_memory", clock, design.timing.off_chip_memory, design.timing.stalls,

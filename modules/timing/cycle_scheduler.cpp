@@ -20,11 +20,17 @@ sc_core::sc_time clock_period(const char* instance, unsigned picoseconds) {
     return sc_core::sc_time(picoseconds, sc_core::SC_PS);
 }
 
-CycleScheduler::CycleScheduler(const sc_core::sc_module_name& name, const sc_core::sc_time& period)
-    : sc_module(name), period_time_(period), period_(period.value()) {
+sc_core::sc_time first_rising_edge(const sc_core::sc_clock& clock) {
+    return clock.posedge_first() ? clock.start_time()
+                                 : clock.start_time() + clock.period() - clock.period() * clock.duty_cycle();
+}
+
+CycleScheduler::CycleScheduler(const sc_core::sc_module_name& name, const sc_core::sc_time& period,
+                               const sc_core::sc_time& first_edge)
+    : sc_module(name), period_time_(period), first_edge_(first_edge), period_(period.value()) {
     if (period_ == 0)
         SC_REPORT_ERROR("tessera/clock", "the clock's period is zero");
-    most_cycles_ = UINT64_MAX / period_;
+    most_cycles_ = (UINT64_MAX - first_edge.value()) / period_;
     for (std::size_t cycles = 0; cycles < delays_.size(); ++cycles)
         delays_[cycles] = sc_core::sc_time::from_value(cycles * period_);
     units_.reserve(most_units);
@@ -64,7 +70,7 @@ void CycleScheduler::wake_from_outside(const CycleProcess& unit, std::uint64_t c
     } else if (!scheduled_ || cycle < next_tick_) {
         scheduled_ = true;
         next_tick_ = cycle;
-        tick_event_.notify(sc_core::sc_time::from_value(cycle * period_) - sc_core::sc_time_stamp());
+        tick_event_.notify(first_edge_ + sc_core::sc_time::from_value(cycle * period_) - sc_core::sc_time_stamp());
     }
 }
 

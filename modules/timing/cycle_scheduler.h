@@ -89,6 +89,8 @@ class CycleObserver {
 /// A clock's period. SC_ERROR, naming the instance, if it is no multiple of SystemC's time resolution.
 sc_core::sc_time clock_period(const char* instance, unsigned picoseconds);
 
+sc_core::sc_time first_rising_edge(const sc_core::sc_clock& clock);
+
 /// The clock of timed mode: calls the processes scheduled for a cycle, and skips cycles without any.
 ///
 /// Within a cycle processes are called in the order of attachment: attach downstream units first, so that a place
@@ -98,7 +100,9 @@ sc_core::sc_time clock_period(const char* instance, unsigned picoseconds);
 /// Capacity: 64 processes. Nothing scheduled: the run is finished, or in a deadlock.
 class CycleScheduler : public sc_core::sc_module {
   public:
-    CycleScheduler(const sc_core::sc_module_name& name, const sc_core::sc_time& period);
+    /// first_edge: when cycle 0 begins.
+    CycleScheduler(const sc_core::sc_module_name& name, const sc_core::sc_time& period,
+                   const sc_core::sc_time& first_edge = sc_core::SC_ZERO_TIME);
 
     /// SC_ERROR beyond the capacity.
     void attach(CycleProcess& unit);
@@ -193,9 +197,13 @@ class CycleScheduler : public sc_core::sc_module {
     void wake_from_outside(const CycleProcess& unit, std::uint64_t cycle);
     bool find_next(std::uint64_t& next) const;
     void end_time();
-    std::uint64_t first_cycle_not_before_now() const { return cycles(sc_core::sc_time_stamp()); }
+    std::uint64_t first_cycle_not_before_now() const {
+        const sc_core::sc_time& now = sc_core::sc_time_stamp();
+        return now <= first_edge_ ? 0 : cycles(now - first_edge_);
+    }
 
     sc_core::sc_time period_time_;
+    sc_core::sc_time first_edge_;
     std::uint64_t period_;
     std::uint64_t most_cycles_ = 0;            // that begin within SystemC's time
     std::array<sc_core::sc_time, 16> delays_;  // of so many cycles: sc_time is slow to make

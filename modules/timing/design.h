@@ -42,6 +42,8 @@ struct QueueDesign {
 struct Design {
     Transport transport = Transport::blocking;
     Timing timing;
+    /// Of the platform: the machine's cycles begin with its rising edges. Null: every timing.cycle_picoseconds, from 0 on.
+    const sc_core::sc_clock* clock = nullptr;
     QueueDesign queue;
     Work work = Work::triangle;
     unsigned tests_units = 1;  ///< Tessellation Tests units: 1 or 3

@@ -28,6 +28,20 @@ void expect_drained_in_last_cycle(const NamedMachine& machine) {
           machine.pipeline.clock.period() * static_cast<double>(machine.pipeline.clock.last_cycle()));
 }
 
+struct EdgeCounter : sc_core::sc_module {
+    std::uint64_t edges = 0;
+
+    EdgeCounter(const sc_core::sc_module_name& name, const sc_core::sc_clock& clock) : sc_module(name) {
+        SC_HAS_PROCESS(EdgeCounter);
+        SC_METHOD(count);
+        dont_initialize();
+        sensitive << clock.posedge_event();
+    }
+
+  private:
+    void count() { ++edges; }
+};
+
 /// A queue that fills up; `overflow`: what happens then.
 MachineSetup full_queue_setup(const std::string& overflow) {
     return setup_of(with_settings(timed_job(), "hardware.queue_capacity=8 hardware.queue_overflow=" + overflow));
@@ -97,4 +111,28 @@ TEST_CASE("two machines: one whose queue overflows halts alone, one whose queue 
     expect_bare_mesh(sound);
     CHECK(sound.cycles() == alone.cycles);
     expect_drained_in_last_cycle(sound);
+}
+
+TEST_CASE("two machines: their cycles begin with the rising edges of clocks of the platform") {
+    MachineSetup first_setup = setup_of(timed_job()), second_setup = first_setup;
+    const sc_core::sc_clock rises("rises", 3, sc_core::SC_NS, 0.5, 1, sc_core::SC_NS, true);
+    const sc_core::sc_clock falls("falls", 7, sc_core::SC_NS, 0.3, 11, sc_core::SC_NS, false);
+    first_setup.design.clock = &rises;
+    second_setup.design.clock = &falls;
+    NamedMachine first("first", first_setup), second("second", second_setup);
+    const EdgeCounter first_edges("first_edges", rises), second_edges("second_edges", falls);
+    for (const auto& [machine, edges] : {std::pair{&first, &first_edges}, {&second, &second_edges}}) {
+        while (machine->drained.empty())
+            sc_core::sc_start(machine->pipeline.clock.period());
+        CHECK(machine->cycles() == default_result.cycles);
+        expect_bare_mesh(*machine);
+        const sc_core::sc_time since = sc_core::sc_time_stamp() - machine->drained[0];
+        CHECK(edges->edges - static_cast<std::uint64_t>(since / machine->pipeline.clock.period()) ==
+              default_result.cycles);
+    }
+    CHECK(first.drained[0] ==
+          sc_core::sc_time(1 + 3.0 * static_cast<double>(default_result.cycles - 1), sc_core::SC_NS));
+    // The first falling edge at 11 ns, low for 0.7 of the period.
+    CHECK(second.drained[0] ==
+          sc_core::sc_time(11 + 4.9 + 7.0 * static_cast<double>(default_result.cycles - 1), sc_core::SC_NS));
 }

@@ -36,8 +36,9 @@ class Checkout {
 
     ProgramEnd run(const std::string& command) const {
         const std::string path = (root() / "tools").string() + ":" + std::getenv("PATH");
-        return run_program({"bash", "-euo", "pipefail", "-c", command}, root(), {},
-                           {{"PATH", path}, {"HOME", root().string()}, {"DISPLAY", ":0"}, {"TESSERA_SKIP_INSTALL", "1"}});
+        return run_program(
+            {"bash", "-euo", "pipefail", "-c", command}, root(), {},
+            {{"PATH", path}, {"HOME", root().string()}, {"DISPLAY", ":0"}, {"TESSERA_SKIP_INSTALL", "1"}});
     }
 
   private:
