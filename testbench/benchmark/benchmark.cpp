@@ -5,15 +5,20 @@
 #include <vector>
 
 #include "golden/golden_model.h"
+#include "modules/device/device.h"
+#include "modules/device/program_registers.h"
+#include "modules/device/records.h"
 #include "testbench/check/conformance/golden_inputs.h"
+#include "testbench/examples/platform/bus.h"
+#include "testbench/examples/platform/processor.h"
 #include "testbench/job/design_preset.h"
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/simulation.h"
 
 // One process, one job: half donut 1024 x 1024 on the plane of 18 triangles, about 0.2 million triangles out. Times the
-// golden model, the bare datapath, and functional and timed mode of both machines side by side, in edges evaluated and
-// triangles finished per second.
+// golden model, the bare datapath, functional and timed mode of both machines, and the device on a loosely timed bus, side
+// by side, in edges evaluated and triangles finished per second.
 
 namespace tessera {
 namespace {
@@ -85,6 +90,84 @@ void one_frame(benchmark::State& state, Simulation& simulation) {
         state.counters["cycles"] = benchmark::Counter(static_cast<double>(cycles), benchmark::Counter::kAvgIterations);
 }
 
+/// A processor, a memory, and the machine of functional mode as a device.
+class Platform {
+  public:
+    explicit Platform(const MachineSetup& setup) : device_("device", setup.registers, design_of(setup)) {
+        processor_.bus.bind(router_.from);
+        device_.bus.bind(router_.from);
+        router_.to_device.bind(device_.registers);
+        router_.to_memory.bind(memory_.bus);
+        device_.interrupt.bind(interrupt_);
+        processor_.interrupt.bind(interrupt_);
+        write_tables(setup, [this](std::uint64_t address, const unsigned char* bytes, std::size_t count) {
+            std::copy_n(bytes, count, &memory_.bytes.at(address));
+        });
+        for (std::size_t k = 0; k < setup.base_triangles.size(); ++k)
+            write_base_triangle(setup.base_triangles[k], &memory_.bytes.at(triangles_at + k * base_triangle_bytes));
+        processor_.program = [this, &setup](Processor&) { draw_frames(setup); };
+    }
+
+    /// Returns whether it succeeded. The first frame copies the tables.
+    bool draw_frame() {
+        start_.notify(sc_core::SC_ZERO_TIME);
+        sc_core::sc_start();
+        return result_ == TESSERA_OK;
+    }
+    std::uint32_t triangles() const { return triangles_; }
+    std::uint64_t edges_tested() { return device_.pipeline().edges_tested(); }
+
+  private:
+    static constexpr std::size_t triangles_at = std::size_t{32} << 20, ring_at = std::size_t{33} << 20;
+    static constexpr std::uint32_t ring_records = 400'000;
+
+    static DeviceDesign design_of(const MachineSetup& setup) {
+        DeviceDesign design;
+        design.machine = setup.design;
+        design.largest_map = {setup.registers.map.width, setup.registers.map.height};
+        return design;
+    }
+    void draw_frames(const MachineSetup& setup) {
+        const tessera_platform platform = processor_.platform();
+        const datapath::Registers& r = setup.registers;
+        tessera_driver driver;
+        tessera_init(&driver, &platform);
+        program_registers(platform, r);
+        tessera_set_tables(&driver, r.displacement_map.base, r.normal_map.base, r.summed_height_table.base);
+        tessera_set_triangles(&driver, triangles_at, static_cast<std::uint32_t>(setup.base_triangles.size()));
+        tessera_set_ring(&driver, ring_at, ring_records);
+        tessera_enable_interrupts(&driver, TESSERA_INTERRUPT_DONE);
+        for (std::uint32_t tables = 7;; tables = 0) {
+            wait(start_);
+            tessera_fetch_tables(&driver, tables);
+            result_ = tessera_start(&driver);
+            if (result_ == TESSERA_OK)
+                result_ = tessera_wait(&driver, ~0u);
+            std::uint32_t interrupts = 0;
+            tessera_acknowledge(&driver, &interrupts);
+            tessera_ring_count(&driver, &triangles_);
+        }
+    }
+
+    Device device_;
+    Memory memory_{"memory", ring_at + ring_records* std::size_t{finished_triangle_bytes}};
+    Router router_{"router"};
+    Processor processor_{"processor"};
+    sc_core::sc_signal<bool> interrupt_{"interrupt"};
+    sc_core::sc_event start_{"start"};
+    int result_ = TESSERA_BUSY;
+    std::uint32_t triangles_ = 0;
+};
+
+void device_frame(benchmark::State& state, Platform& platform) {
+    const std::uint64_t before = platform.edges_tested();
+    for (auto _ : state) {
+        if (!platform.draw_frame())
+            state.SkipWithError("the device refused the frame");
+    }
+    report(state, platform.edges_tested() - before, platform.triangles());
+}
+
 MachineSetup in_timed_mode(MachineSetup setup) {
     setup.design.transport = Transport::non_blocking;
     return setup;
@@ -106,7 +189,10 @@ int sc_main(int argc, char** argv) {
     tessera::Simulation modern_simulation(modern_setup, std::uint64_t{1} << 40);
     const tessera::MachineSetup modern_timed_setup = tessera::in_timed_mode(modern_setup);
     tessera::Simulation modern_timed_simulation(modern_timed_setup, std::uint64_t{1} << 40);
+    tlm::tlm_global_quantum::instance().set(sc_core::sc_time(1, sc_core::SC_MS));
+    tessera::Platform platform(setup);
     simulation.run();
+    platform.draw_frame();
     benchmark::RegisterBenchmark("golden_model", [&](benchmark::State& state) {
         tessera::golden_model(state, setup);
     })->Unit(benchmark::kMillisecond);
@@ -115,6 +201,9 @@ int sc_main(int argc, char** argv) {
     })->Unit(benchmark::kMillisecond);
     benchmark::RegisterBenchmark("functional_mode", [&](benchmark::State& state) {
         tessera::one_frame(state, simulation);
+    })->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark("device_functional", [&](benchmark::State& state) {
+        tessera::device_frame(state, platform);
     })->Unit(benchmark::kMillisecond);
     benchmark::RegisterBenchmark("timed_mode", [&](benchmark::State& state) {
         tessera::one_frame(state, timed_simulation);

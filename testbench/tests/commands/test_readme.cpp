@@ -147,6 +147,22 @@ TEST_CASE("every command of the folders' READMEs works, and every file they link
     CHECK(commands > 10);
 }
 
+TEST_CASE("every test that modules/README.md names is there") {
+    std::string sources;
+    for (const auto& entry : fs::recursive_directory_iterator(source_folder() / "testbench/tests")) {
+        if (entry.path().extension() == ".cpp")
+            sources += read_all(entry.path());
+    }
+    const std::string page = read_all(source_folder() / "modules/README.md");
+    const std::regex row(R"(\n\|[^\n]*\| `(\w+ [^`\n]+)` \|(?=\n))");
+    unsigned tests = 0;
+    for (std::sregex_iterator it(page.begin(), page.end(), row), end; it != end; ++it, ++tests) {
+        INFO(it->str());
+        CHECK(sources.find('"' + (*it)[1].str() + '"') != std::string::npos);
+    }
+    CHECK(tests == 11);
+}
+
 TEST_CASE("every script parses") {
     for (const char* const folder : {"scripts", "scripts/checks", ".ci"}) {
         for (const auto& entry : fs::directory_iterator(source_folder() / folder)) {

@@ -36,6 +36,7 @@ struct BusMemory : sc_core::sc_module {
     unsigned writes_outside = 0;
     std::uint64_t failing_from = 1, failing_to = 0;  ///< answers accesses to these addresses by an error
     unsigned reads = 0, writes = 0, longest = 0, across = 0;
+    std::uint64_t bytes_read = 0, bytes_written = 0;
     unsigned burst_bytes = 64;
     sc_core::sc_time longest_delay;  ///< with which it was called
 
@@ -58,6 +59,7 @@ struct BusMemory : sc_core::sc_module {
     void b_transport(int, tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
         const std::uint64_t first = payload.get_address(), length = payload.get_data_length();
         (payload.is_write() ? writes : reads) += 1;
+        (payload.is_write() ? bytes_written : bytes_read) += length;
         longest = std::max(longest, payload.get_data_length());
         across += first / burst_bytes != (first + length - 1) / burst_bytes ? 1u : 0u;
         longest_delay = std::max(longest_delay, delay);

@@ -205,6 +205,23 @@ const CaseTable<Mode> endless{
         expect_same(found, reference.keys);
     }};
 
+const CaseTable<Mode> halted_clock{
+    "a machine whose clock halts ends the frame with its error: ", {{"timed", true}}, [](const Mode& mode) {
+        const MachineSetup setup = setup_for(mode);
+        Bench bench({formats_of(setup)}, design_of(setup));
+        const FramePlaces places = bench.place(setup, 5000);
+        bench.cpu.program = [&](Processor& cpu) {
+            tessera_driver& driver = bench.init();
+            set_machine(driver, setup.registers);
+            set_places(driver, places);
+            REQUIRE(tessera_start(&driver) == TESSERA_OK);
+            cpu.pass(sc_core::sc_time(20, sc_core::SC_US));
+            bench.devices[0]->pipeline().clock.halt();
+            CHECK(tessera_wait(&driver, 1000) == static_cast<int>(DeviceError::machine_stopped));
+        };
+        bench.run();
+    }};
+
 /// An access, and its response.
 struct BusAccess {
     std::string what;

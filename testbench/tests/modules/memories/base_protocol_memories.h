@@ -35,6 +35,7 @@ struct BlockingMemory : sc_core::sc_module {
     Bytes bytes;
     sc_core::sc_time latency;
     unsigned accesses = 0;
+    bool waits = false;  ///< lets the latency pass, instead of annotating it
 
     BlockingMemory(const sc_core::sc_module_name& name, const sc_core::sc_time& its_latency)
         : sc_module(name), latency(its_latency) {
@@ -46,7 +47,10 @@ struct BlockingMemory : sc_core::sc_module {
     void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
         ++accesses;
         bytes.access(payload);
-        delay += latency;
+        if (waits)
+            wait(latency);
+        else
+            delay += latency;
     }
     unsigned transport_dbg(tlm::tlm_generic_payload& payload) { return bytes.access(payload); }
 };

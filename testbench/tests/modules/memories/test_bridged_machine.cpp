@@ -135,6 +135,20 @@ TEST_CASE("bridged machine: functional mode, the same mesh") {
     expect_mesh(machine.monitor.mesh, bare_mesh(setup));
 }
 
+// The host's passes and the queue's then overtake one another.
+TEST_CASE("bridged machine: functional mode, memories that wait, and a watermark above 1: the same mesh") {
+    const MachineSetup setup = setup_of(with_settings({}, "mode=functional hardware.queue_watermark=8"));
+    BridgedMachine machine(setup, [](BaseProtocolBridge& bridge, const std::string& name) {
+        auto memory = std::make_unique<BlockingMemory>((name + "_bus").c_str(), sc_core::sc_time(5, sc_core::SC_NS));
+        memory->waits = true;
+        bridge.to_memory.bind(memory->socket);
+        return memory;
+    });
+    sc_core::sc_start();
+    machine.require_drained();
+    expect_mesh(machine.monitor.mesh, bare_mesh(setup));
+}
+
 TEST_CASE("bridged machine: pipelined memories and a queue that spills") {
     expect_same_cycles(with_settings(full_split_job(3, 3), "hardware.queue_capacity=16 " + every_table("latency", 7)));
 }
