@@ -5,30 +5,10 @@
 
 #include "modules/datapath/parameters.h"
 #include "modules/timing/cycle_scheduler.h"
-#include "modules/timing/test_order.h"
+#include "modules/timing/design_choices.h"
 #include "modules/timing/timing.h"
-#include "modules/timing/work.h"
 
 namespace tessera {
-
-/// How units communicate.
-enum class Transport {
-    blocking,      ///< blocking transport: every result, no cycles (functional mode)
-    non_blocking,  ///< non-blocking transport: the same results, to the cycle (timed mode)
-};
-
-/// The order in which the Triangle Queue outputs its triangles.
-enum class TriangleOrder {
-    fifo,  ///< the paper's: breadth first
-    lifo,  ///< depth first: the queue stays short
-};
-
-/// What a full queue does (timed mode).
-enum class QueueOverflow {
-    spill,  ///< to off-chip memory
-    stall,  ///< holds Tessellation back: a deadlock when the whole pipeline is full
-    error,  ///< halts the clock
-};
 
 struct QueueDesign {
     TriangleOrder order = TriangleOrder::fifo;

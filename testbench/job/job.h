@@ -4,9 +4,8 @@
 #include <filesystem>
 #include <string>
 
-#include "modules/timing/test_order.h"
+#include "modules/timing/design_choices.h"
 #include "modules/timing/timing.h"
-#include "modules/timing/work.h"
 #include "testbench/setup/scene_settings.h"
 
 namespace tessera {
@@ -15,10 +14,10 @@ enum class MeshSource { plane, cylinder, sphere, file, patches, run };
 enum class MapSource { half_donut, text, noise, constant, ramp, file };
 using Addressing = datapath::AddressMode;
 using datapath::Triangulation;
-enum class QueueOrder { fifo, lifo };
+using QueueOrder = TriangleOrder;
 enum class Culling { none, back };
 using datapath::SummedHeightUnit;
-enum class Overflow { spill, stall, error };
+using Overflow = QueueOverflow;
 enum class Mode { functional, timed };
 enum class DesignPreset { paper, modern };
 
@@ -35,8 +34,8 @@ struct MapRange {
 };
 
 /// One run of tessera: what a job file says. Every key's unit, default, range and description are declared
-/// once, in job_keys.cpp; the defaults are the initialisers below and make the default job (the half donut on
-/// the plane of 18 triangles).
+/// once, in job_keys.cpp and modules/timing/timing_keys.h; the defaults are the initialisers below and make the default
+/// job (the half donut on the plane of 18 triangles).
 struct Job {
     struct Mesh {
         MeshSource source = MeshSource::plane;

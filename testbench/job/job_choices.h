@@ -2,12 +2,13 @@
 #include <string_view>
 #include <vector>
 
+#include "modules/timing/design_choices.h"
 #include "testbench/job/job.h"
 
 namespace tessera {
 
-// The names a job file uses for the enumerators of job.h. One switch per enumeration, so that the compiler
-// refuses an enumerator without a name.
+// The names a job file uses for the enumerators of job.h, besides those of modules/timing/design_choices.h. One switch
+// per enumeration, so that the compiler refuses an enumerator without a name.
 
 constexpr std::string_view name_of(MeshSource value) {
     switch (value) {
@@ -77,46 +78,6 @@ constexpr std::string_view name_of(DesignPreset value) {
     return {};
 }
 
-constexpr std::string_view name_of(Work value) {
-    switch (value) {
-        case Work::triangle:
-            return "triangle";
-        case Work::family:
-            return "family";
-    }
-    return {};
-}
-
-constexpr std::string_view name_of(TestOrder value) {
-    switch (value) {
-        case TestOrder::parallel:
-            return "parallel";
-        case TestOrder::cheap_first:
-            return "cheap_first";
-    }
-    return {};
-}
-
-constexpr std::string_view name_of(Interleave value) {
-    switch (value) {
-        case Interleave::entry:
-            return "entry";
-        case Interleave::exclusive_or:
-            return "xor";
-    }
-    return {};
-}
-
-constexpr std::string_view name_of(QueueOrder value) {
-    switch (value) {
-        case QueueOrder::fifo:
-            return "fifo";
-        case QueueOrder::lifo:
-            return "lifo";
-    }
-    return {};
-}
-
 constexpr std::string_view name_of(Culling value) {
     switch (value) {
         case Culling::none:
@@ -133,18 +94,6 @@ constexpr std::string_view name_of(SummedHeightUnit value) {
             return "sum";
         case SummedHeightUnit::area:
             return "area";
-    }
-    return {};
-}
-
-constexpr std::string_view name_of(Overflow value) {
-    switch (value) {
-        case Overflow::spill:
-            return "spill";
-        case Overflow::stall:
-            return "stall";
-        case Overflow::error:
-            return "error";
     }
     return {};
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "modules/datapath/format.h"
+#include "modules/timing/timing_keys.h"
 #include "testbench/job/job_choices.h"
 #include "testbench/job/toml_text.h"
 
@@ -125,10 +126,10 @@ class TableWriter {
 
     /// An unsigned or std::uint64_t number deep within the group: `member(group)` is a reference to it.
     template <typename Member>
-    void add_deep(const std::string& leaf, Member member, const char* unit, KeyRange range,
-                  const std::string& description) const {
+    void add_number(const std::string& leaf, Member member, const char* unit, TimingRange range,
+                    const std::string& description) const {
         Key& key = push(leaf, KeyKind::integer, unit, description);
-        key.range = range;
+        key.range = between(range.least, range.most);
         key.get = [select = select_, member](const Job& job) { return static_cast<std::int64_t>(member(select(job))); };
         key.set = [select = select_, member](Job& job, const JobValue& value) {
             auto& it = member(select(job));
@@ -194,135 +195,6 @@ class TableList {
 
     std::vector<KeyTable> tables_;
 };
-
-constexpr double most_cycles = 1000000;  // of a latency or interval
-constexpr double most_places = 65536;    // of a buffer
-
-/// The three figures of a unit. `unit(timing)` is a reference to its UnitTiming.
-template <typename Writer, typename Select>
-void add_unit(const Writer& key, const std::string& leaf, const std::string& name, Select unit,
-              const std::string& besides_latency = "",
-              const std::string& buffered = "items that may wait at its input") {
-    key.add_deep(
-        leaf + "_latency", [unit](auto& t) -> auto& { return unit(t).latency; }, "cycles", between(1, most_cycles),
-        name + ": from an item's start to its result" + besides_latency);
-    key.add_deep(
-        leaf + "_interval", [unit](auto& t) -> auto& { return unit(t).interval; }, "cycles", between(1, most_cycles),
-        name + ": between the starts of two items");
-    key.add_deep(
-        leaf + "_buffer", [unit](auto& t) -> auto& { return unit(t).buffer; }, "items", between(1, most_places),
-        name + ": " + buffered);
-}
-
-template <typename Writer, typename Select>
-void add_memory(const Writer& key, const std::string& leaf, const std::string& name, Select memory) {
-    key.add_deep(
-        leaf + "_ports", [memory](auto& t) -> auto& { return memory(t).ports; }, "entries a cycle", between(1, 64),
-        name + ": ports of each bank");
-    key.add_deep(
-        leaf + "_banks", [memory](auto& t) -> auto& { return memory(t).banks; }, "-", between(1, 64), name + ": banks");
-    key.add_deep(
-        leaf + "_latency", [memory](auto& t) -> auto& { return memory(t).latency; }, "cycles", between(0, most_places),
-        name + ": from an entry's address to its data");
-    key.add_deep(
-        leaf + "_width", [memory](auto& t) -> auto& { return memory(t).width; }, "bytes a cycle", between(0, 64),
-        name + ": what a port moves; 0: a whole entry");
-    key.add_deep(
-        leaf + "_buffer", [memory](auto& t) -> auto& { return memory(t).buffer; }, "requests", between(1, most_places),
-        name + ": requests that may wait");
-    key.add_deep(
-        leaf + "_cache_bytes", [memory](auto& t) -> auto& { return memory(t).cache.bytes; }, "bytes",
-        between(0, 1 << 30),
-        name +
-            ": 0: on chip; else it lies in off-chip memory, behind a cache of this size (at least a line), which has "
-            "the ports, banks and latency above");
-    key.add_deep(
-        leaf + "_line_bytes", [memory](auto& t) -> auto& { return memory(t).cache.line_bytes; }, "bytes",
-        between(1, 4096), name + ": of a line of its cache; as many whole entries as fit, at least one");
-    key.add_deep(
-        leaf + "_cache_ways", [memory](auto& t) -> auto& { return memory(t).cache.ways; }, "lines", between(1, 64),
-        name + ": lines of its cache in which an entry may lie");
-    key.add_deep(
-        leaf + "_cache_fills", [memory](auto& t) -> auto& { return memory(t).cache.fills; }, "lines",
-        between(1, most_places), name + ": lines under way to its cache, and requests that wait there");
-}
-
-template <typename Writer>
-void add_timing(const Writer& key) {
-    key.add_deep(
-        "clock_period", [](auto& t) -> auto& { return t.cycle_picoseconds; }, "picoseconds", between(1, 1e9),
-        "The clock's period");
-    add_unit(
-        key, "get_triangle", "Get Triangle", [](auto& t) -> auto& { return t.get_triangle; });
-    add_unit(
-        key, "calculate_new_p", "Calculate New P", [](auto& t) -> auto& { return t.calculate_new_p; });
-    add_unit(
-        key, "displace_vertex", "Displace Vertex", [](auto& t) -> auto& { return t.displace_vertex; },
-        ", table reads come on top");
-    add_unit(
-        key, "transform", "Transform", [](auto& t) -> auto& { return t.transform; });
-    add_unit(
-        key, "calculate_new_u", "Calculate New U", [](auto& t) -> auto& { return t.calculate_new_u; });
-    add_unit(
-        key, "tex_coord_test", "Tex Coord Test", [](auto& t) -> auto& { return t.tex_coord_test; });
-    add_unit(
-        key, "summed_height_test", "Summed Height Test", [](auto& t) -> auto& { return t.summed_height_test; },
-        ", table reads come on top");
-    add_unit(
-        key, "normal_test", "Normal Test", [](auto& t) -> auto& { return t.normal_test; }, ", table reads come on top");
-    key.add_deep(
-        "highlight_test_latency", [](auto& t) -> auto& { return t.highlight_test_latency; }, "cycles",
-        between(0, most_cycles), "Highlight Test, if there is one: what it adds to the Normal Test's latency");
-    add_unit(
-        key, "view_test", "View Test", [](auto& t) -> auto& { return t.view_test; });
-    key.add_deep(
-        "results_buffer", [](auto& t) -> auto& { return t.results_buffer; }, "edges", between(1, most_places),
-        "Edges decided by one test that may wait for the other three");
-    key.add_deep(
-        "edges_in_sequence", [](auto& t) -> auto& { return t.edges_in_sequence; }, "edges", between(1, most_places),
-        "With hardware.test_order = \"cheap_first\": edges that have not left, from their cheap tests' results on");
-    add_unit(
-        key, "pass_or_tessellate", "Pass or Tessellate", [](auto& t) -> auto& { return t.pass_or_tessellate; }, "",
-        "triangles of which not all parts have come from both branches");
-    add_unit(
-        key, "tessellation", "Tessellation", [](auto& t) -> auto& { return t.tessellation; });
-    add_unit(
-        key, "triangle_queue", "Triangle Queue", [](auto& t) -> auto& { return t.triangle_queue; });
-    add_unit(
-        key, "lighting", "Lighting", [](auto& t) -> auto& { return t.lighting; });
-    add_memory(
-        key, "displacement_map", "Displacement map", [](auto& t) -> auto& { return t.displacement_map; });
-    add_memory(
-        key, "normal_map", "Normal map", [](auto& t) -> auto& { return t.normal_map; });
-    add_memory(
-        key, "summed_height_table", "Summed Height Table", [](auto& t) -> auto& { return t.summed_height_table; });
-    key.template add_choice<Interleave>(
-        "summed_height_table_interleave", [](auto& t) -> auto& { return t.summed_height_table.interleave; },
-        "Summed Height Table: the bank of an entry, entry by entry or by exclusive ORs of bits of its column and row "
-        "(banks: a power of two)");
-    key.add_deep(
-        "summed_height_table_window", [](auto& t) -> auto& { return t.summed_height_table.window; }, "rectangles",
-        between(0, most_places),
-        "Summed Height Table: rectangles whose reads may overlap; 0: those that find each of their banks free");
-    key.add_deep(
-        "off_chip_latency", [](auto& t) -> auto& { return t.off_chip_memory.latency; }, "cycles",
-        between(0, most_places), "Off-chip memory: from a request's last byte to its answer");
-    key.add_deep(
-        "off_chip_bandwidth", [](auto& t) -> auto& { return t.off_chip_memory.bandwidth; }, "bytes a cycle",
-        between(1, 4096), "Off-chip memory: both directions together");
-    key.add_deep(
-        "off_chip_buffer", [](auto& t) -> auto& { return t.off_chip_memory.buffer; }, "requests",
-        between(1, most_places), "Off-chip memory: requests that may wait");
-    key.add_deep(
-        "stalls_per_mille", [](auto& t) -> auto& { return t.stalls.per_mille; }, "per mille of items", between(0, 1000),
-        "For tests: items delayed at random on every channel");
-    key.add_deep(
-        "stalls_longest", [](auto& t) -> auto& { return t.stalls.longest; }, "cycles", between(1, 1000000),
-        "For tests: the longest of these delays");
-    key.add_deep(
-        "stalls_seed", [](auto& t) -> auto& { return t.stalls.seed; }, "-", between(0, any_count),
-        "For tests: seed of these delays");
-}
 
 // The declaration of every key. The default is the member's initialiser in job.h.
 std::vector<KeyTable> declare_keys() {
@@ -433,7 +305,7 @@ std::vector<KeyTable> declare_keys() {
         key.add("light", &Hardware::light, "-", coordinate_range, "Direction towards the light, world space, of any length");
         key.add("ambient", &Hardware::ambient, "full scale", between(0, 1), "Light that falls on every surface");
     });
-    list.table("timing", &Job::timing, "Timed mode: the datasheet figures of every unit and memory.", [](const auto& key) { add_timing(key); });
+    list.table("timing", &Job::timing, "Timed mode: the datasheet figures of every unit and memory.", [](const auto& key) { declare_timing_keys(key); });
     list.table("check", &Job::check, "Conformance to the golden model.", [](const auto& key) {
         using Check = Job::Check;
         key.add("golden", &Check::golden, "Every edge's decision against the golden model (scoreboard), and every register and table entry against what golden derives from the job by itself");

@@ -58,7 +58,8 @@ struct KeyTable {
     std::vector<Key> keys;
 };
 
-/// Every key, declared once, in job_keys.cpp. Reading, --set, dumping and the key reference follow from it.
+/// Every key, declared once, in job_keys.cpp and modules/timing/timing_keys.h. Reading, --set, dumping and the key
+/// reference follow from it.
 const std::vector<KeyTable>& job_tables();
 
 /// nullptr if there is none of that name.

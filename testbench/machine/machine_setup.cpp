@@ -16,13 +16,11 @@ Design make_design(const Job& job) {
     Design design;
     design.transport = job.mode == Mode::timed ? Transport::non_blocking : Transport::blocking;
     design.timing = job.timing;
-    design.queue.order = job.hardware.queue_order == QueueOrder::lifo ? TriangleOrder::lifo : TriangleOrder::fifo;
+    design.queue.order = job.hardware.queue_order;
     design.queue.watermark = static_cast<std::size_t>(job.hardware.queue_watermark);
     design.queue.capacity = static_cast<std::size_t>(job.hardware.queue_capacity);
     design.queue.off_chip_triangles = static_cast<std::uint64_t>(job.hardware.off_chip_triangles);
-    design.queue.overflow = job.hardware.queue_overflow == Overflow::spill   ? QueueOverflow::spill
-                            : job.hardware.queue_overflow == Overflow::stall ? QueueOverflow::stall
-                                                                             : QueueOverflow::error;
+    design.queue.overflow = job.hardware.queue_overflow;
     design.tests_units = static_cast<unsigned>(job.hardware.tests_units);
     design.transform_pipelines = static_cast<unsigned>(job.hardware.transform_pipelines);
     design.work = job.hardware.work;

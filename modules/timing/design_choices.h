@@ -1,0 +1,99 @@
+#pragma once
+#include <string_view>
+
+#include "modules/timing/timing.h"
+#include "modules/timing/work.h"
+
+namespace tessera {
+
+/// How units communicate.
+enum class Transport {
+    blocking,      ///< blocking transport: every result, no cycles (functional mode)
+    non_blocking,  ///< non-blocking transport: the same results, to the cycle (timed mode)
+};
+
+/// The order in which the Triangle Queue outputs its triangles.
+enum class TriangleOrder {
+    fifo,  ///< the paper's: breadth first
+    lifo,  ///< depth first: the queue stays short
+};
+
+/// What a full queue does (timed mode).
+enum class QueueOverflow {
+    spill,  ///< to off-chip memory
+    stall,  ///< holds Tessellation back: a deadlock when the whole pipeline is full
+    error,  ///< halts the clock
+};
+
+/// When an edge's tests are evaluated.
+enum class TestOrder {
+    parallel,     ///< the paper's: all at once
+    cheap_first,  ///< those without a table first; the others only if the decision still depends on them
+};
+
+// The enumerators' names, in job files and as parameters of CCI. One switch per enumeration, so that the compiler refuses
+// an enumerator without a name.
+
+constexpr std::string_view name_of(Transport value) {
+    switch (value) {
+        case Transport::blocking:
+            return "functional";
+        case Transport::non_blocking:
+            return "timed";
+    }
+    return {};
+}
+
+constexpr std::string_view name_of(TriangleOrder value) {
+    switch (value) {
+        case TriangleOrder::fifo:
+            return "fifo";
+        case TriangleOrder::lifo:
+            return "lifo";
+    }
+    return {};
+}
+
+constexpr std::string_view name_of(QueueOverflow value) {
+    switch (value) {
+        case QueueOverflow::spill:
+            return "spill";
+        case QueueOverflow::stall:
+            return "stall";
+        case QueueOverflow::error:
+            return "error";
+    }
+    return {};
+}
+
+constexpr std::string_view name_of(Work value) {
+    switch (value) {
+        case Work::triangle:
+            return "triangle";
+        case Work::family:
+            return "family";
+    }
+    return {};
+}
+
+constexpr std::string_view name_of(TestOrder value) {
+    switch (value) {
+        case TestOrder::parallel:
+            return "parallel";
+        case TestOrder::cheap_first:
+            return "cheap_first";
+    }
+    return {};
+}
+
+constexpr std::string_view name_of(Interleave value) {
+    switch (value) {
+        case Interleave::entry:
+            return "entry";
+        case Interleave::exclusive_or:
+            return "xor";
+    }
+    return {};
+}
+
+}  // namespace tessera

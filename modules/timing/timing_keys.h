@@ -1,0 +1,146 @@
+#pragma once
+#include <string>
+
+#include "modules/timing/timing.h"
+
+namespace tessera {
+
+/// What a figure may be: least to most, both included.
+struct TimingRange {
+    unsigned least;
+    unsigned most;
+};
+
+inline constexpr unsigned most_cycles = 1000000;  // of a latency or interval
+inline constexpr unsigned most_places = 65536;    // of a buffer
+
+/// The three figures of a unit. `unit(timing)` is a reference to its UnitTiming.
+template <typename Keys, typename Select>
+void declare_unit_keys(const Keys& key, const std::string& leaf, const std::string& name, Select unit,
+                       const std::string& besides_latency = "",
+                       const std::string& buffered = "items that may wait at its input") {
+    key.add_number(
+        leaf + "_latency", [unit](auto& t) -> auto& { return unit(t).latency; }, "cycles", {1, most_cycles},
+        name + ": from an item's start to its result" + besides_latency);
+    key.add_number(
+        leaf + "_interval", [unit](auto& t) -> auto& { return unit(t).interval; }, "cycles", {1, most_cycles},
+        name + ": between the starts of two items");
+    key.add_number(
+        leaf + "_buffer", [unit](auto& t) -> auto& { return unit(t).buffer; }, "items", {1, most_places},
+        name + ": " + buffered);
+}
+
+template <typename Keys, typename Select>
+void declare_memory_keys(const Keys& key, const std::string& leaf, const std::string& name, Select memory) {
+    key.add_number(
+        leaf + "_ports", [memory](auto& t) -> auto& { return memory(t).ports; }, "entries a cycle", {1, 64},
+        name + ": ports of each bank");
+    key.add_number(
+        leaf + "_banks", [memory](auto& t) -> auto& { return memory(t).banks; }, "-", {1, 64}, name + ": banks");
+    key.add_number(
+        leaf + "_latency", [memory](auto& t) -> auto& { return memory(t).latency; }, "cycles", {0, most_places},
+        name + ": from an entry's address to its data");
+    key.add_number(
+        leaf + "_width", [memory](auto& t) -> auto& { return memory(t).width; }, "bytes a cycle", {0, 64},
+        name + ": what a port moves; 0: a whole entry");
+    key.add_number(
+        leaf + "_buffer", [memory](auto& t) -> auto& { return memory(t).buffer; }, "requests", {1, most_places},
+        name + ": requests that may wait");
+    key.add_number(
+        leaf + "_cache_bytes", [memory](auto& t) -> auto& { return memory(t).cache.bytes; }, "bytes", {0, 1 << 30},
+        name +
+            ": 0: on chip; else it lies in off-chip memory, behind a cache of this size (at least a line), which has "
+            "the ports, banks and latency above");
+    key.add_number(
+        leaf + "_line_bytes", [memory](auto& t) -> auto& { return memory(t).cache.line_bytes; }, "bytes", {1, 4096},
+        name + ": of a line of its cache; as many whole entries as fit, at least one");
+    key.add_number(
+        leaf + "_cache_ways", [memory](auto& t) -> auto& { return memory(t).cache.ways; }, "lines", {1, 64},
+        name + ": lines of its cache in which an entry may lie");
+    key.add_number(
+        leaf + "_cache_fills", [memory](auto& t) -> auto& { return memory(t).cache.fills; }, "lines", {1, most_places},
+        name + ": lines under way to its cache, and requests that wait there");
+}
+
+/// Declares the figures of Timing, as keys of a job file and as parameters of CCI. For each figure one call:
+///   key.add_number(leaf, member, unit, range, description)
+///   key.add_choice<Enum>(leaf, member, description)
+/// member(timing) is a reference to it.
+template <typename Keys>
+void declare_timing_keys(const Keys& key) {
+    key.add_number(
+        "clock_period", [](auto& t) -> auto& { return t.cycle_picoseconds; }, "picoseconds", {1, 1000000000},
+        "The clock's period");
+    declare_unit_keys(
+        key, "get_triangle", "Get Triangle", [](auto& t) -> auto& { return t.get_triangle; });
+    declare_unit_keys(
+        key, "calculate_new_p", "Calculate New P", [](auto& t) -> auto& { return t.calculate_new_p; });
+    declare_unit_keys(
+        key, "displace_vertex", "Displace Vertex", [](auto& t) -> auto& { return t.displace_vertex; },
+        ", table reads come on top");
+    declare_unit_keys(
+        key, "transform", "Transform", [](auto& t) -> auto& { return t.transform; });
+    declare_unit_keys(
+        key, "calculate_new_u", "Calculate New U", [](auto& t) -> auto& { return t.calculate_new_u; });
+    declare_unit_keys(
+        key, "tex_coord_test", "Tex Coord Test", [](auto& t) -> auto& { return t.tex_coord_test; });
+    declare_unit_keys(
+        key, "summed_height_test", "Summed Height Test", [](auto& t) -> auto& { return t.summed_height_test; },
+        ", table reads come on top");
+    declare_unit_keys(
+        key, "normal_test", "Normal Test", [](auto& t) -> auto& { return t.normal_test; }, ", table reads come on top");
+    key.add_number(
+        "highlight_test_latency", [](auto& t) -> auto& { return t.highlight_test_latency; }, "cycles", {0, most_cycles},
+        "Highlight Test, if there is one: what it adds to the Normal Test's latency");
+    declare_unit_keys(
+        key, "view_test", "View Test", [](auto& t) -> auto& { return t.view_test; });
+    key.add_number(
+        "results_buffer", [](auto& t) -> auto& { return t.results_buffer; }, "edges", {1, most_places},
+        "Edges decided by one test that may wait for the other three");
+    key.add_number(
+        "edges_in_sequence", [](auto& t) -> auto& { return t.edges_in_sequence; }, "edges", {1, most_places},
+        "With hardware.test_order = \"cheap_first\": edges that have not left, from their cheap tests' results on");
+    declare_unit_keys(
+        key, "pass_or_tessellate", "Pass or Tessellate", [](auto& t) -> auto& { return t.pass_or_tessellate; }, "",
+        "triangles of which not all parts have come from both branches");
+    declare_unit_keys(
+        key, "tessellation", "Tessellation", [](auto& t) -> auto& { return t.tessellation; });
+    declare_unit_keys(
+        key, "triangle_queue", "Triangle Queue", [](auto& t) -> auto& { return t.triangle_queue; });
+    declare_unit_keys(
+        key, "lighting", "Lighting", [](auto& t) -> auto& { return t.lighting; });
+    declare_memory_keys(
+        key, "displacement_map", "Displacement map", [](auto& t) -> auto& { return t.displacement_map; });
+    declare_memory_keys(
+        key, "normal_map", "Normal map", [](auto& t) -> auto& { return t.normal_map; });
+    declare_memory_keys(
+        key, "summed_height_table", "Summed Height Table", [](auto& t) -> auto& { return t.summed_height_table; });
+    key.template add_choice<Interleave>(
+        "summed_height_table_interleave", [](auto& t) -> auto& { return t.summed_height_table.interleave; },
+        "Summed Height Table: the bank of an entry, entry by entry or by exclusive ORs of bits of its column and row "
+        "(banks: a power of two)");
+    key.add_number(
+        "summed_height_table_window", [](auto& t) -> auto& { return t.summed_height_table.window; }, "rectangles",
+        {0, most_places},
+        "Summed Height Table: rectangles whose reads may overlap; 0: those that find each of their banks free");
+    key.add_number(
+        "off_chip_latency", [](auto& t) -> auto& { return t.off_chip_memory.latency; }, "cycles", {0, most_places},
+        "Off-chip memory: from a request's last byte to its answer");
+    key.add_number(
+        "off_chip_bandwidth", [](auto& t) -> auto& { return t.off_chip_memory.bandwidth; }, "bytes a cycle", {1, 4096},
+        "Off-chip memory: both directions together");
+    key.add_number(
+        "off_chip_buffer", [](auto& t) -> auto& { return t.off_chip_memory.buffer; }, "requests", {1, most_places},
+        "Off-chip memory: requests that may wait");
+    key.add_number(
+        "stalls_per_mille", [](auto& t) -> auto& { return t.stalls.per_mille; }, "per mille of items", {0, 1000},
+        "For tests: items delayed at random on every channel");
+    key.add_number(
+        "stalls_longest", [](auto& t) -> auto& { return t.stalls.longest; }, "cycles", {1, 1000000},
+        "For tests: the longest of these delays");
+    key.add_number(
+        "stalls_seed", [](auto& t) -> auto& { return t.stalls.seed; }, "-", {0, 2147483647},
+        "For tests: seed of these delays");
+}
+
+}  // namespace tessera
