@@ -2,15 +2,22 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-# tessera_component(NAME FOLDER NEED...): adds the folder of a component if all it needs is there: packages, and earlier
-# components. An error if it is not, but the testbench or TESSERA_COMPONENTS asks for it.
+# tessera_component(NAME FOLDER [OPTIONAL] NEED...): adds the folder of a component if all it needs is there: packages, and
+# earlier components. An error if it is not, but TESSERA_COMPONENTS asks for it or, unless it is OPTIONAL, the testbench.
 macro(tessera_component name folder)
   set(tessera_required "")
   set(tessera_missing "")
-  if(TESSERA_TESTBENCH OR "${name}" IN_LIST TESSERA_COMPONENTS)
+  set(tessera_needs ${ARGN})
+  if("OPTIONAL" IN_LIST tessera_needs)
+    list(REMOVE_ITEM tessera_needs OPTIONAL)
+    set(tessera_required QUIET)
+  elseif(TESSERA_TESTBENCH)
     set(tessera_required REQUIRED)
   endif()
-  foreach(need ${ARGN})
+  if("${name}" IN_LIST TESSERA_COMPONENTS)
+    set(tessera_required REQUIRED)
+  endif()
+  foreach(need ${tessera_needs})
     if(tessera_missing)
       break()
     elseif(need MATCHES "^tessera::")
@@ -26,7 +33,7 @@ macro(tessera_component name folder)
   endforeach()
   if(NOT tessera_missing)
     add_subdirectory(${folder})
-  elseif(tessera_required)
+  elseif(tessera_required STREQUAL "REQUIRED")
     message(FATAL_ERROR "No tessera::${name}: ${tessera_missing}")
   else()
     message(STATUS "No tessera::${name}: ${tessera_missing}")
@@ -114,7 +121,7 @@ function(tessera_install_package)
   configure_file(cmake/tessera.pc.in tessera.pc @ONLY)
 
   install(FILES ${PROJECT_BINARY_DIR}/tesseraConfig.cmake ${PROJECT_BINARY_DIR}/tesseraConfigVersion.cmake
-                cmake/FindSystemC.cmake
+                cmake/FindSystemC.cmake cmake/FindSystemCLanguage.cmake
           DESTINATION ${folder} COMPONENT tessera)
   install(FILES ${PROJECT_BINARY_DIR}/tessera.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT tessera)
 endfunction()
