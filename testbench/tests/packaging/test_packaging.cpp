@@ -17,6 +17,12 @@ const fs::path platform = source_folder() / "testbench/examples/platform";
 const fs::path careful_client = source_folder() / "testbench/tests/packaging/careful_client";
 const Arguments from_sources{"-DTESSERA_SOURCE=" + source_folder().string()};
 const Arguments with_glm_and_fmt{"-DCMAKE_DISABLE_FIND_PACKAGE_glm=OFF", "-DCMAKE_DISABLE_FIND_PACKAGE_fmt=OFF"};
+#ifdef TESSERA_CCI_HEADERS
+const std::string and_cci = ";cci";
+const std::string cci_headers = " -isystem " TESSERA_CCI_HEADERS;
+#else
+const std::string and_cci, cci_headers;
+#endif
 const std::string strict = "-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Werror";
 
 ProgramEnd run(const std::vector<std::string>& command, const fs::path& folder, const Environment& environment = {}) {
@@ -178,7 +184,8 @@ TEST_CASE("the first platform, as its page has it built") {
 TEST_CASE("a client keeps its variables and its warnings") {
     const TestFolder folder;
     const fs::path moved = install_in(folder.path());
-    const Arguments client = configuring(careful_client, {"-DCOMPONENTS=datapath;modules;setup;device"}, moved);
+    const Arguments client =
+        configuring(careful_client, {"-DCOMPONENTS=datapath;modules;setup;device" + and_cci}, moved);
     for (const bool as_folder : {false, true}) {
         INFO("as a folder: " << as_folder);
         fs::remove_all(folder.path() / "build");
@@ -190,16 +197,19 @@ TEST_CASE("a client keeps its variables and its warnings") {
             ++commands;
             CHECK_THAT(line, Contains("-DFLAG_OF_ITS_OWN") && !Contains(" -W") && !Contains(" -f"));
         }
-        CHECK(commands == 4);
-        if (!as_folder)
-            require_success({"cmake", "--build", "build"}, folder.path());
+        CHECK(commands == (and_cci.empty() ? 4 : 5));
+        if (as_folder)
+            continue;
+        require_success({"cmake", "--build", "build"}, folder.path());
+        if (!and_cci.empty())
+            CHECK(require_success({"build/preset"}, folder.path()) == "12\n");
     }
 }
 
 TEST_CASE("each installed header compiles alone") {
     const TestFolder folder;
     const fs::path headers = install_in(folder.path()) / "include/tessera";
-    const std::string compile = TESSERA_COMPILER " -std=c++" TESSERA_STANDARD " " + strict + " ";
+    const std::string compile = TESSERA_COMPILER " -std=c++" TESSERA_STANDARD " " + strict + cci_headers + " ";
     // SystemC takes most of the time: once, for all that include it.
     write_all(folder.path() / "first.h", "#include <systemc>\n");
     std::string alone, after_systemc;
@@ -235,6 +245,8 @@ TEST_CASE("a component that is not there, a package it needs, another C++ standa
     expect_refusal(folder.path(), client("shaders", from_sources),
                    "TESSERA_COMPONENTS names shaders; tessera has: datapath");
     expect_refusal(folder.path(), client("setup", from_sources), "No tessera::setup: glm was not found");
+    expect_refusal(folder.path(), client("cci", from_sources + Arguments{"-DCMAKE_DISABLE_FIND_PACKAGE_SystemCCCI=ON"}),
+                   "No tessera::cci: SystemCCCI was not found");
     for (const Arguments& from : {Arguments{}, from_sources}) {
         expect_refusal(folder.path(), client("modules", from + no_systemc_package), "apt-get install libsystemc-dev",
                        no_systemc);
@@ -256,8 +268,10 @@ TEST_CASE("what is left out of an installation is named with its reason") {
     CHECK_FALSE(fs::exists(folder.path() / "installed/include/tessera/modules/pipeline.h"));
     CHECK(fs::exists(folder.path() / "installed/include/tessera/modules/version.h"));
     CHECK_THAT(read_all(folder.path() / "installed/lib/pkgconfig/tessera.pc"), !Contains("systemc"));
-    const std::pair<std::string, std::string> reasons[] = {
-        {"modules", "SystemC was not found"}, {"device", "it needs tessera::modules"}, {"setup", "glm was not found"}};
+    const std::pair<std::string, std::string> reasons[] = {{"modules", "SystemC was not found"},
+                                                           {"device", "it needs tessera::modules"},
+                                                           {"cci", "it needs tessera::modules"},
+                                                           {"setup", "glm was not found"}};
     for (const auto& [component, reason] : reasons)
         expect_refusal(folder.path(),
                        configuring(careful_client, {"-DCOMPONENTS=" + component}, folder.path() / "installed"),
