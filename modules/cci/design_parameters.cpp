@@ -124,7 +124,7 @@ class DesignParameters::Keys {
         auto parameter = std::make_unique<cci::cci_param<Value, cci::CCI_IMMUTABLE_PARAM>>(
             name, standard, to_.broker_, description, cci::CCI_ABSOLUTE_NAME, to_.originator_);
         parameter->add_metadata("unit", cci::cci_value(unit));
-        const Value value = parameter->get_value();
+        Value value = parameter->get_value();
         to_.parameters_.push_back(std::move(parameter));
         return value;
     }

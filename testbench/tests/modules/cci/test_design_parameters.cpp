@@ -171,7 +171,7 @@ TEST_CASE("a preset that a parameter cannot have is refused by name, with what i
     CHECK_THAT(error_of("hardware.tests_units", "2"), Contains(".hardware.tests_units = 2 cannot be: it is 1 or 3"));
 }
 
-TEST_CASE("a mistyped preset is refused with the nearest name; those of others are not") {
+TEST_CASE("a mistyped preset is refused with the nearest name, and one of another prefix is not") {
     const auto refused = [](const std::string& mistyped, const std::string& nearest) {
         INFO(mistyped);
         const std::string error = error_of(mistyped, "9");
