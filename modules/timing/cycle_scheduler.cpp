@@ -77,7 +77,7 @@ void CycleScheduler::wake_from_outside(const CycleProcess& unit, std::uint64_t c
 void CycleScheduler::end_time() {
     out_of_time_ = true;
     halt();
-    quiet_.notify(sc_core::SC_ZERO_TIME);
+    quiet_.notify(lag_);
 }
 
 void CycleScheduler::take_far() {
@@ -140,7 +140,23 @@ bool CycleScheduler::begin_observing() {
     return observer_ != nullptr;
 }
 
+/// Nothing but the next cycle is to happen until it begins, `cycles` from the present one.
+bool CycleScheduler::may_run_ahead(std::uint64_t cycles) const {
+    if (observer_ != nullptr || sc_core::sc_pending_activity_at_current_time())
+        return false;
+    return sc_core::sc_time_to_pending_activity() > lag_ + duration(cycles);
+}
+
 void CycleScheduler::tick() {
+    for (unsigned ahead = 0; run_cycle() && ahead < most_ahead_ && may_run_ahead(next_tick_ - cycle_); ++ahead)
+        lag_ += duration(next_tick_ - cycle_);
+    if (scheduled_)
+        tick_event_.notify(lag_ + duration(next_tick_ - cycle_));
+    lag_ = sc_core::SC_ZERO_TIME;
+}
+
+/// False: no further cycle is scheduled.
+bool CycleScheduler::run_cycle() {
     cycle_ = next_tick_;
     running_ = true;
     scheduled_ = false;
@@ -161,17 +177,13 @@ void CycleScheduler::tick() {
         stalled_ = true;
         halt();
     }
-    if (halted_ || !find_next(next_tick_)) {
-        quiet_.notify(sc_core::SC_ZERO_TIME);
-        return;
-    }
-    if (next_tick_ > most_cycles_) {
+    if (halted_ || !find_next(next_tick_))
+        quiet_.notify(lag_);
+    else if (next_tick_ > most_cycles_)
         end_time();
-    } else {
+    else
         scheduled_ = true;
-        const std::uint64_t cycles = next_tick_ - cycle_;
-        tick_event_.notify(cycles < delays_.size() ? delays_[cycles] : sc_core::sc_time::from_value(cycles * period_));
-    }
+    return scheduled_;
 }
 
 }  // namespace tessera

@@ -159,6 +159,11 @@ class CycleScheduler : public sc_core::sc_module {
     void halt() { halted_ = true; }
     bool halted() const { return halted_; }
 
+    /// While the kernel has nothing else to do, runs up to `most` further cycles without returning to it: simulated time
+    /// stands still meanwhile, and a stop takes effect afterwards. For a simulation in which the machine's units alone
+    /// act upon time. Not while an observer is attached.
+    void run_ahead(unsigned most) { most_ahead_ = most; }
+
     /// Call when work is completed (a triangle decided, or lit). The clock halts after processes were called in more
     /// than `most` cycles (0: no limit) without it. Cycles without calls do not count: a latency, however long, ends.
     void progress() { cycles_without_progress_ = 0; }
@@ -189,6 +194,8 @@ class CycleScheduler : public sc_core::sc_module {
     using Far = std::pair<std::uint64_t, std::uint64_t>;  // cycle and bit, beyond the table
 
     void tick();
+    bool run_cycle();
+    bool may_run_ahead(std::uint64_t cycles) const;
     template <bool Observed>
     std::uint64_t call_due();
     bool begin_observing();
@@ -197,6 +204,9 @@ class CycleScheduler : public sc_core::sc_module {
     void wake_from_outside(const CycleProcess& unit, std::uint64_t cycle);
     bool find_next(std::uint64_t& next) const;
     void end_time();
+    sc_core::sc_time duration(std::uint64_t cycles) const {
+        return cycles < delays_.size() ? delays_[cycles] : sc_core::sc_time::from_value(cycles * period_);
+    }
     std::uint64_t first_cycle_not_before_now() const {
         const sc_core::sc_time& now = sc_core::sc_time_stamp();
         return now <= first_edge_ ? 0 : cycles(now - first_edge_);
@@ -216,6 +226,8 @@ class CycleScheduler : public sc_core::sc_module {
     std::uint64_t due_now_ = 0;
     std::uint64_t cycle_ = 0;
     std::uint64_t next_tick_ = 0;
+    unsigned most_ahead_ = 0;
+    sc_core::sc_time lag_;  // from simulated time to the beginning of the present cycle
     bool running_ = false;
     bool scheduled_ = false;
     std::uint64_t cycles_without_progress_ = 0;

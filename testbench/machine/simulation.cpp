@@ -12,6 +12,9 @@ namespace tessera {
 
 namespace {
 
+/// Between two returns to the kernel; a stop takes effect after so many.
+constexpr unsigned cycles_ahead = 1024;
+
 std::vector<std::unique_ptr<HostedMachine>> make_machines(const MachineSetup& setup, MeshMonitor& monitor,
                                                           UnitFactory* units) {
     std::vector<std::unique_ptr<HostedMachine>> machines;
@@ -29,6 +32,8 @@ Simulation::Simulation(const MachineSetup& its_setup, std::uint64_t triangle_lim
       machines(make_machines(setup, monitor, units)) {
     for (const auto& machine : machines)
         machine->pipeline.clock.halt_without_progress_for(cycles_without_progress);
+    if (units == nullptr && machines.size() == 1)  // others may act upon time
+        pipeline.clock.run_ahead(cycles_ahead);
 }
 
 void Simulation::observe_decisions(tlm::tlm_analysis_if<datapath::TrianglePass>& sink) {

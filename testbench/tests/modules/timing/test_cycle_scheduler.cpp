@@ -202,6 +202,45 @@ TEST_CASE("clock: running out of things to do is no lack of progress") {
     CHECK(t.clock.idle());
 }
 
+TEST_CASE(
+    "clock: ahead of simulated time it calls the same units, waits for other processes, and ends when it should") {
+    struct Other : sc_core::sc_module {
+        const Three& t;
+        std::vector<std::pair<sc_time, std::size_t>> calls;  // when, and how many calls of units had been made
+
+        Other(const sc_core::sc_module_name& name, const Three& units) : sc_module(name), t(units) {
+            SC_HAS_PROCESS(Other);
+            SC_METHOD(note);
+            dont_initialize();
+            sensitive << event << t.clock.quiet();
+        }
+        void note() { calls.emplace_back(sc_core::sc_time_stamp(), t.calls.size()); }
+        sc_core::sc_event event;
+    };
+    Three t;
+    Other other("other", t);
+    std::vector<sc_time> times;
+    t.clock.run_ahead(4);
+    t.a.on_step = [&] {
+        t.note('a');
+        times.push_back(sc_core::sc_time_stamp());
+        if (t.calls.size() < 20)
+            t.clock.wake_at(t.a, t.clock.cycle() + 2);
+    };
+    t.clock.wake_at(t.a, 0);
+    other.event.notify(sc_time(125, SC_PS));
+    sc_core::sc_start();
+    REQUIRE(t.calls.size() == 20);
+    CHECK(t.calls.back() == std::pair<char, std::uint64_t>('a', 38));
+    // Five calls without a return to the kernel, then two before the other process; then five by five.
+    std::vector<sc_time> expected;
+    for (const auto& [cycle, calls] : {std::pair{0, 5}, {10, 2}, {14, 5}, {24, 5}, {34, 3}})
+        expected.insert(expected.end(), static_cast<std::size_t>(calls), sc_time(10 * cycle, SC_PS));
+    CHECK(times == expected);
+    CHECK(other.calls ==
+          std::vector<std::pair<sc_time, std::size_t>>{{sc_time(125, SC_PS), 7}, {sc_time(380, SC_PS), 20}});
+}
+
 TEST_CASE("clock: a period of zero is an error") {
     CHECK_THAT(error_of([] { CycleScheduler clock("clock", sc_core::SC_ZERO_TIME); }),
                Catch::Contains("period is zero"));
