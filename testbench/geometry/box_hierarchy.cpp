@@ -1,22 +1,12 @@
 #include "testbench/geometry/box_hierarchy.h"
 
-#include <embree3/rtcore.h>
-
+#include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <string>
 
 #include "testbench/common/error.h"
 
 namespace tessera {
 namespace {
-
-struct ReleaseDevice {
-    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-};
-struct ReleaseScene {
-    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
 
 float rounded_down(double value) {
     const auto result = static_cast<float>(value);
@@ -27,87 +17,92 @@ float rounded_up(double value) {
     return -rounded_down(-value);
 }
 
-[[noreturn]] void fail(const char* what, RTCError error) {
-    if (error == RTC_ERROR_OUT_OF_MEMORY)
-        throw ResourceError(std::string("Embree ran out of memory and could not ") + what +
-                            "; measure a smaller mesh or give the process more");
-    throw std::runtime_error(std::string("Embree could not ") + what + " (error " + std::to_string(error) + ")");
+/// The lowest 21 bits of x, each followed by two zeros.
+std::uint64_t spread(std::uint64_t x) {
+    x = (x | x << 32) & 0x001f00000000ffffu;
+    x = (x | x << 16) & 0x001f0000ff0000ffu;
+    x = (x | x << 8) & 0x100f00f00f00f00fu;
+    x = (x | x << 4) & 0x10c30c30c30c30c3u;
+    return (x | x << 2) & 0x1249249249249249u;
 }
 
-using BoxOf = std::function<BoxHierarchy::Box(std::size_t)>;
-
-void bounds(const RTCBoundsFunctionArguments* arguments) {
-    const BoxHierarchy::Box box = (*static_cast<const BoxOf*>(arguments->geometryUserPtr))(arguments->primID);
-    RTCBounds& result = *arguments->bounds_o;
-    result.lower_x = rounded_down(box.low.x);
-    result.lower_y = rounded_down(box.low.y);
-    result.lower_z = rounded_down(box.low.z);
-    result.upper_x = rounded_up(box.high.x);
-    result.upper_y = rounded_up(box.high.y);
-    result.upper_z = rounded_up(box.high.z);
-}
-
-struct Asker {
-    double (*visit)(void*, std::size_t);
-    void* context;
-    double point_rounding;
-    double radius;
-
-    /// The last factor covers the rounding of Embree's own box distances.
-    float embree_radius() const { return rounded_up((radius + point_rounding) * (1 + 0x1p-18)); }
-};
-
-bool visit_box(RTCPointQueryFunctionArguments* arguments) {
-    auto& asker = *static_cast<Asker*>(arguments->userPtr);
-    const double radius = asker.visit(asker.context, arguments->primID);
-    if (!(radius < asker.radius))
-        return false;
-    asker.radius = radius;
-    arguments->query->radius = asker.embree_radius();
-    return true;
+glm::dvec3 centre_of(const BoxHierarchy::Box& box) {
+    return box.low / 2.0 + box.high / 2.0;
 }
 
 }  // namespace
 
-struct BoxHierarchy::Handles {
-    std::unique_ptr<RTCDeviceTy, ReleaseDevice> device;
-    std::unique_ptr<RTCSceneTy, ReleaseScene> scene;
-};
-
-BoxHierarchy::BoxHierarchy(std::size_t count, const BoxOf& box) : handles_(std::make_unique<Handles>()) {
-    if (count > std::numeric_limits<unsigned>::max())
-        throw ResourceError("more than 2^32 triangles cannot be sorted; measure a smaller mesh");
-    handles_->device.reset(rtcNewDevice("threads=1"));
-    if (!handles_->device)
-        fail("start", rtcGetDeviceError(nullptr));
-    handles_->scene.reset(rtcNewScene(handles_->device.get()));
-    RTCGeometry geometry = rtcNewGeometry(handles_->device.get(), RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(count));
-    BoxOf copy = box;  // needed until the hierarchy is built
-    rtcSetGeometryUserData(geometry, &copy);
-    rtcSetGeometryBoundsFunction(geometry, &bounds, nullptr);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(handles_->scene.get(), geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(handles_->scene.get());
-    const RTCError error = rtcGetDeviceError(handles_->device.get());
-    if (error != RTC_ERROR_NONE)
-        fail("build its hierarchy", error);
+BoxHierarchy::Node::Node() {
+    for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = Lanes{} + std::numeric_limits<float>::infinity();
+        high[axis] = -low[axis];
+    }
 }
 
-BoxHierarchy::~BoxHierarchy() = default;
+void BoxHierarchy::Node::set(std::uint32_t lane, const Box& box) {
+    for (int axis = 0; axis < 3; ++axis) {
+        low[axis][lane] = rounded_down(box.low[axis]);
+        high[axis][lane] = rounded_up(box.high[axis]);
+    }
+}
 
-void BoxHierarchy::query(const glm::dvec3& p, double radius, Callback visit, void* context) const {
-    RTCPointQuery query;
-    query.x = static_cast<float>(p.x);
-    query.y = static_cast<float>(p.y);
-    query.z = static_cast<float>(p.z);
-    query.time = 0;
-    Asker asker{visit, context, glm::length(p - glm::dvec3(query.x, query.y, query.z)), radius};
-    query.radius = asker.embree_radius();
-    RTCPointQueryContext query_context;
-    rtcInitPointQueryContext(&query_context);
-    rtcPointQuery(handles_->scene.get(), &query, &query_context, &visit_box, &asker);
+BoxHierarchy::Box BoxHierarchy::Node::box() const {
+    Box all;
+    for (std::uint32_t lane = 0; lane < lanes; ++lane)
+        all.add(Box{{low[0][lane], low[1][lane], low[2][lane]}, {high[0][lane], high[1][lane], high[2][lane]}});
+    return all;
+}
+
+BoxHierarchy::BoxHierarchy(std::size_t count, const std::function<Box(std::size_t)>& box) {
+    if (count > std::numeric_limits<std::uint32_t>::max())
+        throw ResourceError("more than 2^32 triangles cannot be sorted; measure a smaller mesh");
+    Box centres;
+    std::size_t some = 0;
+    for (std::size_t k = 0; k < count; ++k)
+        if (const Box b = box(k); !b.is_empty()) {
+            centres.add(centre_of(b));
+            ++some;
+        }
+    if (some == 0)
+        return;
+
+    // The Morton code of the centre, as long as there is room for, above the box's index.
+    int index_bits = 0;
+    while ((count - 1) >> index_bits != 0)
+        ++index_bits;
+    const int axis_bits = std::min(21, (64 - index_bits) / 3);
+    const double size = std::ldexp(1.0, axis_bits);
+    const glm::dvec3 extent = glm::max(centres.high - centres.low, std::numeric_limits<double>::min());
+    std::vector<std::uint64_t> keys;
+    keys.reserve(some);
+    for (std::size_t k = 0; k < count; ++k)
+        if (const Box b = box(k); !b.is_empty()) {
+            const glm::dvec3 cell = glm::min((centre_of(b) - centres.low) / extent * size, size - 1);
+            std::uint64_t code = 0;
+            for (int axis = 0; axis < 3; ++axis)
+                code |= spread(static_cast<std::uint64_t>(cell[axis])) << axis;
+            keys.push_back(code << index_bits | k);
+        }
+    std::sort(keys.begin(), keys.end());
+    const std::uint64_t index_mask = (std::uint64_t{1} << index_bits) - 1;
+    order_.reserve(some);
+    for (const std::uint64_t key : keys)
+        order_.push_back(static_cast<std::uint32_t>(key & index_mask));
+
+    const auto add_level = [&](std::size_t children, const auto& box_of) {
+        std::vector<Node> level((children + lanes - 1) / lanes);
+        for (std::size_t k = 0; k < children; ++k)
+            level[k / lanes].set(static_cast<std::uint32_t>(k % lanes), box_of(k));
+        levels_.push_back(std::move(level));
+    };
+    add_level(some, [&](std::size_t k) { return box(order_[k]); });
+    while (levels_.back().size() > 1)
+        add_level(levels_.back().size(), [&](std::size_t k) { return levels_.back()[k].box(); });
+}
+
+float BoxHierarchy::squared_limit(double radius) {
+    const double larger = radius * (1 + 0x1p-18);
+    return std::min(rounded_up(larger * larger), std::numeric_limits<float>::max());
 }
 
 }  // namespace tessera

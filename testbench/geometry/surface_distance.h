@@ -32,7 +32,7 @@ inline constexpr std::uint64_t most_looks = std::uint64_t{1} << 24;
 /// If measuring all points would take more than `most` box visits, a subset is measured: the points, in the soup's
 /// order, are divided into equal parts, a power of two in number, and a seeded random number selects one of each. The
 /// cost of a point is estimated from the number of boxes that contain some pilot points. Distances are in double
-/// precision; Embree's single precision only excludes triangles. The same soups give the same result on any number of
+/// precision; boxes in single precision only exclude triangles. The same soups give the same result on any number of
 /// threads.
 SurfaceDistance distance_between(const TriangleSoup& from, const TriangleSoup& to, std::uint64_t most = most_looks,
                                  double near = 0);

@@ -79,7 +79,7 @@ struct MeshError {
 
 /// Takes some seconds per walk on two cores for any map and mesh, since samples are limited. Memory: about 250 bytes
 /// per triangle and 60 MB per core. Errors: InputError if the mesh names base triangles that the base mesh lacks;
-/// ResourceError beyond height_field.h's limits and if Embree runs out of memory.
+/// ResourceError beyond height_field.h's limits.
 MeshError measure_error(const BaseMesh& base, const HeightMap& map, const DisplacementOf& displacement,
                         const RecordedMesh& mesh, const MeasureLimits& limits = {});
 

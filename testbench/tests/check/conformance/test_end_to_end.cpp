@@ -95,7 +95,7 @@ TEST_CASE("the closest point of a needle is that of a search along it") {
     }
 }
 
-TEST_CASE("distances through Embree are those of a search through all triangles") {
+TEST_CASE("distances through the tree of boxes are those of a search through all triangles") {
     Random random(21);
     // A large offset leaves single precision little; the distances must not notice.
     for (const double offset : {0.0, 1e4, 1e6}) {
@@ -129,6 +129,42 @@ TEST_CASE("distances through Embree are those of a search through all triangles"
     }
     CHECK(distance_between({}, {}).points == 0);
     CHECK(std::isinf(distance_between({random_triangle(random, 1)}, {}).max));
+}
+
+TEST_CASE("the tree of boxes visits each box within the radius once, and none that is empty") {
+    Random random(24);
+    for (const std::size_t count : {0U, 1U, 4U, 5U, 16U, 17U, 1000U})
+        for (const double size : {1.0, 1e-6, 0.0})
+            for (const double offset : {0.0, 1e5}) {
+                std::vector<BoxHierarchy::Box> boxes(count);
+                for (std::size_t k = 0; k < count; ++k)
+                    if (k % 7 != 3)
+                        for (int corner = 0; corner < 2; ++corner)
+                            boxes[k].add(size * random_triangle(random, 1)[0] + offset);
+                const BoxHierarchy hierarchy(count, [&](std::size_t k) { return boxes[k]; });
+                for (int n = 0; n < 20; ++n) {
+                    const glm::dvec3 p = size * random_triangle(random, 1)[0] + offset;
+                    const double radius = size * real(random, 0, 10);
+                    std::vector<int> visits(count, 0);
+                    hierarchy.visit_near(p, radius, [&](std::size_t k) {
+                        ++visits[k];
+                        return radius;
+                    });
+                    double nearest = INFINITY, found = INFINITY;
+                    for (std::size_t k = 0; k < count; ++k) {
+                        const double squared = boxes[k].squared_distance(p);
+                        nearest = std::min(nearest, squared);
+                        if (squared <= radius * radius)
+                            REQUIRE(visits[k] == 1);
+                        REQUIRE(visits[k] <= (boxes[k].is_empty() ? 0 : 1));
+                    }
+                    hierarchy.visit_near(p, INFINITY, [&](std::size_t k) {
+                        found = std::min(found, boxes[k].squared_distance(p));
+                        return std::sqrt(found);
+                    });
+                    REQUIRE(found == nearest);
+                }
+            }
 }
 
 TEST_CASE("distances to long thin triangles, and to such without an area, are those of a search through all") {
