@@ -22,6 +22,8 @@
 #include "testbench/commands/summary.h"
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/atomic_set.h"
+#include "testbench/common/in_background.h"
+#include "testbench/common/parallel.h"
 #include "testbench/job/dump_job.h"
 #include "testbench/machine/fingerprint.h"
 #include "testbench/machine/inputs.h"
@@ -38,6 +40,19 @@
 namespace tessera {
 
 namespace {
+
+/// Hands the passes of a simulation to a check that runs beside it.
+class PassesInBackground : public tlm::tlm_analysis_if<datapath::TrianglePass> {
+  public:
+    explicit PassesInBackground(Scoreboard& check)
+        : passes_([&](const datapath::TrianglePass& pass) { check.write(pass); }) {}
+
+    void write(const datapath::TrianglePass& pass) override { passes_.put(pass); }
+    void finish() { passes_.finish(); }
+
+  private:
+    InBackground<datapath::TrianglePass> passes_;
+};
 
 /// A job's mesh and map, and what the host makes of them.
 struct Loaded {
@@ -145,10 +160,12 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
                           checked_units ? &*checked_units : nullptr);
     std::optional<GoldenInputs> golden;
     std::unique_ptr<Scoreboard> scoreboard;
+    std::optional<PassesInBackground> passes;
     if (job.check.golden) {
         golden.emplace(setup);
         scoreboard = std::make_unique<Scoreboard>(setup.registers, *golden);
-        simulation.observe_decisions(*scoreboard);
+        passes.emplace(*scoreboard);
+        simulation.observe_decisions(*passes);
     }
     std::unique_ptr<TransportCheck> work;
     if (job.check.work) {
@@ -175,8 +192,21 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
         traces.emplace(job, folder, simulation, units);
     }
 
+    Checks checks;
+    checks.allowed_flips = job.check.allowed_flips;
+    checks.remarks = setup.remarks;
+    std::optional<GoldenJob> golden_job;
+    if (job.check.golden || job.check.end_to_end)
+        golden_job.emplace(job, inputs.mesh, inputs.map, setup.model_scale);
+    std::optional<GoldenRun> golden_run;
+    if (job.check.end_to_end)
+        golden_run.emplace(setup, *golden_job, received_triangles(setup, *golden_job),
+                           static_cast<std::uint64_t>(job.limits.triangles));
+
     const Stopwatch stopwatch;
     const std::string stuck = simulation.run();
+    if (passes)
+        passes->finish();
     const double seconds = stopwatch.seconds();
     const std::string traces_text = traces ? finish_traces(*traces, command, folder, files) : std::string{};
     if (!stuck.empty()) {
@@ -193,9 +223,10 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
 
     EmittedMesh& mesh = simulation.monitor.mesh;
     mesh.sort();
-    Checks checks;
-    checks.allowed_flips = job.check.allowed_flips;
-    checks.remarks = setup.remarks;
+    auto mesh_counts = beside([&] { return count_mesh(mesh); });
+    auto invariants = beside([&] {
+        return job.check.invariants ? std::optional<InvariantResult>(check_invariants(mesh, setup)) : std::nullopt;
+    });
     if (scoreboard)
         checks.conformance = scoreboard->result();
     if (work)
@@ -204,27 +235,24 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
         checks.reads = checked_units->result();
     checks.texel_borders =
         texel_borders_warning(borders.count(), job, setup.registers.map.width, setup.registers.map.height);
-    std::optional<GoldenJob> golden_job;
-    if (job.check.golden || job.check.end_to_end) {
+    if (golden_job) {
         progress.show("checking the set-up", 0.6);
-        golden_job.emplace(job, inputs.mesh, inputs.map, setup.model_scale);
         checks.setup = check_setup(setup, *golden_job, simulation);
     }
-    if (job.check.invariants) {
-        progress.show("checking the mesh", 0.62);
-        checks.invariants = check_invariants(mesh, setup);
-    }
-    if (job.check.end_to_end) {
+    if (golden_run) {
         // Golden's own run saturates nothing: with values that did there is nothing to judge it by.
         const datapath::Saturations saturated = Totals(simulation).saturations;
         const bool judged = saturated.displaced_position + saturated.screen_position + saturated.view_distance == 0;
-        checks.end_to_end = compare_end_to_end(
-            setup, *golden_job, checks.setup->base_triangles, mesh,
-            judged ? job.check.allowed_triangles : std::numeric_limits<double>::infinity(),
-            [&](double part) { progress.show("golden model's own run and distances", 0.65 + 0.2 * part); });
+        progress.show("golden model's own run", 0.62);
+        checks.end_to_end =
+            golden_run->compare(mesh, judged ? job.check.allowed_triangles : std::numeric_limits<double>::infinity(),
+                                [&](double part) { progress.show("distances", 0.65 + 0.15 * part); });
+        golden_run.reset();
     }
+    progress.show("checking the mesh", 0.8);
+    checks.invariants = invariants.get();
     files.make_folder(folder, "output.folder");
-    const MeshCounts counts = count_mesh(mesh);
+    const MeshCounts counts = mesh_counts.get();
     write_run_folder(folder, job, setup, simulation, counts, checks, progress);
     replace_run(replaced, files);
     progress.clear();

@@ -1,6 +1,8 @@
 #pragma once
 #include <cstddef>
 #include <functional>
+#include <future>
+#include <utility>
 
 namespace tessera {
 
@@ -45,6 +47,13 @@ inline void parallel_for(std::size_t count, std::size_t threads, const std::func
                 work(k);
         },
         threads);
+}
+
+/// Does the work beside the caller's, on a thread of its own; where there is but one core, when it is asked for.
+template <class Work>
+auto beside(Work work) {
+    return std::async(thread_count() > 1 ? std::launch::async | std::launch::deferred : std::launch::deferred,
+                      std::move(work));
 }
 
 }  // namespace tessera

@@ -63,8 +63,9 @@ void start() {
     try {
         sc_core::sc_start();
     } catch (const sc_core::sc_report& report) {
-        // The kernel converts exceptions of a process to its own report.
-        if (report.get_msg() == std::string_view(std::bad_alloc().what()))
+        // The kernel converts exceptions of a process to its own report, and has one for stacks that do not fit.
+        if (report.get_msg() == std::string_view(std::bad_alloc().what()) ||
+            report.get_msg_type() == std::string_view(sc_core::SC_ID_STACK_SETUP_FAILED_))
             throw std::bad_alloc();
         throw;
     }

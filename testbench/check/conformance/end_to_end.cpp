@@ -3,47 +3,51 @@
 #include <algorithm>
 #include <cmath>
 
+#include "testbench/common/parallel.h"
 #include "testbench/geometry/surface_distance.h"
 
 namespace tessera {
 
 namespace {
 
-constexpr std::size_t triangles_between_progress = 256;
-
 using BaseTriangles = std::vector<std::array<golden::Vertex, 3>>;
 
-/// `allowed` is called with the largest generation. Golden's run counts as half of the progress and is assumed to have
-/// as many triangles as the hardware's.
-template <typename AllowedAt>
-EndToEndResult compare(const MachineSetup& setup, const BaseTriangles& base, const golden::Map& map,
-                       golden::Parameters parameters, const EmittedMesh& hardware, AllowedAt allowed,
-                       const std::function<void(double)>& progress) {
+struct TooManyTriangles {};
+
+using Told = std::function<void(double)>;
+
+std::uint64_t bound_of(const EmittedMesh& hardware) {
+    return 4 * hardware.triangles.size() + 1000;
+}
+
+golden::Parameters rounding_texture(golden::Parameters parameters, const MachineSetup& setup) {
     parameters.texture_step = std::ldexp(1.0, -setup.registers.formats.texture.fraction);
+    return parameters;
+}
+
+void tell(const Told& progress, double part) {
+    if (progress)
+        progress(part);
+}
+
+GoldenSurface run_golden(const BaseTriangles& base, const golden::Map& map, const golden::Parameters& parameters,
+                         std::uint64_t bound) {
+    GoldenSurface surface;
+    surface.run = golden::tessellate(base, map, parameters, bound, [&](const golden::Triangle& t) { surface.add(t); });
+    return surface;
+}
+
+EndToEndResult compare(const MachineSetup& setup, const GoldenSurface& golden, const EmittedMesh& hardware,
+                       const EndToEndResult::Allowed& allowed, const Told& progress) {
     EndToEndResult result;
     result.hardware_triangles = hardware.triangles.size();
-    result.bound = 4 * result.hardware_triangles + 1000;
-
-    const auto tell = [&](double part) {
-        if (progress)
-            progress(part);
-    };
-    TriangleSoup golden_soup;
-    golden_soup.reserve(hardware.triangles.size() + hardware.triangles.size() / 8);
-    const golden::Tessellation run =
-        golden::tessellate(base, map, parameters, result.bound, [&](const golden::Triangle& t) {
-            const auto& v = t.vertices;
-            golden_soup.push_back({v[0].displaced_position, v[1].displaced_position, v[2].displaced_position});
-            if (golden_soup.size() % triangles_between_progress == 0)
-                tell(0.5 * std::min(1.0, static_cast<double>(golden_soup.size()) /
-                                             static_cast<double>(result.hardware_triangles)));
-        });
-    result.golden_triangles = run.triangles_emitted;
-    result.golden_edges = run.edges_evaluated;
-    result.golden_largest_generation = run.largest_generation;
-    result.bound_hit = run.bound_hit;
-    result.allowed = allowed(run.largest_generation);
-    if (run.bound_hit)
+    result.bound = bound_of(hardware);
+    result.golden_triangles = golden.run.triangles_emitted;
+    result.golden_edges = golden.run.edges_evaluated;
+    result.golden_largest_generation = golden.run.largest_generation;
+    result.bound_hit = golden.run.bound_hit;
+    result.allowed = allowed;
+    if (result.bound_hit)
         return result;
 
     const Dequantise dequantise(setup.registers.formats);
@@ -69,12 +73,11 @@ EndToEndResult compare(const MachineSetup& setup, const BaseTriangles& base, con
                                         d.max * model,
                                         d.rms * model};
     };
-    // One after the other: with two Embree devices at once, releasing one may abort when memory runs out.
-    tell(0.5);
-    result.hardware_to_golden = measure(hardware_soup, golden_soup);
-    tell(0.75);
-    result.golden_to_hardware = measure(golden_soup, hardware_soup);
-    tell(1);
+    // One after the other, for the memory's sake: each uses all cores.
+    result.hardware_to_golden = measure(hardware_soup, golden.triangles);
+    tell(progress, 0.5);
+    result.golden_to_hardware = measure(golden.triangles, hardware_soup);
+    tell(progress, 1);
     return result;
 }
 
@@ -95,7 +98,7 @@ bool normals_are_exact(const BaseTriangles& base) {
            });
 }
 
-/// See compare_end_to_end().
+/// See GoldenRun::compare().
 EndToEndResult::Allowed allowed_after(int generations, const MachineSetup& setup, const golden::Scene& scene,
                                       const BaseTriangles& base, double allowed_triangles) {
     const datapath::Formats& formats = setup.registers.formats;
@@ -120,29 +123,60 @@ bool EndToEndResult::passed() const {
            rms_model() <= allowed_rms_model();
 }
 
-EndToEndResult compare_end_to_end(const MachineSetup& setup, const GoldenJob& golden,
-                                  const std::vector<std::uint32_t>& base_triangles, const EmittedMesh& hardware,
-                                  double allowed_triangles, const std::function<void(double)>& progress) {
-    const double step = std::ldexp(1.0, -setup.registers.formats.texture.fraction);
-    BaseTriangles base;
-    base.reserve(base_triangles.size());
+void GoldenSurface::add(const golden::Triangle& t) {
+    const auto& v = t.vertices;
+    triangles.push_back({v[0].displaced_position, v[1].displaced_position, v[2].displaced_position});
+}
+
+GoldenRun::GoldenRun(const MachineSetup& setup, const GoldenJob& golden,
+                     const std::vector<std::uint32_t>& base_triangles, std::uint64_t most)
+    : setup_(setup), golden_(golden), parameters_(rounding_texture(golden.parameters(), setup)), most_(most) {
+    const double step = parameters_.texture_step;
+    base_.reserve(base_triangles.size());
     for (const std::uint32_t triangle : base_triangles) {
-        auto& corners = base.emplace_back();
+        auto& corners = base_.emplace_back();
         for (std::size_t k = 0; k < 3; ++k) {
             corners[k] = golden.vertex(golden.mesh().triangles[triangle][k]);
             corners[k].texture = golden::on_grid(corners[k].texture, step);
         }
     }
-    return compare(
-        setup, base, golden.map(), golden.parameters(), hardware,
-        [&](int generations) { return allowed_after(generations, setup, golden.scene(), base, allowed_triangles); },
-        progress);
+    surface_ = beside([this] {
+        GoldenSurface surface;
+        const auto add = [&](const golden::Triangle& t) {
+            if (surface.triangles.size() >= most_)
+                throw TooManyTriangles{};
+            surface.add(t);
+        };
+        try {
+            surface.run = golden::tessellate(base_, golden_.map(), parameters_, UINT64_MAX, add);
+        } catch (const TooManyTriangles&) {
+            surface.run.bound_hit = true;
+        }
+        return surface;
+    });
+}
+
+GoldenRun::~GoldenRun() {
+    most_ = 0;
+}
+
+EndToEndResult GoldenRun::compare(const EmittedMesh& hardware, double allowed_triangles, const Told& progress) {
+    const std::uint64_t bound = bound_of(hardware);
+    most_ = std::min(most_.load(), bound);
+    GoldenSurface surface = surface_.get();
+    if (surface.run.bound_hit || surface.run.triangles_emitted > bound) {
+        surface = {};  // its memory
+        surface = run_golden(base_, golden_.map(), parameters_, bound);
+    }
+    return tessera::compare(
+        setup_, surface, hardware,
+        allowed_after(surface.run.largest_generation, setup_, golden_.scene(), base_, allowed_triangles), progress);
 }
 
 EndToEndResult compare_end_to_end(const MachineSetup& setup, const GoldenInputs& inputs, const EmittedMesh& hardware) {
-    return compare(
-        setup, golden_base_triangles(setup), inputs.map, inputs.parameters, hardware,
-        [](int) { return EndToEndResult::Allowed{}; }, nullptr);
+    const GoldenSurface surface = run_golden(golden_base_triangles(setup), inputs.map,
+                                             rounding_texture(inputs.parameters, setup), bound_of(hardware));
+    return compare(setup, surface, hardware, {}, nullptr);
 }
 
 }  // namespace tessera

@@ -1,11 +1,15 @@
 #pragma once
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cstdint>
 #include <functional>
+#include <future>
 #include <vector>
 
 #include "testbench/check/conformance/golden_inputs.h"
 #include "testbench/check/conformance/golden_job.h"
+#include "testbench/geometry/nearest_triangle.h"
 #include "testbench/machine/emitted_mesh.h"
 #include "testbench/machine/machine_setup.h"
 
@@ -62,25 +66,55 @@ struct EndToEndResult {
     bool passed() const;
 };
 
+/// The surface of golden's own run.
+struct GoldenSurface {
+    TriangleSoup triangles;
+    golden::Tessellation run;
+
+    void add(const golden::Triangle& triangle);
+};
+
 /// Runs golden from the job itself (GoldenJob) and judges the result. Camera, heights, normal map and thresholds are
 /// golden's own; positions and normals are not rounded. Map values (to codes) and texture coordinates are rounded as in
 /// the hardware (the base's to nearest, midpoints down): reading a texel is discontinuous, so that otherwise one LSB of
 /// t could select another texel.
-/// `progress`: called with the fraction done, 0..1; may be null.
-/// `base_triangles`: indices of the mesh's triangles that the machine received (SetupResult).
-/// `allowed_triangles`: in percent; infinite if values of the machine saturated, since golden's do not.
-/// Where both split the same triangles, a point of one surface lies within r of the other. The other points are at most
-/// a fraction f of all (allowed_farther) and lie within h. Hence
-///     points farther than r <= f      RMS <= r + sqrt(points farther than r) h
-/// r: per axis, after G generations, (G / 2 + 2) LSB of the position plus 2 (G + 1) LSB of the normal times the largest
-/// displacement; the second term is 0 for a plane perpendicular to an axis, whose normals are exact. h: at a point of a
-/// base triangle, |a n - b m| <= |a - b| + |b| |n - m| for displacements a, b along normals n, m of the triangle.
-EndToEndResult compare_end_to_end(const MachineSetup& setup, const GoldenJob& golden,
-                                  const std::vector<std::uint32_t>& base_triangles, const EmittedMesh& hardware,
-                                  double allowed_triangles, const std::function<void(double)>& progress = nullptr);
+///
+/// The run begins at once, beside the simulation, whose mesh then bounds it. The result depends on the meshes alone.
+class GoldenRun {
+  public:
+    /// `setup` and `golden` must outlive it.
+    /// `base_triangles`: indices of the mesh's triangles that the machine received (SetupResult).
+    /// `most`: triangles at which the run waits for the hardware's.
+    GoldenRun(const MachineSetup& setup, const GoldenJob& golden, const std::vector<std::uint32_t>& base_triangles,
+              std::uint64_t most = UINT64_MAX);
+    ~GoldenRun();
+    GoldenRun(const GoldenRun&) = delete;
+    GoldenRun& operator=(const GoldenRun&) = delete;
 
-/// Runs golden from the machine's own registers, tables and base triangles, dequantised. Not judged. Both functions are
-/// deterministic, multi-threaded, and take about 300 bytes per triangle of both meshes together.
+    /// To be called once.
+    /// `allowed_triangles`: in percent; infinite if values of the machine saturated, since golden's do not.
+    /// `progress`: called with the fraction done, 0..1; may be null.
+    /// Where both split the same triangles, a point of one surface lies within r of the other. The other points are at
+    /// most a fraction f of all (allowed_farther) and lie within h. Hence
+    ///     points farther than r <= f      RMS <= r + sqrt(points farther than r) h
+    /// r: per axis, after G generations, (G / 2 + 2) LSB of the position plus 2 (G + 1) LSB of the normal times the
+    /// largest displacement; the second term is 0 for a plane perpendicular to an axis, whose normals are exact. h: at
+    /// a point of a base triangle, |a n - b m| <= |a - b| + |b| |n - m| for displacements a, b along normals n, m of
+    /// the triangle.
+    EndToEndResult compare(const EmittedMesh& hardware, double allowed_triangles,
+                           const std::function<void(double)>& progress = nullptr);
+
+  private:
+    const MachineSetup& setup_;
+    const GoldenJob& golden_;
+    golden::Parameters parameters_;
+    std::vector<std::array<golden::Vertex, 3>> base_;
+    std::atomic<std::uint64_t> most_;
+    std::future<GoldenSurface> surface_;  // last: the run reads the others
+};
+
+/// Runs golden from the machine's own registers, tables and base triangles, dequantised. Not judged. Both are
+/// deterministic, multi-threaded, and take about 200 bytes per triangle of both meshes together.
 EndToEndResult compare_end_to_end(const MachineSetup& setup, const GoldenInputs& inputs, const EmittedMesh& hardware);
 
 }  // namespace tessera

@@ -428,6 +428,12 @@ std::uint64_t SetupResult::wrong() const {
     return sum;
 }
 
+std::vector<std::uint32_t> received_triangles(const MachineSetup& setup, const GoldenJob& golden) {
+    SetupResult result;
+    BaseCheck(setup, golden, result).run();
+    return result.base_triangles;
+}
+
 SetupResult check_setup(const MachineSetup& setup, const GoldenJob& golden, Simulation& simulation) {
     SetupResult result;
     RegisterCheck(setup, golden, result).run();

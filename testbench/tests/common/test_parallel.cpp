@@ -6,6 +6,7 @@
 #include <thread>
 #include <vector>
 
+#include "testbench/common/in_background.h"
 #include "testbench/common/parallel.h"
 
 using namespace tessera;
@@ -66,5 +67,48 @@ TEST_CASE("an exception on any thread reaches the caller, the lowest chunk's fir
         };
         CHECK_THROWS_WITH(fail(49), "chunk 49");
         CHECK_THROWS_AS(fail(0), std::runtime_error);
+    }
+}
+
+TEST_CASE("items in the background are taken in order, up to the one that fails") {
+    for (const std::size_t threads : {1U, 2U}) {
+        const OnThreads on(threads);
+        for (const std::size_t count : {0U, 1U, 127U, 128U, 129U, 1024U, 5000U}) {
+            std::vector<std::size_t> taken;
+            std::vector<std::size_t> all(count);
+            std::iota(all.begin(), all.end(), 0);
+            InBackground<std::size_t> background([&](std::size_t item) { taken.push_back(item); });
+            for (const std::size_t item : all)
+                background.put(item);
+            background.finish();
+            CHECK(taken == all);
+        }
+        std::size_t last = 0;
+        const auto run = [&](bool finish) {
+            InBackground<std::size_t> background([&](std::size_t item) {
+                if (item == 300)
+                    throw std::runtime_error("300");
+                last = item;
+            });
+            for (std::size_t item = 0; item < 5000; ++item)
+                background.put(item);
+            if (finish)
+                background.finish();
+        };
+        CHECK_THROWS_WITH(run(true), "300");
+        CHECK(last == 299);
+        if (threads > 1)
+            CHECK_NOTHROW(run(false));  // given up
+    }
+}
+
+TEST_CASE("work beside the caller's gives its result or what it threw") {
+    for (const std::size_t threads : {1U, 2U}) {
+        const OnThreads on(threads);
+        const std::thread::id here = std::this_thread::get_id();
+        auto where = beside([] { return std::this_thread::get_id(); });
+        CHECK((where.get() == here) == (threads == 1));
+        auto failing = beside([]() -> int { throw std::runtime_error("no"); });
+        CHECK_THROWS_WITH(failing.get(), "no");
     }
 }

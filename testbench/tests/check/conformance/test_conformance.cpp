@@ -42,7 +42,7 @@ void expect_conformance(const Job& asked, const HeightMap& map) {
     INFO(host.first_wrong);
     CHECK(host.passed());
     const EndToEndResult meshes =
-        compare_end_to_end(setup, golden, host.base_triangles, simulation.monitor.mesh, Job::Check{}.allowed_triangles);
+        GoldenRun(setup, golden, host.base_triangles).compare(simulation.monitor.mesh, Job::Check{}.allowed_triangles);
     CHECK_FALSE(meshes.bound_hit);
     CHECK(std::abs(meshes.more_triangles()) < Job::Check{}.allowed_triangles);
     CHECK(meshes.passed());

@@ -14,6 +14,7 @@
 #include "modules/datapath/registers.h"
 #include "testbench/check/conformance/end_to_end.h"
 #include "testbench/check/conformance/setup_check.h"
+#include "testbench/common/parallel.h"
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/simulation.h"
 #include "testbench/output/report/conformance_report.h"
@@ -386,6 +387,7 @@ TEST_CASE("a base triangle that collapses in the formats is left out, any other 
     REQUIRE(result.base_triangles.size() == 18);
     CHECK(result.base_triangles[2] == 2);
     CHECK(result.base_triangles[3] == 4);
+    CHECK(received_triangles(run.setup, run.golden) == result.base_triangles);
 }
 
 TEST_CASE("a model scale that is no power of two, or too large, is not sound") {
@@ -409,7 +411,7 @@ TEST_CASE("golden's own run is judged: by its triangles, by the surfaces' distan
     CheckedRun run{job};
     const SetupResult checked = run.check();
     const auto compare = [&](const EmittedMesh& mesh, double allowed) {
-        return compare_end_to_end(run.setup, run.golden, checked.base_triangles, mesh, allowed);
+        return GoldenRun(run.setup, run.golden, checked.base_triangles).compare(mesh, allowed);
     };
     EmittedMesh mesh = run.simulation.monitor.mesh;
     const EndToEndResult right = compare(mesh, 1);
@@ -423,16 +425,12 @@ TEST_CASE("golden's own run is judged: by its triangles, by the surfaces' distan
     CHECK(right.allowed.displacement == Approx(0.5));
     CHECK(right.farther() < 0.1);
 
-    // Progress moves while golden runs: every 256 triangles; then a step for each direction.
     std::vector<double> told;
-    compare_end_to_end(run.setup, run.golden, checked.base_triangles, mesh, 1,
-                       [&](double part) { told.push_back(part); });
-    REQUIRE(right.golden_triangles > 512);
-    REQUIRE(told.size() == right.golden_triangles / 256 + 3);
-    CHECK(told[1] == Approx(0.5 * 512 / static_cast<double>(mesh.triangles.size())));
-    CHECK(std::is_sorted(told.begin(), told.end()));
-    CHECK(told[told.size() - 2] == 0.75);
-    CHECK(told.back() == 1);
+    GoldenRun(run.setup, run.golden, checked.base_triangles).compare(mesh, 1, [&](double part) {
+        told.push_back(part);
+    });
+    CHECK(told == std::vector<double>{0.5, 1});
+
     CHECK(right.allowed_rms_model() == Approx(rounding + std::sqrt(right.farther() / 100) * 0.5));
 
     Checks checks;
@@ -465,8 +463,24 @@ TEST_CASE("golden's own run is judged: by its triangles, by the surfaces' distan
     CHECK(spikes.farther() < 1);
     CHECK(failed(spikes));
 
+    // The mesh bounds golden's run; a run stopped early, on any number of threads, is made again up to there.
     mesh.triangles.resize(10);
     const EndToEndResult stopped = compare(mesh, 1000);
+    CHECK(stopped.golden_triangles < 1040);
+    for (const std::size_t threads : {1U, 2U})
+        for (const std::uint64_t most : {std::uint64_t{0}, std::uint64_t{100}, UINT64_MAX}) {
+            const OnThreads on(threads);
+            GoldenRun golden_run(run.setup, run.golden, checked.base_triangles, most);
+            const EndToEndResult again = golden_run.compare(mesh, 1000);
+            CHECK(again.golden_triangles == stopped.golden_triangles);
+            CHECK(again.golden_edges == stopped.golden_edges);
+            CHECK(again.golden_largest_generation == stopped.golden_largest_generation);
+            CHECK(again.bound_hit);
+            GoldenRun whole(run.setup, run.golden, checked.base_triangles, most);
+            const EndToEndResult same = whole.compare(run.simulation.monitor.mesh, 1);
+            CHECK(same.golden_edges == right.golden_edges);
+            CHECK(same.rms_model() == right.rms_model());
+        }
     CHECK(stopped.bound_hit);
     CHECK(failed(stopped));
     CHECK_THAT(conformance_text(checks), Contains("more than 1040, where its run was stopped"));
@@ -482,7 +496,7 @@ TEST_CASE("on a cylinder rounding moves normals, too, and they turn") {
     CheckedRun run{job};
     const SetupResult checked = run.check();
     const EndToEndResult result =
-        compare_end_to_end(run.setup, run.golden, checked.base_triangles, run.simulation.monitor.mesh, 1);
+        GoldenRun(run.setup, run.golden, checked.base_triangles).compare(run.simulation.monitor.mesh, 1);
     CHECK(result.passed());
     REQUIRE(result.golden_largest_generation == 4);
     CHECK(result.allowed.rounding == Approx(std::sqrt(3.0) * (4 * std::ldexp(1.0, -16) / run.setup.model_scale.scale +
