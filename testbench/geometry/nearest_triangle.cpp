@@ -154,8 +154,8 @@ std::vector<NearestTriangle::Part> NearestTriangle::cut(const TriangleSoup& soup
         if (thin > most_thin)  // most triangles have no area, and halving them does not help
             thin = std::numeric_limits<double>::infinity();
         count = 0;
-        for (const auto& t : soup)
-            for_each_part(t, thin, 1, [&](unsigned) { ++count; });
+        for (std::size_t k = 0; k < soup.size(); ++k)
+            for_each_part(soup[k], thin, 1, [&](unsigned) { ++count; });
         if (count <= most_parts(soup.size()))
             break;
     }

@@ -5,12 +5,49 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "testbench/common/distinct_table.h"
 #include "testbench/geometry/box_hierarchy.h"
 
 namespace tessera {
 
-/// Triangles as bare positions.
-using TriangleSoup = std::vector<std::array<glm::dvec3, 3>>;
+/// Triangles as bare positions; equal positions are stored once.
+class TriangleSoup {
+  public:
+    using Corners = std::array<glm::dvec3, 3>;
+
+    TriangleSoup() = default;
+    TriangleSoup(const std::vector<Corners>& triangles) {
+        for (const Corners& triangle : triangles)
+            push_back(triangle);
+    }
+
+    void reserve(std::size_t triangles) { triangles_.reserve(triangles); }
+    void push_back(const Corners& triangle) {
+        triangles_.push_back({number_of(triangle[0]), number_of(triangle[1]), number_of(triangle[2])});
+    }
+    std::size_t size() const { return triangles_.size(); }
+    bool empty() const { return triangles_.empty(); }
+    Corners operator[](std::size_t k) const {
+        const auto& [a, b, c] = triangles_[k];
+        return {vertices_[a], vertices_[b], vertices_[c]};
+    }
+    /// In the order of their first use.
+    const std::vector<glm::dvec3>& vertices() const { return vertices_; }
+
+  private:
+    std::uint32_t number_of(const glm::dvec3& p) {
+        const std::uint32_t number = table_.number_of(
+            point_hash(p), [&](std::uint32_t v) { return vertices_[v] == p; },
+            [&](std::uint32_t v) { return point_hash(vertices_[v]); });
+        if (number == vertices_.size())
+            vertices_.push_back(p);
+        return number;
+    }
+
+    std::vector<glm::dvec3> vertices_;
+    std::vector<std::array<std::uint32_t, 3>> triangles_;
+    DistinctTable table_;
+};
 
 /// The point of a triangle nearest to p. A degenerate triangle is treated as a segment or point. The error of the
 /// distance is within 1e-8 of the triangle's longest edge and the distance itself, however thin the triangle.

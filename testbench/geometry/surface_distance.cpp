@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "testbench/common/distinct_table.h"
 #include "testbench/common/parallel.h"
 #include "testbench/common/random.h"
 
@@ -18,33 +17,19 @@ constexpr std::size_t pilot_points = 256;
 /// Every vertex once, in the order of its first use, then every centroid.
 class Points {
   public:
-    explicit Points(const TriangleSoup& soup) : soup_(soup) {
-        DistinctTable table;
-        for (std::size_t corner = 0; corner < 3 * soup.size(); ++corner) {
-            const glm::dvec3& p = position(corner);
-            const std::uint32_t number = table.number_of(
-                point_hash(p), [&](std::uint32_t v) { return vertex(v) == p; },
-                [&](std::uint32_t v) { return point_hash(vertex(v)); });
-            if (number == vertices_.size())
-                vertices_.push_back(static_cast<std::uint32_t>(corner));
-        }
-    }
+    explicit Points(const TriangleSoup& soup) : soup_(soup) {}
 
-    std::size_t size() const { return vertices_.size() + soup_.size(); }
+    std::size_t size() const { return soup_.vertices().size() + soup_.size(); }
 
     glm::dvec3 operator[](std::size_t index) const {
-        if (index < vertices_.size())
-            return vertex(index);
-        const auto& t = soup_[index - vertices_.size()];
+        if (index < soup_.vertices().size())
+            return soup_.vertices()[index];
+        const auto t = soup_[index - soup_.vertices().size()];
         return (t[0] + t[1] + t[2]) / 3.0;
     }
 
   private:
-    const glm::dvec3& position(std::size_t corner) const { return soup_[corner / 3][corner % 3]; }
-    const glm::dvec3& vertex(std::size_t number) const { return position(vertices_[number]); }
-
     const TriangleSoup& soup_;
-    std::vector<std::uint32_t> vertices_;  // each by one of its corners
 };
 
 /// Index among `all` points of the k-th of the `chosen` points.

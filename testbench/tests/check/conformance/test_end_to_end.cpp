@@ -99,12 +99,12 @@ TEST_CASE("distances through the tree of boxes are those of a search through all
     Random random(21);
     // A large offset leaves single precision little; the distances must not notice.
     for (const double offset : {0.0, 1e4, 1e6}) {
-        TriangleSoup from, to;
+        std::vector<TriangleSoup::Corners> from, to;
         for (int k = 0; k < 200; ++k) {
             from.push_back(random_triangle(random, 0.5));
             to.push_back(random_triangle(random, k % 10 == 0 ? 0.0 : 1.0));
         }
-        for (TriangleSoup* soup : {&from, &to})
+        for (auto* soup : {&from, &to})
             for (auto& t : *soup)
                 for (glm::dvec3& p : t)
                     p += offset;
@@ -128,7 +128,18 @@ TEST_CASE("distances through the tree of boxes are those of a search through all
         CHECK(distance_between(from, from).max == Approx(0).margin(1e-9));
     }
     CHECK(distance_between({}, {}).points == 0);
-    CHECK(std::isinf(distance_between({random_triangle(random, 1)}, {}).max));
+    CHECK(std::isinf(distance_between(std::vector{random_triangle(random, 1)}, {}).max));
+}
+
+TEST_CASE("triangles that meet store their common vertices once, in the order of their first use") {
+    const glm::dvec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0), d(1, 1, 0);
+    const std::vector<TriangleSoup::Corners> triangles{{c, a, b}, {c, b, d}};
+    const TriangleSoup soup(triangles);
+    REQUIRE(soup.size() == 2);
+    CHECK(soup[0] == triangles[0]);
+    CHECK(soup[1] == triangles[1]);
+    CHECK(soup.vertices() == std::vector<glm::dvec3>{c, a, b, d});
+    CHECK(distance_between(soup, soup).points == 6);
 }
 
 TEST_CASE("the tree of boxes visits each box within the radius once, and none that is empty") {
@@ -175,7 +186,7 @@ TEST_CASE("distances to long thin triangles, and to such without an area, are th
         return std::array<glm::dvec3, 3>{at, at + along, at + 0.6 * along + width * unit_vector(random)};
     };
     for (const double width : {1e-3, 0.0}) {
-        TriangleSoup from, to;
+        std::vector<TriangleSoup::Corners> from, to;
         for (int k = 0; k < 300; ++k) {
             from.push_back(random_triangle(random, 0.1));
             to.push_back(needle(width));
@@ -189,7 +200,8 @@ TEST_CASE("distances to long thin triangles, and to such without an area, are th
                 largest = std::max(largest, nearest);
             }
         CHECK(distance_between(from, to).max == Approx(largest).epsilon(1e-12));
-        const NearestTriangle search(to);
+        const TriangleSoup soup(to);
+        const NearestTriangle search(soup);
         std::vector<NearestTriangle::Found> within;
         for (const std::size_t most : {300U, 100'000U}) {
             REQUIRE(search.within({0, 0, 0}, 10, most, within));
@@ -206,7 +218,7 @@ TEST_CASE("a sample of the points says how many it is, and what that tells of th
     CHECK(SurfaceDistance{10, 10, 0, 0}.unseen(0.999) == 0);
 
     Random random(23);
-    TriangleSoup from, to;
+    std::vector<TriangleSoup::Corners> from, to;
     for (int k = 0; k < 3000; ++k) {
         from.push_back(random_triangle(random, 0.5));
         to.push_back(random_triangle(random, 0.5));
@@ -233,7 +245,7 @@ TEST_CASE("a sample of the points says how many it is, and what that tells of th
 TEST_CASE("a surface shifted by a known distance is measured as that") {
     Case c = donut(Job{}, 64);
     const EmittedMesh mesh = hardware_mesh(c);
-    TriangleSoup one, other;
+    std::vector<TriangleSoup::Corners> one, other;
     const Dequantise dequantise(c.setup.registers.formats);
     for (const EmittedTriangle& t : mesh.triangles) {
         one.emplace_back();

@@ -55,18 +55,18 @@ inline BruteForce brute_force(const BaseMesh& base, const HeightMap& map, const 
                               const RecordedMesh& mesh, Sampling sampling, const MeasureLimits& limits = {}) {
     const DisplacedSurface surface(base, map, displacement, LocalFrame{});
     const ReferenceLattice lattice(surface, limits.reference_samples);
-    const auto nearest = [](const TriangleSoup& soup, const glm::dvec3& p) {
+    const auto nearest = [](const std::vector<TriangleSoup::Corners>& soup, const glm::dvec3& p) {
         double squared = std::numeric_limits<double>::infinity();
         for (const auto& triangle : soup)
             squared = std::min(squared, squared_distance(triangle, p));
         return std::sqrt(squared);
     };
-    TriangleSoup soup;
+    std::vector<TriangleSoup::Corners> soup;
     for (const RecordedMesh::Triangle& t : mesh.triangles)
         soup.push_back(mesh.corners(t));
 
     BruteForce result;
-    TriangleSoup facets;
+    std::vector<TriangleSoup::Corners> facets;
     double squares = 0, weights = 0;
     // The lattice point by point and facet by facet, without its tiles.
     for (std::size_t k = 0; k < surface.triangles(); ++k) {
