@@ -50,7 +50,7 @@ Trial trial_of(const std::string& command) {
     const auto says = [&](const char* words) { return std::regex_search(command, std::regex(words)); };
     if (says("^(git|sudo|apt|apt-get|docker|cd|g\\+\\+) "))
         return Trial::foreign;
-    if (says("^(\\.ci/|scripts/(check|install)|scripts/figures$)"))
+    if (says("^(\\.ci/|scripts/(check|install|sweep)|scripts/figures$)"))
         return Trial::parse;
     if (says("^cmake .*--target "))
         return Trial::build;

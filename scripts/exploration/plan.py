@@ -1,0 +1,112 @@
+"""The runs of a sweep: the product of its scenes and axes, each with its effective job and the address of its result."""
+import itertools
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from program import QUIET, ContentHash, Refused, effective_job
+
+
+@dataclass
+class Design:
+    number: int
+    scene: str
+    cells: tuple  # of the table's axis columns
+    job: Path
+    settings: dict
+    key: str = ""
+    refused: str = ""  # why the program does not accept the job
+    positions: tuple = field(default=())
+
+
+class Planner:
+    def __init__(self, sweep, program):
+        self.sweep = sweep
+        self.program = program
+        self.hash = ContentHash(program)
+
+    def check_keys(self):
+        """Every key of the sweep file is one of the program's."""
+        sweep = self.sweep
+        for scene, job in sweep.scenes.items():
+            try:
+                known = effective_job(self.program, job, {})
+            except Refused as refused:
+                raise sweep.error(refused, sweep.line_of(scene)) from None
+        taken = {}
+        entries = [(key, sweep.line_of("[set]")) for key in sweep.settings]
+        entries += [(key, axis.line) for axis in sweep.axes for key in {k: 0 for p in axis.points for k in p.settings}]
+        for key, line in entries:
+            place = sweep.line_of(key, line)
+            if key not in known:
+                raise sweep.error(f"unknown key `{key}`; `tessera keys` lists them all", place)
+            if key in taken and taken[key] != sweep.line_of("[set]"):
+                raise sweep.error(f"`{key}` is on another axis, too, line {taken[key]}", place)
+            taken[key] = line
+        for constraint in sweep.constraints:
+            for name in constraint.names - set(known):
+                raise sweep.error(f"unknown key `{name}` in a constraint", sweep.line_of(constraint.text))
+
+    @property
+    def size(self):
+        size = len(self.sweep.scenes)
+        for axis in self.sweep.axes:
+            size *= len(axis.points)
+        return size
+
+    def product(self):
+        """Every design, without its key."""
+        number = itertools.count()
+        ranges = [range(len(axis.points)) for axis in self.sweep.axes]
+        for scene in self.sweep.scenes:
+            for positions in itertools.product(*ranges):
+                yield self.design(next(number), scene, positions)
+
+    def number(self, scene, positions):
+        number = list(self.sweep.scenes).index(scene)
+        for axis, position in zip(self.sweep.axes, positions):
+            number = number * len(axis.points) + position
+        return number
+
+    def design(self, number, scene, positions):
+        sweep = self.sweep
+        points = [axis.points[position] for axis, position in zip(sweep.axes, positions)]
+        settings = {**QUIET, **sweep.settings}
+        for point in points:
+            settings.update(point.settings)
+        if sweep.measures_error:
+            settings["output.ply"] = True
+        # The program lets it set other keys: those of the sweep come after it.
+        settings = {**{key: settings[key] for key in settings if key == "hardware.design"}, **settings}
+        cells = tuple(cell for point in points for cell in point.cells)
+        return Design(number, scene, cells, sweep.scenes[scene], settings, positions=positions)
+
+    def complete(self, design):
+        """Adds key or refusal; None if a constraint excludes the design."""
+        try:
+            keys = effective_job(self.program, design.job, design.settings)
+        except Refused as refused:
+            design.refused = str(refused)
+            return design
+        if not all(constraint.value(keys) for constraint in self.sweep.constraints):
+            return None
+        design.key = self.hash.of(keys, design.job.parent, self.sweep.measures_error)
+        return design
+
+    def grid(self, jobs):
+        """All designs that the constraints allow."""
+        with ThreadPoolExecutor(jobs) as pool:
+            designs = [design for design in pool.map(self.complete, self.product()) if design]
+        self._check_grid(designs)
+        return designs
+
+    def _check_grid(self, designs):
+        sweep = self.sweep
+        if not designs:
+            raise sweep.error("the constraints exclude every design: the product is empty", sweep.line_of("constraints"))
+        for index, axis in enumerate(sweep.axes):
+            for position, point in enumerate(axis.points):
+                here = [design for design in designs if design.positions[index] == position]
+                if here and all(design.refused for design in here):
+                    words = next(iter(point.settings), axis.columns[0])
+                    raise sweep.error(here[0].refused, sweep.line_of(words, axis.line))

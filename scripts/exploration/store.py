@@ -1,0 +1,41 @@
+"""Results, one compressed file each, addressed by content. A file appears when it is complete."""
+import gzip
+import json
+import os
+from pathlib import Path
+
+
+class Store:
+    def __init__(self, folder):
+        self.folder = Path(folder)
+
+    def path(self, key):
+        return self.folder / key[:2] / f"{key}.json.gz"
+
+    def has(self, key):
+        return self.path(key).is_file()
+
+    def read(self, key):
+        return json.loads(gzip.decompress(self.path(key).read_bytes()))
+
+    def write(self, key, result):
+        self._replace(self.path(key), gzip.compress(json.dumps(result).encode(), mtime=0))
+        self._failure(key).unlink(missing_ok=True)
+
+    def _failure(self, key):
+        return self.path(key).with_name(f"{key}.failure")
+
+    def write_failure(self, key, reason):
+        """Why a run came to no result. It is tried again by the next sweep."""
+        self._replace(self._failure(key), reason.encode())
+
+    def failure(self, key):
+        path = self._failure(key)
+        return path.read_text(encoding="utf-8") if path.is_file() else "not run"
+
+    @staticmethod
+    def _replace(path, content):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        part = path.with_name(f"{path.name}.{os.uname().nodename}.{os.getpid()}.part")
+        part.write_bytes(content)
+        part.replace(path)
