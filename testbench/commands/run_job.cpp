@@ -86,8 +86,6 @@ void write_run_folder(const std::filesystem::path& folder, const Job& job, const
                       const Simulation& simulation, const MeshCounts& counts, const Checks& checks,
                       Progress& progress) {
     progress.show("writing reports", 0.85);
-    auto picture =
-        beside([&] { return job.output.picture ? picture_file(simulation.monitor.mesh, setup, job) : std::string{}; });
     write_file(folder / "job.toml", dump_job(job, folder));
     const std::vector<Figure> figures = collect_statistics(setup, simulation, counts);
     write_file(folder / "statistics.json", statistics_json(figures));
@@ -108,7 +106,7 @@ void write_run_folder(const std::filesystem::path& folder, const Job& job, const
         write_obj(folder / "mesh.obj", simulation.monitor.mesh, units);
     if (job.output.picture) {
         progress.show("picture", 0.9);
-        write_file(folder / "picture.png", picture.get());
+        write_picture(folder / "picture.png", simulation.monitor.mesh, setup, job);
     }
 }
 

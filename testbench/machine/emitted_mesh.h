@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <tuple>
+#include <vector>
 
 #include "modules/datapath/vertex.h"
 
@@ -48,7 +48,7 @@ struct EmittedTriangle {
 
 /// All finished triangles of a run, including culled ones.
 struct EmittedMesh {
-    std::deque<EmittedTriangle> triangles;  // in blocks: a vector would hold a run's largest data twice as it grows
+    std::vector<EmittedTriangle> triangles;
 
     /// Whether a triangle was split with the Highlight Test true; otherwise files do not mention the test.
     bool has_highlight_splits() const {

@@ -1,5 +1,5 @@
 #pragma once
-#include <string>
+#include <filesystem>
 
 #include "testbench/job/job.h"
 #include "testbench/machine/emitted_mesh.h"
@@ -7,8 +7,9 @@
 
 namespace tessera {
 
-/// The default picture of a run (PictureView::overview) from the run's own camera: a PNG file's bytes. About a second
-/// for each half million pixels, little more for a million triangles than for a thousand.
-std::string picture_file(const EmittedMesh& mesh, const MachineSetup& setup, const Job& job);
+/// The default picture of a run (PictureView::overview) from the run's own camera, as a PNG file that appears complete
+/// or not at all. About a second for each half million pixels, little more for a million triangles than for a thousand.
+void write_picture(const std::filesystem::path& path, const EmittedMesh& mesh, const MachineSetup& setup,
+                   const Job& job);
 
 }  // namespace tessera

@@ -1,6 +1,5 @@
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <deque>
 
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/error.h"
@@ -49,7 +48,7 @@ Job without_automatic(Job job) {
     return job;
 }
 
-BaseMesh read_back(const std::deque<EmittedTriangle>& triangles, const Job& job = {}, std::uint32_t map_size = 8) {
+BaseMesh read_back(const std::vector<EmittedTriangle>& triangles, const Job& job = {}, std::uint32_t map_size = 8) {
     const TestFolder run;
     EmittedMesh mesh;
     mesh.triangles = triangles;
