@@ -29,11 +29,10 @@ Simulation::Simulation(const MachineSetup& its_setup, std::uint64_t triangle_lim
                        std::uint64_t cycles_without_progress, UnitFactory* units)
     : setup(its_setup),
       monitor("mesh_monitor", setup.registers.back_face_culling, triangle_limit),
-      machines(make_machines(setup, monitor, units)) {
+      machines(make_machines(setup, monitor, units)),
+      only_own_units_(units == nullptr) {
     for (const auto& machine : machines)
         machine->pipeline.clock.halt_without_progress_for(cycles_without_progress);
-    if (units == nullptr && machines.size() == 1)  // others may act upon time
-        pipeline.clock.run_ahead(cycles_ahead);
 }
 
 void Simulation::observe_decisions(tlm::tlm_analysis_if<datapath::TrianglePass>& sink) {
@@ -74,6 +73,8 @@ void start() {
 }  // namespace
 
 std::string Simulation::run() {
+    if (only_own_units_ && machines.size() == 1)  // others may act upon time
+        pipeline.clock.run_ahead(cycles_ahead);
     start();
     if (setup.design.transport == Transport::non_blocking) {
         cycles_ = last_machine().pipeline.clock.last_cycle() + 1;

@@ -48,6 +48,7 @@ struct Simulation {
     static std::string stuck(const HostedMachine& machine, const MachineSetup& setup);
 
     std::uint64_t cycles_ = 0;
+    const bool only_own_units_;  // of modules/
 };
 
 }  // namespace tessera
