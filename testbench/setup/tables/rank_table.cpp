@@ -1,0 +1,242 @@
+#include "testbench/setup/tables/rank_table.h"
+
+#include <algorithm>
+#include <queue>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "modules/datapath/map_address.h"
+#include "testbench/setup/tables/log_scale.h"
+#include "testbench/setup/tables/split_hierarchy.h"
+
+namespace tessera {
+
+namespace {
+
+using datapath::AddressMode;
+using datapath::TexCoord;
+
+// From 1/256 of a code's square, so that ranks have room to grow along dependencies where the map is flat, to 2^46: half
+// a lattice's quad of 2^12 x 2^12 texels, all of them 2^12 codes off.
+LogScale rank_scale(int bits) {
+    return {bits, 6, 16};
+}
+
+// From 1/256 of a code to 2^24, of which 2^16 is needed: the rest is room to grow.
+LogScale bound_scale(int bits) {
+    return {bits, 5, 8};
+}
+
+/// Falls of squared error, per triangle, shared among splits so that none is worth more than one it needs: a split that
+/// brings little but leads to others that bring much forms a block with them. Optimal if each split needed only the
+/// youngest of its makers; a vertex of the forest these form is merged with its best successor as long as that is better.
+class PooledFalls {
+  public:
+    explicit PooledFalls(const SplitHierarchy& hierarchy) {
+        const std::size_t count = hierarchy.splits.size();
+        std::vector<std::uint32_t> maker(count, nothing);
+        for (const SplitDependency& dependency : hierarchy.dependencies) {
+            std::uint32_t& youngest = maker[dependency.split];
+            youngest = youngest == nothing ? dependency.maker : std::max(youngest, dependency.maker);
+        }
+        blocks_.resize(count);
+        for (std::size_t k = count; k-- > 0;) {
+            blocks_[k].fall = hierarchy.splits[k].squared_fall;
+            blocks_[k].triangles = hierarchy.splits[k].triangles;
+            blocks_[k].joined = static_cast<std::uint32_t>(k);
+            merge_better_successors(static_cast<std::uint32_t>(k));
+            if (maker[k] != nothing)
+                blocks_[maker[k]].successors.push({blocks_[k].per_triangle(), static_cast<std::uint32_t>(k)});
+        }
+        for (Block& block : blocks_)  // a block joins an older one, whose own is known by then
+            block.joined = blocks_[block.joined].joined;
+    }
+
+    double per_triangle(std::size_t split) const { return blocks_[blocks_[split].joined].per_triangle(); }
+
+  private:
+    static constexpr std::uint32_t nothing = 0xffffffff;
+    using Successor = std::pair<double, std::uint32_t>;  // fall per triangle, block
+    struct Block {
+        double fall = 0, triangles = 0;
+        std::uint32_t joined = 0;  // the block it is part of
+        std::priority_queue<Successor> successors;
+        double per_triangle() const { return fall / triangles; }
+    };
+
+    void merge_better_successors(std::uint32_t number) {
+        Block& block = blocks_[number];
+        while (!block.successors.empty() && block.successors.top().first > block.per_triangle()) {
+            Block& other = blocks_[block.successors.top().second];
+            block.successors.pop();
+            block.fall += other.fall;
+            block.triangles += other.triangles;
+            other.joined = number;
+            if (block.successors.size() < other.successors.size())
+                std::swap(block.successors, other.successors);
+            for (; !other.successors.empty(); other.successors.pop())
+                block.successors.push(other.successors.top());
+        }
+    }
+
+    std::vector<Block> blocks_;
+};
+
+/// Entries of one table: those wanted, raised so that each split's is greater than those of the splits that need it.
+class EntryTable {
+  public:
+    EntryTable(const SplitHierarchy& hierarchy, std::uint32_t columns, std::uint32_t rows)
+        : hierarchy_(hierarchy), columns_(columns), entries_(std::size_t{columns} * rows, 0) {}
+
+    /// wanted: an entry a split. Returns the highest threshold below which no split lacks the entry it wants.
+    std::uint32_t fill(const std::vector<std::uint32_t>& wanted, std::uint32_t highest) {
+        for (std::size_t k = 0; k < wanted.size(); ++k) {
+            std::uint32_t& entry = entries_[texel(k)];
+            entry = std::max(entry, wanted[k]);
+        }
+        // Once suffices without clashes; with them makers may depend on one another.
+        for (int round = 0; round < most_rounds && raise_makers(); ++round) {
+        }
+        return lower_to(highest, wanted);
+    }
+
+    std::vector<std::uint16_t> entries() const { return {entries_.begin(), entries_.end()}; }
+
+  private:
+    static constexpr int most_rounds = 8;
+
+    std::size_t texel(std::size_t split) const {
+        return std::size_t{hierarchy_.splits[split].row} * columns_ + hierarchy_.splits[split].column;
+    }
+
+    bool raise_makers() {
+        bool raised = false;
+        for (std::size_t k = hierarchy_.dependencies.size(); k-- > 0;) {
+            const SplitDependency& dependency = hierarchy_.dependencies[k];
+            const std::size_t to = texel(dependency.maker), from = texel(dependency.split);
+            if (to != from && entries_[to] <= entries_[from]) {
+                entries_[to] = entries_[from] + 1;
+                raised = true;
+            }
+        }
+        return raised;
+    }
+
+    /// Below the highest entry each split leaves room for the longest chain of those it needs, so that entries which do
+    /// not fit stay in order.
+    std::uint32_t lower_to(std::uint32_t highest, const std::vector<std::uint32_t>& wanted) {
+        std::vector<std::uint32_t> room(wanted.size(), highest);
+        for (const SplitDependency& dependency : hierarchy_.dependencies) {
+            const std::uint32_t above = room[dependency.maker];
+            room[dependency.split] = std::min(room[dependency.split], above == 0 ? 0 : above - 1);
+        }
+        std::vector<std::uint32_t> most(entries_.size(), 0);
+        for (std::size_t k = 0; k < wanted.size(); ++k)
+            most[texel(k)] = std::max(most[texel(k)], room[k]);
+        std::uint32_t threshold = highest;
+        for (std::size_t k = 0; k < wanted.size(); ++k) {
+            std::uint32_t& entry = entries_[texel(k)];
+            entry = std::min(entry, most[texel(k)]);
+            if (entry < wanted[k])
+                threshold = std::min(threshold, entry == 0 ? 0 : entry - 1);
+        }
+        return threshold;
+    }
+
+    const SplitHierarchy& hierarchy_;
+    std::uint32_t columns_;
+    std::vector<std::uint32_t> entries_;
+};
+
+std::vector<std::uint32_t> wanted_ranks(const SplitHierarchy& hierarchy, const LogScale& scale) {
+    const PooledFalls falls(hierarchy);
+    std::vector<std::uint32_t> wanted(hierarchy.splits.size());
+    for (std::size_t k = 0; k < wanted.size(); ++k)
+        wanted[k] = scale.entry_above(falls.per_triangle(k));
+    return wanted;
+}
+
+std::vector<std::uint32_t> wanted_bounds(const SplitHierarchy& hierarchy, const LogScale& scale) {
+    constexpr double above_rounding = 1 + 0x1p-40;
+    std::vector<std::uint32_t> wanted(hierarchy.splits.size());
+    for (std::size_t k = 0; k < wanted.size(); ++k)
+        wanted[k] = scale.entry_above(hierarchy.splits[k].largest * above_rounding);
+    return wanted;
+}
+
+std::uint32_t table_side(std::uint32_t map_side, AddressMode mode, const std::vector<TextureTriangle>& base,
+                         std::uint32_t TexCoord::*axis, const datapath::Formats& formats) {
+    std::uint32_t side = map_side;
+    if (mode == AddressMode::repeat)
+        return side;
+    for (const TextureTriangle& triangle : base) {
+        for (const TexCoord& corner : triangle)
+            side = std::max(side, datapath::integer_part(corner.*axis, formats) + 1);
+    }
+    return side;
+}
+
+std::uint64_t count_clashes(const SplitHierarchy& hierarchy) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> texels;
+    for (const EdgeSplit& split : hierarchy.splits)
+        texels.emplace_back(split.column, split.row);
+    std::sort(texels.begin(), texels.end());
+    const auto distinct = std::unique(texels.begin(), texels.end());
+    return static_cast<std::uint64_t>(texels.end() - distinct);
+}
+
+}  // namespace
+
+RankTables make_rank_tables(const QuantisedMap& map, const std::vector<TextureTriangle>& base,
+                            const datapath::Formats& formats, int rank_bits, int bound_bits) {
+    RankTables tables;
+    const datapath::MapGeometry& g = map.geometry;
+    tables.columns = table_side(g.width, g.address_u, base, &TexCoord::u, formats);
+    tables.rows = table_side(g.height, g.address_v, base, &TexCoord::v, formats);
+    const SplitHierarchy hierarchy = make_split_hierarchy(map, base, formats);
+    tables.least_error = hierarchy.least_error;
+    tables.clashes = count_clashes(hierarchy);
+    if (rank_bits != 0) {
+        const LogScale scale = rank_scale(rank_bits);
+        EntryTable table(hierarchy, tables.columns, tables.rows);
+        table.fill(wanted_ranks(hierarchy, scale), scale.highest());
+        tables.rank = table.entries();
+    }
+    if (bound_bits != 0) {
+        const LogScale scale = bound_scale(bound_bits);
+        EntryTable table(hierarchy, tables.columns, tables.rows);
+        tables.highest_bound_threshold = table.fill(wanted_bounds(hierarchy, scale), scale.highest());
+        tables.bound = table.entries();
+    }
+    return tables;
+}
+
+std::uint64_t count_whole_base_edges(const std::vector<TextureTriangle>& base, const datapath::Formats& formats) {
+    std::set<std::array<std::uint32_t, 4>> whole;
+    for (const TextureTriangle& triangle : base) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            TexCoord a = triangle[k], b = triangle[(k + 1) % 3];
+            if (edge_may_split(a, b, formats))
+                continue;
+            if (std::tie(b.u, b.v) < std::tie(a.u, a.v))
+                std::swap(a, b);
+            whole.insert({a.u, a.v, b.u, b.v});
+        }
+    }
+    return whole.size();
+}
+
+std::uint32_t rank_threshold(double error_per_triangle, int bits) {
+    return rank_scale(bits).entry_below(error_per_triangle * error_per_triangle);
+}
+
+std::uint32_t bound_threshold(double largest_error, int bits) {
+    return bound_scale(bits).entry_below(largest_error);
+}
+
+double bound_error(std::uint32_t threshold, int bits) {
+    return bound_scale(bits).value(threshold);
+}
+
+}  // namespace tessera

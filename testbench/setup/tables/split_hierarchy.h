@@ -1,0 +1,44 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "testbench/setup/quantised_map.h"
+#include "testbench/setup/tables/grid_points.h"
+
+namespace tessera {
+
+/// The bisection of an edge and of all triangles that share it.
+struct EdgeSplit {
+    std::uint32_t column = 0, row = 0;  ///< texel of the midpoint; on a repeated axis within the map
+    std::uint32_t triangles = 0;        ///< that it replaces by twice as many
+    double squared_fall = 0;            ///< of the sum of their squared errors, codes^2; negative if that rises
+    double largest = 0;                 ///< the largest error in the triangles it replaces, codes
+};
+
+/// `split` bisects a triangle that `maker` made, so that it needs it; maker < split.
+struct SplitDependency {
+    std::uint32_t split = 0, maker = 0;
+};
+
+/// Which edges to bisect, one after another, until the mesh meets the map at every grid point that midpoints reach. Any
+/// part of the sequence that has with each split its makers gives a mesh without cracks.
+struct SplitHierarchy {
+    std::vector<EdgeSplit> splits;
+    std::vector<SplitDependency> dependencies;  ///< in the order of the splits
+    double least_error = 0;                     ///< the largest error once all are made, codes
+};
+
+/// Whether the hardware may bisect the edge: its ends differ by even whole texels, so that the midpoint lies as its
+/// ends do in their texels.
+bool edge_may_split(const datapath::TexCoord& a, const datapath::TexCoord& b, const datapath::Formats& formats);
+
+/// Greedy, top down: next is the edge for which (max(0, fall) + best fall + 0.8 squared error) * (length / longest)^2,
+/// per triangle, is largest. fall: of the squared error when it is bisected; best fall: if the midpoint might have any
+/// height; longest: of the edges of its triangles. Equal: the edge that appeared first.
+///
+/// Edges with the same ends are one edge, and base triangles with the same corners one triangle, also if they are whole
+/// periods apart on a repeated axis. Triangles without area in the map are left out. Takes about 250 bytes a texel.
+SplitHierarchy make_split_hierarchy(const QuantisedMap& map, const std::vector<TextureTriangle>& base,
+                                    const datapath::Formats& formats);
+
+}  // namespace tessera

@@ -1,0 +1,277 @@
+#include "testbench/setup/tables/rank_table.h"
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <set>
+#include <string>
+
+#include "testbench/setup/tables/lattice.h"
+#include "testbench/setup/tables/split_hierarchy.h"
+#include "testbench/tests/setup/tables/refined_mesh.h"
+
+using namespace tessera;
+using namespace tessera::tables_test;
+
+namespace {
+
+const datapath::Formats formats;
+
+TexelTable table_of(const std::vector<std::uint16_t>& entries, const RankTables& tables) {
+    return {entries, tables.columns, tables.rows, formats.texture.fraction};
+}
+
+/// A map and a lattice over it, clamped (of any size) or repeated (of whole quads).
+struct RandomCase {
+    QuantisedMap map;
+    std::vector<Corners> base;
+
+    explicit RandomCase(Random& random) {
+        const std::uint32_t spacing = std::uint32_t{1} << random.natural(1, 6);
+        const auto side = [&](AddressMode mode) {
+            return mode == AddressMode::repeat ? spacing * random.natural(1, spacing > 16 ? 1 : 3)
+                                               : random.natural(2, 40);
+        };
+        const AddressMode u = random.coin() ? AddressMode::repeat : AddressMode::clamp;
+        const AddressMode v = random.coin() ? AddressMode::repeat : AddressMode::clamp;
+        const std::uint32_t width = side(u), height = side(v);
+        map = random_map(random, width, height, u, v);
+        base = lattice_triangles(lattice_over(map.geometry, spacing), formats);
+    }
+};
+
+/// The mesh of those splits of the hierarchy whose entry is above the threshold, made in the host's order.
+std::vector<Corners> replay(const SplitHierarchy& hierarchy, std::vector<Corners> mesh, const TexelTable& table,
+                            std::uint32_t threshold) {
+    for (const EdgeSplit& split : hierarchy.splits) {
+        if (table.entries[std::size_t{split.row} * table.columns + split.column] <= threshold)
+            continue;
+        const std::size_t count = mesh.size();
+        for (std::size_t i = 0; i < count; ++i) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                const TexCoord a = mesh[i][k], b = mesh[i][(k + 1) % 3], m = middle_of(a, b);
+                if (!differs_by_even_texels(a, b, formats) || (m.u >> table.fraction) % table.columns != split.column ||
+                    (m.v >> table.fraction) % table.rows != split.row)
+                    continue;
+                Corners other = mesh[i];
+                mesh[i][(k + 1) % 3] = other[k] = m;
+                mesh.push_back(other);
+                break;
+            }
+        }
+    }
+    return mesh;
+}
+
+using Sorted = std::multiset<std::array<std::uint32_t, 6>>;
+Sorted sorted(const std::vector<Corners>& mesh) {
+    Sorted all;
+    for (const Corners& t : mesh)
+        all.insert({t[0].u, t[0].v, t[1].u, t[1].v, t[2].u, t[2].v});
+    return all;
+}
+
+/// Cases of the random tests: so many, or TESSERA_TABLE_CASES.
+int random_cases(int usual) {
+    const char* wanted = std::getenv("TESSERA_TABLE_CASES");
+    return wanted == nullptr ? usual : std::stoi(wanted);
+}
+
+}  // namespace
+
+TEST_CASE("The hardware's recursion rebuilds the host's hierarchy triangle by triangle") {
+    Random random(1);
+    for (int trial = 0; trial < 30; ++trial) {
+        const RandomCase at(random);
+        const int bits = random.integer32(8, 16);
+        const SplitHierarchy hierarchy = make_split_hierarchy(at.map, at.base, formats);
+        const RankTables tables = make_rank_tables(at.map, at.base, formats, bits, bits);
+        REQUIRE(tables.clashes == 0);
+        for (const auto* entries : {&tables.rank, &tables.bound}) {
+            const TexelTable table = table_of(*entries, tables);
+            const std::uint32_t threshold = entries->at(random.bits() % entries->size());
+            INFO("trial " << trial << ", " << bits << " bits, threshold " << threshold);
+            const bool same = sorted(mesh_of(at.base, table, threshold, formats)) ==
+                              sorted(replay(hierarchy, at.base, table, threshold));
+            CHECK(same);
+        }
+    }
+}
+
+TEST_CASE("With both tables an edge splits if either says so, and the rank orders") {
+    Random random(2);
+    for (int trial = 0; trial < 30; ++trial) {
+        const RandomCase at(random);
+        const RankTables tables = make_rank_tables(at.map, at.base, formats, 12, 10);
+        const TexelTable rank = table_of(tables.rank, tables), bound = table_of(tables.bound, tables);
+        const std::uint32_t rank_limit = tables.rank[random.bits() % tables.rank.size()];
+        const std::uint32_t bound_limit =
+            std::min<std::uint32_t>(tables.bound[random.bits() % tables.bound.size()], tables.highest_bound_threshold);
+        std::vector<std::uint16_t> either(tables.rank.size(), 0);
+        for (std::size_t k = 0; k < either.size(); ++k)
+            either[k] = tables.rank[k] > rank_limit || tables.bound[k] > bound_limit ? 1 : 0;
+        const auto mesh = refine_all(
+            at.base,
+            [&](const TexCoord& a, const TexCoord& b) {
+                return differs_by_even_texels(a, b, formats) &&
+                       (rank.of_edge(a, b) > rank_limit || bound.of_edge(a, b) > bound_limit);
+            },
+            [&](const TexCoord& a, const TexCoord& b) { return rank.of_edge(a, b); });
+        const SplitHierarchy hierarchy = make_split_hierarchy(at.map, at.base, formats);
+        const bool same = sorted(mesh) == sorted(replay(hierarchy, at.base, table_of(either, tables), 0));
+        CHECK(same);
+        CHECK(error_figures(vertical_errors(at.map, mesh, formats.texture.fraction)).largest <=
+              std::max(bound_error(bound_limit, 10), tables.least_error) + 1e-6);
+    }
+}
+
+TEST_CASE("No grid point lies beyond the Bound Test's threshold") {
+    Random random(3);
+    for (int trial = 0; trial < random_cases(300); ++trial) {
+        const RandomCase at(random);
+        const int bits = random.integer32(6, 16);
+        const RankTables tables = make_rank_tables(at.map, at.base, formats, 0, bits);
+        const std::uint32_t wanted = bound_threshold(std::exp2(random.real(-2, 16)), bits);
+        const std::uint32_t threshold = std::min(wanted, tables.highest_bound_threshold);
+        const auto mesh = mesh_of(at.base, table_of(tables.bound, tables), threshold, formats);
+        INFO("trial " << trial << ", " << bits << " bits, threshold " << threshold);
+        REQUIRE(tables.least_error == 0);
+        REQUIRE(count_cracks(mesh, at.map.geometry, formats) == 0);
+        REQUIRE(error_figures(vertical_errors(at.map, mesh, formats.texture.fraction)).largest <=
+                bound_error(threshold, bits) + 1e-6);
+    }
+}
+
+TEST_CASE("Where entries of few bits do not reach, they keep the order and say up to which threshold the bound holds") {
+    Random random(6);
+    QuantisedMap map = empty_map(97, 97, AddressMode::clamp, AddressMode::clamp);
+    for (std::uint16_t& code : map.codes)
+        code = static_cast<std::uint16_t>(random.natural(0, 65535));
+    const auto base = lattice_triangles(lattice_over(map.geometry, 64), formats);
+    const SplitHierarchy hierarchy = make_split_hierarchy(map, base, formats);
+    const RankTables tables = make_rank_tables(map, base, formats, 6, 6);
+    CHECK(tables.highest_bound_threshold < 63);
+    for (const auto* entries : {&tables.rank, &tables.bound}) {
+        CHECK(*std::max_element(entries->begin(), entries->end()) == 63);
+        const TexelTable table = table_of(*entries, tables);
+        for (const std::uint32_t threshold : {50u, 59u, 62u}) {
+            INFO("threshold " << threshold);
+            const auto mesh = mesh_of(base, table, threshold, formats);
+            const bool same = sorted(mesh) == sorted(replay(hierarchy, base, table, threshold));
+            CHECK(same);
+        }
+    }
+    const auto largest_at = [&](std::uint32_t threshold) {
+        const auto mesh = mesh_of(base, table_of(tables.bound, tables), threshold, formats);
+        return error_figures(vertical_errors(map, mesh, formats.texture.fraction)).largest;
+    };
+    const std::uint32_t highest = tables.highest_bound_threshold;
+    CHECK(largest_at(highest) <= bound_error(highest, 6));
+    CHECK(largest_at(highest + 1) > bound_error(highest + 1, 6));
+}
+
+TEST_CASE("Tables of random bits give meshes without cracks") {
+    Random random(4);
+    for (int trial = 0; trial < 100; ++trial) {
+        const RandomCase at(random);
+        RankTables tables = make_rank_tables(at.map, at.base, formats, 8, 0);
+        for (std::uint16_t& entry : tables.rank)
+            entry = static_cast<std::uint16_t>(random.natural(0, 3));
+        const auto mesh = mesh_of(at.base, table_of(tables.rank, tables), random.natural(0, 2), formats);
+        REQUIRE(count_cracks(mesh, at.map.geometry, formats) == 0);
+    }
+}
+
+TEST_CASE("Thresholds are rounded down to entries, and entries say what they promise") {
+    for (int bits = 6; bits <= 16; ++bits) {
+        CHECK(bound_error(bound_threshold(100, bits), bits) <= 100 * (1 + 1e-12));
+        CHECK(bound_error(bound_threshold(100, bits) + 1, bits) > 100 * (1 + 1e-12));
+        CHECK(bound_threshold(1, bits) == 8u << (bits - 5));
+        CHECK(rank_threshold(1, bits) == 16u << (bits - 6));
+        CHECK(rank_threshold(2, bits) == 18u << (bits - 6));
+        CHECK(rank_threshold(0, bits) == 0);
+        CHECK(bound_threshold(1e30, bits) == (1u << bits) - 1);
+    }
+}
+
+TEST_CASE("Any base mesh is served as far as its edges allow") {
+    const std::uint32_t texel = 1u << formats.texture.fraction;
+    const auto triangle = [&](std::array<double, 6> t) {
+        const auto at = [&](std::size_t k) { return static_cast<std::uint32_t>(t[k] * texel); };
+        return Corners{TexCoord{at(0), at(1)}, TexCoord{at(2), at(3)}, TexCoord{at(4), at(5)}};
+    };
+    Random random(5);
+    const QuantisedMap map = random_map(random, 32, 32, AddressMode::clamp, AddressMode::clamp);
+
+    SECTION("of edges that differ by other than even texels, none splits") {
+        const std::vector<Corners> base{triangle({0.5, 0.5, 31.5, 0.5, 31.5, 31.5}),
+                                        triangle({0.5, 0.5, 31.5, 31.5, 0.5, 31.5})};
+        CHECK(count_whole_base_edges(base, formats) == 5);
+        const RankTables tables = make_rank_tables(map, base, formats, 8, 8);
+        CHECK(std::count(tables.rank.begin(), tables.rank.end(), 0) == 32 * 32);
+        CHECK(tables.least_error > 0);
+        CHECK(tables.least_error ==
+              Approx(error_figures(vertical_errors(map, base, formats.texture.fraction)).largest));
+    }
+    SECTION("beyond a clamped map the table is larger than the map") {
+        const std::vector<Corners> base{triangle({0.5, 0.5, 64.5, 0.5, 0.5, 32.5})};
+        const RankTables tables = make_rank_tables(map, base, formats, 8, 0);
+        CHECK(tables.columns == 65);
+        CHECK(tables.rows == 33);
+        CHECK(count_whole_base_edges(base, formats) == 0);
+    }
+    SECTION("where triangles lie on the same texels a midpoint has the greater entry") {
+        std::vector<Corners> base{triangle({0.5, 0.5, 32.5, 0.5, 32.5, 32.5}),
+                                  triangle({0.5, 0.5, 32.5, 32.5, 0.5, 32.5})};
+        const RankTables alone = make_rank_tables(map, base, formats, 0, 8);
+        base.push_back(base.front());
+        CHECK(make_rank_tables(map, base, formats, 0, 8).bound == alone.bound);
+        base.back() = triangle({8.25, 8.25, 24.25, 8.25, 8.25, 24.25});
+        const RankTables both = make_rank_tables(map, base, formats, 0, 8);
+        CHECK(both.clashes > 0);
+        for (std::size_t k = 0; k < both.bound.size(); ++k)
+            CHECK(both.bound[k] >= alone.bound[k]);
+    }
+    SECTION("a cylinder twice around the map has the table of one") {
+        QuantisedMap around = random_map(random, 32, 20, AddressMode::repeat, AddressMode::clamp);
+        const auto once = lattice_triangles(lattice_over(around.geometry, 16), formats);
+        auto twice = once;
+        for (Corners corners : once) {
+            for (TexCoord& corner : corners)
+                corner.u += 32 * texel;
+            twice.push_back(corners);
+        }
+        const RankTables tables = make_rank_tables(around, twice, formats, 10, 10);
+        CHECK(tables.columns == 32);
+        CHECK(tables.rank == make_rank_tables(around, once, formats, 10, 0).rank);
+        const auto mesh = mesh_of(twice, table_of(tables.bound, tables), bound_threshold(500, 10), formats);
+        CHECK(error_figures(vertical_errors(around, mesh, formats.texture.fraction)).largest <= 500);
+    }
+}
+
+TEST_CASE("Crater Lake from 24 triangles, RMS and largest error in metres") {
+    const CraterLake lake;
+    const auto base = lattice_triangles(lattice_over(lake.map.geometry, 128), formats);
+    REQUIRE(base.size() == 24);
+    const RankTables tables = make_rank_tables(lake.map, base, formats, 16, 16);
+    REQUIRE(tables.least_error == 0);
+    struct Row {
+        std::size_t triangles;
+        double rank_rms, bound_rms, bound_largest;
+    };
+    for (const Row& row : {Row{1200, 11.6, 16.0, 60}, Row{2400, 7.9, 10.9, 39.5}, Row{4800, 5.35, 7.3, 25.5},
+                           Row{9600, 3.5, 4.45, 15.5}, Row{19200, 2.12, 2.6, 8.5}}) {
+        const auto figures_of = [&](const std::vector<std::uint16_t>& entries) {
+            const auto mesh_at = [&](std::uint32_t threshold) {
+                return mesh_of(base, table_of(entries, tables), threshold, formats);
+            };
+            const auto mesh = mesh_at(threshold_for(row.triangles, 65535, mesh_at));
+            return error_figures(vertical_errors(lake.map, mesh, formats.texture.fraction));
+        };
+        const ErrorFigures rank = figures_of(tables.rank), bound = figures_of(tables.bound);
+        INFO(row.triangles << " triangles: rank " << rank.rms * lake.metres << " m, bound " << bound.rms * lake.metres
+                           << " m, largest " << bound.largest * lake.metres << " m");
+        CHECK(rank.rms * lake.metres <= row.rank_rms);
+        CHECK(bound.rms * lake.metres <= row.bound_rms);
+        CHECK(bound.largest * lake.metres <= row.bound_largest);
+    }
+}
