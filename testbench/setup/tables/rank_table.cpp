@@ -6,15 +6,14 @@
 #include <tuple>
 #include <utility>
 
-#include "modules/datapath/map_address.h"
 #include "testbench/setup/tables/log_scale.h"
 #include "testbench/setup/tables/split_hierarchy.h"
+#include "testbench/setup/tables/table_extent.h"
 
 namespace tessera {
 
 namespace {
 
-using datapath::AddressMode;
 using datapath::TexCoord;
 
 // From 1/256 of a code's square, so that ranks have room to grow along dependencies where the map is flat, to 2^46: half
@@ -165,18 +164,6 @@ std::vector<std::uint32_t> wanted_bounds(const SplitHierarchy& hierarchy, const 
     return wanted;
 }
 
-std::uint32_t table_side(std::uint32_t map_side, AddressMode mode, const std::vector<TextureTriangle>& base,
-                         std::uint32_t TexCoord::*axis, const datapath::Formats& formats) {
-    std::uint32_t side = map_side;
-    if (mode == AddressMode::repeat)
-        return side;
-    for (const TextureTriangle& triangle : base) {
-        for (const TexCoord& corner : triangle)
-            side = std::max(side, datapath::integer_part(corner.*axis, formats) + 1);
-    }
-    return side;
-}
-
 std::uint64_t count_clashes(const SplitHierarchy& hierarchy) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> texels;
     for (const EdgeSplit& split : hierarchy.splits)
@@ -191,9 +178,9 @@ std::uint64_t count_clashes(const SplitHierarchy& hierarchy) {
 RankTables make_rank_tables(const QuantisedMap& map, const std::vector<TextureTriangle>& base,
                             const datapath::Formats& formats, int rank_bits, int bound_bits) {
     RankTables tables;
-    const datapath::MapGeometry& g = map.geometry;
-    tables.columns = table_side(g.width, g.address_u, base, &TexCoord::u, formats);
-    tables.rows = table_side(g.height, g.address_v, base, &TexCoord::v, formats);
+    const datapath::MapGeometry extent = table_extent(map.geometry, base, formats);
+    tables.columns = extent.width;
+    tables.rows = extent.height;
     const SplitHierarchy hierarchy = make_split_hierarchy(map, base, formats);
     tables.least_error = hierarchy.least_error;
     tables.clashes = count_clashes(hierarchy);

@@ -1,0 +1,140 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "modules/datapath/edge_tests.h"
+#include "modules/datapath/intermediate.h"
+#include "modules/datapath/map_address.h"
+#include "modules/datapath/map_entry.h"
+#include "modules/datapath/parameters.h"
+#include "modules/datapath/vertex.h"
+
+namespace tessera::datapath {
+
+/// What the Curvature Test's table says of a square of 2^l texels a side, l its level: by how much the midpoint of an
+/// edge of 2^l texels leaves the chord, (xx u u + xy u v + yy v v) for the edge (u, v) * 2^l, and how much the map
+/// leaves that quadratic on the average. In units of 2^(exponent - curvature_fraction) codes.
+struct CurvatureEntry {
+    std::uint8_t exponent = 0;            ///< 4 bits
+    std::int32_t xx = 0, xy = 0, yy = 0;  ///< signed 8 bits each
+    std::uint32_t rest = 0;               ///< 8 bits: root of the mean squared error of the quadratic
+};
+
+inline constexpr int curvature_entry_bits = 36;
+/// Exponent 0 stands for 1/8 of a code, exponent 15 for 2^12 codes: 127 units are then more than any map can have.
+inline constexpr int curvature_fraction = 3;
+inline constexpr int largest_curvature_exponent = 15;
+/// Levels of tables. Edges of at most two texels, level 1, read none.
+inline constexpr int least_curvature_level = 2;
+
+/// Packed, the exponent lowest, then xx, xy, yy, rest.
+constexpr std::uint64_t pack_curvature(const CurvatureEntry& entry) {
+    const auto byte = [](std::int32_t value) { return static_cast<std::uint64_t>(value) & 0xff; };
+    return entry.exponent | byte(entry.xx) << 4 | byte(entry.xy) << 12 | byte(entry.yy) << 20 |
+           std::uint64_t{entry.rest} << 28;
+}
+constexpr CurvatureEntry unpack_curvature(std::uint64_t packed) {
+    const auto at = [&](int place) { return static_cast<std::uint8_t>(packed >> place); };
+    const auto signed_at = [&](int place) { return std::int32_t{at(place)} - (at(place) >= 128 ? 256 : 0); };
+    return {static_cast<std::uint8_t>(packed & 15), signed_at(4), signed_at(12), signed_at(20), at(28)};
+}
+
+struct CurvatureWidths : Intermediates {
+    using Intermediates::Intermediates;
+    int longest = f.texture.bits - f.texture.fraction;  ///< the highest level an edge may have
+    Width difference{"abs(du), abs(dv)", f.texture.bits};
+    Width step{"8 abs(du) / 2^level", 4};
+    Width product{"u u, u v, v v", 7};
+    Width bend{"xx u u + xy u v + yy v v", 8 + 7 + 2};
+    Width deviation{"abs of that / 64, and the rest", 9};
+    Width measure{"that * 2^(exponent + level)", deviation.bits + largest_curvature_exponent + longest};
+    Width codes{"2 d_ij - d_i - d_j, in 1/8 codes", f.displacement.bits + 1 + curvature_fraction};
+    constexpr auto all() const { return std::array{difference, step, product, bend, deviation, measure, codes}; }
+};
+static_assert(fits_every_format<CurvatureWidths>());
+
+/// Bits of the Curvature Test's threshold: those of the measure it is compared with.
+constexpr int curvature_threshold_bits(const Formats& formats) {
+    return CurvatureWidths{formats}.measure.bits;
+}
+
+/// Level of an edge: the least l >= 1 such that neither |du| nor |dv| exceeds 2^l texels. Rounded up: a square of 2^l
+/// texels about its midpoint then holds the edge.
+constexpr int curvature_level(const TexCoord& i, const TexCoord& j, const Formats& formats) {
+    const std::uint64_t length = std::max(absolute_difference(i.u, j.u), absolute_difference(i.v, j.v));
+    int level = 1;
+    while (length >> formats.texture.fraction > std::uint64_t{1} << level ||
+           length > std::uint64_t{1} << (level + formats.texture.fraction))
+        ++level;
+    return level;
+}
+
+/// The highest level of a table: the least at which 2^l texels hold all it covers. Longer edges read that. covered: the
+/// map, or more texels where it clamps and the base mesh reaches beyond it.
+constexpr int highest_curvature_level(const MapGeometry& covered) {
+    int level = least_curvature_level;
+    while (std::max(covered.width, covered.height) > std::uint32_t{1} << level)
+        ++level;
+    return level;
+}
+
+/// Cells of one level: one every 2^(l - 1) texels, the first about texel 0, to the one nearest to the last texel.
+struct CurvatureCells {
+    std::uint32_t columns = 0, rows = 0;
+    std::uint64_t first_entry = 0;  ///< entries of the lower levels, which lie before these
+};
+
+/// The number of the cell that is nearest to a texel; of two the higher.
+constexpr std::uint32_t curvature_cell(std::uint32_t texel, int level) {
+    return (texel + (std::uint32_t{1} << (level - 2))) >> (level - 1);
+}
+
+constexpr CurvatureCells curvature_cells(int level, const MapGeometry& covered) {
+    CurvatureCells cells;
+    for (int l = least_curvature_level;; ++l) {
+        cells.columns = curvature_cell(covered.width - 1, l) + 1;
+        cells.rows = curvature_cell(covered.height - 1, l) + 1;
+        if (l == level)
+            return cells;
+        cells.first_entry += std::uint64_t{cells.columns} * cells.rows;
+    }
+}
+
+/// Byte address of the entry for an edge with midpoint t_ij, level >= 2: of the cell nearest to the midpoint's texel.
+/// base: of the table. The cells of each level are constants of the table.
+constexpr std::uint64_t curvature_address(const TexCoord& ij, int level, std::uint64_t base, const MapGeometry& covered,
+                                          const Formats& formats) {
+    const int read = std::min(level, highest_curvature_level(covered));
+    const CurvatureCells cells = curvature_cells(read, covered);
+    const auto cell = [&](std::uint32_t coordinate, std::uint32_t size, AddressMode mode) {
+        return curvature_cell(texel_index(integer_part(coordinate, formats), size, mode), read);
+    };
+    const std::uint64_t row = cell(ij.v, covered.height, covered.address_v);
+    const std::uint64_t entry = cells.first_entry + row * cells.columns + cell(ij.u, covered.width, covered.address_u);
+    return base + entry * entry_bytes(curvature_entry_bits);
+}
+
+/// The Curvature Test's left operand, level >= 2, in 1/8 codes times 2^level (the level weights by length, as a sum of
+/// heights would). deviation: of the quadratic and of the rest, as the longer side of a right triangle plus half the
+/// shorter. Three products of 4 x 4 bits, three of 8 x 7; absolute values and the product of signs make it symmetric.
+constexpr std::uint64_t curvature_measure(const CurvatureEntry& entry, const TexCoord& i, const TexCoord& j, int level,
+                                          const Formats& formats) {
+    const auto step = [&](std::uint32_t a, std::uint32_t b) {
+        return static_cast<std::int32_t>((absolute_difference(a, b) << 3) >> (level + formats.texture.fraction));
+    };
+    const std::int32_t u = step(i.u, j.u), v = step(i.v, j.v);
+    const std::int32_t xy = (i.u < j.u) == (i.v < j.v) ? entry.xy : -entry.xy;
+    const std::int32_t bend = entry.xx * (u * u) + xy * (u * v) + entry.yy * (v * v);
+    const std::uint64_t bent = static_cast<std::uint64_t>(bend < 0 ? -bend : bend) >> 6;
+    const std::uint64_t deviation =
+        std::max<std::uint64_t>(bent, entry.rest) + (std::min<std::uint64_t>(bent, entry.rest) >> 1);
+    return deviation << (entry.exponent + level);
+}
+
+/// The same at level 1, from the codes of the edge's three vertices: |2 d_ij - d_i - d_j| in 1/8 codes.
+constexpr std::uint64_t curvature_measure_of_codes(std::uint32_t i, std::uint32_t j, std::uint32_t ij) {
+    return absolute_difference(2 * std::int64_t{ij}, std::int64_t{i} + j) << curvature_fraction;
+}
+
+}  // namespace tessera::datapath
