@@ -1,10 +1,12 @@
 #pragma once
 #include "modules/datapath/bump.h"
 #include "modules/datapath/cull.h"
+#include "modules/datapath/curvature.h"
 #include "modules/datapath/displace.h"
 #include "modules/datapath/edge_tests.h"
 #include "modules/datapath/light.h"
 #include "modules/datapath/midpoint.h"
+#include "modules/datapath/mipmap.h"
 #include "modules/datapath/normalise.h"
 #include "modules/datapath/reciprocal.h"
 #include "modules/datapath/rectangle.h"
@@ -26,6 +28,8 @@ constexpr void visit_intermediates(const Formats& f, Visit&& visit) {
     visit("transform_normal", TransformNormalWidths{f});
     visit("rectangle_size", RectangleWidths{f});
     visit("edge tests", EdgeTestWidths{f});
+    visit("curvature_measure", CurvatureWidths{f});
+    visit("mipmap_test", MipmapWidths{f});
     visit("choose_second_diagonal", DiagonalWidths{f});
     visit("faces_away", CullWidths{f});
     visit("light", LightWidths{f});

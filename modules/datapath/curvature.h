@@ -42,15 +42,18 @@ constexpr CurvatureEntry unpack_curvature(std::uint64_t packed) {
 
 struct CurvatureWidths : Intermediates {
     using Intermediates::Intermediates;
-    int longest = f.texture.bits - f.texture.fraction;  ///< the highest level an edge may have
+    int longest = f.texture.bits - f.texture.fraction;  // the highest level an edge may have
     Width difference{"abs(du), abs(dv)", f.texture.bits};
-    Width step{"8 abs(du) / 2^level", 4};
+    Width eighths{"8 abs(du)", f.texture.bits + 3};
+    Width step{"u, v: that / 2^level", 4};
     Width product{"u u, u v, v v", 7};
-    Width bend{"xx u u + xy u v + yy v v", 8 + 7 + 2};
-    Width deviation{"abs of that / 64, and the rest", 9};
+    Width bend{"xx u u + xy u v + yy v v", 8 + 7 + 1};
+    Width deviation{"abs of that / 64, with the rest", 9};
     Width measure{"that * 2^(exponent + level)", deviation.bits + largest_curvature_exponent + longest};
-    Width codes{"2 d_ij - d_i - d_j, in 1/8 codes", f.displacement.bits + 1 + curvature_fraction};
-    constexpr auto all() const { return std::array{difference, step, product, bend, deviation, measure, codes}; }
+    Width codes{"8 abs(2 d_ij - d_i - d_j)", f.displacement.bits + 1 + curvature_fraction};
+    constexpr auto all() const {
+        return std::array{difference, eighths, step, product, bend, deviation, measure, codes};
+    }
 };
 static_assert(fits_every_format<CurvatureWidths>());
 
@@ -64,8 +67,7 @@ constexpr int curvature_threshold_bits(const Formats& formats) {
 constexpr int curvature_level(const TexCoord& i, const TexCoord& j, const Formats& formats) {
     const std::uint64_t length = std::max(absolute_difference(i.u, j.u), absolute_difference(i.v, j.v));
     int level = 1;
-    while (length >> formats.texture.fraction > std::uint64_t{1} << level ||
-           length > std::uint64_t{1} << (level + formats.texture.fraction))
+    while (length > std::uint64_t{1} << (level + formats.texture.fraction))
         ++level;
     return level;
 }
@@ -121,7 +123,7 @@ constexpr std::uint64_t curvature_address(const TexCoord& ij, int level, std::ui
 constexpr std::uint64_t curvature_measure(const CurvatureEntry& entry, const TexCoord& i, const TexCoord& j, int level,
                                           const Formats& formats) {
     const auto step = [&](std::uint32_t a, std::uint32_t b) {
-        return static_cast<std::int32_t>((absolute_difference(a, b) << 3) >> (level + formats.texture.fraction));
+        return static_cast<std::int32_t>(absolute_difference(a, b) << 3 >> (level + formats.texture.fraction));
     };
     const std::int32_t u = step(i.u, j.u), v = step(i.v, j.v);
     const std::int32_t xy = (i.u < j.u) == (i.v < j.v) ? entry.xy : -entry.xy;

@@ -253,6 +253,37 @@ void check_the_rest(const Formats& f, bool tight) {
     check("faces_away", cull.product, product, tight);
 }
 
+void check_filtered_tests(const Formats& f, bool tight) {
+    const CurvatureWidths widths{f};
+    Reach difference, eighths, step, product, bend, deviation, measure, codes;
+    const std::uint32_t longest = 1u << (f.texture.bits - 1);
+    const int level = curvature_level({0, 0}, {longest, 0}, f);
+    difference.see(longest);
+    eighths.see(Wide{8} * longest);
+    step.see(8);
+    product.see(Wide{8} * 8);
+    bend.see(-3 * Wide{128} * 64);
+    bend.see(3 * Wide{127} * 64);
+    const CurvatureEntry largest{largest_curvature_exponent, -128, -128, -128, 255};
+    measure.see(static_cast<Wide>(curvature_measure(largest, {0, 0}, {longest, longest}, level, f)));
+    deviation.see(measure.high >> (largest_curvature_exponent + level));
+    const auto code = static_cast<std::uint32_t>(f.displacement.highest);
+    codes.see(static_cast<Wide>(curvature_measure_of_codes(0, 0, code)));
+    check("curvature_measure", widths.difference, difference, tight);
+    check("curvature_measure", widths.eighths, eighths, tight);
+    check("curvature_measure", widths.step, step, tight);
+    check("curvature_measure", widths.product, product, tight);
+    check("curvature_measure", widths.bend, bend, tight);
+    check("curvature_measure", widths.deviation, deviation, tight);
+    check("curvature_measure", widths.measure, measure, tight);
+    check("curvature_measure", widths.codes, codes, tight);
+
+    Reach heights;
+    heights.see(2 * Wide{code});
+    check("mipmap_test", MipmapWidths{f}.difference, difference, tight);
+    check("mipmap_test", MipmapWidths{f}.heights, heights, tight);
+}
+
 }  // namespace
 
 TEST_CASE("intermediates: operands at their limits need no more bits than declared, nor much less") {
@@ -264,6 +295,7 @@ TEST_CASE("intermediates: operands at their limits need no more bits than declar
         check_rectangle(formats, tight);
         check_edge_tests(formats, tight);
         check_the_rest(formats, tight);
+        check_filtered_tests(formats, tight);
         tight = false;
     }
 }
