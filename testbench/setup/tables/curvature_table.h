@@ -20,9 +20,10 @@ struct CurvatureTable {
     std::vector<std::uint64_t> entries;  ///< packed, 36 bits each; level after level, row by row
 };
 
-/// For each cell the quadratic of least squared error over a square of 2^l + 1 texels about it, addressed as the map is,
-/// and the root of the mean squared error it leaves. If the square reaches beyond a clamped map, both times the root of
-/// the share of the square that lies on the map: nobody sees the rest. base: texture coordinates of the base triangles.
+/// For each cell the quadratic of least squared error over a square of 2^l + 1 texels about it, addressed as the map
+/// is, and the root of the mean squared error it leaves. If the square reaches beyond a clamped map, both times the
+/// root of the share of the square that lies on the map: nobody sees the rest. base: texture coordinates of the base
+/// triangles.
 CurvatureTable make_curvature_table(const QuantisedMap& map, const std::vector<TextureTriangle>& base,
                                     const datapath::Formats& formats);
 

@@ -5,8 +5,8 @@
 
 namespace tessera {
 
-/// Table entries in logarithmic form: unsigned fixed-point numbers of log2(value) + offset, with `integer_bits` in front
-/// of the binary point. A factor of the values is a term of the entries.
+/// Table entries in logarithmic form: unsigned fixed-point numbers of log2(value) + offset, with `integer_bits` in
+/// front of the binary point. A factor of the values is a term of the entries.
 struct LogScale {
     int bits = 0;
     int integer_bits = 0;

@@ -16,8 +16,8 @@ namespace {
 
 using datapath::TexCoord;
 
-// From 1/256 of a code's square, so that ranks have room to grow along dependencies where the map is flat, to 2^46: half
-// a lattice's quad of 2^12 x 2^12 texels, all of them 2^12 codes off.
+// From 1/256 of a code's square, so that ranks have room to grow along dependencies where the map is flat, to 2^46:
+// half a lattice's quad of 2^12 x 2^12 texels, all of them 2^12 codes off.
 LogScale rank_scale(int bits) {
     return {bits, 6, 16};
 }
@@ -29,7 +29,8 @@ LogScale bound_scale(int bits) {
 
 /// Falls of squared error, per triangle, shared among splits so that none is worth more than one it needs: a split that
 /// brings little but leads to others that bring much forms a block with them. Optimal if each split needed only the
-/// youngest of its makers; a vertex of the forest these form is merged with its best successor as long as that is better.
+/// youngest of its makers; a vertex of the forest these form is merged with its best successor as long as that is
+/// better.
 class PooledFalls {
   public:
     explicit PooledFalls(const SplitHierarchy& hierarchy) {

@@ -10,12 +10,12 @@
 namespace tessera {
 
 /// The tables of the Rank Test and the Bound Test: what a hierarchy of midpoints costs to leave out, an entry a texel,
-/// row by row, bottom row first. An edge splits if its ends differ by even whole texels and the entry under its midpoint
-/// is greater than the threshold.
+/// row by row, bottom row first. An edge splits if its ends differ by even whole texels and the entry under its
+/// midpoint is greater than the threshold.
 ///
 /// Of the edges of a triangle that the host bisects, the one it bisects first has the greatest entry. So hardware that
-/// bisects a triangle's edge of greatest entry only repeats the hierarchy, triangle by triangle, with either table; with
-/// both (an edge splits if either test says so), if the rank orders.
+/// bisects a triangle's edge of greatest entry only repeats the hierarchy, triangle by triangle, with either table;
+/// with both (an edge splits if either test says so), if the rank orders.
 struct RankTables {
     std::uint32_t columns = 0;  ///< texels: the map's, more if it clamps and the base mesh reaches beyond it
     std::uint32_t rows = 0;

@@ -90,6 +90,9 @@ TEST_CASE("curvature: cells lie every 2^(l - 1) texels, the nearest is read, and
     const Formats f;
     const MapGeometry covered{21, 13, AddressMode::clamp, AddressMode::repeat};
     CHECK(highest_curvature_level(covered) == 5);
+    CHECK(highest_curvature_level({13, 21, AddressMode::clamp, AddressMode::clamp}) == 5);
+    CHECK(highest_curvature_level({32, 33, AddressMode::clamp, AddressMode::clamp}) == 6);
+    CHECK(highest_curvature_level({1, 1, AddressMode::clamp, AddressMode::clamp}) == 2);
     std::uint64_t entries = 0;
     for (int level = 2; level <= 5; ++level) {
         const CurvatureCells cells = curvature_cells(level, covered);

@@ -138,6 +138,35 @@ TEST_CASE("Cells whose squares lie beyond a clamped map ask for nothing") {
     CHECK(datapath::pack_curvature(entry_at(table, 16, 16, 3)) != 0);
 }
 
+TEST_CASE(
+    "At a clamped border a cell sees the border go on, by the root of the share of its square that is on the map") {
+    Random random(3);
+    QuantisedMap map = empty_map(17, 17, AddressMode::clamp, AddressMode::clamp);
+    for (std::uint16_t& code : map.codes)
+        code = static_cast<std::uint16_t>(random.natural(0, 65535));
+    QuantisedMap wider = empty_map(49, 49, AddressMode::clamp, AddressMode::clamp);
+    for (std::uint32_t y = 0; y < 49; ++y) {
+        for (std::uint32_t x = 0; x < 49; ++x)
+            wider.codes[std::size_t{y} * 49 + x] = map.code(std::clamp(x, 16u, 32u) - 16, std::clamp(y, 16u, 32u) - 16);
+    }
+    const CurvatureTable table = make_curvature_table(map, {}, formats);
+    const CurvatureTable whole = make_curvature_table(wider, {}, formats);
+    for (const std::uint32_t x : {0u, 8u, 16u}) {
+        for (const std::uint32_t y : {0u, 8u, 16u}) {
+            const auto part = entry_at(table, x, y, 4), all = entry_at(whole, x + 16, y + 16, 4);
+            const double share = (x == 8 ? 17 : 9) * (y == 8 ? 17 : 9) / 289.0;
+            const auto as_in_whole = [&](std::int64_t value, std::int64_t expected) {
+                CHECK(in_codes(value, part) ==
+                      Approx(std::sqrt(share) * in_codes(expected, all)).margin(in_codes(1, part) + in_codes(1, all)));
+            };
+            as_in_whole(part.xx, all.xx);
+            as_in_whole(part.xy, all.xy);
+            as_in_whole(part.yy, all.yy);
+            as_in_whole(part.rest, all.rest);
+        }
+    }
+}
+
 TEST_CASE("Every value that a map can have fits an entry") {
     QuantisedMap map = empty_map(9, 9, AddressMode::clamp, AddressMode::clamp);
     for (std::uint32_t k = 0; k < 81; ++k)
