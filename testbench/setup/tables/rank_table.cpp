@@ -16,13 +16,13 @@ namespace {
 
 using datapath::TexCoord;
 
-// From 1/256 of a code's square, so that ranks have room to grow along dependencies where the map is flat, to 2^46:
-// half a lattice's quad of 2^12 x 2^12 texels, all of them 2^12 codes off.
+// log2 of codes^2 from -16, so that ranks have room to grow along dependencies where the map is flat, to 48: a triangle
+// of 2^23 texels, each of them 2^12 codes off, has 47.
 LogScale rank_scale(int bits) {
     return {bits, 6, 16};
 }
 
-// From 1/256 of a code to 2^24, of which 2^16 is needed: the rest is room to grow.
+// log2 of codes from -8 to 24, of which 16 is needed: the rest is room to grow.
 LogScale bound_scale(int bits) {
     return {bits, 5, 8};
 }
