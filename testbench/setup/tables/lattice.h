@@ -8,7 +8,8 @@
 namespace tessera {
 
 /// A base mesh for the Rank and Bound Tests: quads of `spacing` texels a side, a power of two, with vertices at texel
-/// centres from the map's first texel on. Every grid point of the map is a midpoint of some edge's descendants.
+/// centres from the map's first texel on. Every grid point of the map is the midpoint of an edge that it can be refined
+/// to. Texel centres take a fraction bit of the texture's format.
 struct Lattice {
     std::uint32_t spacing = 0;
     std::uint32_t columns = 0, rows = 0;  ///< quads

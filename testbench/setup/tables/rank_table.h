@@ -16,6 +16,10 @@ namespace tessera {
 /// Of the edges of a triangle that the host bisects, the one it bisects first has the greatest entry. So hardware that
 /// bisects a triangle's edge of greatest entry only repeats the hierarchy, triangle by triangle, with either table;
 /// with both (an edge splits if either test says so), if the rank orders.
+///
+/// The recursion ends by itself: each bisection halves a triangle's area in texels, and an edge that may split makes
+/// twice that area an even number. But a base triangle without area in the map can go on for ever: (0, 0) (2, 0) (3, 0)
+/// makes (0, 0) (1, 0) (3, 0), which makes the first again. It needs the Generation Test.
 struct RankTables {
     std::uint32_t columns = 0;  ///< texels: the map's, more if it clamps and the base mesh reaches beyond it
     std::uint32_t rows = 0;

@@ -181,6 +181,16 @@ TEST_CASE("Tables of random bits give meshes without cracks") {
     }
 }
 
+TEST_CASE("Triangles without area in the map are left out of the hierarchy") {
+    const std::uint32_t texel = 1u << formats.texture.fraction;
+    Random random(7);
+    const QuantisedMap map = random_map(random, 4, 4, AddressMode::clamp, AddressMode::clamp);
+    const std::vector<Corners> base{Corners{TexCoord{0, 0}, TexCoord{2 * texel, 0}, TexCoord{3 * texel, 0}}};
+    const RankTables tables = make_rank_tables(map, base, formats, 8, 8);
+    CHECK(tables.least_error == 0);
+    CHECK(*std::max_element(tables.bound.begin(), tables.bound.end()) == 0);
+}
+
 TEST_CASE("Thresholds are rounded down to entries, and entries say what they promise") {
     for (int bits = 6; bits <= 16; ++bits) {
         CHECK(bound_error(bound_threshold(100, bits), bits) <= 100 * (1 + 1e-12));

@@ -1,0 +1,49 @@
+#include "testbench/setup/tables/lattice.h"
+
+#include <catch2/catch.hpp>
+
+#include "testbench/setup/tables/rank_table.h"
+#include "testbench/tests/setup/tables/refined_mesh.h"
+
+using namespace tessera;
+using namespace tessera::tables_test;
+
+TEST_CASE("A lattice covers each grid point, with vertices at texel centres, and all its edges may split") {
+    Random random(1);
+    const datapath::Formats formats;
+    const std::uint32_t texel = 1u << formats.texture.fraction;
+    for (int trial = 0; trial < 50; ++trial) {
+        const std::uint32_t spacing = std::uint32_t{1} << random.natural(1, 6);
+        const AddressMode u = random.coin() ? AddressMode::repeat : AddressMode::clamp;
+        const std::uint32_t width = u == AddressMode::repeat ? spacing * random.natural(1, 3) : random.natural(1, 100);
+        const QuantisedMap map = empty_map(width, random.natural(1, 100), u, AddressMode::clamp);
+        const Lattice lattice = lattice_over(map.geometry, spacing);
+        const auto triangles = lattice_triangles(lattice, formats);
+        REQUIRE(triangles.size() == lattice.triangles());
+        CHECK(count_whole_base_edges(triangles, formats) == 0);
+        CHECK(count_cracks(triangles, map.geometry, formats) == 0);
+        std::uint64_t outside_a_centre = 0, clockwise = 0;
+        std::vector<bool> covered(map.codes.size(), false);
+        for (const Corners& t : triangles) {
+            for (const TexCoord& corner : t)
+                outside_a_centre += corner.u % texel != texel / 2 || corner.v % texel != texel / 2 ? 1u : 0u;
+            const std::int64_t area = (std::int64_t{t[1].u} - t[0].u) * (std::int64_t{t[2].v} - t[0].v) -
+                                      (std::int64_t{t[2].u} - t[0].u) * (std::int64_t{t[1].v} - t[0].v);
+            clockwise += area <= 0 ? 1u : 0u;
+            GridPoints(t, map.geometry, formats).for_each([&](const GridPoint& point) {
+                covered[std::size_t{point.row} * width + point.column] = true;
+            });
+        }
+        CHECK(outside_a_centre == 0);
+        CHECK(clockwise == 0);
+        CHECK(std::count(covered.begin(), covered.end(), false) == 0);
+    }
+}
+
+TEST_CASE("Crater Lake takes 3 x 4 quads of 128 texels, the last beyond the map; a period exactly one") {
+    const Lattice lake = lattice_over({336, 459, AddressMode::clamp, AddressMode::clamp}, 128);
+    CHECK(lake.columns == 3);
+    CHECK(lake.rows == 4);
+    CHECK(lattice_over({129, 128, AddressMode::clamp, AddressMode::repeat}, 128).triangles() == 2);
+    CHECK(lattice_over({130, 1, AddressMode::clamp, AddressMode::clamp}, 128).triangles() == 4);
+}
