@@ -1,7 +1,6 @@
 #include "golden/golden_map.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -60,6 +59,39 @@ std::size_t Map::texel(const glm::dvec2& t) const {
     return static_cast<std::size_t>(y * width_ + x);
 }
 
+std::array<Map::Part, 4> Map::around(const glm::dvec2& t) const {
+    const glm::dvec2 place = t - 0.5, first = glm::floor(place), past = place - first;
+    const auto part = [&](int right, int up) {
+        const std::int64_t x = address(integer_part(first.x) + right, width_, address_u_);
+        const std::int64_t y = address(integer_part(first.y) + up, height_, address_v_);
+        return Part{static_cast<std::size_t>(y * width_ + x),
+                    (right == 1 ? past.x : 1 - past.x) * (up == 1 ? past.y : 1 - past.y)};
+    };
+    return {part(0, 0), part(1, 0), part(0, 1), part(1, 1)};
+}
+
+double Map::code(const glm::dvec2& t, Filter filter) const {
+    if (filter == Filter::nearest) {
+        return code(texel(t));
+    }
+    double sum = 0;
+    for (const Part& part : around(t)) {
+        sum += part.weight * code(part.texel);
+    }
+    return sum;
+}
+
+glm::dvec3 Map::normal(const glm::dvec2& t, Filter filter) const {
+    if (filter == Filter::nearest) {
+        return normal(texel(t));
+    }
+    glm::dvec3 sum(0);
+    for (const Part& part : around(t)) {
+        sum += part.weight * normal(part.texel);
+    }
+    return sum;
+}
+
 void Map::derive_normals(double scale_per_code, const glm::dvec2& texel_size) {
     scale_per_code_ = scale_per_code;
     texel_size_ = texel_size;
@@ -92,6 +124,14 @@ void Map::set_normals(std::vector<glm::dvec3> normals) {
         throw std::invalid_argument("golden map: normal map and displacement map differ in size");
     }
     normals_ = std::move(normals);
+}
+
+Map::Rank Map::rank(const glm::dvec2& t) const {
+    const std::int64_t x = address(integer_part(t.x), rank_table_.columns, address_u_);
+    const std::int64_t y = address(integer_part(t.y), rank_table_.rows, address_v_);
+    const auto index = static_cast<std::size_t>(y * rank_table_.columns + x);
+    return {rank_table_.ranks.empty() ? 0 : rank_table_.ranks[index],
+            rank_table_.bounds.empty() ? 0 : rank_table_.bounds[index]};
 }
 
 Rectangle Map::rectangle_size(const glm::dvec2& t_i, const glm::dvec2& t_j) const {

@@ -1,7 +1,9 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <utility>
 #include <vector>
 
 #include "golden/summed_area_table.h"
@@ -10,6 +12,18 @@ namespace tessera::golden {
 
 /// How one axis is read outside the map: `clamp` holds the border texel, `repeat` is periodic.
 enum class AddressMode { clamp, repeat };
+
+/// The Rank Table (4.7): for each texel of the lattice that the base mesh lies on, what leaving out the midpoint there
+/// costs, on logarithmic scales. Row by row from the bottom. An empty list: the design lacks it.
+struct RankTable {
+    std::int64_t columns = 0, rows = 0;
+    std::vector<std::uint16_t> ranks, bounds;
+    int highest_bound_threshold = 0;  ///< up to which the bounds hold
+};
+
+/// How the displacement map and the normal map are read: the texel that contains t, or between the four texels whose
+/// centres surround it.
+enum class Filter { nearest, bilinear };
 
 /// A displacement map with its summed-area table and normal map (ALGORITHM.md section 2).
 /// Row 0 is v = 0, the bottom. Texture coordinates are in texels: texel x covers [x, x + 1).
@@ -35,6 +49,10 @@ class Map {
     /// (repeat).
     std::size_t texel(const glm::dvec2& t) const;
 
+    /// The code and N_d at t. Interpolated, N_d is at most of unit length.
+    double code(const glm::dvec2& t, Filter filter) const;
+    glm::dvec3 normal(const glm::dvec2& t, Filter filter) const;
+
     /// Derives the normal map from the displacement by finite differences:
     ///     N_d = normalise(-dh/du, -dh/dv, 1),     h = scale_per_code * code in world units.
     /// `texel_size`: the world size of a texel per axis. Call it again when the scale changes. Normals are not stored;
@@ -42,6 +60,18 @@ class Map {
     void derive_normals(double scale_per_code, const glm::dvec2& texel_size);
     /// Uses the given normal map, e.g. the hardware's, dequantised.
     void set_normals(std::vector<glm::dvec3> normals);
+
+    /// Uses a Rank Table, in place of the Summed Height Test. It may be larger than the map.
+    void set_ranks(RankTable table) { rank_table_ = std::move(table); }
+    const RankTable& rank_table() const { return rank_table_; }
+    bool has_ranks() const { return rank_table_.columns > 0; }
+    /// Rank and bound at the texel that contains t; 0 for what the table lacks.
+    struct Rank {
+        int rank = 0, bound = 0;
+    };
+    Rank rank(const glm::dvec2& t) const;
+    /// By which the cut `greatest_rank` compares midpoints: the rank or, without ranks, the bound.
+    int order(const Rank& rank) const { return rank_table_.ranks.empty() ? rank.bound : rank.rank; }
 
     /// Width and height in texels of the Summed Height Test's three rectangles on an edge (4.2):
     ///     n_w = min(width,  max(1, int(|du| / 2)))     n_h = min(height, max(1, int(|dv| / 4)))
@@ -56,6 +86,13 @@ class Map {
     std::uint64_t brute_force_sum(const Rectangle& r) const;
 
   private:
+    struct Part {
+        std::size_t texel;
+        double weight;
+    };
+    /// The four texels around t, and their weights.
+    std::array<Part, 4> around(const glm::dvec2& t) const;
+
     int width_, height_;
     AddressMode address_u_, address_v_;
     std::vector<std::uint32_t> codes_;
@@ -63,6 +100,7 @@ class Map {
     glm::dvec2 texel_size_{1, 1};
     std::vector<glm::dvec3> normals_;  // given by set_normals(), else empty
     SummedAreaTable sums_;
+    RankTable rank_table_;
 };
 
 }  // namespace tessera::golden

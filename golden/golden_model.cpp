@@ -14,9 +14,9 @@ double largest_difference(const glm::dvec3& a, const glm::dvec3& b) {
 
 // Calculates P', N' and the screen position from P, N, T, t. Returns the length of the sum inside bump().
 double displace_and_transform(Vertex& v, const Map& map, const Parameters& parameters) {
-    const std::size_t texel = map.texel(v.texture);
-    v.displaced_position = v.position + (parameters.scale * map.code(texel) + parameters.bias) * v.normal;
-    const Normalised bumped = bump(v.normal, v.tangent, v.handedness, map.normal(texel));
+    const double code = map.code(v.texture, parameters.filter);
+    v.displaced_position = v.position + (parameters.scale * code + parameters.bias) * v.normal;
+    const Normalised bumped = bump(v.normal, v.tangent, v.handedness, map.normal(v.texture, parameters.filter));
     v.displaced_normal = bumped.direction;
 
     const glm::dvec4 p(v.displaced_position, 1);
@@ -25,6 +25,12 @@ double displace_and_transform(Vertex& v, const Map& map, const Parameters& param
     v.screen =
         v.in_front ? glm::dvec2(glm::dot(parameters.row_x, p), glm::dot(parameters.row_y, p)) / v.w : glm::dvec2(0);
     return bumped.length;
+}
+
+// Section 4.7: both differences of the ends' coordinates are even numbers of texels, and not both zero.
+bool has_lattice_midpoint(const Vertex& i, const Vertex& j) {
+    const glm::dvec2 texels = glm::abs(i.texture - j.texture);
+    return std::fmod(texels.x, 2) == 0 && std::fmod(texels.y, 2) == 0 && texels != glm::dvec2(0);
 }
 
 // Section 4.3. The near-plane rule is expressed by an infinite length.
@@ -101,6 +107,12 @@ EdgeEvaluation evaluate_edge(const Vertex& i, const Vertex& j, const Map& map, c
     e.summed_height_limit =
         parameters.summed_height_threshold * (parameters.area ? static_cast<double>(size.width * size.height) : 4.0);
     e.summed_height_test = enabled.summed_height && e.summed_height > e.summed_height_limit;
+    if (map.has_ranks()) {
+        const bool on_lattice = enabled.summed_height && has_lattice_midpoint(i, j);
+        const Map::Rank rank = on_lattice ? map.rank(m.texture) : Map::Rank{};
+        e.order = map.order(rank);
+        e.summed_height_test = rank.rank > parameters.rank_threshold || rank.bound > parameters.bound_threshold;
+    }
 
     e.view_length = view_length(i, j);
     e.view_test = !enabled.view || e.view_length > parameters.view_threshold;
@@ -165,6 +177,25 @@ Subdivision subdivide(const std::array<bool, 3>& split, const std::array<Vertex,
     return {3, {{corner, {q[0], q[1], q[3]}, {q[1], q[2], q[3]}}}};
 }
 
+std::array<bool, 3> edge_to_cut(const std::array<bool, 3>& ask, const std::array<Vertex, 3>& triangle,
+                                const std::array<int, 3>& order) {
+    std::array<bool, 3> cut{};
+    std::size_t best = 3;
+    double best_length = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const glm::dvec2 d = glm::abs(triangle[k].texture - triangle[(k + 1) % 3].texture);
+        const double length = d.x + d.y;
+        if (ask[k] && (best == 3 || order[k] > order[best] || (order[k] == order[best] && length > best_length))) {
+            best = k;
+            best_length = length;
+        }
+    }
+    if (best < 3) {
+        cut[best] = true;
+    }
+    return cut;
+}
+
 int Triangle::generation() const {
     return std::max({vertices[0].generation, vertices[1].generation, vertices[2].generation});
 }
@@ -190,12 +221,17 @@ Tessellation tessellate(const std::vector<std::array<Vertex, 3>>& base, const Ma
 
         std::array<Vertex, 6> vertices{t.vertices[0], t.vertices[1], t.vertices[2]};
         std::array<bool, 3> split{};
+        std::array<int, 3> order{};
         for (std::size_t edge = 0; edge < 3; ++edge) {
             const EdgeEvaluation e = evaluate_edge(t.vertices[edge], t.vertices[(edge + 1) % 3], map, parameters);
             split[edge] = e.split;
+            order[edge] = e.order;
             vertices[3 + edge] = e.inserted.vertex;
         }
         result.edges_evaluated += 3;
+        if (parameters.diagonal == Diagonal::greatest_rank) {
+            split = edge_to_cut(split, t.vertices, order);
+        }
 
         const Subdivision pieces = subdivide(split, vertices, parameters.diagonal);
         if (pieces.count == 1) {

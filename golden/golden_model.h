@@ -12,8 +12,9 @@
 /// shares no code with the hardware model. Section numbers below refer to that page.
 namespace tessera::golden {
 
-/// Section 5: the diagonal of the quadrilateral that remains when two edges split.
-enum class Diagonal { shorter, first, second };
+/// Section 5: the diagonal of the quadrilateral that remains when two edges split; `greatest_rank`: one edge is cut at a
+/// time.
+enum class Diagonal { shorter, first, second, greatest_rank };
 
 /// The second diagonal is chosen only if it is shorter by more than this fraction of the first. Of two diagonals of
 /// equal length the first is therefore chosen, whatever the rounding.
@@ -28,6 +29,8 @@ struct Parameters {
     double normal_threshold = 0;         ///< difference of one component of two unit normals
     double summed_height_threshold = 0;  ///< sum of codes; with the area option: one code
     bool area = false;                   ///< the area option of section 4.2
+    int rank_threshold = 0;              ///< of the Rank Test, section 4.7
+    int bound_threshold = 0;             ///< likewise
     double view_threshold = 0;           ///< pixels
     int generation_limit = 12;           ///< highest generation of an inserted vertex
 
@@ -38,10 +41,13 @@ struct Parameters {
     double highlight_normal_threshold = 0;
 
     struct Enabled {
+        /// summed_height: or, with a Rank Table, the Rank Test.
         bool normal = true, summed_height = true, view = true, tex_coord = true, generation = true, highlight = false;
     } enabled;
 
     Diagonal diagonal = Diagonal::shorter;
+
+    Filter filter = Filter::nearest;  ///< section 2
 
     /// Inserted texture coordinates are rounded down to multiples of this, in texels; 0: not rounded. Nothing else is
     /// rounded. At a texel's border the least difference in t selects another texel, so t must match the hardware's.
@@ -99,7 +105,8 @@ struct EdgeEvaluation {
 
     double normal_difference = 0;                            ///< largest of the six; NT = it > normal_threshold
     std::int64_t rectangle_width = 1, rectangle_height = 1;  ///< texels, all three rectangles
-    double summed_height = 0;                                ///< |2 S(r_ij) - S(r_i) - S(r_j)|, exact
+    int order = 0;                   ///< with a Rank Table: of the midpoint, 0 if it is no point of the lattice
+    double summed_height = 0;        ///< |2 S(r_ij) - S(r_i) - S(r_j)|, exact
     double summed_height_limit = 0;  ///< SHT = summed_height > it: 4 * threshold, or threshold * area
     double view_length = 0;          ///< VT = it > view_threshold; Manhattan, pixels; +infinity if one end is not in
                                      ///< front, -infinity if both are not
@@ -107,6 +114,7 @@ struct EdgeEvaluation {
     /// highlight_cosine and normal_difference > highlight_normal_threshold.
     double end_cosine = 0, midpoint_cosine = 0;
 
+    /// summed_height_test: or, with a Rank Table, the Rank Test.
     bool normal_test = false, summed_height_test = false, view_test = false, tex_coord_test = false,
          generation_test = false, highlight_test = false;
     bool split = false;  ///< (NT or SHT or HT) and VT and TCT and GT
@@ -130,6 +138,11 @@ struct Subdivision {
     std::array<std::array<int, 3>, 4> children{};
 };
 Subdivision subdivide(const std::array<bool, 3>& split, const std::array<Vertex, 6>& vertices, Diagonal diagonal);
+
+/// Section 5, `greatest_rank`: of the edges that ask to be split, the one that is cut. edges: of the triangle, in its
+/// order. ask: none or more of them.
+std::array<bool, 3> edge_to_cut(const std::array<bool, 3>& ask, const std::array<Vertex, 3>& triangle,
+                                const std::array<int, 3>& order);
 
 struct Triangle {
     std::array<Vertex, 3> vertices;

@@ -13,6 +13,14 @@ glm::dvec4 row_about(const glm::dvec3& eye, const glm::dvec3& direction) {
     return {direction, -glm::dot(direction, eye)};
 }
 
+// log2(value) + offset, with so many of `bits` bits in front of the point, within them.
+double on_log_scale(double value, double offset, int integer_bits, int bits) {
+    if (bits == 0 || value <= 0) {
+        return 0;
+    }
+    return std::clamp(std::ldexp(std::log2(value) + offset, bits - integer_bits), 0.0, std::ldexp(1.0, bits) - 1);
+}
+
 }  // namespace
 
 glm::dvec3 unit(const glm::dvec3& v) {
@@ -41,6 +49,15 @@ View make_view(const Camera& camera, const Placement& placement) {
     return view;
 }
 
+double rank_threshold(const Scene& scene) {
+    const double error = scene.rank_threshold * scene.highest_code;
+    return on_log_scale(error * error, 16, 6, scene.rank_bits);
+}
+
+double bound_threshold(const Scene& scene) {
+    return on_log_scale(scene.bound_threshold * scene.highest_code, 8, 5, scene.bound_bits);
+}
+
 Parameters make_parameters(const Scene& scene) {
     const View view = make_view(scene.camera, scene.placement);
     Parameters result;
@@ -49,6 +66,8 @@ Parameters make_parameters(const Scene& scene) {
     result.normal_threshold = scene.normal_threshold;
     result.summed_height_threshold = scene.summed_height_threshold * scene.highest_code;
     result.area = scene.area;
+    result.rank_threshold = static_cast<int>(std::floor(rank_threshold(scene)));
+    result.bound_threshold = static_cast<int>(std::floor(bound_threshold(scene)));
     result.view_threshold = scene.view_threshold;
     result.generation_limit = scene.generation_limit;
     // Light opposite to the viewer: there is no half vector, and no normal lies in the highlight.
@@ -58,6 +77,7 @@ Parameters make_parameters(const Scene& scene) {
     result.highlight_normal_threshold = scene.highlight_normal_threshold;
     result.enabled = scene.enabled;
     result.diagonal = scene.diagonal;
+    result.filter = scene.filter;
     result.row_x = view.row_x;
     result.row_y = view.row_y;
     result.row_w = view.row_w;
@@ -75,9 +95,11 @@ double code_of(double value, double low, double high, double highest_code) {
     return high > low ? std::clamp((value - low) / (high - low), 0.0, 1.0) * highest_code : 0;
 }
 
-Vertex place_vertex(const Vertex& in_model_units, const glm::dvec2& uv, const Placement& placement, const Map& map) {
-    const auto texels = [](double coordinate, int size, AddressMode mode) {
-        return mode == AddressMode::clamp ? std::clamp(coordinate * size, 0.0, double(size)) : coordinate * size;
+Vertex place_vertex(const Vertex& in_model_units, const glm::dvec2& uv, const Placement& placement, const Map& map,
+                    bool beyond_map) {
+    const auto texels = [beyond_map](double coordinate, int size, AddressMode mode) {
+        return mode == AddressMode::clamp && !beyond_map ? std::clamp(coordinate * size, 0.0, double(size))
+                                                         : coordinate * size;
     };
     Vertex result = in_model_units;
     result.position = placement.to_world(in_model_units.position);

@@ -48,16 +48,26 @@ struct Scene {
     double normal_threshold = 0;         ///< difference of one component of two unit normals
     double summed_height_threshold = 0;  ///< full-scale texels; with the area option: full scale
     bool area = false;
+    double rank_threshold = 0;          ///< full scale times the square root of a texel
+    double bound_threshold = 0;         ///< full scale
+    int rank_bits = 0, bound_bits = 0;  ///< of a Rank Table's entry; 0: it has none
+    /// A clamped axis does not clamp texture coordinates: the mesh reaches beyond the map.
+    bool beyond_map = false;
     double view_threshold = 0;  ///< pixels
     int generation_limit = 12;
     double highlight_angle = 0;  ///< degrees
     double highlight_normal_threshold = 0;
     Parameters::Enabled enabled;
     Diagonal diagonal = Diagonal::shorter;
+    Filter filter = Filter::nearest;
 
     glm::dvec3 light{0, 0, 1};  ///< direction towards the light, world, any length
 };
 Parameters make_parameters(const Scene& scene);
+
+/// The Rank Test's thresholds on their logarithmic scales (4.7), before they are rounded down; 0 for what the table lacks.
+double rank_threshold(const Scene& scene);
+double bound_threshold(const Scene& scene);
 
 /// Unit direction towards the light; components along the view's right, up and backward axes.
 glm::dvec3 light_as_seen(const Scene& scene);
@@ -66,8 +76,9 @@ glm::dvec3 light_as_seen(const Scene& scene);
 double code_of(double value, double low, double high, double highest_code);
 
 /// A base vertex in world units and texels. `uv` spans the map once from 0 to 1; on a clamped axis it is clamped to the
-/// map.
-Vertex place_vertex(const Vertex& in_model_units, const glm::dvec2& uv, const Placement& placement, const Map& map);
+/// map, unless `beyond_map`.
+Vertex place_vertex(const Vertex& in_model_units, const glm::dvec2& uv, const Placement& placement, const Map& map,
+                    bool beyond_map = false);
 
 /// A base vertex's texture coordinate rounded to the nearest multiple of `step`, ties to even.
 glm::dvec2 on_grid(const glm::dvec2& t, double step);

@@ -23,7 +23,7 @@ void Host::bind() {
     to_get_triangle.bind(machine_.get_triangle.from_host);
     displacement_map.bind(machine_.displacement_map.host);
     normal_map.bind(machine_.normal_map.host);
-    summed_height_table.bind(machine_.summed_height_table.host);
+    summed_height_table.bind(machine_.height_table.host);
 }
 
 void Host::start_of_simulation() {
@@ -36,9 +36,9 @@ void Host::start_of_simulation() {
 
 void Host::write_table(std::uint64_t address, const unsigned char* bytes, std::size_t count) {
     const auto within = [&](const datapath::TableLayout& table) { return address - table.base < table.bytes(); };
-    auto& socket = within(machine_.registers().normal_map)            ? normal_map
-                   : within(machine_.registers().summed_height_table) ? summed_height_table
-                                                                      : displacement_map;
+    auto& socket = within(machine_.registers().normal_map)     ? normal_map
+                   : within(machine_.registers().height_table) ? summed_height_table
+                                                               : displacement_map;
     std::vector<unsigned char> row(bytes, bytes + count);
     tlm::tlm_generic_payload payload;
     payload.set_command(tlm::TLM_WRITE_COMMAND);

@@ -72,14 +72,16 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
                        design.timing.stalls, &off_chip_memory.channel()),
       normal_map("normal_map", clock, registers.normal_map, design.timing.normal_map, design.timing.stalls,
                  &off_chip_memory.channel()),
-      summed_height_table("summed_height_table", clock, registers.summed_height_table,
-                          design.timing.summed_height_table, design.timing.stalls, &off_chip_memory.channel()),
+      height_table(table_name(registers.formats.height_test), clock, registers.height_table,
+                   height_table_timing(design.timing, registers.formats.height_test), design.timing.stalls,
+                   &off_chip_memory.channel()),
       displacement_map_cache(make_cache("displacement_map_cache", registers.displacement_map,
                                         design.timing.displacement_map, design.timing.stalls)),
       normal_map_cache(
           make_cache("normal_map_cache", registers.normal_map, design.timing.normal_map, design.timing.stalls)),
-      summed_height_table_cache(make_cache("summed_height_table_cache", registers.summed_height_table,
-                                           design.timing.summed_height_table, design.timing.stalls)),
+      height_table_cache(make_cache(
+          (std::string(table_name(registers.formats.height_test)) + "_cache").c_str(), registers.height_table,
+          height_table_timing(design.timing, registers.formats.height_test), design.timing.stalls)),
       registers_(registers),
       transport_(design.transport),
       random_stalls_(design.timing.stalls.per_mille > 0) {
@@ -135,10 +137,9 @@ void Pipeline::wire(UnitFactory& factory) {
     else
         wire_families();
     for (TessellationTests& tests : tessellation_tests) {
-        join(factory, tests.summed_height_test.summed_height_table, summed_height_table,
-             summed_height_table_cache.get());
-        if (tests.summed_height_test.displacement_map)
-            join(factory, *tests.summed_height_test.displacement_map, displacement_map, displacement_map_cache.get());
+        join(factory, tests.height_test.table, height_table, height_table_cache.get());
+        if (tests.height_test.displacement_map)
+            join(factory, *tests.height_test.displacement_map, displacement_map, displacement_map_cache.get());
         for (NormalTest* normal_test : tests.normal_tests())
             join(factory, normal_test->normal_map, normal_map, normal_map_cache.get());
     }
@@ -148,7 +149,7 @@ void Pipeline::wire(UnitFactory& factory) {
     };
     fill(displacement_map_cache.get(), displacement_map);
     fill(normal_map_cache.get(), normal_map);
-    fill(summed_height_table_cache.get(), summed_height_table);
+    fill(height_table_cache.get(), height_table);
     pass_or_tessellate.to_lighting.bind(lighting.from_pass_or_tessellate);
     triangle_queue.to_get_triangle.bind(get_triangle.from_triangle_queue);
     factory.join(triangle_queue.off_chip_memory, off_chip_memory);
@@ -186,15 +187,15 @@ void Pipeline::attach() {
         for (Unit* unit : tests.units())
             units_.push_back(unit);
     units_.insert(units_.end(), {&pass_or_tessellate, &tessellation, &triangle_queue, &lighting, &displacement_map,
-                                 &normal_map, &summed_height_table, &off_chip_memory});
-    for (const auto* cache : {&displacement_map_cache, &normal_map_cache, &summed_height_table_cache}) {
+                                 &normal_map, &height_table, &off_chip_memory});
+    for (const auto* cache : {&displacement_map_cache, &normal_map_cache, &height_table_cache}) {
         if (*cache != nullptr)
             caches_.push_back(cache->get());
     }
     units_.insert(units_.end(), caches_.begin(), caches_.end());
     clock.attach(off_chip_memory);
-    for (Unit* memory : {static_cast<Unit*>(&displacement_map), static_cast<Unit*>(&normal_map),
-                         static_cast<Unit*>(&summed_height_table)})
+    for (Unit* memory :
+         {static_cast<Unit*>(&displacement_map), static_cast<Unit*>(&normal_map), static_cast<Unit*>(&height_table)})
         clock.attach(*memory);
     for (TableCache* cache : caches_)
         clock.attach(*cache);
@@ -209,7 +210,7 @@ void Pipeline::attach() {
             clock.attach(lane.view_test);
         for (NormalTest* normal_test : tests.normal_tests())
             clock.attach(*normal_test);
-        clock.attach(tests.summed_height_test);
+        clock.attach(tests.height_test);
         for (const TessellationTests::Lane& lane : tests.lanes())
             clock.attach(lane.tex_coord_test);
         for (const TessellationTests::Lane& lane : tests.lanes())
@@ -238,7 +239,7 @@ void Pipeline::tables_changed() {
     };
     lay_out(displacement_map, displacement_map_cache.get(), registers_.displacement_map.columns);
     lay_out(normal_map, normal_map_cache.get(), registers_.normal_map.columns);
-    lay_out(summed_height_table, summed_height_table_cache.get(), registers_.summed_height_table.columns);
+    lay_out(height_table, height_table_cache.get(), registers_.height_table.columns);
 }
 
 std::uint64_t Pipeline::passes_under_way() const {
@@ -255,8 +256,8 @@ std::size_t Pipeline::most_ahead_of_parts() const {
 std::uint64_t Pipeline::displacement_map_reads() const {
     std::uint64_t reads = displace_vertex.displacement_map.reads();
     for (const TessellationTests& tests : tessellation_tests) {
-        if (tests.summed_height_test.displacement_map)
-            reads += tests.summed_height_test.displacement_map->reads();
+        if (tests.height_test.displacement_map)
+            reads += tests.height_test.displacement_map->reads();
     }
     return reads;
 }
@@ -270,10 +271,10 @@ std::uint64_t Pipeline::normal_map_reads() const {
     return reads;
 }
 
-std::uint64_t Pipeline::summed_height_table_reads() const {
+std::uint64_t Pipeline::height_table_reads() const {
     std::uint64_t reads = 0;
     for (const TessellationTests& tests : tessellation_tests)
-        reads += tests.summed_height_test.summed_height_table.reads();
+        reads += tests.height_test.table.reads();
     return reads;
 }
 

@@ -76,10 +76,10 @@ class Pipeline : public sc_core::sc_module {
     OffChipMemory off_chip_memory;
     DisplacementMap displacement_map;
     NormalMap normal_map;
-    SummedHeightTable summed_height_table;
+    HeightTable height_table;
     std::unique_ptr<TableCache> displacement_map_cache;  ///< null: the table is on chip
     std::unique_ptr<TableCache> normal_map_cache;
-    std::unique_ptr<TableCache> summed_height_table_cache;
+    std::unique_ptr<TableCache> height_table_cache;
 
     /// `registers` must outlive the pipeline. factory: null: the units of this folder. Fixed from now on: the formats, but
     /// for the view distance's fraction; the tables' bases, the size of their entries, and the memories' capacities, which
@@ -114,7 +114,7 @@ class Pipeline : public sc_core::sc_module {
     std::uint64_t edges_tested() const { return pass_or_tessellate.counts().edges_tested; }
     std::uint64_t displacement_map_reads() const;
     std::uint64_t normal_map_reads() const;
-    std::uint64_t summed_height_table_reads() const;
+    std::uint64_t height_table_reads() const;
     datapath::Saturations saturations() const;
 
   private:

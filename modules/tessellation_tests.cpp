@@ -9,7 +9,11 @@ TessellationTests::Units TessellationTests::make(const UnitContext& context, Uni
     Units made;
     made.calculate_new_u = factory.calculate_new_u("calculate_new_u", context);
     made.tex_coord_test = factory.tex_coord_test("tex_coord_test", context);
-    made.summed_height_test = factory.summed_height_test("summed_height_test", context);
+    const datapath::HeightTest height_test = context.registers.formats.height_test;
+    if (height_test == datapath::HeightTest::rank)
+        made.height_test = factory.rank_test(unit_name(height_test), context);
+    else
+        made.height_test = factory.summed_height_test(unit_name(height_test), context);
     made.normal_test = factory.normal_test("normal_test", context, takes);
     made.view_test = factory.view_test("view_test", context, takes);
     if (context.design.test_order == TestOrder::parallel)
@@ -56,8 +60,7 @@ StreamOutput<TestedEdge>& TessellationTests::to_pass_or_tessellate(std::size_t l
 }
 
 std::vector<Unit*> TessellationTests::units() const {
-    std::vector<Unit*> all = {&calculate_new_u, &tex_coord_test, &summed_height_test,
-                              &normal_test,     &view_test,      &collector()};
+    std::vector<Unit*> all = {&calculate_new_u, &tex_coord_test, &height_test, &normal_test, &view_test, &collector()};
     for (std::size_t k = 1; k < lanes_.size(); ++k)
         all.insert(all.end(), {&lanes_[k].calculate_new_u, &lanes_[k].tex_coord_test, &lanes_[k].view_test});
     all.insert(all.end(), normal_tests_.begin() + 1, normal_tests_.end());
@@ -72,13 +75,13 @@ void TessellationTests::wire() {
     calculate_new_u.to_tex_coord_test.bind(tex_coord_test.input);
     calculate_new_u.to_view_test.bind(view_test.input);
     if (sequence_tests == nullptr) {
-        calculate_new_u.to_summed_height_test.bind(summed_height_test.input);
+        calculate_new_u.to_summed_height_test.bind(height_test.input);
         calculate_new_u.to_normal_test.bind(normal_test.input);
         take_results(*collect_tests);
     } else {
         calculate_new_u.to_summed_height_test.bind(sequence_tests->height_operands);
         calculate_new_u.to_normal_test.bind(sequence_tests->normal_operands);
-        sequence_tests->to_summed_height_test.bind(summed_height_test.input);
+        sequence_tests->to_summed_height_test.bind(height_test.input);
         sequence_tests->to_normal_test.bind(normal_test.input);
         take_results(*sequence_tests);
     }
@@ -99,14 +102,14 @@ void TessellationTests::wire_lanes() {
         sequence.to_normal_test[k].bind(normal_tests_[k]->input);
         normal_tests_[k]->output.bind(sequence.from_normal_test[k]);
     }
-    sequence.to_summed_height_test.bind(summed_height_test.input);
-    summed_height_test.output.bind(sequence.from_summed_height_test);
+    sequence.to_summed_height_test.bind(height_test.input);
+    height_test.output.bind(sequence.from_summed_height_test);
 }
 
 template <class Collector>
 void TessellationTests::take_results(Collector& collector) {
     tex_coord_test.output.bind(collector.from_tex_coord_test);
-    summed_height_test.output.bind(collector.from_summed_height_test);
+    height_test.output.bind(collector.from_summed_height_test);
     normal_test.output.bind(collector.from_normal_test);
     view_test.output.bind(collector.from_view_test);
 }

@@ -37,7 +37,7 @@ class TessellationTests : public sc_core::sc_module {
     struct Units {
         std::unique_ptr<CalculateNewU> calculate_new_u;
         std::unique_ptr<TexCoordTest> tex_coord_test;
-        std::unique_ptr<SummedHeightTest> summed_height_test;
+        std::unique_ptr<HeightTestUnit> height_test;
         std::unique_ptr<NormalTest> normal_test;
         std::unique_ptr<ViewTest> view_test;
         // One of these; the others are null.
@@ -55,7 +55,7 @@ class TessellationTests : public sc_core::sc_module {
   public:
     CalculateNewU& calculate_new_u = *made_.calculate_new_u;
     TexCoordTest& tex_coord_test = *made_.tex_coord_test;
-    SummedHeightTest& summed_height_test = *made_.summed_height_test;
+    HeightTestUnit& height_test = *made_.height_test;  ///< the Summed Height Test, or the test in its place
     NormalTest& normal_test = *made_.normal_test;
     ViewTest& view_test = *made_.view_test;
     CollectTests* const collect_tests = made_.collect_tests.get();     ///< null: cheapest first

@@ -11,6 +11,7 @@
 #include "modules/units/edge_tests/calculate_new_u.h"
 #include "modules/units/edge_tests/collect_tests.h"
 #include "modules/units/edge_tests/normal.h"
+#include "modules/units/edge_tests/rank.h"
 #include "modules/units/edge_tests/sequence_tests.h"
 #include "modules/units/edge_tests/summed_height.h"
 #include "modules/units/edge_tests/tex_coord.h"
@@ -58,6 +59,10 @@ class UnitFactory {
     }
     virtual std::unique_ptr<SummedHeightTest> summed_height_test(Name name, const UnitContext& context) {
         return std::make_unique<SummedHeightTest>(name, context);
+    }
+    /// With datapath::HeightTest::rank, in its place.
+    virtual std::unique_ptr<RankTest> rank_test(Name name, const UnitContext& context) {
+        return std::make_unique<RankTest>(name, context);
     }
     virtual std::unique_ptr<NormalTest> normal_test(Name name, const UnitContext& context, Parts takes) {
         return std::make_unique<NormalTest>(name, context, takes);

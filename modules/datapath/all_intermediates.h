@@ -1,4 +1,5 @@
 #pragma once
+#include "modules/datapath/bilinear.h"
 #include "modules/datapath/bump.h"
 #include "modules/datapath/cull.h"
 #include "modules/datapath/curvature.h"
@@ -8,6 +9,7 @@
 #include "modules/datapath/midpoint.h"
 #include "modules/datapath/mipmap.h"
 #include "modules/datapath/normalise.h"
+#include "modules/datapath/rank.h"
 #include "modules/datapath/reciprocal.h"
 #include "modules/datapath/rectangle.h"
 #include "modules/datapath/transform.h"
@@ -19,6 +21,7 @@ namespace tessera::datapath {
 template <class Visit>
 constexpr void visit_intermediates(const Formats& f, Visit&& visit) {
     visit("midpoint", MidpointWidths{f});
+    visit("interpolate", BilinearWidths{f});
     visit("displace", DisplaceWidths{f});
     visit("normalise", NormaliseWidths(f, BumpWidths{f}.combined.bits));
     visit("reciprocal_root", ReciprocalRootWidths{f});
@@ -30,6 +33,7 @@ constexpr void visit_intermediates(const Formats& f, Visit&& visit) {
     visit("edge tests", EdgeTestWidths{f});
     visit("curvature_measure", CurvatureWidths{f});
     visit("mipmap_test", MipmapWidths{f});
+    visit("rank_test", RankWidths{f});
     visit("choose_second_diagonal", DiagonalWidths{f});
     visit("faces_away", CullWidths{f});
     visit("light", LightWidths{f});

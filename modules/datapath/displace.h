@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 
+#include "modules/datapath/bilinear.h"
 #include "modules/datapath/format.h"
 #include "modules/datapath/intermediate.h"
 #include "modules/datapath/parameters.h"
@@ -11,7 +12,7 @@ namespace tessera::datapath {
 
 struct DisplaceWidths : Intermediates {
     using Intermediates::Intermediates;
-    Width product{"S * code", f.position.bits + f.displacement.bits};
+    Width product{"S * code", f.position.bits + f.displacement.bits + code_fraction(f)};
     Width height{"S * d + bias", f.position.bits + 1};
     Width along{"(S * d + bias) * N", height.bits + f.normal.bits};
     Width step{"the same, rounded", along.bits - f.normal.fraction};
@@ -20,14 +21,16 @@ struct DisplaceWidths : Intermediates {
 };
 static_assert(fits_every_format<DisplaceWidths>());
 
-/// P' = P + (S * d + bias) * N (paper equation 1 with the scale of 5.1), d = code / 2^bits.
+/// P' = P + (S * d + bias) * N (paper equation 1 with the scale of 5.1), d = code / 2^bits. The code has code_fraction
+/// fraction bits (bilinear.h): none if it is a texel's.
 /// Rounding: S * d to nearest in the position's format, the product with N to nearest. Error at most
 /// 1/2 * (|N| + 1) LSB. Saturates, counted.
 constexpr Position displace(const Position& p, const Direction& n, std::uint32_t code,
                             const DisplacementParameters& parameters, const Formats& formats,
                             Saturations& saturations) {
+    const std::int64_t product = std::int64_t{parameters.scale} * code;
     const std::int64_t height =
-        round_shift(std::int64_t{parameters.scale} * code, formats.displacement.bits) + parameters.bias;
+        round_shift(product, formats.displacement.bits + code_fraction(formats)) + parameters.bias;
     const auto along = [&](std::int64_t base, std::int64_t normal) {
         return static_cast<std::int32_t>(saturate(base + round_shift(height * normal, formats.normal.fraction),
                                                   formats.position, saturations.displaced_position));

@@ -6,10 +6,10 @@
 
 namespace tessera::datapath {
 
-/// The edges of a triangle's children that no test has seen: with k split edges their 2 k halves and k edges inside the
-/// triangle, each once, though one inside belongs to two children.
+/// The edges of a triangle's children that are to be tested: with k split edges their 2 k halves and k edges inside the
+/// triangle, each once, though one inside belongs to two children; and its own edges that are open.
 struct FamilyEdges {
-    static constexpr std::uint8_t whole = 0xff;  ///< not new: an edge of the parent that was not split
+    static constexpr std::uint8_t whole = 0xff;  ///< an edge of the parent that is final
     struct Ends {
         std::uint8_t i, j;  ///< as in ChildIndices
     };
@@ -19,11 +19,17 @@ struct FamilyEdges {
     std::array<std::array<std::uint8_t, 3>, 4> of_child{};
 };
 
-/// In the order of the children, and of each child's edges. untested: a base triangle, whose three edges are all new.
-constexpr FamilyEdges family_edges(const ChildIndices& indices, bool untested) {
+/// The triangle's own edges that are to be tested with its children's: all of a base triangle, else those that asked to
+/// be split while another was cut. Bit k: edge k.
+constexpr std::uint8_t open_edges(bool untested, std::uint8_t uncut) {
+    return untested ? std::uint8_t{7} : uncut;
+}
+
+/// In the order of the children, and of each child's edges. open: of the triangle's edges (open_edges).
+constexpr FamilyEdges family_edges(const ChildIndices& indices, std::uint8_t open) {
     FamilyEdges family;
     const auto number_of = [&](std::uint8_t i, std::uint8_t j) -> std::uint8_t {
-        if (i < 3 && j < 3 && !untested)
+        if (i < 3 && j < 3 && (open >> i & 1u) == 0)
             return FamilyEdges::whole;
         for (unsigned k = 0; k < family.count; ++k) {
             if (family.edges[k].i == j && family.edges[k].j == i)

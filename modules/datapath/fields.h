@@ -89,6 +89,18 @@ class Fields {
         if (formats_.families)
             number(name, value, 3, meaning);
     }
+    /// Only in a machine of families with a Rank Test.
+    template <class N>
+    constexpr void uncut_edges(const char* name, N& value, const char* meaning) {
+        if (formats_.families && formats_.height_test == HeightTest::rank)
+            number(name, value, 3, meaning);
+    }
+    /// Only with a Rank Test.
+    template <class N>
+    constexpr void rank(const char* name, N& value, const char* meaning) {
+        if (formats_.height_test == HeightTest::rank)
+            pass(named(name, "", ordering_bits(formats_), 16, false, meaning), value);
+    }
     template <class D>
     constexpr void midpoint_direction(const char* name, D& n, const char* meaning) {
         if (formats_.families)
@@ -213,6 +225,7 @@ constexpr void describe_triangle(Fields<Codec>& fields, AnyTriangle& triangle) {
     fields.flag("finished", triangle.finished, "no edge splits");
     fields.final_edges("final_edges", triangle.final_edges, "bit k: edge k was tested before and does not split");
     fields.split_edges("split", triangle.split, "bit k: edge k is to be split");
+    fields.uncut_edges("uncut", triangle.uncut, "bit k: edge k asks to be split, and is tested again");
     for (int k = 0; k < 3; ++k) {
         fields.of(k);
         auto& midpoint = triangle.midpoints[static_cast<std::size_t>(k)];

@@ -21,6 +21,15 @@ struct Format {
     }
 };
 
+/// The test of heights a machine has, on a table of its own. The paper's is `summed_height`.
+enum class HeightTest : std::uint8_t { summed_height, rank };
+
+/// How the displacement map and the normal map are read at t (bilinear.h).
+enum class MapFilter : std::uint8_t {
+    nearest,   ///< the paper's: the texel under t
+    bilinear,  ///< between the four texels around t
+};
+
 /// The formats of one design.
 struct Formats {
     Format position = Format::make_signed(32, 16);  ///< P, P', scale, bias
@@ -38,8 +47,23 @@ struct Formats {
     bool highlight_tag = false;  ///< with a Highlight Test: split_by in a queue entry has a bit for it
     bool final_edges = false;    ///< a queue entry says which of its edges are final
     bool codes = false;          ///< a vertex carries its displacement code
-    bool families = false;       ///< a queue entry says which edges split, and N, T, N' of their midpoints
+    HeightTest height_test = HeightTest::summed_height;
+    int rank_bits = 8;      ///< of an entry of the Rank Table; 0: none
+    int bound_bits = 0;     ///< likewise; the bound lies above the rank
+    bool families = false;  ///< a queue entry says which edges split, and N, T, N' of their midpoints
+    MapFilter filter = MapFilter::nearest;
 };
+
+/// Bits of an entry of the height test's table.
+constexpr int height_entry_bits(const Formats& formats) {
+    return formats.height_test == HeightTest::rank ? formats.rank_bits + formats.bound_bits
+                                                   : formats.summed_height.bits;
+}
+
+/// Bits of the number by which the cut `greatest_rank` compares edges: of the rank or, without ranks, of the bound.
+constexpr int ordering_bits(const Formats& formats) {
+    return formats.rank_bits > 0 ? formats.rank_bits : formats.bound_bits;
+}
 
 /// Ranges of the widths that a job may set. The functions of this folder are asserted to work within them. A fraction
 /// has fewer bits than its format, a normal's at least 2 fewer.
@@ -54,6 +78,7 @@ struct FormatLimits {
     static constexpr Range summed_height_bits{8, 48};
     static constexpr Range screen_bits{8, 31}, screen_fraction{0, 30};
     static constexpr Range generation_bits{1, 4};
+    static constexpr Range rank_bits{6, 16}, bound_bits{6, 16};  ///< or 0, one of them
     /// Fraction bits that w has less than the position. 31 fit the farthest eye, 2^37 LSB of the position, into 8 bits.
     static constexpr Range view_distance_shift{0, 31};
 };

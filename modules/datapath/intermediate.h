@@ -38,7 +38,7 @@ constexpr const char* first_too_wide(const Widths& widths) {
 
 /// Whether the model's integers hold every intermediate in all formats within FormatLimits. It suffices to check the
 /// greatest widths with the fewest and the most fraction bits: intermediates grow with their operands' widths, and
-/// shifts depend on the fraction bits.
+/// shifts depend on the fraction bits. A bilinear filter adds bits.
 template <class Widths>
 constexpr bool fits_every_format() {
     using Limits = FormatLimits;
@@ -58,6 +58,7 @@ constexpr bool fits_every_format() {
         f.summed_height = Format::make_unsigned(Limits::summed_height_bits.most, 0);
         f.screen = Format::make_signed(Limits::screen_bits.most, fraction(3, Limits::screen_fraction));
         f.generation_bits = Limits::generation_bits.most;
+        f.filter = MapFilter::bilinear;
         if (first_too_wide(Widths{f}) != nullptr)
             return false;
     }

@@ -33,8 +33,8 @@ enum class SummedHeightUnit : std::uint8_t { sum, area };
 
 /// The thresholds and switches of the edge tests, set by the mesh's author (paper 2.2 to 2.4).
 struct TestParameters {
-    bool normal_test = true;  ///< if switched off, NT, SHT, HT count as false; VT, TCT, GT as true
-    bool summed_height_test = true;
+    bool normal_test = true;         ///< if switched off, NT, SHT, HT count as false; VT, TCT, GT as true
+    bool summed_height_test = true;  ///< or the test that stands in its place (Formats::height_test)
     bool view_test = true;
     bool tex_coord_test = true;
     bool generation_test = true;
@@ -42,7 +42,9 @@ struct TestParameters {
     /// sum: 4 * threshold in codes times texels; area: threshold in codes. Compared with |2 S_ij - S_i - S_j|.
     std::uint64_t summed_height_threshold = 0;
     SummedHeightUnit summed_height_unit = SummedHeightUnit::sum;
-    std::uint32_t view_threshold = 0;  ///< screen's format
+    std::uint32_t rank_threshold = 0;   ///< Rank Test: of the entry's rank
+    std::uint32_t bound_threshold = 0;  ///< likewise of its bound
+    std::uint32_t view_threshold = 0;   ///< screen's format
     std::uint32_t generation_limit = 12;
 
     bool highlight_test = false;  ///< HT: three more dot products and their compares, in designs that have it
@@ -72,7 +74,9 @@ struct TransformParameters {
     std::array<std::array<std::int32_t, 3>, 3> normal_rows{};  ///< world to view rotation, normal's format
 };
 
-enum class Triangulation : std::uint8_t { shorter, first, second };
+/// How a triangle is cut whose edges split: all of them, the quadrilateral that remains of two along the diagonal named;
+/// or with a Rank Test the edge of greatest rank alone (rank.h).
+enum class Triangulation : std::uint8_t { shorter, first, second, greatest_rank };
 
 /// Direction towards the light in screen space (normal's format), and ambient light, 0..256.
 struct LightParameters {
@@ -86,7 +90,7 @@ struct Registers {
     MapGeometry map;
     TableLayout displacement_map;
     TableLayout normal_map;
-    TableLayout summed_height_table;
+    TableLayout height_table;  ///< of the height test: the Summed Height Table, unless Formats say otherwise
     TestParameters tests;
     DisplacementParameters displacement;
     TransformParameters transform;

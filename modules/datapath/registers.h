@@ -50,14 +50,14 @@ constexpr void describe_registers(AnyRegisters& r, Visit&& visit) {
     field("tests.view_test", choice, 1, "on", r.tests.view_test);
     field("tests.tex_coord_test", choice, 1, "on", r.tests.tex_coord_test);
     field("tests.generation_test", choice, 1, "on", r.tests.generation_test);
-    field("triangulation", choice, 2, "shorter, first, second diagonal", r.triangulation);
+    field("triangulation", choice, 2, "shorter, first, second diagonal, greatest rank", r.triangulation);
     field("back_face_culling", choice, 1, "on", r.back_face_culling);
 
     field("map.width", number, map_side_bits, "texels", r.map.width);
     field("map.height", number, map_side_bits, "texels", r.map.height);
     field("displacement_map.base", number, 64, "byte address", r.displacement_map.base);
     field("normal_map.base", number, 64, "byte address", r.normal_map.base);
-    field("summed_height_table.base", number, 64, "byte address", r.summed_height_table.base);
+    field("summed_height_table.base", number, 64, "byte address", r.height_table.base);
 
     field("tests.normal_threshold", number, f.normal.bits, "normal's format", r.tests.normal_threshold);
     field("tests.summed_height_threshold", number, summed_height_threshold_bits,
@@ -91,6 +91,15 @@ constexpr void describe_registers(AnyRegisters& r, Visit&& visit) {
 
     direction("light.direction", "in view space, normal's format", r.light.direction);
     field("light.ambient", number, 9, "of 256", r.light.ambient);
+
+    if (f.height_test == HeightTest::rank) {  // last, so that the registers of other designs keep their addresses
+        field("rank_table.columns", number, map_side_bits, "of the Rank Table, entries", r.height_table.columns);
+        field("rank_table.rows", number, map_side_bits, "likewise", r.height_table.rows);
+        if (f.rank_bits > 0)
+            field("tests.rank_threshold", number, f.rank_bits, "an entry's format", r.tests.rank_threshold);
+        if (f.bound_bits > 0)
+            field("tests.bound_threshold", number, f.bound_bits, "an entry's format", r.tests.bound_threshold);
+    }
 }
 
 /// The same with the values of a group as a std::array of std::int64_t.

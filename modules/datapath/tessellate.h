@@ -13,12 +13,13 @@ constexpr std::uint8_t kept_generation(std::uint8_t generation, const Formats& f
         saturate(generation, Format::make_unsigned(formats.generation_bits, 0), saturations.generation));
 }
 
-/// A child's final edges: an edge between two corners of its parent is an edge of the parent that was not split.
+/// A child's final edges: an edge between two corners of its parent is an edge of the parent. It is final unless it
+/// asked to be split, and another was cut in its stead.
 /// `corners`: of the child, as triangulate() gives them.
-constexpr std::uint8_t final_edges_of(const std::array<std::uint8_t, 3>& corners) {
+constexpr std::uint8_t final_edges_of(const std::array<std::uint8_t, 3>& corners, unsigned asked) {
     unsigned edges = 0;
     for (unsigned k = 0; k < 3; ++k)
-        edges |= corners[k] < 3 && corners[(k + 1) % 3] < 3 ? 1u << k : 0u;
+        edges |= corners[k] < 3 && corners[(k + 1) % 3] < 3 && (asked >> corners[k] & 1u) == 0 ? 1u << k : 0u;
     return static_cast<std::uint8_t>(edges);
 }
 
@@ -30,9 +31,11 @@ int tessellate(const TrianglePass& pass, Triangulation choice, const Formats& fo
     std::array<Vertex, 3> inserted;
     std::array<const Vertex*, 6> vertices;
     std::uint8_t split_by = 0;
+    unsigned asked = pass.triangle.uncut;  // of families, whose midpoints come without the tests' results
     for (int k = 0; k < 3; ++k) {
         vertices[static_cast<std::size_t>(k)] = &pass.triangle.vertices[static_cast<std::size_t>(k)];
         vertices[static_cast<std::size_t>(3 + k)] = &inserted[static_cast<std::size_t>(k)];
+        asked |= split_decision(pass.edges[static_cast<std::size_t>(k)].tests) ? 1u << k : 0u;
         if ((pass.split >> k & 1) == 0)
             continue;
         Vertex& vertex = inserted[static_cast<std::size_t>(k)];
@@ -53,7 +56,8 @@ int tessellate(const TrianglePass& pass, Triangulation choice, const Formats& fo
     for (int k = 0; k < indices.count; ++k) {
         const auto& corners = indices.children[static_cast<std::size_t>(k)];
         triangle.vertices = {*vertices[corners[0]], *vertices[corners[1]], *vertices[corners[2]]};
-        triangle.final_edges = formats.final_edges || formats.families ? final_edges_of(corners) : std::uint8_t{0};
+        triangle.final_edges =
+            formats.final_edges || formats.families ? final_edges_of(corners, asked) : std::uint8_t{0};
         child(triangle);
     }
     return indices.count;

@@ -28,6 +28,7 @@ struct EdgeTests {
     Direction displaced_normal;  ///< N'_ij   (Normal Test)
     std::uint8_t tests = 0;      ///< TestBits
     std::uint8_t evaluated = 0;  ///< TestBits: the tests that were evaluated; 0: the edge is final and was not tested
+    std::uint16_t rank = 0;      ///< of its midpoint, with a Rank Test
 };
 
 /// What is told of a pass. In a machine of families the edges are tested before the midpoints are made.

@@ -56,7 +56,7 @@ struct Vertex {
 /// The tests of one edge, as bits; also a set of tests (split_by, stopped_by).
 enum TestBits : std::uint8_t {
     normal_bit = 1,
-    summed_height_bit = 2,
+    summed_height_bit = 2,  ///< or the test in its place (Formats::height_test)
     view_bit = 4,
     tex_coord_bit = 8,
     generation_bit = 16,
@@ -89,6 +89,8 @@ struct Triangle {
     /// Formats::families: a triangle in the queue is to be split; split_by and parent are those of its children.
     std::uint8_t split = 0;  ///< bit k: edge k
     std::array<TestedMidpoint, 3> midpoints{};
+    /// With a Rank Test, of families. Bit k: edge k asked to be split, but another was cut; it is tested again.
+    std::uint8_t uncut = 0;
 };
 
 }  // namespace tessera::datapath

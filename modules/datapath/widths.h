@@ -27,7 +27,7 @@ constexpr Widths stream_widths(const Formats& f) {
     widths.vertex = widths.base_vertex + bits(f.generation_bits) + known + position + 2 * direction + screen +
                     bits(f.codes ? f.displacement.bits : 0);
     widths.triangle = 3 * widths.vertex + (f.highlight_tag ? 3 : 2) + 3 + 1 + (f.final_edges ? 3 : 0) +
-                      (f.families ? 3 + 9 * direction : 0);
+                      (f.families ? 3 + 9 * direction : 0) + (f.families && f.height_test == HeightTest::rank ? 3 : 0);
     widths.emitted_vertex = screen + direction + texture;
     widths.finished_vertex = position + direction + texture;
     return widths;

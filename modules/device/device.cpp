@@ -12,6 +12,8 @@ namespace {
 datapath::Registers for_largest_map(datapath::Registers registers, const LargestMap& largest) {
     registers.map.width = largest.width;
     registers.map.height = largest.height;
+    registers.height_table.columns = largest.width;  // of a Rank Table
+    registers.height_table.rows = largest.height;
     lay_out_tables_of(registers);
     return registers;
 }
@@ -58,7 +60,7 @@ Device::Device(const sc_core::sc_module_name& name, const datapath::Registers& i
     pipeline_.pass_or_tessellate.decided.bind(*this);
     displacement_map_.bind(pipeline_.displacement_map.host);
     normal_map_.bind(pipeline_.normal_map.host);
-    summed_height_table_.bind(pipeline_.summed_height_table.host);
+    summed_height_table_.bind(pipeline_.height_table.host);
     SC_HAS_PROCESS(Device);
     SC_THREAD(run_frames);
     SC_THREAD(write_records);
@@ -104,8 +106,8 @@ bool Device::fetch_tables() {
     const datapath::Formats& f = live_.formats;
     return fetch(0, displacement_map_, offset::displacement_map_address, live_.displacement_map, f.displacement.bits) &&
            fetch(1, normal_map_, offset::normal_map_address, live_.normal_map, 3 * f.normal.bits) &&
-           fetch(2, summed_height_table_, offset::summed_height_table_address, live_.summed_height_table,
-                 f.summed_height.bits);
+           fetch(2, summed_height_table_, offset::summed_height_table_address, live_.height_table,
+                 datapath::height_entry_bits(f));
 }
 
 /// Burst by burst, into the table memory by its debug transport. The memory has no more than `bits` bits of an entry.

@@ -15,7 +15,7 @@ namespace tessera {
 /// What is built around the machine.
 struct DeviceDesign {
     Design machine;                   ///< its queue must spill, or be unbounded
-    LargestMap largest_map;           ///< sizes the table memories
+    LargestMap largest_map;           ///< sizes the table memories; a Rank Table's columns and rows are within it too
     unsigned register_cycles = 1;     ///< of the machine's clock, for each word of a register access
     unsigned burst_bytes = 64;        ///< of a DMA transfer: a power of two, 4 to 4096
     unsigned triangles_ahead = 4;     ///< base triangles fetched before Get Triangle takes them (timed mode)

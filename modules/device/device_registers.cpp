@@ -158,7 +158,12 @@ Device::Failure Device::check(const datapath::Registers& machine) const {
         return at(DeviceError::bad_map_size, "map.width");
     if (machine.map.height == 0 || machine.map.height > design_.largest_map.height)
         return at(DeviceError::bad_map_size, "map.height");
-    if (machine.triangulation > datapath::Triangulation::second)
+    const bool ranks = machine.formats.height_test == datapath::HeightTest::rank;
+    if (ranks && (machine.height_table.columns == 0 || machine.height_table.columns > design_.largest_map.width))
+        return at(DeviceError::bad_map_size, "rank_table.columns");
+    if (ranks && (machine.height_table.rows == 0 || machine.height_table.rows > design_.largest_map.height))
+        return at(DeviceError::bad_map_size, "rank_table.rows");
+    if (machine.triangulation > (ranks ? datapath::Triangulation::greatest_rank : datapath::Triangulation::second))
         return at(DeviceError::bad_value, "triangulation");
     if (machine.tests.summed_height_threshold >
         (machine.tests.summed_height_unit == datapath::SummedHeightUnit::sum ? most_height_sum : most_height))
@@ -179,7 +184,7 @@ Device::Failure Device::check_transfers(const datapath::Registers& machine) cons
     for (const Transfer& transfer : {
              Transfer{offset::displacement_map_address, (tables & 1) != 0 ? machine.displacement_map.bytes() : 0},
              Transfer{offset::normal_map_address, (tables & 2) != 0 ? machine.normal_map.bytes() : 0},
-             Transfer{offset::summed_height_table_address, (tables & 4) != 0 ? machine.summed_height_table.bytes() : 0},
+             Transfer{offset::summed_height_table_address, (tables & 4) != 0 ? machine.height_table.bytes() : 0},
              Transfer{offset::triangles_address, file_.value(offset::triangles_count) * base_triangle_bytes},
              Transfer{offset::ring_address, size * finished_triangle_bytes},
          }) {

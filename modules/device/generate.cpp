@@ -74,6 +74,8 @@ std::string c_record(bool finished) {
 std::vector<DeviceRegister> documented_registers() {
     datapath::Registers registers;
     registers.formats.highlight_tag = true;
+    registers.formats.height_test = datapath::HeightTest::rank;
+    registers.formats.rank_bits = registers.formats.bound_bits = 16;
     return register_map(registers, {});
 }
 
@@ -154,9 +156,8 @@ std::string registers_as_json(const std::vector<DeviceRegister>& registers) {
         text << "    {\"name\": \"" << r.name << "\", \"offset\": " << r.offset << ", \"bits\": " << r.bits
              << ", \"words\": " << r.words << ", \"signed\": " << (r.is_signed ? "true" : "false")
              << ", \"reset\": \"0x" << hex(r.reset, 1) << "\", \"access\": \"" << access_name(r.access)
-             << "\", \"while_busy\": " << (r.while_busy ? "true" : "false")
-             << ", \"highlight_only\": " << (r.always_present ? "false" : "true") << ", \"meaning\": \"" << r.meaning
-             << "\"}" << (&r == &registers.back() ? "\n" : ",\n");
+             << "\", \"while_busy\": " << (r.while_busy ? "true" : "false") << ", \"only_with\": \"" << r.only_with
+             << "\", \"meaning\": \"" << r.meaning << "\"}" << (&r == &registers.back() ? "\n" : ",\n");
     }
     text << "  ],\n  \"bits\": [\n";
     for (const RegisterBit& bit : register_bits)
@@ -187,7 +188,8 @@ std::string registers_page(const std::vector<DeviceRegister>& registers) {
         text << "| 0x" << hex(r.offset, 3) << " | `" << r.name << "` | " << (r.is_signed ? "signed " : "") << r.bits
              << " | " << access_name(r.access) << (r.while_busy ? "*" : "") << " | " << (r.reset < 10 ? "" : "0x")
              << hex(r.reset, 1) << " | " << r.meaning
-             << (r.always_present ? "" : " (only in a design with a Highlight Test)") << " |\n";
+             << (r.only_with[0] == 0 ? std::string() : std::string(" (only in a design with a ") + r.only_with + ")")
+             << " |\n";
     text << "\n## Bits\n\n| register | bit | name | meaning |\n| --- | --- | --- | --- |\n";
     for (const RegisterBit& bit : register_bits)
         text << "| `" << bit.register_name << "` | " << bit.bit << " | `" << bit.name << "` | " << bit.meaning

@@ -18,13 +18,15 @@ std::uint64_t packed(const Format& format) {
 
 std::uint64_t features(const Formats& f) {
     return (f.highlight_tag ? 1u : 0u) | (f.final_edges ? 2u : 0u) | (f.codes ? 4u : 0u) | (f.families ? 8u : 0u) |
+           (f.filter == datapath::MapFilter::bilinear ? 16u : 0u) |
+           (f.height_test == datapath::HeightTest::rank ? 32u : 0u) |
            static_cast<std::uint64_t>(f.generation_bits) << 8;
 }
 
 std::uint64_t entry_sizes(const Formats& f) {
     return std::uint64_t{datapath::entry_bytes(f.displacement.bits)} |
            std::uint64_t{datapath::entry_bytes(3 * f.normal.bits)} << 8 |
-           std::uint64_t{datapath::entry_bytes(f.summed_height.bits)} << 16;
+           std::uint64_t{datapath::entry_bytes(datapath::height_entry_bits(f))} << 16;
 }
 
 std::vector<DeviceRegister> control_registers(const Formats& f, const LargestMap& largest) {
@@ -33,49 +35,49 @@ std::vector<DeviceRegister> control_registers(const Formats& f, const LargestMap
     const char* const format = "bits, and from bit 8 on fraction bits";
     // name, offset, bits, words, signed, reset value, access, while busy, always present, meaning
     return {
-        {"id", offset::id, 32, 1, false, 0x53534554, ro, false, true, "the letters TESS"},
-        {"version", offset::version, 32, 1, false, 0x00010000, ro, false, true, "of this register map: 1.0"},
-        {"control", offset::control, 2, 1, false, 0, RegisterAccess::command, true, true, "start, reset"},
-        {"status", offset::status, 4, 1, false, 0, ro, false, true, "busy, done, error, resetting"},
-        {"interrupt", offset::interrupt, 2, 1, false, 0, w1c, true, true, "pending: done, error"},
-        {"interrupt_enable", offset::interrupt_enable, 2, 1, false, 0, rw, true, true,
+        {"id", offset::id, 32, 1, false, 0x53534554, ro, false, "", "the letters TESS"},
+        {"version", offset::version, 32, 1, false, 0x00010000, ro, false, "", "of this register map: 1.0"},
+        {"control", offset::control, 2, 1, false, 0, RegisterAccess::command, true, "", "start, reset"},
+        {"status", offset::status, 4, 1, false, 0, ro, false, "", "busy, done, error, resetting"},
+        {"interrupt", offset::interrupt, 2, 1, false, 0, w1c, true, "", "pending: done, error"},
+        {"interrupt_enable", offset::interrupt_enable, 2, 1, false, 0, rw, true, "",
          "the interrupt output is high while a bit is set here and in interrupt"},
-        {"error", offset::error, 4, 1, false, 0, ro, false, true, "why the last frame was refused or stopped"},
-        {"error_address", offset::error_address, 64, 2, false, 0, ro, false, true,
+        {"error", offset::error, 4, 1, false, 0, ro, false, "", "why the last frame was refused or stopped"},
+        {"error_address", offset::error_address, 64, 2, false, 0, ro, false, "",
          "of it: a bus address, or a register's offset"},
-        {"fetch", offset::fetch, 3, 1, false, 7, rw, false, true, "tables that a frame fetches before it begins"},
-        {"displacement_map.address", offset::displacement_map_address, 64, 2, false, 0, rw, false, true,
+        {"fetch", offset::fetch, 3, 1, false, 7, rw, false, "", "tables that a frame fetches before it begins"},
+        {"displacement_map.address", offset::displacement_map_address, 64, 2, false, 0, rw, false, "",
          "of the table in bus memory"},
-        {"normal_map.address", offset::normal_map_address, 64, 2, false, 0, rw, false, true, "likewise"},
-        {"summed_height_table.address", offset::summed_height_table_address, 64, 2, false, 0, rw, false, true,
+        {"normal_map.address", offset::normal_map_address, 64, 2, false, 0, rw, false, "", "likewise"},
+        {"summed_height_table.address", offset::summed_height_table_address, 64, 2, false, 0, rw, false, "",
          "likewise"},
-        {"triangles.address", offset::triangles_address, 64, 2, false, 0, rw, false, true,
+        {"triangles.address", offset::triangles_address, 64, 2, false, 0, rw, false, "",
          "of the base triangles' records in bus memory"},
-        {"triangles.count", offset::triangles_count, 32, 1, false, 0, rw, false, true, "base triangles"},
-        {"triangles.sent", offset::triangles_sent, 32, 1, false, 0, ro, false, true,
+        {"triangles.count", offset::triangles_count, 32, 1, false, 0, rw, false, "", "base triangles"},
+        {"triangles.sent", offset::triangles_sent, 32, 1, false, 0, ro, false, "",
          "base triangles of this frame sent to the machine"},
-        {"triangles.finished", offset::triangles_finished, 32, 1, false, 0, ro, false, true,
+        {"triangles.finished", offset::triangles_finished, 32, 1, false, 0, ro, false, "",
          "finished triangles of this frame, culled ones too, modulo 2^32"},
-        {"ring.address", offset::ring_address, 64, 2, false, 0, rw, false, true, "of the output ring in bus memory"},
-        {"ring.size", offset::ring_size, 31, 1, false, 0, rw, false, true, "records"},
-        {"ring.write_index", offset::ring_write_index, 32, 1, false, 0, ro, false, true,
+        {"ring.address", offset::ring_address, 64, 2, false, 0, rw, false, "", "of the output ring in bus memory"},
+        {"ring.size", offset::ring_size, 31, 1, false, 0, rw, false, "", "records"},
+        {"ring.write_index", offset::ring_write_index, 32, 1, false, 0, ro, false, "",
          "records of this frame written, modulo 2^32"},
-        {"ring.read_index", offset::ring_read_index, 32, 1, false, 0, rw, true, true,
+        {"ring.read_index", offset::ring_read_index, 32, 1, false, 0, rw, true, "",
          "records of this frame that software has read, likewise; may not move back or pass the write index"},
-        {"format.position", 0x080, 16, 1, false, packed(f.position), ro, false, true, format},
-        {"format.normal", 0x084, 16, 1, false, packed(f.normal), ro, false, true, format},
-        {"format.texture", 0x088, 16, 1, false, packed(f.texture), ro, false, true, format},
-        {"format.displacement", 0x08c, 16, 1, false, packed(f.displacement), ro, false, true, format},
-        {"format.summed_height", 0x090, 16, 1, false, packed(f.summed_height), ro, false, true, format},
-        {"format.screen", 0x094, 16, 1, false, packed(f.screen), ro, false, true, format},
-        {"features", 0x098, 16, 1, false, features(f), ro, false, true,
+        {"format.position", 0x080, 16, 1, false, packed(f.position), ro, false, "", format},
+        {"format.normal", 0x084, 16, 1, false, packed(f.normal), ro, false, "", format},
+        {"format.texture", 0x088, 16, 1, false, packed(f.texture), ro, false, "", format},
+        {"format.displacement", 0x08c, 16, 1, false, packed(f.displacement), ro, false, "", format},
+        {"format.summed_height", 0x090, 16, 1, false, packed(f.summed_height), ro, false, "", format},
+        {"format.screen", 0x094, 16, 1, false, packed(f.screen), ro, false, "", format},
+        {"features", 0x098, 16, 1, false, features(f), ro, false, "",
          "what the design has; from bit 8 on, bits of a generation"},
-        {"largest_map", 0x09c, 32, 1, false, largest.width | std::uint64_t{largest.height} << 16, ro, false, true,
+        {"largest_map", 0x09c, 32, 1, false, largest.width | std::uint64_t{largest.height} << 16, ro, false, "",
          "columns, and from bit 16 on rows, of the largest map"},
-        {"entry_bytes", 0x0a0, 24, 1, false, entry_sizes(f), ro, false, true,
-         "of an entry of the displacement map, from bit 8 on of the normal map, from bit 16 on of the Summed Height Table"},
+        {"entry_bytes", 0x0a0, 24, 1, false, entry_sizes(f), ro, false, "",
+         "of an entry of the displacement map, from bit 8 on of the normal map, from bit 16 on of the Summed Height Table or the Rank Table"},
         {"record_bytes", 0x0a4, 32, 1, false, base_triangle_bytes | std::uint64_t{finished_triangle_bytes} << 16, ro,
-         false, true, "of a base triangle, and from bit 16 on of a finished one"},
+         false, "", "of a base triangle, and from bit 16 on of a finished one"},
     };
 }
 
@@ -87,6 +89,9 @@ datapath::Registers widest() {
     f.position = Format::make_signed(FormatLimits::position_bits.most, 0);
     f.screen = Format::make_signed(FormatLimits::screen_bits.most, 0);
     f.highlight_tag = true;
+    f.height_test = datapath::HeightTest::rank;
+    f.rank_bits = FormatLimits::rank_bits.most;
+    f.bound_bits = FormatLimits::bound_bits.most;
     return registers;
 }
 
@@ -118,9 +123,24 @@ void lay_out_tables_of(datapath::Registers& r) {
     r.displacement_map = {r.displacement_map.base, r.map.width, r.map.height,
                           datapath::entry_bytes(r.formats.displacement.bits)};
     r.normal_map = {r.normal_map.base, r.map.width, r.map.height, datapath::entry_bytes(3 * r.formats.normal.bits)};
-    r.summed_height_table = {r.summed_height_table.base, r.map.width + 1, r.map.height + 1,
-                             datapath::entry_bytes(r.formats.summed_height.bits)};
+    r.height_table.entry_bytes = datapath::entry_bytes(datapath::height_entry_bits(r.formats));
+    if (r.formats.height_test != datapath::HeightTest::summed_height)
+        return;  // its columns and rows are registers
+    r.height_table.columns = r.map.width + 1;
+    r.height_table.rows = r.map.height + 1;
 }
+
+namespace {
+
+/// The test that a register belongs to, if not every design has it; else empty.
+const char* test_of(const std::string& name) {
+    const auto holds = [&](const char* part) { return name.find(part) != std::string::npos; };
+    if (holds("highlight") || name == "tests.half_vector")
+        return "Highlight Test";
+    return holds("rank_table.") || name == "tests.rank_threshold" || name == "tests.bound_threshold" ? "Rank Test" : "";
+}
+
+}  // namespace
 
 std::vector<DeviceRegister> register_map(const datapath::Registers& reset, const LargestMap& largest) {
     std::vector<DeviceRegister> map = control_registers(reset.formats, largest);
@@ -129,7 +149,7 @@ std::vector<DeviceRegister> register_map(const datapath::Registers& reset, const
     datapath::visit_registers(reset, [&](const datapath::Register& field, const auto& values) {
         const std::string name = field.name;
         const bool base = name.size() > 5 && name.compare(name.size() - 5, 5, ".base") == 0;
-        const bool highlight = name.find("highlight") != std::string::npos || name == "tests.half_vector";
+        const char* const only_with = test_of(name);
         while (place->name.compare(0, name.size(), name) != 0 ||
                (place->name.size() > name.size() && place->name[name.size()] != '['))
             ++place;
@@ -138,7 +158,7 @@ std::vector<DeviceRegister> register_map(const datapath::Registers& reset, const
             map.push_back({place->name, place->offset, field.bits, place->words,
                            field.kind == datapath::RegisterKind::signed_number,
                            static_cast<std::uint64_t>(value) & mask,
-                           base ? RegisterAccess::read_only : RegisterAccess::read_write, false, !highlight,
+                           base ? RegisterAccess::read_only : RegisterAccess::read_write, false, only_with,
                            base ? "of the table in the device's own table memory" : field.meaning});
             ++place;
         }

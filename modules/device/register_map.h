@@ -25,8 +25,8 @@ struct DeviceRegister {
     bool is_signed;
     std::uint64_t reset;
     RegisterAccess access;
-    bool while_busy;      ///< may be written while a frame is under way
-    bool always_present;  ///< else: only in a design with a Highlight Test
+    bool while_busy;        ///< may be written while a frame is under way
+    const char* only_with;  ///< the test without which a design lacks it; empty: always there
     std::string meaning;
 };
 
@@ -55,7 +55,7 @@ inline constexpr std::uint32_t control_start = 1, control_reset = 2;
 inline constexpr std::uint32_t status_busy = 1, status_done = 2, status_error = 4, status_resetting = 8;
 inline constexpr std::uint32_t interrupt_done = 1, interrupt_error = 2;
 
-inline constexpr std::array<RegisterBit, 15> register_bits{{
+inline constexpr std::array<RegisterBit, 17> register_bits{{
     {"control", "start", 0, "begins a frame"},
     {"control", "reset", 1, "stops a frame and gives all registers their reset values"},
     {"status", "busy", 0, "a frame is under way, or a reset waits for the machine to be empty"},
@@ -71,6 +71,8 @@ inline constexpr std::array<RegisterBit, 15> register_bits{{
     {"features", "final_edges", 1, "a queue entry says which of its edges are final"},
     {"features", "codes", 2, "a vertex carries its displacement code"},
     {"features", "families", 3, "a machine of families"},
+    {"features", "bilinear", 4, "maps are read between four texels"},
+    {"features", "rank_test", 5, "a Rank Test in the Summed Height Test's place"},
 }};
 
 /// Why a frame was refused or stopped: register `error`. What `error_address` then holds stands in the meaning.

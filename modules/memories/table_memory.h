@@ -71,8 +71,9 @@ class NormalMap : public TableMemory {
     using TableMemory::TableMemory;
 };
 
-/// The Summed Height Table: (width + 1) x (height + 1) sums modulo 2^n. Read by Summed Height Test.
-class SummedHeightTable : public TableMemory {
+/// The Summed Height Table: (width + 1) x (height + 1) sums modulo 2^n; or the Rank Table: an entry a texel of the base
+/// mesh's lattice. Read by Summed Height Test or Rank Test.
+class HeightTable : public TableMemory {
   public:
     using TableMemory::TableMemory;
 };

@@ -160,7 +160,7 @@ struct TexCoordOperands {
     }
 };
 
-/// Calculate New U to the Summed Height Test.
+/// Calculate New U to the Summed Height Test, or the test in its place.
 struct HeightOperands {
     static constexpr const char* name = "height operands";
     PartTag tag;
@@ -239,16 +239,18 @@ struct TexCoordResult {
     }
 };
 
-/// Summed Height Test to Collect Tests.
+/// Summed Height Test, or the test in its place, to Collect Tests.
 struct HeightResult {
     static constexpr const char* name = "height result";
     PartTag tag;
     bool summed_height = false;
+    std::uint16_t rank = 0;
 
     template <class Codec, class Any>
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
         describe_tag(fields, item.tag);
         fields.flag("summed_height", item.summed_height, "SHT");
+        fields.rank("rank", item.rank, "of the midpoint, where there is a Rank Test");
     }
 };
 
@@ -300,6 +302,7 @@ struct TestedEdge {
         fields.direction("tangent", item.found.tangent, "T_ij");
         fields.direction("displaced_n", item.found.displaced_normal, "N'_ij");
         fields.tests("tests", item.found.tests, "NT, SHT, VT, TCT, GT, HT");
+        fields.rank("rank", item.found.rank, "of the midpoint, where there is a Rank Test");
         fields.direction("displaced_n_i", item.displaced_n_i, "N' of the first end");
         fields.annotation("evaluated", item.found.evaluated);
     }
@@ -375,6 +378,7 @@ struct Family {
         fields.requesting("split_by", item.triangle.split_by, "tests that split it");
         fields.gating("stopped_by", item.triangle.stopped_by, "tests that kept an edge whole");
         fields.number("split", item.triangle.split, 3, "bit k: edge k is split");
+        fields.uncut_edges("uncut", item.triangle.uncut, "bit k: edge k is to be tested again");
         fields.flag("second_diagonal", item.second_diagonal, "the quadrilateral's");
         fields.flag("untested", item.untested, "a base triangle, whose edges are still to be tested");
         fields.annotation("triangle_base", item.triangle.base);

@@ -61,6 +61,11 @@ const std::vector<UnitNumbers::Entry>& UnitNumbers::all() {
         {48, "tessellation_tests_0.tex_coord_test_3"},
         {49, "tessellation_tests_0.normal_test_3"},
         {50, "tessellation_tests_0.view_test_3"},
+        {51, "tessellation_tests_0.rank_test"},
+        {52, "tessellation_tests_1.rank_test"},
+        {53, "tessellation_tests_2.rank_test"},
+        {54, "rank_table"},
+        {55, "rank_table_cache"},
     };
     return entries;
 }

@@ -45,6 +45,20 @@ constexpr unsigned register_stages(const UnitTiming& timing, unsigned servers = 
     return servers * std::max(1u, (timing.latency + further_stages + timing.interval - 1) / timing.interval);
 }
 
+/// Of the test that stands in the Summed Height Test's place, and of its table: their modules' names and timing.
+constexpr const char* unit_name(datapath::HeightTest test) {
+    return test == datapath::HeightTest::rank ? "rank_test" : "summed_height_test";
+}
+constexpr const char* table_name(datapath::HeightTest test) {
+    return test == datapath::HeightTest::rank ? "rank_table" : "summed_height_table";
+}
+constexpr const UnitTiming& height_test_timing(const Timing& t, datapath::HeightTest test) {
+    return test == datapath::HeightTest::rank ? t.rank_test : t.summed_height_test;
+}
+constexpr const MemoryTiming& height_table_timing(const Timing& t, datapath::HeightTest test) {
+    return test == datapath::HeightTest::rank ? t.rank_table : t.summed_height_table;
+}
+
 /// Of the Summed Height Test's reads: of the table or, of codes, of the displacement map.
 constexpr unsigned summed_height_latency(const Design& design, const datapath::Formats& formats) {
     const Timing& t = design.timing;

@@ -60,6 +60,7 @@ struct Timing {
     UnitTiming calculate_new_u{1, 1, 1};
     UnitTiming tex_coord_test{1, 1, 1};
     UnitTiming summed_height_test{3, 1, 1};  ///< differences, addresses, compare; the table reads come on top
+    UnitTiming rank_test{1, 1, 1};           ///< compare; the table read comes on top
     UnitTiming normal_test{9, 1, 1};         ///< normalise, bump, normalise, compare; the map read comes on top
     unsigned highlight_test_latency = 1;     ///< N'.H: on top of the Normal Test's, in a design with a Highlight Test
     UnitTiming view_test{1, 1, 1};
@@ -72,6 +73,7 @@ struct Timing {
     MemoryTiming displacement_map;
     MemoryTiming normal_map;
     MemoryTiming summed_height_table;
+    MemoryTiming rank_table;
     OffChipTiming off_chip_memory;
     StallParameters stalls;
 

@@ -88,6 +88,8 @@ void declare_timing_keys(const Keys& key) {
         key, "summed_height_test", "Summed Height Test", [](auto& t) -> auto& { return t.summed_height_test; },
         ", table reads come on top");
     declare_unit_keys(
+        key, "rank_test", "Rank Test", [](auto& t) -> auto& { return t.rank_test; }, ", table reads come on top");
+    declare_unit_keys(
         key, "normal_test", "Normal Test", [](auto& t) -> auto& { return t.normal_test; }, ", table reads come on top");
     key.add_number(
         "highlight_test_latency", [](auto& t) -> auto& { return t.highlight_test_latency; }, "cycles", {0, most_cycles},
@@ -123,6 +125,8 @@ void declare_timing_keys(const Keys& key) {
         "summed_height_table_window", [](auto& t) -> auto& { return t.summed_height_table.window; }, "rectangles",
         {0, most_places},
         "Summed Height Table: rectangles whose reads may overlap; 0: those that find each of their banks free");
+    declare_memory_keys(
+        key, "rank_table", "Rank Table", [](auto& t) -> auto& { return t.rank_table; });
     key.add_number(
         "off_chip_latency", [](auto& t) -> auto& { return t.off_chip_memory.latency; }, "cycles", {0, most_places},
         "Off-chip memory: from a request's last byte to its answer");

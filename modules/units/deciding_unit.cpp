@@ -2,6 +2,7 @@
 
 #include "modules/datapath/cull.h"
 #include "modules/datapath/edge_tests.h"
+#include "modules/datapath/rank.h"
 
 namespace tessera {
 
@@ -15,7 +16,7 @@ DecidingUnit::DecidingUnit(const sc_core::sc_module_name& name, const UnitContex
 
 void DecidingUnit::decide_edges(datapath::TrianglePass& pass) {
     ++counts_.passes;
-    unsigned split = 0;
+    unsigned asked = 0;
     unsigned stopped_by = 0;
     for (unsigned k = 0; k < 3; ++k) {
         const datapath::EdgeTests& edge = pass.edges[k];
@@ -26,12 +27,14 @@ void DecidingUnit::decide_edges(datapath::TrianglePass& pass) {
         if (pass.told == datapath::Told::all && !(edge.texture == pass.new_vertex[k].texture))
             SC_REPORT_ERROR("tessera/pass_or_tessellate", "the two branches disagree on the midpoint of an edge");
         if (datapath::split_decision(edge.tests)) {
-            split |= 1u << k;
-            ++counts_.edges_split;
+            asked |= 1u << k;
         } else if ((edge.tests & datapath::requesting_tests) != 0) {
             stopped_by |= ~edge.tests & datapath::gating_tests;
         }
     }
+    const unsigned split = datapath::edges_to_split(asked, registers_.triangulation, pass);
+    counts_.edges_split += static_cast<unsigned>(__builtin_popcount(split));
+    counts_.edges_uncut += static_cast<unsigned>(__builtin_popcount(asked & ~split));
     pass.split = static_cast<std::uint8_t>(split);
     pass.triangle.stopped_by = static_cast<std::uint8_t>(stopped_by);
 }

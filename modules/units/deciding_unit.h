@@ -27,6 +27,7 @@ class DecidingUnit : public Unit {
         std::uint64_t normal_passes = 0;  ///< finished triangles that went round once more for N's
         std::uint64_t edges_tested = 0;   ///< of these triangles; final edges are not
         std::uint64_t edges_split = 0;
+        std::uint64_t edges_uncut = 0;  ///< asked to be split, while another was cut: tested again
         std::uint64_t finished = 0;
         std::uint64_t culled = 0;
     };

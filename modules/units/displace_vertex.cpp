@@ -1,9 +1,8 @@
 #include "modules/units/displace_vertex.h"
 
+#include "modules/datapath/bilinear.h"
 #include "modules/datapath/bump.h"
 #include "modules/datapath/displace.h"
-#include "modules/datapath/map_address.h"
-#include "modules/datapath/map_entry.h"
 #include "modules/datapath/normalise.h"
 #include "modules/stage/stage_steps.h"
 
@@ -24,11 +23,16 @@ DisplaceVertex::DisplaceVertex(const sc_core::sc_module_name& name, const UnitCo
 }
 
 void DisplaceVertex::reads(const BasePoint& point, Reads& reads) const {
+    const auto add_request = [&](const datapath::TableLayout& map) {
+        reads.add_request();
+        map_entries(point.t, map, registers_.map, registers_.formats,
+                    [&](std::uint64_t address) { reads.add_entry(address); });
+    };
     if (!point.tag.is_normal())
-        reads.add(texel_address(point.t, registers_.displacement_map, registers_.map, registers_.formats));
+        add_request(registers_.displacement_map);
     if (normal_map && point.tag.is_vertex()) {
         reads.through(1);
-        reads.add(texel_address(point.t, registers_.normal_map, registers_.map, registers_.formats));
+        add_request(registers_.normal_map);
     }
 }
 
@@ -39,12 +43,14 @@ DisplacedPoint DisplaceVertex::process(const BasePoint& point, const Entries& en
         return displaced;
     const bool unit_length = !point.tag.is_edge() || formats.families;
     const datapath::Direction normal = unit_length ? point.n : normalise(point.n, formats, saturations_);
-    const auto code = static_cast<std::uint16_t>(entries[0]);
-    displaced.displaced = displace(point.p, normal, code, registers_.displacement, formats, saturations_);
-    displaced.code = formats.codes ? code : std::uint16_t{0};
-    if (normal_map && point.tag.is_vertex())
+    displaced.displaced = displace(point.p, normal, map_code(point.t, entries.data(), formats), registers_.displacement,
+                                   formats, saturations_);
+    displaced.code = formats.codes ? nearest_code(point.t, entries.data(), formats) : std::uint16_t{0};
+    if (normal_map && point.tag.is_vertex()) {
+        const std::uint64_t* const normals = entries.data() + map_entry_count(formats);
         displaced.displaced_n = bump(point.n, point.displaced_n, point.handedness,
-                                     datapath::unpack_normal(entries[1], formats.normal.bits), formats, saturations_);
+                                     map_normal(point.t, normals, formats), formats, saturations_);
+    }
     return displaced;
 }
 

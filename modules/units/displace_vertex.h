@@ -12,10 +12,13 @@ namespace tessera {
 ///
 /// In:   BasePoint. Out: DisplacedPoint: the same and, of an edge or vertex, P'; normals unchanged. Of families also N'
 ///       of a base triangle's vertex.
-/// Memory: one read of the displacement map per vertex or edge; of families one of the normal map per vertex.
+/// Memory: one read of the displacement map per vertex or edge; of families one of the normal map per vertex. With a
+///       bilinear filter (Formats::filter) each is one request of four entries.
 /// Arithmetic: normalise an edge's normal (the pipeline's existing unit; of families it is normalised), multiply, round,
-///       multiply-accumulate, saturate (counted). Of families bump a vertex's normal.
-/// Timing: one vertex, normal or edge per interval; latency 6 plus the map read, interval 1 by default.
+///       multiply-accumulate, saturate (counted). Of families bump a vertex's normal. A bilinear filter interpolates
+///       before: three multiplications a code, nine a normal.
+/// Timing: one vertex, normal or edge per interval; latency 6 plus the map read, interval 1 by default, or the map
+///       reads' if that is longer: four cycles an edge with a bilinear filter and one port.
 /// Waits for the displacement map and the normal map; held back by Transform.
 class DisplaceVertex : public Stage<BasePoint, DisplacedPoint> {
   public:

@@ -133,7 +133,7 @@ class Platform {
         tessera_driver driver;
         tessera_init(&driver, &platform);
         program_registers(platform, r);
-        tessera_set_tables(&driver, r.displacement_map.base, r.normal_map.base, r.summed_height_table.base);
+        tessera_set_tables(&driver, r.displacement_map.base, r.normal_map.base, r.height_table.base);
         tessera_set_triangles(&driver, triangles_at, static_cast<std::uint32_t>(setup.base_triangles.size()));
         tessera_set_ring(&driver, ring_at, ring_records);
         tessera_enable_interrupts(&driver, TESSERA_INTERRUPT_DONE);

@@ -73,7 +73,7 @@ class TrueNormals {
             tangent += w[k] * dequantise_.direction(corner.tangent);
         }
         return golden::bump(golden::normalise(normal).direction, golden::normalise(tangent).direction, v[0].handedness,
-                            inputs_.map.normal(inputs_.map.texel(t)))
+                            inputs_.map.normal(t, inputs_.parameters.filter))
             .direction;
     }
 

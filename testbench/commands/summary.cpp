@@ -93,6 +93,10 @@ std::string checks_rows(const Checks& checks) {
     return text;
 }
 
+std::string height_test_text(const MachineSetup& setup) {
+    return setup.registers.formats.height_test == datapath::HeightTest::rank ? "rank" : "summed height";
+}
+
 /// Repeated work, beside what the mesh needs.
 std::string work_rows(const Simulation& simulation, const MeshCounts& mesh) {
     const Totals totals(simulation);
@@ -102,8 +106,9 @@ std::string work_rows(const Simulation& simulation, const MeshCounts& mesh) {
     const Decisions::Evaluated& evaluated = totals.evaluated;
     const bool all = evaluated.normal == edges && evaluated.summed_height == edges;
     return (all ? ""
-                : row("tests evaluated", fmt::format("normal {}, summed height {}", count(evaluated.normal),
-                                                     count(evaluated.summed_height)))) +
+                : row("tests evaluated",
+                      fmt::format("normal {}, {} {}", count(evaluated.normal), height_test_text(simulation.setup),
+                                  count(evaluated.summed_height)))) +
            row("distinct edges",
                fmt::format("{}, each tested {:.1f} times on average", count(mesh.tested_edges()), tests)) +
            row("distinct vertices",
@@ -168,7 +173,8 @@ std::string summary(const MachineSetup& setup, const Simulation& simulation, con
     const Decisions::Counts& decided = totals.decided;
     const std::uint64_t edges = counts.edges_tested;
     const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
-    const std::uint64_t table_reads = totals.summed_height_table_reads;
+    const std::uint64_t table_reads = totals.height_table_reads;
+    const bool ranks = setup.registers.formats.height_test == datapath::HeightTest::rank;
 
     std::string text;
     text += row("triangles",
@@ -176,12 +182,12 @@ std::string summary(const MachineSetup& setup, const Simulation& simulation, con
                             counts.culled > 0 ? fmt::format(", {} culled", count(counts.culled)) : ""));
     text += row("edges", fmt::format("{} tested, {} split ({:.1f} %)", count(edges), count(counts.edges_split),
                                      percent(counts.edges_split, edges)));
-    text += row("  split by",
-                fmt::format("normal alone {}, summed height alone {}, both {}{}", count(decided.split_by_normal),
-                            count(decided.split_by_summed_height), count(decided.split_by_both),
-                            setup.registers.tests.highlight_test
-                                ? fmt::format(", highlight alone {}", count(decided.split_by_highlight))
-                                : ""));
+    text += row("  split by", fmt::format("normal alone {}, {} alone {}, both {}{}", count(decided.split_by_normal),
+                                          height_test_text(setup), count(decided.split_by_summed_height),
+                                          count(decided.split_by_both),
+                                          setup.registers.tests.highlight_test
+                                              ? fmt::format(", highlight alone {}", count(decided.split_by_highlight))
+                                              : ""));
     text += row("  wanted, but stopped by",
                 fmt::format("view alone {}, tex coord alone {}, generation alone {}, several {}",
                             count(decided.stopped_by_view_alone), count(decided.stopped_by_tex_coord_alone),
@@ -189,12 +195,12 @@ std::string summary(const MachineSetup& setup, const Simulation& simulation, con
     text += work_rows(simulation, mesh);
     text += row("triangle queue",
                 fmt::format("at most {} triangles waiting, {} bits each", count(totals.most_queued), widths.triangle));
-    text +=
-        row("summed height table",
-            fmt::format("{} bytes, {} bit entries{}; {} reads, {:.1f} per edge",
-                        count(setup.registers.summed_height_table.bytes()), setup.registers.formats.summed_height.bits,
-                        setup.summed_height_bits_chosen ? " (chosen)" : "", count(table_reads),
-                        edges == 0 ? 0.0 : static_cast<double>(table_reads) / static_cast<double>(edges)));
+    text += row(
+        (height_test_text(setup) + " table").c_str(),
+        fmt::format("{} bytes, {} bit entries{}; {} reads, {:.1f} per edge",
+                    count(setup.registers.height_table.bytes()), datapath::height_entry_bits(setup.registers.formats),
+                    setup.summed_height_bits_chosen && !ranks ? " (chosen)" : "", count(table_reads),
+                    edges == 0 ? 0.0 : static_cast<double>(table_reads) / static_cast<double>(edges)));
     const std::vector<SaturationFigure> saturations = saturation_figures(setup, totals.saturations);
     text += row("saturations", saturations_text(saturations));
     text += checks_rows(checks);

@@ -10,9 +10,11 @@
 
 namespace tessera {
 
-enum class MeshSource { plane, cylinder, sphere, file, patches, run };
+enum class MeshSource { plane, cylinder, sphere, file, patches, run, lattice };
 enum class MapSource { half_donut, text, noise, constant, ramp, file };
 using Addressing = datapath::AddressMode;
+using datapath::HeightTest;
+using datapath::MapFilter;
 using datapath::Triangulation;
 using QueueOrder = TriangleOrder;
 enum class Culling { none, back };
@@ -39,14 +41,15 @@ struct MapRange {
 struct Job {
     struct Mesh {
         MeshSource source = MeshSource::plane;
-        std::string file;          // OBJ, Bezier patches or a run's folder, by the source
-        std::string fingerprint;   // of the file, see testbench/machine/fingerprint.h; empty: any
-        std::int64_t columns = 0;  // quads along u; 0: the source's own (job_keys.cpp)
-        std::int64_t rows = 0;     // quads along v; 0: likewise
-        double width = 2;          // plane: size along x
-        double depth = 2;          // plane: size along y
-        double radius = 1;         // cylinder, sphere
-        double height = 2;         // cylinder
+        std::string file;           // OBJ, Bezier patches or a run's folder, by the source
+        std::string fingerprint;    // of the file, see testbench/machine/fingerprint.h; empty: any
+        std::int64_t columns = 0;   // quads along u; 0: the source's own (job_keys.cpp)
+        std::int64_t rows = 0;      // quads along v; 0: likewise
+        std::int64_t spacing = 64;  // lattice: texels
+        double width = 2;           // plane: size along x; lattice: of the map
+        double depth = 2;           // likewise along y
+        double radius = 1;          // cylinder, sphere
+        double height = 2;          // cylinder
 
         std::filesystem::path path;  // not a key: where `file` is (job_paths.h); empty: none is read
     } mesh;
@@ -88,6 +91,7 @@ struct Job {
     struct Hardware {
         DesignPreset design = DesignPreset::paper;  // sets the keys of design_preset.h
         Triangulation triangulation = Triangulation::shorter;
+        HeightTest height_test = HeightTest::summed_height;
         Culling culling = Culling::none;
         QueueOrder queue_order = QueueOrder::fifo;
         std::int64_t queue_watermark = 1;           // host triangles are taken while fewer than this many wait
@@ -99,8 +103,9 @@ struct Job {
         TestOrder test_order = TestOrder::parallel;
         bool final_edges = false;         // are not tested again
         bool one_texel_from_map = false;  // the sum over one texel is its code
-        std::int64_t edge_lanes = 1;      // of families: cheap tests side by side
-        std::int64_t normal_tests = 1;    // likewise: that share the lanes' edges
+        MapFilter displacement_filter = MapFilter::nearest;
+        std::int64_t edge_lanes = 1;    // of families: cheap tests side by side
+        std::int64_t normal_tests = 1;  // likewise: that share the lanes' edges
         std::int64_t transform_pipelines = 1;
         std::int64_t machines = 1;                      // side by side
         bool direct_memory = true;                      // functional mode reads memories through DMI

@@ -24,6 +24,8 @@ constexpr std::string_view name_of(MeshSource value) {
             return "patches";
         case MeshSource::run:
             return "run";
+        case MeshSource::lattice:
+            return "lattice";
     }
     return {};
 }
@@ -64,6 +66,18 @@ constexpr std::string_view name_of(Triangulation value) {
             return "first";
         case Triangulation::second:
             return "second";
+        case Triangulation::greatest_rank:
+            return "greatest_rank";
+    }
+    return {};
+}
+
+constexpr std::string_view name_of(MapFilter value) {
+    switch (value) {
+        case MapFilter::nearest:
+            return "nearest";
+        case MapFilter::bilinear:
+            return "bilinear";
     }
     return {};
 }

@@ -205,13 +205,14 @@ std::vector<KeyTable> declare_keys() {
     });
     list.table("mesh", &Job::mesh, "The base mesh.", [](const auto& key) {
         using Mesh = Job::Mesh;
-        key.add("source", &Mesh::source, "A built-in shape; file: the mesh in mesh.file (the default if mesh.file is given); patches: the Bezier patches in it; run: the mesh of an earlier run");
+        key.add("source", &Mesh::source, "A built-in shape; file: the mesh in mesh.file (the default if mesh.file is given); patches: the Bezier patches in it; run: the mesh of an earlier run; lattice: a plane whose vertices lie at centres of texels, mesh.spacing apart, and which reaches beyond the map where that does not divide it");
         key.add("file", &Mesh::file, KeyKind::file, "OBJ file, with mesh.source = \"file\"; with \"patches\" one of bicubic Bezier patches as Newell's teapot has it; with \"run\" the folder of an earlier run");
         key.add("fingerprint", &Mesh::fingerprint, KeyKind::text, "64-bit FNV-1a hash of the file (of a run's mesh.ply), 16 hexadecimal digits; another file is refused. A run writes it into its job.toml; empty: any file");
         key.add("columns", &Mesh::columns, "quads", between(0, 2048), "Quads along u; 0: 3 for the plane, 4 for each patch, 32 for cylinder and sphere, which need 3 or more");
         key.add("rows", &Mesh::rows, "quads", between(0, 2048), "Quads along v; 0: 3 for the plane, 4 for each patch, 32 for cylinder and sphere; a sphere needs 2 or more");
-        key.add("width", &Mesh::width, "model units", length_range, "Size of the plane along x");
-        key.add("depth", &Mesh::depth, "model units", length_range, "Size of the plane along y");
+        key.add("spacing", &Mesh::spacing, "texels", between(1, 2048), "Between the vertices of a lattice: a power of two");
+        key.add("width", &Mesh::width, "model units", length_range, "Size of the plane along x; of the map under a lattice");
+        key.add("depth", &Mesh::depth, "model units", length_range, "Size of the plane along y; of the map under a lattice");
         key.add("radius", &Mesh::radius, "model units", length_range, "Radius of the cylinder or sphere");
         key.add("height", &Mesh::height, "model units", length_range, "Height of the cylinder");
     });
@@ -254,9 +255,11 @@ std::vector<KeyTable> declare_keys() {
         using Tests = Job::Tests;
         key.add("normal", &Tests::normal, "Normal Test; off: never requests a split");
         key.add("normal_threshold", &Tests::normal_threshold, "unit normal component", between(0, 2), "Normal Test: a component of two normals that differs by more splits the edge");
-        key.add("summed_height", &Tests::summed_height, "Summed Height Test; off: never requests a split");
+        key.add("summed_height", &Tests::summed_height, "Summed Height Test, or the test in its place (hardware.height_test); off: never requests a split");
         key.add("summed_height_threshold", &Tests::summed_height_threshold, "full-scale texels (sum), full scale (area)", between(0, 1e9), "Summed Height Test: an edge splits where S_ij / 2 and (S_i + S_j) / 4 differ by more (sum), or 2 S_ij and S_i + S_j by more than it times the rectangle's area (area)");
         key.add("summed_height_unit", &Tests::summed_height_unit, "What the threshold compares: sums over rectangles, or the second difference of their mean heights (area)");
+        key.add("rank_threshold", &Tests::rank_threshold, "full scale times the root of a texel", between(0, 1e9), "With hardware.height_test = \"rank\" and formats.rank_bits: an edge splits if its midpoint takes more off the squared error, per triangle that it costs: the root of it");
+        key.add("bound_threshold", &Tests::bound_threshold, "full scale", between(0, 1), "With hardware.height_test = \"rank\" and formats.bound_bits: no point of the map lies farther from the mesh, along the normal; of a mesh that the rank's lattice fits");
         key.add("view", &Tests::view, "View Test; off: allows every split");
         key.add("view_threshold", &Tests::view_threshold, "pixels", between(0, 1e6), "View Test: only a longer edge (Manhattan length on screen) is split");
         key.add("tex_coord", &Tests::tex_coord, "Tex Coord Test, ends at the map's resolution; off: allows every split");
@@ -280,12 +283,15 @@ std::vector<KeyTable> declare_keys() {
         key.add("summed_height_bits", &Formats::summed_height_bits, "bits", zero_or_between(Limits::summed_height_bits.least, Limits::summed_height_bits.most), "Summed Height Table, unsigned; 0: the narrowest of 32, 40, 48 the mesh needs");
         key.add("screen_bits", &Formats::screen_bits, "bits", within(Limits::screen_bits), "Screen positions, signed, in pixels");
         key.add("screen_fraction", &Formats::screen_fraction, "bits", within(Limits::screen_fraction), "Screen positions: fraction bits, fewer than screen_bits");
+        key.add("rank_bits", &Formats::rank_bits, "bits", zero_or_between(Limits::rank_bits.least, Limits::rank_bits.most), "Rank Table: of a rank; 0: none");
+        key.add("bound_bits", &Formats::bound_bits, "bits", zero_or_between(Limits::bound_bits.least, Limits::bound_bits.most), "Rank Table: of a bound; 0: none");
         key.add("generation_bits", &Formats::generation_bits, "bits", within(Limits::generation_bits), "Generation of a vertex, unsigned");
     });
     list.table("hardware", &Job::hardware, "The units' options.", [](const auto& key) {
         using Hardware = Job::Hardware;
         key.add("design", &Hardware::design, "Sets a design's keys, which a job may then set alone: the paper's, or one that leaves out what the paper's does twice (modules/README.md, Designs); the mesh is the same");
-        key.add("triangulation", &Hardware::triangulation, "Diagonal when two edges split: the shorter one, or always the first or second");
+        key.add("triangulation", &Hardware::triangulation, "Diagonal when two edges split: the shorter one, or always the first or second; greatest_rank: of the edges that ask to be split the one of greatest rank is cut, with hardware.height_test = \"rank\"");
+        key.add("height_test", &Hardware::height_test, "The Summed Height Test (the paper's), or in its place the Rank Test: the host ranks the points of the base mesh's lattice, and an edge splits if the rank of its midpoint is above the threshold");
         key.add("culling", &Hardware::culling, "Back-face culling of finished triangles");
         key.add("queue_order", &Hardware::queue_order, "Triangle Queue: which waiting triangle goes next, the oldest or the newest");
         key.add("queue_watermark", &Hardware::queue_watermark, "triangles", between(1, any_count), "Host triangles are taken while fewer than this many wait");
@@ -297,6 +303,7 @@ std::vector<KeyTable> declare_keys() {
         key.add("test_order", &Hardware::test_order, "All tests of an edge at once (the paper's), or those that read no table first and the others only if the decision still depends on them; the mesh is the same");
         key.add("final_edges", &Hardware::final_edges, "A child's edge that was tested with its parent and not split is not tested again; off: the paper's; the mesh is the same");
         key.add("one_texel_from_map", &Hardware::one_texel_from_map, "Vertices carry their displacement codes, and the Summed Height Test takes the sum over a rectangle of one texel from them and from the displacement map; off: the paper's, from the Summed Height Table; the mesh is the same");
+        key.add("displacement_filter", &Hardware::displacement_filter, "How the displacement map and the normal map are read: the texel under a vertex (the paper's), or between the four around it; another surface, and four reads instead of one");
         key.add("edge_lanes", &Hardware::edge_lanes, "-", between(1, 9), "Timed mode, of families with the cheap tests first: edges a cycle into the cheap tests");
         key.add("normal_tests", &Hardware::normal_tests, "-", between(1, 9), "Timed mode, likewise: Normal Tests, which share the lanes' edges");
         key.add("transform_pipelines", &Hardware::transform_pipelines, "-", between(1, 16), "Timed mode: Transform pipelines that take turns");

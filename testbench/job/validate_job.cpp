@@ -73,6 +73,9 @@ void check_fingerprint(const std::string& table, const std::string& fingerprint,
 void check_mesh(const Job::Mesh& mesh, Faults& faults) {
     check_file("mesh", reads_file(mesh.source), mesh.file, name_of(mesh.source), faults);
     check_fingerprint("mesh", mesh.fingerprint, mesh.file, faults);
+    faults.unless((mesh.spacing & (mesh.spacing - 1)) == 0,
+                  "`mesh.spacing` = {}: a lattice needs a power of two, so that midpoints lie at centres of texels",
+                  mesh.spacing);
     const bool round = mesh.source == MeshSource::cylinder || mesh.source == MeshSource::sphere;
     faults.unless(!round || mesh.columns == 0 || mesh.columns >= 3,
                   "`mesh.columns` = {}, but a {} closes around itself only with 3 or more: raise mesh.columns",
@@ -102,6 +105,11 @@ void check_light(const Job::Hardware& hardware, Faults& faults) {
 }
 
 void check_hardware(const Job::Hardware& hardware, Faults& faults) {
+    faults.unless(
+        hardware.triangulation != Triangulation::greatest_rank || hardware.height_test == HeightTest::rank,
+        "`hardware.triangulation` = \"greatest_rank\", but `hardware.height_test` = \"{}\" has no ranks: set it to "
+        "\"rank\"",
+        name_of(hardware.height_test));
     faults.unless(hardware.tests_units != 2,
                   "`hardware.tests_units` = 2: a design has 1 Tessellation Tests unit, or 3, one for each edge");
     faults.unless(hardware.tests_units == 1 || hardware.work == Work::triangle,

@@ -1,11 +1,12 @@
 #include "testbench/machine/bare_recursion.h"
 
+#include "modules/datapath/bilinear.h"
 #include "modules/datapath/bump.h"
 #include "modules/datapath/displace.h"
 #include "modules/datapath/edge_tests.h"
-#include "modules/datapath/map_address.h"
 #include "modules/datapath/map_entry.h"
 #include "modules/datapath/midpoint.h"
+#include "modules/datapath/rank.h"
 #include "modules/datapath/rectangle.h"
 #include "modules/datapath/transform.h"
 
@@ -59,21 +60,43 @@ BareRecursion::BareRecursion(const MachineSetup& setup) : setup_(setup) {
 std::uint64_t BareRecursion::sum_around(const TexCoord& t, const RectangleSize& size) const {
     const Registers& r = setup_.registers;
     const Rectangle rectangle = centred_rectangle(t, size, r.map, r.formats);
-    const TableLayout table = as_indices(r.summed_height_table);
+    const TableLayout table = as_indices(r.height_table);
     if (!sums_.empty())
         return rectangle_sum(rectangle, r.map, table, r.formats,
                              [&](std::uint64_t index) { return std::uint64_t{sums_[index]}; });
     return rectangle_sum(rectangle, r.map, table, r.formats, [&](std::uint64_t index) { return wide_sums_[index]; });
 }
 
+bool BareRecursion::test_rank(const TexCoord& i, const TexCoord& j, EdgeTests& edge) const {
+    const Registers& r = setup_.registers;
+    if (!has_lattice_midpoint(i, j, r.formats))
+        return false;
+    const std::size_t index = rank_address(edge.texture, as_indices(r.height_table), r.map, r.formats);
+    const RankTables& tables = setup_.rank_tables;
+    const RankEntry entry{tables.rank.empty() ? 0u : tables.rank[index],
+                          tables.bound.empty() ? 0u : tables.bound[index]};
+    edge.rank = ordering_rank(entry, r.formats);
+    return rank_test(entry, r.tests);
+}
+
 Direction BareRecursion::map_normal_at(const TexCoord& t) const {
     const Registers& r = setup_.registers;
-    return unpack_normal(normals_[texel_address(t, as_indices(r.normal_map), r.map, r.formats)], r.formats.normal.bits);
+    return datapath::map_normal(t, entries_at(t, r.normal_map, normals_).data(), r.formats);
 }
 
 std::uint32_t BareRecursion::code_at(const TexCoord& t) const {
     const Registers& r = setup_.registers;
-    return setup_.map.codes[texel_address(t, as_indices(r.displacement_map), r.map, r.formats)];
+    return map_code(t, entries_at(t, r.displacement_map, setup_.map.codes).data(), r.formats);
+}
+
+template <class Entry>
+std::array<std::uint64_t, 4> BareRecursion::entries_at(const TexCoord& t, const TableLayout& layout,
+                                                       const std::vector<Entry>& map) const {
+    const Registers& r = setup_.registers;
+    std::array<std::uint64_t, 4> entries{};
+    std::size_t count = 0;
+    map_entries(t, as_indices(layout), r.map, r.formats, [&](std::uint64_t index) { entries[count++] = map[index]; });
+    return entries;
 }
 
 void BareRecursion::complete_base(Triangle& triangle) {
@@ -106,7 +129,11 @@ void BareRecursion::evaluate_edge(TrianglePass& pass, int k) {
     unsigned tests = 0;
     if (r.tests.normal_test && normal_test(i.displaced_normal, j.displaced_normal, edge.displaced_normal, r.tests))
         tests |= normal_bit;
-    if (r.tests.summed_height_test) {
+    edge.rank = 0;
+    if (r.formats.height_test == HeightTest::rank) {
+        if (r.tests.summed_height_test && test_rank(i.texture, j.texture, edge))
+            tests |= summed_height_bit;
+    } else if (r.tests.summed_height_test) {
         const RectangleSize size = rectangle_size(i.texture, j.texture, r.map, r.formats);
         if (summed_height_test(sum_around(i.texture, size), sum_around(j.texture, size), sum_around(made.texture, size),
                                size, r.tests))
@@ -123,7 +150,7 @@ void BareRecursion::evaluate_edge(TrianglePass& pass, int k) {
 }
 
 void BareRecursion::evaluate(TrianglePass& pass) {
-    unsigned split = 0;
+    unsigned asked = 0;
     unsigned stopped_by = 0;
     for (int k = 0; k < 3; ++k) {
         evaluate_edge(pass, k);
@@ -131,12 +158,12 @@ void BareRecursion::evaluate(TrianglePass& pass) {
             test_for_highlight(pass, k, setup_.registers.tests);
         const std::uint8_t tests = pass.edges[static_cast<std::size_t>(k)].tests;
         if (split_decision(tests))
-            split |= 1u << k;
+            asked |= 1u << k;
         else if ((tests & requesting_tests) != 0)
             stopped_by |= ~tests & gating_tests;
     }
-    pass.split = static_cast<std::uint8_t>(split);
-    pass.triangle.stopped_by = static_cast<std::uint8_t>(split == 0 ? stopped_by : 0);
+    pass.split = static_cast<std::uint8_t>(edges_to_split(asked, setup_.registers.triangulation, pass));
+    pass.triangle.stopped_by = static_cast<std::uint8_t>(asked == 0 ? stopped_by : 0);
 }
 
 ChildIndices BareRecursion::children_of(const TrianglePass& pass) const {

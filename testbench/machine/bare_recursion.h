@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -42,6 +43,7 @@ class BareRecursion {
     /// All three edges with every test, pass.split, and the tests that kept edges whole (Triangle::stopped_by).
     void evaluate(datapath::TrianglePass& pass);
     /// The Summed Height Test's sum of the map's codes.
+    bool test_rank(const datapath::TexCoord& i, const datapath::TexCoord& j, datapath::EdgeTests& edge) const;
     std::uint64_t sum_around(const datapath::TexCoord& t, const datapath::RectangleSize& size) const;
 
   private:
@@ -49,6 +51,10 @@ class BareRecursion {
     void transform_normals(datapath::Triangle& triangle);
     datapath::Direction map_normal_at(const datapath::TexCoord& t) const;
     std::uint32_t code_at(const datapath::TexCoord& t) const;
+    /// Those of a map that it is read from at t (datapath::map_entries).
+    template <class Entry>
+    std::array<std::uint64_t, 4> entries_at(const datapath::TexCoord& t, const datapath::TableLayout& layout,
+                                            const std::vector<Entry>& map) const;
 
     const MachineSetup& setup_;
     std::vector<std::uint64_t> normals_;  // packed as the normal map's entries

@@ -1,6 +1,7 @@
 #include "testbench/machine/decisions.h"
 
 #include "modules/datapath/edge_tests.h"
+#include "modules/datapath/rank.h"
 
 namespace tessera {
 
@@ -33,6 +34,21 @@ void Decisions::count(std::uint8_t tests) {
     }
 }
 
+/// An edge that asks while another is cut is counted when it is tested again.
+void Decisions::count(const datapath::TrianglePass& pass) {
+    for (unsigned k = 0; k < 3; ++k) {
+        const std::uint8_t tests = pass.edges[k].tests;
+        if (!datapath::split_decision(tests) || (pass.split >> k & 1u) != 0)
+            count(tests);
+    }
+}
+
+/// A Rank Test answers for an edge without a lattice midpoint by itself.
+bool Decisions::off_lattice(const datapath::TrianglePass& pass, int edge) const {
+    return registers_.formats.height_test == datapath::HeightTest::rank &&
+           !has_lattice_midpoint(pass.edge_begin(edge).texture, pass.edge_end(edge).texture, registers_.formats);
+}
+
 /// Rectangles of one texel, and vertices that have been displaced before this pass.
 bool Decisions::by_codes(const datapath::TrianglePass& pass, int edge) const {
     if (!registers_.formats.codes || !registers_.tests.summed_height_test ||
@@ -50,20 +66,20 @@ void Decisions::write(const datapath::TrianglePass& pass) {
         const unsigned evaluated = pass.edges[static_cast<std::size_t>(k)].evaluated;
         evaluated_.normal += (evaluated & datapath::normal_bit) != 0;
         evaluated_.summed_height += (evaluated & datapath::summed_height_bit) != 0;
+        evaluated_.off_lattice += (evaluated & datapath::summed_height_bit) != 0 && off_lattice(pass, k);
         evaluated_.summed_height_by_codes += (evaluated & datapath::summed_height_bit) != 0 && by_codes(pass, k);
     }
     if (!bare_) {
-        for (const datapath::EdgeTests& edge : pass.edges)
-            count(edge.tests);
+        count(pass);
         return;
     }
     datapath::TrianglePass all;
     all.triangle = pass.triangle;
     bare_->evaluate(all);
+    count(all);
     unsigned split_by = 0;
     for (unsigned k = 0; k < 3; ++k) {
         const std::uint8_t tests = all.edges[k].tests;
-        count(tests);
         if ((pass.split >> k & 1u) != 0)
             split_by |= tests & datapath::requesting_tests;
     }

@@ -36,6 +36,7 @@ class Decisions : public tlm::tlm_analysis_if<datapath::TrianglePass> {
         std::uint64_t normal = 0;
         std::uint64_t summed_height = 0;
         std::uint64_t summed_height_by_codes = 0;  ///< of these: without the Summed Height Table (Formats::codes)
+        std::uint64_t off_lattice = 0;             ///< of these: with a Rank Test, without reading its table
     };
 
     /// `setup` must outlive it.
@@ -51,7 +52,9 @@ class Decisions : public tlm::tlm_analysis_if<datapath::TrianglePass> {
     void complete_tags(const datapath::Triangle& finished, EmittedTriangle& emitted) const;
 
   private:
+    void count(const datapath::TrianglePass& pass);
     void count(std::uint8_t tests);
+    bool off_lattice(const datapath::TrianglePass& pass, int edge) const;
     bool by_codes(const datapath::TrianglePass& pass, int edge) const;
 
     const datapath::Registers& registers_;

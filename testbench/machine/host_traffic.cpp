@@ -33,7 +33,7 @@ HostTraffic first_frame_traffic(const MachineSetup& setup) {
     const datapath::Registers& r = setup.registers;
     const std::uint64_t n = setup.machines;
     return {base_mesh_bytes(setup), n * r.displacement_map.bytes(), n * r.normal_map.bytes(),
-            n * r.summed_height_table.bytes(), n * register_words(r).size() * sizeof(std::uint32_t)};
+            n * r.height_table.bytes(), n * register_words(r).size() * sizeof(std::uint32_t)};
 }
 
 HostTraffic next_frame_traffic(const MachineSetup& before, const MachineSetup& now) {

@@ -3,14 +3,28 @@
 #include "testbench/input/map/built_in_maps.h"
 #include "testbench/input/map/map_range.h"
 #include "testbench/input/map/read_height_map.h"
+#include "testbench/input/mesh/built_in.h"
 #include "testbench/input/mesh/make_base_mesh.h"
 #include "testbench/job/validate_job.h"
 #include "testbench/machine/fingerprint.h"
 
 namespace tessera {
 
+namespace {
+
+BaseMesh lattice(const Job& job, const HeightMap& map) {
+    return make_lattice({map.width, map.height},
+                        {job.map.address_u == Addressing::repeat, job.map.address_v == Addressing::repeat},
+                        job.mesh.spacing, job.mesh.width, job.mesh.depth);
+}
+
+}  // namespace
+
 BaseMesh load_mesh(const Job& job) {
     check_mesh_fingerprint(job);
+    if (job.mesh.source == MeshSource::lattice) {
+        return lattice(job, load_map(job));
+    }
     return make_base_mesh(job.mesh, job.mesh.path.string());
 }
 

@@ -42,9 +42,11 @@ SceneSettings scene_settings(const Job& job) {
     settings.address_v = job.map.address_v;
     settings.triangulation = job.hardware.triangulation;
     settings.back_face_culling = job.hardware.culling == Culling::back;
+    settings.height_test = job.hardware.height_test;
     settings.families = job.hardware.work == Work::family;
     settings.final_edges = job.hardware.final_edges;
     settings.one_texel_from_map = job.hardware.one_texel_from_map;
+    settings.filter = job.hardware.displacement_filter;
     return settings;
 }
 

@@ -26,7 +26,8 @@ Totals::Totals(const Simulation& simulation) {
             &D::split_by_highlight, &D::split_in_highlight, &D::stopped_by_view, &D::stopped_by_tex_coord,
             &D::stopped_by_generation, &D::stopped_by_view_alone, &D::stopped_by_tex_coord_alone,
             &D::stopped_by_generation_alone, &D::stopped_by_several);
-        add(evaluated, machine->decisions.evaluated(), &E::normal, &E::summed_height, &E::summed_height_by_codes);
+        add(evaluated, machine->decisions.evaluated(), &E::normal, &E::summed_height, &E::summed_height_by_codes,
+            &E::off_lattice);
         host_triangles += p.get_triangle.host_triangles();
         queue_triangles += p.get_triangle.queue_triangles();
         positions += p.transform.positions();
@@ -40,7 +41,7 @@ Totals::Totals(const Simulation& simulation) {
         lit += machine->rasteriser.triangles();
         displacement_map_reads += p.displacement_map_reads();
         normal_map_reads += p.normal_map_reads();
-        summed_height_table_reads += p.summed_height_table_reads();
+        height_table_reads += p.height_table_reads();
         saturations += p.saturations();
     }
 }

@@ -19,7 +19,7 @@ struct Totals {
     std::uint64_t queued = 0, spilled = 0;
     std::size_t most_queued = 0, most_queued_on_chip = 0;  ///< in one machine's queue
     std::uint64_t lit = 0;
-    std::uint64_t displacement_map_reads = 0, normal_map_reads = 0, summed_height_table_reads = 0;
+    std::uint64_t displacement_map_reads = 0, normal_map_reads = 0, height_table_reads = 0;
     datapath::Saturations saturations;
 
     explicit Totals(const Simulation& simulation);

@@ -15,10 +15,9 @@ using datapath::Format;
 
 namespace {
 
-std::uint32_t to_texture(double coordinate, std::uint32_t size, datapath::AddressMode mode, const Format& format,
-                         bool& clamped) {
+std::uint32_t to_texture(double coordinate, std::uint32_t size, bool clamp, const Format& format, bool& clamped) {
     double texels = coordinate * size;
-    if (mode == datapath::AddressMode::clamp && (texels < 0 || texels > size)) {
+    if (clamp && (texels < 0 || texels > size)) {
         clamped = true;
         texels = std::clamp(texels, 0.0, static_cast<double>(size));
     }
@@ -48,6 +47,9 @@ BaseTriangles round_base_triangles(const BaseMesh& original, const ModelScale& m
     const BaseMesh mesh = with_low_texture(original, map, formats.texture);
     BaseTriangles result;
     bool clamped_u = false, clamped_v = false;
+    const auto clamps = [&](datapath::AddressMode mode) {
+        return mode == datapath::AddressMode::clamp && !mesh.beyond_map;
+    };
     std::vector<datapath::Vertex> vertices;
     vertices.reserve(mesh.vertices.size());
     for (const BaseVertex& base : mesh.vertices) {
@@ -60,8 +62,8 @@ BaseTriangles round_base_triangles(const BaseMesh& original, const ModelScale& m
         vertex.tangent = to_direction(base.tangent, formats.normal, result.saturated_directions);
         vertex.handedness = base.handedness < 0 ? std::int8_t{-1} : std::int8_t{1};
         bool beyond_u = false, beyond_v = false;
-        vertex.texture = {to_texture(base.texture.x, map.width, map.address_u, formats.texture, beyond_u),
-                          to_texture(base.texture.y, map.height, map.address_v, formats.texture, beyond_v)};
+        vertex.texture = {to_texture(base.texture.x, map.width, clamps(map.address_u), formats.texture, beyond_u),
+                          to_texture(base.texture.y, map.height, clamps(map.address_v), formats.texture, beyond_v)};
         result.texture_clamped += beyond_u || beyond_v ? 1 : 0;
         clamped_u = clamped_u || beyond_u;
         clamped_v = clamped_v || beyond_v;

@@ -93,6 +93,10 @@ void check_camera(const CameraSettings& camera, const FormatSettings& formats, F
 }
 
 void check_formats(const FormatSettings& formats, const TestSettings& tests, Faults& faults) {
+    faults.unless(
+        formats.rank_bits > 0 || formats.bound_bits > 0,
+        "`formats.rank_bits` = 0 and `formats.bound_bits` = 0: a Rank Table has ranks, bounds or both: set one of "
+        "them to 8");
     faults.unless(formats.position_fraction < formats.position_bits,
                   "`formats.position_fraction` = {} must be less than `formats.position_bits` = {}: lower it, or raise "
                   "position_bits",

@@ -37,6 +37,8 @@ datapath::Formats make_formats(const FormatSettings& settings) {
         Format::make_unsigned(bits(settings.summed_height_bits == 0 ? 32 : settings.summed_height_bits), 0);
     formats.screen = Format::make_signed(bits(settings.screen_bits), bits(settings.screen_fraction));
     formats.generation_bits = bits(settings.generation_bits);
+    formats.rank_bits = bits(settings.rank_bits);
+    formats.bound_bits = bits(settings.bound_bits);
     check_intermediates(formats);
     return formats;
 }

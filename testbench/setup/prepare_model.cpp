@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -49,6 +50,26 @@ void take_base_triangles(BaseTriangles&& made, PreparedScene& scene) {
     scene.remarks.insert(scene.remarks.end(), made.remarks.begin(), made.remarks.end());
 }
 
+void rank_lattice(PreparedScene& scene) {
+    const datapath::Formats& formats = scene.registers.formats;
+    std::vector<std::array<datapath::TexCoord, 3>> base;
+    for (const datapath::Triangle& triangle : scene.base_triangles) {
+        const auto& v = triangle.vertices;
+        base.push_back({v[0].texture, v[1].texture, v[2].texture});
+    }
+    scene.rank_tables = make_rank_tables(scene.map, base, formats, formats.rank_bits, formats.bound_bits);
+    if (const std::uint64_t whole = count_whole_base_edges(base, formats); whole > 0)
+        scene.remarks.push_back(fmt::format(
+            "{} edges of the base mesh have a length of an odd number of texels, or none that is whole, and the Rank Test "
+            "never splits them: mesh.source = \"lattice\" is made for it; the Summed Height Test serves any mesh",
+            whole));
+    if (scene.rank_tables.clashes > 0)
+        scene.remarks.push_back(fmt::format(
+            "{} midpoints share a texel of the Rank Table with another, and take the greater rank: more triangles than are "
+            "needed, and no bound on the error",
+            scene.rank_tables.clashes));
+}
+
 }  // namespace
 
 PreparedScene prepare_model(const SceneSettings& settings, const BaseMesh& mesh, const HeightMap& map,
@@ -77,14 +98,20 @@ PreparedScene prepare_model(const SceneSettings& settings, const BaseMesh& mesh,
         bound_rectangle_sum(scene.base_triangles, registers.map, formats, scene.map.highest_code());
     formats.summed_height = datapath::Format::make_unsigned(
         summed_height_bits(settings.formats.summed_height_bits, scene.largest_rectangle_sum), 0);
-    lay_out_tables(registers);
+    formats.height_test = settings.height_test;
+    if (formats.height_test == datapath::HeightTest::rank)
+        rank_lattice(scene);
+    lay_out_tables(registers, scene.rank_tables);
 
     const ViewAxes view = view_axes(settings.camera);
     registers.tests = make_tests(settings.tests, formats);
+    registers.tests.bound_threshold =
+        std::min(registers.tests.bound_threshold, scene.rank_tables.highest_bound_threshold);
     formats.highlight_tag = settings.tests.highlight;
     formats.families = settings.families;
     formats.final_edges = settings.final_edges && !formats.families;
-    formats.codes = settings.one_texel_from_map;
+    formats.codes = settings.one_texel_from_map && formats.height_test == datapath::HeightTest::summed_height;
+    formats.filter = settings.filter;
     if (settings.tests.highlight && !set_highlight_test(settings.tests, towards_light(settings.light), view.backward,
                                                         formats, registers.tests, saturated))
         scene.remarks.emplace_back(

@@ -36,13 +36,16 @@ struct CameraSettings {
     std::int64_t viewport_height = 768;
 };
 
-/// The edge tests: split = (normal or summed_height or highlight) and view and tex_coord and generation.
+/// The edge tests: split = (normal or summed_height or highlight) and view and tex_coord and generation. summed_height: or
+/// the test in its place (SceneSettings::height_test).
 struct TestSettings {
     bool normal = true;
     double normal_threshold = 0.12;  ///< difference of one component of two unit normals
     bool summed_height = true;
     double summed_height_threshold = 0.03;  ///< full-scale texels (sum) or full scale (area)
     datapath::SummedHeightUnit summed_height_unit = datapath::SummedHeightUnit::sum;
+    double rank_threshold = 0.05;   ///< full scale times the square root of a texel
+    double bound_threshold = 0.01;  ///< full scale
     bool view = true;
     double view_threshold = 5;  ///< pixels, Manhattan
     bool tex_coord = true;
@@ -62,6 +65,8 @@ struct FormatSettings {
     std::int64_t summed_height_bits = 0;  ///< 0: the narrowest of 32, 40, 48 the mesh needs
     std::int64_t screen_bits = 24, screen_fraction = 8;
     std::int64_t generation_bits = 4;
+    std::int64_t rank_bits = 8;   ///< of the Rank Table's entries; 0: no ranks
+    std::int64_t bound_bits = 0;  ///< likewise: bounds
 };
 
 struct LightSettings {
@@ -80,10 +85,12 @@ struct SceneSettings {
     datapath::AddressMode address_v = datapath::AddressMode::clamp;  ///< beyond its lower and upper border
     datapath::Triangulation triangulation = datapath::Triangulation::shorter;
     bool back_face_culling = false;
+    datapath::HeightTest height_test = datapath::HeightTest::summed_height;
 
     bool families = false;            ///< Design::work is Work::family
     bool final_edges = false;         ///< edges that are known not to split are not tested again
-    bool one_texel_from_map = false;  ///< vertices carry their displacement codes
+    bool one_texel_from_map = false;  ///< vertices carry their displacement codes, for a Summed Height Test
+    datapath::MapFilter filter = datapath::MapFilter::nearest;
 };
 
 }  // namespace tessera

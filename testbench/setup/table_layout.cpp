@@ -41,7 +41,7 @@ int summed_height_bits(std::int64_t wanted, std::uint64_t largest_sum) {
     return bits;
 }
 
-void lay_out_tables(datapath::Registers& registers) {
+void lay_out_tables(datapath::Registers& registers, const RankTables& rank_tables) {
     constexpr std::uint64_t page = 4096;
     const auto entry = [](int bits) { return datapath::entry_bytes(bits); };
     const auto after = [](const datapath::TableLayout& table) {
@@ -51,8 +51,10 @@ void lay_out_tables(datapath::Registers& registers) {
                                   entry(registers.formats.displacement.bits)};
     registers.normal_map = {after(registers.displacement_map), registers.map.width, registers.map.height,
                             entry(3 * registers.formats.normal.bits)};
-    registers.summed_height_table = {after(registers.normal_map), registers.map.width + 1, registers.map.height + 1,
-                                     entry(registers.formats.summed_height.bits)};
+    const bool ranks = registers.formats.height_test == datapath::HeightTest::rank;
+    registers.height_table = {after(registers.normal_map), ranks ? rank_tables.columns : registers.map.width + 1,
+                              ranks ? rank_tables.rows : registers.map.height + 1,
+                              entry(datapath::height_entry_bits(registers.formats))};
 }
 
 }  // namespace tessera

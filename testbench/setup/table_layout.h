@@ -4,6 +4,7 @@
 
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/vertex.h"
+#include "testbench/setup/tables/rank_table.h"
 
 namespace tessera {
 
@@ -19,7 +20,7 @@ std::uint64_t bound_rectangle_sum(const std::vector<datapath::Triangle>& base_tr
 int summed_height_bits(std::int64_t wanted, std::uint64_t largest_sum);
 
 /// Sets where the three tables lie, one after another from page 1 of 4 KiB on, each at a page's beginning. In: map and
-/// formats of the registers.
-void lay_out_tables(datapath::Registers& registers);
+/// formats of the registers; with a Rank Test, the Rank Table.
+void lay_out_tables(datapath::Registers& registers, const RankTables& rank_tables);
 
 }  // namespace tessera

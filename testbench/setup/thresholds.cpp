@@ -6,6 +6,7 @@
 
 #include "testbench/common/error.h"
 #include "testbench/setup/rounding.h"
+#include "testbench/setup/tables/rank_table.h"
 
 namespace tessera {
 
@@ -61,6 +62,12 @@ datapath::TestParameters make_tests(const TestSettings& tests, const datapath::F
     result.summed_height_threshold = to_register(
         {"tests.summed_height_threshold", tests.summed_height_threshold, tests.summed_height,
          highest_code * (area ? 1 : 4), area ? std::ldexp(1.0, 18) : std::ldexp(1.0, 50), "formats.displacement_bits"});
+    if (formats.height_test == datapath::HeightTest::rank) {
+        if (formats.rank_bits > 0)
+            result.rank_threshold = rank_threshold(tests.rank_threshold * highest_code, formats.rank_bits);
+        if (formats.bound_bits > 0)
+            result.bound_threshold = bound_threshold(tests.bound_threshold * highest_code, formats.bound_bits);
+    }
     result.view_threshold = static_cast<std::uint32_t>(
         to_register({"tests.view_threshold", tests.view_threshold, tests.view, std::ldexp(1.0, formats.screen.fraction),
                      std::ldexp(1.0, formats.screen.bits), "formats.screen_fraction"}));

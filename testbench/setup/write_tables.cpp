@@ -46,7 +46,7 @@ void write_normal_map(const PreparedScene& scene, const TableSink& sink) {
 }
 
 void write_summed_height_table(const PreparedScene& scene, const TableSink& sink) {
-    const datapath::TableLayout& layout = scene.registers.summed_height_table;
+    const datapath::TableLayout& layout = scene.registers.height_table;
     const auto mask = static_cast<std::uint64_t>(scene.registers.formats.summed_height.highest);
     TableRow row(layout, sink);
     std::vector<std::uint64_t> below(layout.columns, 0);
@@ -62,12 +62,30 @@ void write_summed_height_table(const PreparedScene& scene, const TableSink& sink
     }
 }
 
+void write_rank_table(const PreparedScene& scene, const TableSink& sink) {
+    const datapath::TableLayout& layout = scene.registers.height_table;
+    const RankTables& tables = scene.rank_tables;
+    TableRow row(layout, sink);
+    for (std::uint32_t y = 0; y < layout.rows; ++y) {
+        for (std::uint32_t x = 0; x < layout.columns; ++x) {
+            const std::size_t k = std::size_t{y} * layout.columns + x;
+            const std::uint64_t rank = tables.rank.empty() ? 0 : tables.rank[k];
+            const std::uint64_t bound = tables.bound.empty() ? 0 : tables.bound[k];
+            row.set(x, rank | bound << scene.registers.formats.rank_bits);
+        }
+        row.write(y);
+    }
+}
+
 }  // namespace
 
 void write_tables(const PreparedScene& scene, const TableSink& sink) {
     write_displacement_map(scene, sink);
     write_normal_map(scene, sink);
-    write_summed_height_table(scene, sink);
+    if (scene.registers.formats.height_test == datapath::HeightTest::rank)
+        write_rank_table(scene, sink);
+    else
+        write_summed_height_table(scene, sink);
 }
 
 }  // namespace tessera

@@ -92,6 +92,10 @@
 #define TESSERA_LIGHT_DIRECTION_1 0x200u
 #define TESSERA_LIGHT_DIRECTION_2 0x204u
 #define TESSERA_LIGHT_AMBIENT 0x208u
+#define TESSERA_RANK_TABLE_COLUMNS 0x20cu
+#define TESSERA_RANK_TABLE_ROWS 0x210u
+#define TESSERA_TESTS_RANK_THRESHOLD 0x214u
+#define TESSERA_TESTS_BOUND_THRESHOLD 0x218u
 #define TESSERA_REGISTER_BYTES 0x400u
 
 /* Bits of control registers. */
@@ -110,6 +114,8 @@
 #define TESSERA_FEATURES_FINAL_EDGES (1u << 1)  /* a queue entry says which of its edges are final */
 #define TESSERA_FEATURES_CODES (1u << 2)  /* a vertex carries its displacement code */
 #define TESSERA_FEATURES_FAMILIES (1u << 3)  /* a machine of families */
+#define TESSERA_FEATURES_BILINEAR (1u << 4)  /* maps are read between four texels */
+#define TESSERA_FEATURES_RANK_TEST (1u << 5)  /* a Rank Test in the Summed Height Test's place */
 
 /* Register `error`. */
 enum tessera_error {
@@ -255,7 +261,11 @@ struct tessera_finished_triangle {
     X(LIGHT_DIRECTION_0, 0x1fcu, 16, 1, 1, 1) \
     X(LIGHT_DIRECTION_1, 0x200u, 16, 1, 1, 1) \
     X(LIGHT_DIRECTION_2, 0x204u, 16, 1, 1, 1) \
-    X(LIGHT_AMBIENT, 0x208u, 9, 1, 0, 1)
+    X(LIGHT_AMBIENT, 0x208u, 9, 1, 0, 1) \
+    X(RANK_TABLE_COLUMNS, 0x20cu, 13, 1, 0, 1) \
+    X(RANK_TABLE_ROWS, 0x210u, 13, 1, 0, 1) \
+    X(TESTS_RANK_THRESHOLD, 0x214u, 16, 1, 0, 1) \
+    X(TESTS_BOUND_THRESHOLD, 0x218u, 16, 1, 0, 1)
 
 /* Every register's number: a place in that list. */
 enum tessera_register {

@@ -82,7 +82,7 @@ package tessera_registers;
   localparam logic [15:0] FORMAT_SCREEN_RESET = 16'h818;
   localparam logic [11:0] FEATURES = 12'h098;
   localparam int unsigned FEATURES_BITS = 16;
-  localparam logic [15:0] FEATURES_RESET = 16'h401;
+  localparam logic [15:0] FEATURES_RESET = 16'h421;
   localparam logic [11:0] LARGEST_MAP = 12'h09c;
   localparam int unsigned LARGEST_MAP_BITS = 32;
   localparam logic [31:0] LARGEST_MAP_RESET = 32'h4000400;
@@ -257,6 +257,18 @@ package tessera_registers;
   localparam logic [11:0] LIGHT_AMBIENT = 12'h208;
   localparam int unsigned LIGHT_AMBIENT_BITS = 9;
   localparam logic [8:0] LIGHT_AMBIENT_RESET = 9'h33;
+  localparam logic [11:0] RANK_TABLE_COLUMNS = 12'h20c;
+  localparam int unsigned RANK_TABLE_COLUMNS_BITS = 13;
+  localparam logic [12:0] RANK_TABLE_COLUMNS_RESET = 13'h0;
+  localparam logic [11:0] RANK_TABLE_ROWS = 12'h210;
+  localparam int unsigned RANK_TABLE_ROWS_BITS = 13;
+  localparam logic [12:0] RANK_TABLE_ROWS_RESET = 13'h0;
+  localparam logic [11:0] TESTS_RANK_THRESHOLD = 12'h214;
+  localparam int unsigned TESTS_RANK_THRESHOLD_BITS = 16;
+  localparam logic [15:0] TESTS_RANK_THRESHOLD_RESET = 16'h0;
+  localparam logic [11:0] TESTS_BOUND_THRESHOLD = 12'h218;
+  localparam int unsigned TESTS_BOUND_THRESHOLD_BITS = 16;
+  localparam logic [15:0] TESTS_BOUND_THRESHOLD_RESET = 16'h0;
 
   // Bits of control registers.
   localparam int unsigned CONTROL_START_BIT = 0;  // begins a frame
@@ -274,6 +286,8 @@ package tessera_registers;
   localparam int unsigned FEATURES_FINAL_EDGES_BIT = 1;  // a queue entry says which of its edges are final
   localparam int unsigned FEATURES_CODES_BIT = 2;  // a vertex carries its displacement code
   localparam int unsigned FEATURES_FAMILIES_BIT = 3;  // a machine of families
+  localparam int unsigned FEATURES_BILINEAR_BIT = 4;  // maps are read between four texels
+  localparam int unsigned FEATURES_RANK_TEST_BIT = 5;  // a Rank Test in the Summed Height Test's place
 
   // Register error.
   typedef enum logic [3:0] {

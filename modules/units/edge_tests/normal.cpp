@@ -1,9 +1,8 @@
 #include "modules/units/edge_tests/normal.h"
 
+#include "modules/datapath/bilinear.h"
 #include "modules/datapath/bump.h"
 #include "modules/datapath/edge_tests.h"
-#include "modules/datapath/map_address.h"
-#include "modules/datapath/map_entry.h"
 #include "modules/datapath/midpoint.h"
 #include "modules/datapath/normalise.h"
 #include "modules/stage/stage_steps.h"
@@ -40,13 +39,16 @@ bool NormalTest::may_start(const NormalOperands& part) const {
 }
 
 void NormalTest::reads(const NormalOperands& part, Reads& reads) const {
-    reads.add(texel_address(part.t, registers_.normal_map, registers_.map, registers_.formats));
+    reads.add_request();
+    map_entries(part.t, registers_.normal_map, registers_.map, registers_.formats,
+                [&](std::uint64_t address) { reads.add_entry(address); });
 }
 
 NormalResult NormalTest::process(const NormalOperands& part, const Entries& entries) {
+    const datapath::Direction entry = map_normal(part.t, entries.data(), registers_.formats);
     if (part.tag.is_edge())
-        return test_edge(part, entries[0]);
-    const datapath::Direction n = bumped(part.n_i, part.tangent_i, part.handedness_i, entries[0]);
+        return test_edge(part, entry);
+    const datapath::Direction n = bumped(part.n_i, part.tangent_i, part.handedness_i, entry);
     Corners& corners = corners_.find_or_open(part.tag.triangle);
     corners.bumped |= part.tag.bit();
     corners.displaced_n[part.tag.index()] = n;
@@ -55,9 +57,8 @@ NormalResult NormalTest::process(const NormalOperands& part, const Entries& entr
 }
 
 datapath::Direction NormalTest::bumped(const datapath::Direction& n, const datapath::Direction& t, int handedness,
-                                       std::uint64_t entry) {
-    return bump(n, t, handedness, datapath::unpack_normal(entry, registers_.formats.normal.bits), registers_.formats,
-                saturations_);
+                                       const datapath::Direction& map_normal) {
+    return bump(n, t, handedness, map_normal, registers_.formats, saturations_);
 }
 
 /// The N' of an edge's ends that this unit has found itself.
@@ -74,7 +75,7 @@ void NormalTest::take_corners(const NormalOperands& edge) {
         corners_.close(edge.tag.triangle);
 }
 
-NormalResult NormalTest::test_edge(const NormalOperands& edge, std::uint64_t entry) {
+NormalResult NormalTest::test_edge(const NormalOperands& edge, const datapath::Direction& map_normal) {
     const datapath::TestParameters& tests = registers_.tests;
     compared_ = {edge.displaced_n_i, edge.displaced_n_j, {}};
     if ((edge.new_vertices & takes_) != 0)
@@ -82,8 +83,8 @@ NormalResult NormalTest::test_edge(const NormalOperands& edge, std::uint64_t ent
     NormalResult result{edge.tag};
     result.n = normalise(midpoint(edge.n_i, edge.n_j), registers_.formats, saturations_);
     result.tangent = normalise(midpoint(edge.tangent_i, edge.tangent_j), registers_.formats, saturations_);
-    result.displaced_n =
-        bumped(result.n, result.tangent, datapath::inserted_handedness(edge.handedness_i, edge.handedness_j), entry);
+    result.displaced_n = bumped(result.n, result.tangent,
+                                datapath::inserted_handedness(edge.handedness_i, edge.handedness_j), map_normal);
     result.displaced_n_i = compared_[0];
     compared_[2] = result.displaced_n;
     const auto& [i, j, ij] = compared_;

@@ -16,12 +16,13 @@ namespace tessera {
 /// In:   NormalOperands: edges; of a base triangle its vertices first, which are bumped and end here.
 ///       Of families N' of all vertices is known, and only edges come.
 /// Out:  NormalResult: N_ij, T_ij, N'_ij, the tests' bits, and N' of the edge's first end.
-/// Memory: one read of the normal map per edge or vertex.
+/// Memory: one read of the normal map per edge or vertex; with a bilinear filter (Formats::filter) one request of four
+///       entries.
 /// Arithmetic: add, shift by 1; the pipeline's existing normalise and bump units; six absolute differences and
-///       compares, one OR. The Highlight Test adds three dot products with one vector, six compares with another
+///       compares, one OR. A bilinear filter adds nine multiplications. The Highlight Test adds three dot products with one vector, six compares with another
 ///       threshold and three with a cosine; the differences are the Normal Test's.
-/// Timing: one edge or vertex per interval; latency 9 plus the map read, interval 1 by default. A Highlight Test adds
-///       its own latency, 1 by default, and nothing to the interval.
+/// Timing: one edge or vertex per interval; latency 9 plus the map read, interval 1 by default, or the map reads' if that
+///       is longer. A Highlight Test adds its own latency, 1 by default, and nothing to the interval.
 ///       An edge of a base triangle starts when the map entries of all its corners in this unit have arrived.
 /// State: a base triangle's tag, and N' of its corners.
 /// Waits for Calculate New U and the normal map. Held back by the collection of the tests.
@@ -52,8 +53,8 @@ class NormalTest : public Stage<NormalOperands, NormalResult> {
     void trace_processed(Signals& signals, const NormalOperands& part, const NormalResult& result) const override;
 
     datapath::Direction bumped(const datapath::Direction& n, const datapath::Direction& t, int handedness,
-                               std::uint64_t entry);
-    NormalResult test_edge(const NormalOperands& edge, std::uint64_t entry);
+                               const datapath::Direction& map_normal);
+    NormalResult test_edge(const NormalOperands& edge, const datapath::Direction& map_normal);
     void take_corners(const NormalOperands& edge);
 
     const datapath::Registers& registers_;

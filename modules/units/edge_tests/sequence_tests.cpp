@@ -69,35 +69,52 @@ bool SequenceTests::take_edge(std::uint64_t cycle) {
     return true;
 }
 
-/// Sends a vertex and edges on to the tests they need, in order of arrival.
+/// Sends a vertex and edges on to the tests they need, the oldest first. What is on offer stays on offer.
 bool SequenceTests::send_on() {
     bool sent = false;
     if (vertex_waits_ && to_normal_test.deliver(vertex_)) {
         vertex_waits_ = false;
         sent = true;
     }
-    for (Edge* edge = nullptr;
-         !vertex_waits_ && (edge = first(Next::normal_test)) != nullptr && to_normal_test.deliver(edge->normal);
-         sent = true)
-        edge->next = Next::normal_result;
-    for (Edge* edge = nullptr;
-         (edge = first(Next::summed_height_test)) != nullptr && to_summed_height_test.deliver(edge->height);
-         sent = true)
-        edge->next = Next::summed_height_result;
+    const auto send = [&](Edge*& offered, Next waiting, Next asked, auto&& deliver) {
+        for (;;) {
+            if (offered == nullptr)
+                offered = first(waiting);
+            if (offered == nullptr || !deliver(*offered))
+                return;
+            offered->next = asked;
+            offered = nullptr;
+            sent = true;
+        }
+    };
+    if (!vertex_waits_)
+        send(to_normal_, Next::normal_test, Next::normal_result,
+             [&](Edge& edge) { return to_normal_test.deliver(edge.normal); });
+    send(to_height_, Next::summed_height_test, Next::summed_height_result,
+         [&](Edge& edge) { return to_summed_height_test.deliver(edge.height); });
     return sent;
 }
 
-/// Each test answers in the order in which it was asked.
+/// Null: no such edge waits for this result.
+SequenceTests::Edge* SequenceTests::in_test(const PartTag& tag, Next expected) {
+    for (std::size_t k = 0; k < edges_.size(); ++k) {
+        Edge& edge = edges_.at(k);
+        if (edge.next == expected && edge.tested.tag.triangle == tag.triangle && edge.tested.tag.part == tag.part)
+            return &edge;
+    }
+    return nullptr;
+}
+
+/// Edges may overtake one another between two tests, so the tag says whose result it is.
 template <class Result>
 bool SequenceTests::take_result(StreamInput<Result>& input, Next expected) {
     if (input.empty())
         return false;
-    Edge* edge = first(expected);
-    const PartTag& tag = input.front().tag;
-    if (edge == nullptr || tag.triangle != edge->tested.tag.triangle || tag.part != edge->tested.tag.part)
+    Edge* const edge = in_test(input.front().tag, expected);
+    if (edge == nullptr)
         SC_REPORT_ERROR("tessera/sequence_tests", "a test decided an edge that it was not asked for");
     add_result(edge->tested, input.front());
-    edge->next = expected == Next::normal_result ? after_normal_test(edge->tested) : Next::leave;
+    edge->next = expected == Next::normal_result ? after_normal_test(*edge) : after_height_test(edge->tested);
     input.pop();
     return true;
 }

@@ -52,11 +52,14 @@ class SequenceTests : public SequencingUnit {
     bool take_result(StreamInput<Result>& input, Next expected);
     bool leave(std::uint64_t cycle);
     Edge* first(Next next);
+    Edge* in_test(const PartTag& tag, Next expected);
     const Edge& newest() const { return edges_.back(); }
 
     Ring<Edge> edges_;
     NormalOperands vertex_;  // on offer to the Normal Test
     bool vertex_waits_ = false;
+    Edge* to_normal_ = nullptr;  // on offer; null: none
+    Edge* to_height_ = nullptr;
     TestedEdge left_;  // the edge that left last
     std::uint64_t next_take_ = 0, next_leave_ = 0;
 };

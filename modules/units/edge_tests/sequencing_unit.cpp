@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <type_traits>
 
+#include "modules/datapath/rank.h"
 #include "modules/units/edge_tests/test_results.h"
 
 namespace tessera {
@@ -15,7 +16,9 @@ bool may_split(const TestedEdge& edge) {
 }  // namespace
 
 SequencingUnit::SequencingUnit(const sc_core::sc_module_name& name, const UnitContext& context)
-    : Unit(name, context.clock), registers_(context.registers) {
+    : Unit(name, context.clock),
+      registers_(context.registers),
+      height_first_(registers_.formats.height_test == datapath::HeightTest::rank) {
     add_input(context, from_summed_height_test);
     to_summed_height_test.clocked_by(context, *this);
 }
@@ -27,12 +30,41 @@ void SequencingUnit::add_input(const UnitContext& context, StreamInput<Item>& in
 }
 
 SequencingUnit::Next SequencingUnit::after_cheap_tests(const Edge& edge) const {
-    return may_split(edge.tested) || edge.normal.new_vertices != 0 ? Next::normal_test : Next::leave;
+    if (edge.normal.new_vertices != 0)
+        return Next::normal_test;
+    if (!may_split(edge.tested))
+        return Next::leave;
+    if (!height_first_)
+        return Next::normal_test;
+    return has_rank(edge.height) ? Next::summed_height_test : without_rank();
 }
 
-SequencingUnit::Next SequencingUnit::after_normal_test(const TestedEdge& edge) const {
+/// Whether the Rank Test has something to say: known without its table.
+bool SequencingUnit::has_rank(const HeightOperands& edge) const {
+    return registers_.tests.summed_height_test && has_lattice_midpoint(edge.t_i, edge.t_j, registers_.formats);
+}
+
+/// Of an edge that the Rank Test does not split.
+SequencingUnit::Next SequencingUnit::without_rank() const {
+    return registers_.tests.normal_test || registers_.tests.highlight_test ? Next::normal_test : Next::leave;
+}
+
+SequencingUnit::Next SequencingUnit::after_normal_test(const Edge& its) const {
+    const TestedEdge& edge = its.tested;
     const bool splits = (edge.found.tests & datapath::requesting_tests) != 0;
-    return may_split(edge) && !splits && registers_.tests.summed_height_test ? Next::summed_height_test : Next::leave;
+    const bool answered = (edge.found.evaluated & datapath::summed_height_bit) != 0;
+    if (!may_split(edge) || answered)
+        return Next::leave;
+    // with a Rank Test also for the rank of an edge that splits
+    const bool matters = height_first_ ? has_rank(its.height) : !splits && registers_.tests.summed_height_test;
+    return matters ? Next::summed_height_test : Next::leave;
+}
+
+SequencingUnit::Next SequencingUnit::after_height_test(const TestedEdge& edge) const {
+    if ((edge.found.evaluated & datapath::normal_bit) != 0)
+        return Next::leave;
+    const bool splits = (edge.found.tests & datapath::summed_height_bit) != 0;
+    return splits ? Next::normal_test : without_rank();
 }
 
 template <class Item>
@@ -66,10 +98,14 @@ void SequencingUnit::b_transport(Item& item, sc_core::sc_time& delay) {
 
 void SequencingUnit::run_tests(Edge& edge, sc_core::sc_time& delay) {
     in_test_.open(edge.tested.tag.triangle) = &edge.tested;
-    if (after_cheap_tests(edge) == Next::normal_test) {
-        normal_test().transport(edge.normal, delay);
-        if (after_normal_test(edge.tested) == Next::summed_height_test)
+    for (Next next = after_cheap_tests(edge); next != Next::leave;) {
+        if (next == Next::normal_test) {
+            normal_test().transport(edge.normal, delay);
+            next = after_normal_test(edge);
+        } else {
             to_summed_height_test.transport(edge.height, delay);
+            next = after_height_test(edge.tested);
+        }
     }
     in_test_.close(edge.tested.tag.triangle);
     pass_or_tessellate().transport(edge.tested, delay);

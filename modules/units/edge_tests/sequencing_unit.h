@@ -18,6 +18,10 @@ namespace tessera {
 ///                                                 of a base triangle, which bring the N' of its vertices
 ///   Summed Height Test                            edges that may split, and that neither Normal nor Highlight Test
 ///                                                 splits
+///
+/// A Rank Test, which reads one entry, comes before the Normal Test, but for the edges of a base triangle; edges without
+/// a midpoint on the lattice pass it by. The Normal Test then gets the edges that the Rank Test splits, for N' of their
+/// midpoints, and the others only if it is switched on.
 class SequencingUnit : public Unit {
   public:
     StreamOutput<HeightOperands> to_summed_height_test{"to_summed_height_test"};
@@ -38,13 +42,15 @@ class SequencingUnit : public Unit {
     template <class Item>
     void add_input(const UnitContext& context, StreamInput<Item>& input);
     Next after_cheap_tests(const Edge& edge) const;
-    Next after_normal_test(const TestedEdge& edge) const;
+    Next after_normal_test(const Edge& edge) const;
+    Next after_height_test(const TestedEdge& edge) const;
 
     /// Functional mode: the outputs that are used.
     virtual StreamOutput<NormalOperands>& normal_test() = 0;
     virtual StreamOutput<TestedEdge>& pass_or_tessellate() = 0;
 
     const datapath::Registers& registers_;
+    const bool height_first_;  // a Rank Test
 
   private:
     /// Functional mode: an edge whose operands and cheap results have not all come.
@@ -57,6 +63,8 @@ class SequencingUnit : public Unit {
     template <class Item>
     void b_transport(Item& item, sc_core::sc_time& delay);
     void run_tests(Edge& edge, sc_core::sc_time& delay);
+    bool has_rank(const HeightOperands& edge) const;
+    Next without_rank() const;
 
     PerTriangle<Arriving> arriving_{1};
     PerTriangle<TestedEdge*> in_test_{1};  // functional mode: the edge that a test is evaluating

@@ -6,14 +6,7 @@
 namespace tessera {
 
 SummedHeightTest::SummedHeightTest(const sc_core::sc_module_name& name, const UnitContext& context)
-    : Stage(name, context, context.timing().summed_height_test, 1,
-            summed_height_latency(context.design, context.registers.formats)),
-      summed_height_table("summed_height_table", context.registers.summed_height_table.entry_bytes,
-                          context.design.direct_memory),
-      registers_(context.registers) {
-    takes_from(context, input);
-    delivers_to(context, output);
-    reads_through(summed_height_table, 3);
+    : HeightTestUnit(name, context, summed_height_latency(context.design, context.registers.formats), 3) {
     if (registers_.formats.codes) {
         displacement_map.emplace("displacement_map", registers_.displacement_map.entry_bytes,
                                  context.design.direct_memory);
@@ -43,14 +36,13 @@ void SummedHeightTest::reads(const HeightOperands& edge, Reads& reads) const {
     for (const datapath::TexCoord& centre : {edge.t_i, edge.t_j, edge.t_ij}) {
         reads.add_request();
         rectangle_entries(centred_rectangle(centre, its_size, registers_.map, registers_.formats), registers_.map,
-                          registers_.summed_height_table,
-                          [&](std::uint64_t address, bool) { reads.add_entry(address); });
+                          registers_.height_table, [&](std::uint64_t address, bool) { reads.add_entry(address); });
     }
 }
 
 HeightResult SummedHeightTest::process(const HeightOperands& edge, const Entries& entries) {
     if (!registers_.tests.summed_height_test)
-        return {edge.tag, false};
+        return {edge.tag, false, 0};
     const datapath::RectangleSize its_size = size(edge);
     unsigned sum = 0;
     unsigned next = 0;
@@ -60,10 +52,10 @@ HeightResult SummedHeightTest::process(const HeightOperands& edge, const Entries
     } else {
         for (const datapath::TexCoord& centre : {edge.t_i, edge.t_j, edge.t_ij})
             sums_[sum++] = rectangle_sum(centred_rectangle(centre, its_size, registers_.map, registers_.formats),
-                                         registers_.map, registers_.summed_height_table, registers_.formats,
+                                         registers_.map, registers_.height_table, registers_.formats,
                                          [&](std::uint64_t) { return entries[next++]; });
     }
-    return {edge.tag, summed_height_test(sums_[0], sums_[1], sums_[2], its_size, registers_.tests)};
+    return {edge.tag, summed_height_test(sums_[0], sums_[1], sums_[2], its_size, registers_.tests), 0};
 }
 
 void SummedHeightTest::trace_signals(Signals& signals) const {

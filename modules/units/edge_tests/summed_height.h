@@ -1,13 +1,10 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <systemc>
 
 #include "modules/datapath/rectangle.h"
-#include "modules/sockets/items.h"
-#include "modules/sockets/memory_port.h"
-#include "modules/stage/stage.h"
+#include "modules/units/edge_tests/height_test.h"
 
 namespace tessera {
 
@@ -24,13 +21,8 @@ namespace tessera {
 /// Timing: latency 3 after the last table entry; interval 1 by default, or the table reads' if that is longer: with one
 ///         port a rectangle takes four cycles, an edge 12, a triangle 36.
 /// Waits for Calculate New U and the Summed Height Table; held back by the collection of the tests.
-class SummedHeightTest : public Stage<HeightOperands, HeightResult> {
+class SummedHeightTest : public HeightTestUnit {
   public:
-    StreamInput<HeightOperands> input{"input"};
-    StreamOutput<HeightResult> output{"output"};
-    MemoryPort summed_height_table;
-    std::optional<MemoryPort> displacement_map;  ///< if Formats::codes
-
     SummedHeightTest(const sc_core::sc_module_name& name, const UnitContext& context);
 
     void trace_signals(Signals& signals) const override;
@@ -44,7 +36,6 @@ class SummedHeightTest : public Stage<HeightOperands, HeightResult> {
     datapath::RectangleSize size(const HeightOperands& edge) const;
     bool has_codes(const HeightOperands& edge, const datapath::RectangleSize& its_size) const;
 
-    const datapath::Registers& registers_;
     std::array<std::uint64_t, 3> sums_{};  // around t_i, t_j, t_ij of the edge decided last
 };
 

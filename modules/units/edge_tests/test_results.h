@@ -28,6 +28,7 @@ constexpr void add_result(TestedEdge& edge, const TexCoordResult& result) {
     set_test(edge.found, result.generation, datapath::generation_bit);
 }
 constexpr void add_result(TestedEdge& edge, const HeightResult& result) {
+    edge.found.rank = result.rank;
     set_test(edge.found, result.summed_height, datapath::summed_height_bit);
 }
 constexpr void add_result(TestedEdge& edge, const ViewResult& result) {

@@ -32,7 +32,7 @@ void FamilyPassOrTessellate::open(const Family& family) {
     Place& place = places_.open(family.tag);
     place.family = family;
     place.indices = datapath::triangulate(family.triangle.split, family.second_diagonal);
-    place.edges = datapath::family_edges(place.indices, family.untested);
+    place.edges = datapath::family_edges(place.indices, datapath::open_edges(family.untested, family.triangle.uncut));
     place.left = parts_of(place.edges);
     place.latest = sc_core::SC_ZERO_TIME;
 }
@@ -98,7 +98,7 @@ void FamilyPassOrTessellate::decide_child(Place& place, std::size_t c, unsigned&
     datapath::TrianglePass pass;
     datapath::Triangle& triangle = pass.triangle;
     triangle = family.triangle;
-    triangle.split = 0;
+    triangle.split = triangle.uncut = 0;
     for (std::size_t k = 0; k < 3; ++k)
         triangle.vertices[k] = family.vertices[corners[k]];
     Child& child = place.children[c];
@@ -129,9 +129,11 @@ void FamilyPassOrTessellate::decide_child(Place& place, std::size_t c, unsigned&
     triangle.parent = pass.number;
     triangle.split_by = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-        if ((pass.split >> k & 1u) == 0)
-            continue;
         const datapath::EdgeTests& found = pass.edges[k];
+        if ((pass.split >> k & 1u) == 0) {
+            triangle.uncut = static_cast<std::uint8_t>(triangle.uncut | datapath::split_decision(found.tests) << k);
+            continue;
+        }
         triangle.split_by = static_cast<std::uint8_t>(triangle.split_by | (found.tests & datapath::requesting_tests));
         triangle.midpoints[k] = {found.normal, found.tangent, found.displaced_normal};
     }

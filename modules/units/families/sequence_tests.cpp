@@ -91,14 +91,14 @@ bool FamilySequenceTests::take_results() {
             if (in_test.empty() || !same_part(in_test.front().tested.tag, input.front().tag))
                 SC_REPORT_ERROR("tessera/sequence_tests", "a test decided an edge that it was not asked for");
             add_result(in_test.front().tested, input.front());
-            decided(in_test.front(), next(in_test.front().tested));
+            decided(in_test.front(), next(in_test.front()));
             in_test.pop();
             taken = true;
         }
     };
-    take(in_height_, from_summed_height_test, [](const TestedEdge&) { return Next::leave; });
+    take(in_height_, from_summed_height_test, [&](const Edge& edge) { return after_height_test(edge.tested); });
     for (std::size_t k = 0; k < normals_.size(); ++k)
-        take(normals_[k].in_test, from_normal_test[k], [&](const TestedEdge& edge) { return after_normal_test(edge); });
+        take(normals_[k].in_test, from_normal_test[k], [&](const Edge& edge) { return after_normal_test(edge); });
     return taken;
 }
 

@@ -83,7 +83,7 @@ void FamilyTessellation::tessellate(const Joined& joined, Sent& sent) {
         triangle.split, registers_.triangulation,
         [&](std::uint8_t index) -> const datapath::Position& { return family.vertices[index].displaced; });
     const datapath::ChildIndices children = datapath::triangulate(triangle.split, family.second_diagonal);
-    sent.edges = datapath::family_edges(children, family.untested);
+    sent.edges = datapath::family_edges(children, datapath::open_edges(family.untested, triangle.uncut));
     sent.parts = parts_of(sent.edges);
     if (family.untested)
         return;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "modules/datapath/bilinear.h"
 #include "testbench/common/parallel.h"
 #include "testbench/geometry/surface_distance.h"
 
@@ -107,7 +108,12 @@ EndToEndResult::Allowed allowed_after(int generations, const MachineSetup& setup
         (generations / 2.0 + 2) * std::ldexp(1.0, -formats.position.fraction) / scene.placement.scale;
     const double normal =
         normals_are_exact(base) ? 0 : 2.0 * (generations + 1) * std::ldexp(1.0, -formats.normal.fraction) * largest;
-    return {allowed_triangles, std::sqrt(3.0) * (position + normal),
+    // a code between texels, rounded to nearest
+    const double code = formats.filter == datapath::MapFilter::nearest
+                            ? 0
+                            : std::ldexp(std::abs(scene.highest - scene.lowest) / scene.highest_code,
+                                         -datapath::code_fraction(formats) - 1);
+    return {allowed_triangles, std::sqrt(3.0) * (position + normal + code),
             std::abs(scene.highest - scene.lowest) + largest * largest_turn(base)};
 }
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "golden/golden_model.h"
-#include "modules/datapath/format.h"
+#include "modules/datapath/bilinear.h"
 
 namespace tessera {
 
@@ -32,7 +32,8 @@ class ErrorBounds {
           normal_lsb_(std::ldexp(1.0, -formats.normal.fraction)),
           texture_lsb_(std::ldexp(1.0, -formats.texture.fraction)),
           screen_lsb_(std::ldexp(1.0, -formats.screen.fraction)),
-          view_distance_lsb_(std::ldexp(1.0, -formats.view_distance.fraction)) {}
+          view_distance_lsb_(std::ldexp(1.0, -formats.view_distance.fraction)),
+          code_lsb_(std::ldexp(1.0, -datapath::code_fraction(formats))) {}
 
     /// P_ij, (N_i + N_j) / 2, t_ij. midpoint.h: (a + b) >> 1 rounds down, so the error is 0 or -u/2.
     Interval position_midpoint() const { return {-position_lsb_ / 2, 0}; }
@@ -45,19 +46,34 @@ class ErrorBounds {
         return normalised(direction, length, left_by_rounding_down(mean, normal_lsb_));
     }
 
-    /// N' = bump(N, T, N_d); `n_error`, `t_error` bound the errors of N and T (zero for a base vertex).
+    /// Where the hardware reads the maps for golden's t: t_ij is rounded down, and a base vertex's t is exact.
+    glm::dvec2 read_at(const glm::dvec2& t) const { return glm::floor(t / texture_lsb_) * texture_lsb_; }
+
+    /// A map at t, in codes or components of N_d, of golden's value there and at read_at(t). Both lie under one texel,
+    /// whose value is exact. Between texels the two differ; then bilinear.h rounds to nearest, a code with code_fraction
+    /// fraction bits, N_d to the normal's format. What it rounds has at most 18 + 26 bits, exact in double precision too.
+    double code(double code, double read) const { return std::abs(read - code) + after_rounding(read, 0, code_lsb_); }
+    glm::dvec3 map_normal(const glm::dvec3& n, const glm::dvec3& read) const {
+        return glm::abs(read - n) + after_rounding(read, glm::dvec3(0), normal_lsb_);
+    }
+
+    /// N' = bump(N, T, N_d); `n_error`, `t_error` bound the errors of N and T (zero for a base vertex), `map_error` that
+    /// of N_d.
     /// `bumped`, `length`: golden's result and its length before normalisation.
     glm::dvec3 displaced_normal(const glm::dvec3& n, const glm::dvec3& n_error, const glm::dvec3& t,
-                                const glm::dvec3& t_error, const glm::dvec3& map_normal, const glm::dvec3& bumped,
-                                double length) const {
+                                const glm::dvec3& t_error, const glm::dvec3& map_normal, const glm::dvec3& map_error,
+                                const glm::dvec3& bumped, double length) const {
         // B = N x T, rounded: with N + e, T + f the error before rounding is N x f + e x T + e x f.
         const glm::dvec3 b_error = after_rounding(
             glm::cross(n, t),
             cross_bound(glm::abs(n), t_error) + cross_bound(n_error, glm::abs(t)) + cross_bound(n_error, t_error),
             normal_lsb_);
-        // The sum is linear in T, B and N; N_d is the same on both sides.
-        const glm::dvec3 sum_error =
+        // The sum's parts: (N_d.x + g.x) (T + f) - N_d.x T = N_d.x f + g.x (T + f), likewise with B and N.
+        const glm::dvec3 frame_error =
             std::abs(map_normal.x) * t_error + std::abs(map_normal.y) * b_error + std::abs(map_normal.z) * n_error;
+        const glm::dvec3 sum_error = frame_error + map_error.x * (glm::abs(t) + t_error) +
+                                     map_error.y * (glm::abs(glm::cross(n, t)) + b_error) +
+                                     map_error.z * (glm::abs(n) + n_error);
         // A zero sum without error is zero on both sides.
         if (length == 0 && sum_error == glm::dvec3(0))
             return glm::dvec3(0);
@@ -65,12 +81,13 @@ class ErrorBounds {
         return normalised(bumped, length, sum_error + normal_lsb_ / 8);
     }
 
-    /// P' = P + h N, h = S d + bias; `p`, `height`: golden's P and h. displace.h: P was rounded down (a base
-    /// vertex's is exact), h to nearest, the product to nearest. The error before the last rounding:
+    /// P' = P + h N, h = S d + bias; `p`, `height`: golden's P and h; `code_error`: S times the code's error. displace.h:
+    /// P was rounded down (a base vertex's is exact), h to nearest, the product to nearest. The error before the last
+    /// rounding, b the error of h:
     ///     P + a + (h + b)(N + f) - (P + h N) = a + h f + b (N + f).
-    glm::dvec3 displaced_position(const glm::dvec3& p, double height, const glm::dvec3& n, const glm::dvec3& n_error,
-                                  const glm::dvec3& displaced) const {
-        const double height_error = after_rounding(height, 0, position_lsb_);
+    glm::dvec3 displaced_position(const glm::dvec3& p, double height, double code_error, const glm::dvec3& n,
+                                  const glm::dvec3& n_error, const glm::dvec3& displaced) const {
+        const double height_error = after_rounding(height, code_error, position_lsb_);
         const glm::dvec3 before = left_by_rounding_down(p, position_lsb_) + std::abs(height) * n_error +
                                   height_error * (glm::abs(n) + n_error) +
                                   double_rounding * (glm::abs(p) + std::abs(height) * glm::abs(n));
@@ -167,6 +184,7 @@ class ErrorBounds {
     }
 
     double position_lsb_, normal_lsb_, texture_lsb_, screen_lsb_, view_distance_lsb_;
+    double code_lsb_;
 };
 
 }  // namespace tessera

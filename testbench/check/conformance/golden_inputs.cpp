@@ -16,11 +16,21 @@ golden::Diagonal golden_diagonal(datapath::Triangulation choice) {
             return golden::Diagonal::first;
         case datapath::Triangulation::second:
             return golden::Diagonal::second;
+        case datapath::Triangulation::greatest_rank:
+            return golden::Diagonal::greatest_rank;
         case datapath::Triangulation::shorter:
             break;
     }
     return golden::Diagonal::shorter;
 }
+
+}  // namespace
+
+golden::RankTable golden_ranks(const RankTables& tables) {
+    return {tables.columns, tables.rows, tables.rank, tables.bound, static_cast<int>(tables.highest_bound_threshold)};
+}
+
+namespace {
 
 golden::Map golden_map(const MachineSetup& setup) {
     const datapath::MapGeometry& geometry = setup.map.geometry;
@@ -35,6 +45,7 @@ golden::Map golden_map(const MachineSetup& setup) {
             normals.push_back(dequantise.direction(
                 map_normal(setup.map, x, y, setup.height_per_code, setup.texel_size, setup.registers.formats.normal)));
     map.set_normals(std::move(normals));
+    map.set_ranks(golden_ranks(setup.rank_tables));
     return map;
 }
 
@@ -55,6 +66,8 @@ golden::Parameters golden_parameters(const datapath::Registers& registers) {
     result.area = tests.summed_height_unit == datapath::SummedHeightUnit::area;
     // The register of the `sum` unit holds four times the threshold.
     result.summed_height_threshold = real(tests.summed_height_threshold, result.area ? 0 : 2);
+    result.rank_threshold = static_cast<int>(tests.rank_threshold);
+    result.bound_threshold = static_cast<int>(tests.bound_threshold);
     result.view_threshold = real(tests.view_threshold, formats.screen.fraction);
     result.generation_limit = static_cast<int>(tests.generation_limit);
     const int normal = formats.normal.fraction;
@@ -65,6 +78,8 @@ golden::Parameters golden_parameters(const datapath::Registers& registers) {
     result.enabled = {tests.normal_test,    tests.summed_height_test, tests.view_test,
                       tests.tex_coord_test, tests.generation_test,    tests.highlight_test};
     result.diagonal = golden_diagonal(registers.triangulation);
+    result.filter =
+        formats.filter == datapath::MapFilter::bilinear ? golden::Filter::bilinear : golden::Filter::nearest;
 
     const int matrix = datapath::TransformParameters::matrix_fraction;
     const auto row = [&](const std::array<std::int64_t, 4>& r, int exponent) {

@@ -47,6 +47,9 @@ class Dequantise {
     double position_lsb_, normal_lsb_, texture_lsb_, screen_lsb_, view_distance_lsb_;
 };
 
+/// The Rank Table, which is the author's as the map is; empty: none.
+golden::RankTable golden_ranks(const RankTables& tables);
+
 /// The registers as the golden model's parameters. Exact except for the transform's fourth column and the near plane,
 /// 64 bit integers that a double rounds to 53 bits.
 golden::Parameters golden_parameters(const datapath::Registers& registers);

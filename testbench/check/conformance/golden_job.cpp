@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "testbench/check/conformance/golden_inputs.h"
 #include "testbench/machine/resolve_job.h"
 
 namespace tessera {
@@ -46,14 +47,23 @@ golden::Scene make_scene(const Job& job, const HeightMap& map, const ModelScale&
     scene.normal_threshold = tests.normal_threshold;
     scene.summed_height_threshold = tests.summed_height_threshold;
     scene.area = tests.summed_height_unit == SummedHeightUnit::area;
+    scene.rank_threshold = tests.rank_threshold;
+    scene.bound_threshold = tests.bound_threshold;
+    if (job.hardware.height_test == HeightTest::rank) {
+        scene.rank_bits = static_cast<int>(job.formats.rank_bits);
+        scene.bound_bits = static_cast<int>(job.formats.bound_bits);
+    }
     scene.view_threshold = tests.view_threshold;
     scene.generation_limit = static_cast<int>(tests.generation_limit);
     scene.highlight_angle = tests.highlight_angle;
     scene.highlight_normal_threshold = tests.highlight_normal_threshold;
     scene.enabled = {tests.normal, tests.summed_height, tests.view, tests.tex_coord, tests.generation, tests.highlight};
-    scene.diagonal = job.hardware.triangulation == Triangulation::first    ? golden::Diagonal::first
-                     : job.hardware.triangulation == Triangulation::second ? golden::Diagonal::second
-                                                                           : golden::Diagonal::shorter;
+    scene.diagonal = job.hardware.triangulation == Triangulation::first           ? golden::Diagonal::first
+                     : job.hardware.triangulation == Triangulation::second        ? golden::Diagonal::second
+                     : job.hardware.triangulation == Triangulation::greatest_rank ? golden::Diagonal::greatest_rank
+                                                                                  : golden::Diagonal::shorter;
+    scene.filter =
+        job.hardware.displacement_filter == MapFilter::bilinear ? golden::Filter::bilinear : golden::Filter::nearest;
     scene.light = vector(job.hardware.light);
     return scene;
 }
@@ -87,13 +97,17 @@ const Job& resolved(const Job& job) {
 
 }  // namespace
 
-GoldenJob::GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& height_map, const ModelScale& model_scale)
+GoldenJob::GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& height_map, const ModelScale& model_scale,
+                     const RankTables& ranks)
     : job_(resolved(job)),
       mesh_(mesh),
       height_map_(height_map),
       scene_(make_scene(job_, height_map, model_scale)),
       parameters_(golden::make_parameters(scene_)),
-      map_(make_map(job_, height_map, mesh, scene_, parameters_.scale)) {}
+      map_(make_map(job_, height_map, mesh, scene_, parameters_.scale)) {
+    map_.set_ranks(golden_ranks(ranks));
+    parameters_.bound_threshold = std::min(parameters_.bound_threshold, map_.rank_table().highest_bound_threshold);
+}
 
 golden::Vertex GoldenJob::vertex(std::uint32_t index) const {
     const BaseVertex& given = mesh_.vertices[index];
@@ -102,7 +116,7 @@ golden::Vertex GoldenJob::vertex(std::uint32_t index) const {
     vertex.normal = given.normal;
     vertex.tangent = given.tangent;
     vertex.handedness = given.handedness < 0 ? -1 : 1;
-    return golden::place_vertex(vertex, given.texture, scene_.placement, map_);
+    return golden::place_vertex(vertex, given.texture, scene_.placement, map_, mesh_.beyond_map);
 }
 
 double GoldenJob::unrounded_code(std::size_t texel) const {

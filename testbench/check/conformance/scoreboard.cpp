@@ -46,9 +46,14 @@ constexpr DecisionName decision_names[] = {
     {"GT", "Generation Test"},
     {"HT", "Highlight Test"},
     {"split", "whether the edge is split"},
+    {"cut", "with greatest_rank, which of the edges that ask to be split is"},
     {"diagonal", "which diagonal cuts the quadrilateral left by two split edges"},
     {"in_front", "whether a vertex lies in front of the near plane"},
 };
+
+bool asks_to_split(const datapath::EdgeTests& edge) {
+    return datapath::split_decision(edge.tests);
+}
 
 double lsb_per_unit(const datapath::Format& format) {
     return std::ldexp(1.0, format.fraction);
@@ -80,6 +85,8 @@ void Scoreboard::write(const datapath::TrianglePass& pass) {
     for (int k = 0; k < 3; ++k)
         if (pass.told != datapath::Told::midpoints || (pass.split >> k & 1) != 0)
             compare_edge(pass, k, given[static_cast<std::size_t>(k)], given[static_cast<std::size_t>((k + 1) % 3)]);
+    if (pass.told != datapath::Told::midpoints && cuts_one_edge())
+        compare_cut(pass, given);
     if (pass.told != datapath::Told::tests && (pass.split == 3 || pass.split == 5 || pass.split == 6))
         compare_diagonal(pass, given);
 }
@@ -90,18 +97,16 @@ void Scoreboard::compare_base_vertex(const datapath::TrianglePass& pass, int k, 
     const golden::Vertex golden = golden::complete_base_vertex(given, inputs_.map, inputs_.parameters);
     const Context context{&pass, -1, k, nullptr, &golden};
 
-    const std::size_t texel = inputs_.map.texel(given.texture);
-    const glm::dvec3& map_normal = inputs_.map.normal(texel);
-    const golden::Normalised bumped = golden::bump(given.normal, given.tangent, given.handedness, map_normal);
+    const MapValue<glm::dvec3> map_normal = map_normal_at(given.texture);
+    const golden::Normalised bumped = golden::bump(given.normal, given.tangent, given.handedness, map_normal.value);
     const glm::dvec3 exact(0);
     compare_vector(base_displaced_normal, hardware.displaced_normal, golden.displaced_normal,
-                   bounds_.displaced_normal(given.normal, exact, given.tangent, exact, map_normal, bumped.direction,
-                                            bumped.length),
+                   bounds_.displaced_normal(given.normal, exact, given.tangent, exact, map_normal.value,
+                                            map_normal.error, bumped.direction, bumped.length),
                    context);
 
-    const double height = inputs_.parameters.scale * inputs_.map.code(texel) + inputs_.parameters.bias;
     const glm::dvec3 bound =
-        bounds_.displaced_position(given.position, height, given.normal, exact, golden.displaced_position);
+        displaced_bound(given.position, given.texture, given.normal, exact, golden.displaced_position);
     compare_displaced(base_displaced, base_screen, base_w, hardware.displaced, hardware.screen, golden, bound, context);
 }
 
@@ -119,14 +124,15 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
     const glm::dvec3 n_bound = bounds_.inserted_direction(mean_normal, m.normal, inserted.mean_normal_length);
     const glm::dvec3 t_bound =
         bounds_.inserted_direction((i.tangent + j.tangent) / 2.0, m.tangent, inserted.mean_tangent_length);
-    const std::size_t texel = inputs_.map.texel(m.texture);
-    const glm::dvec3 bumped_bound = bounds_.displaced_normal(
-        m.normal, n_bound, m.tangent, t_bound, inputs_.map.normal(texel), m.displaced_normal, inserted.bump_length);
+    const MapValue<glm::dvec3> map_normal = map_normal_at(m.texture);
+    const glm::dvec3 bumped_bound =
+        bounds_.displaced_normal(m.normal, n_bound, m.tangent, t_bound, map_normal.value, map_normal.error,
+                                 m.displaced_normal, inserted.bump_length);
     // Each of the six differences has N'_ij's error, plus the rounding of the subtraction in double precision.
     const double leeway = std::max({bumped_bound.x, bumped_bound.y, bumped_bound.z}) + 0x1p-50;
     const bool near_threshold = inputs_.parameters.enabled.normal &&
                                 std::abs(golden.normal_difference - inputs_.parameters.normal_threshold) <= leeway;
-    const bool split = (pass.split >> k & 1) != 0;
+    const bool split = (pass.split >> k & 1) != 0;  // with greatest_rank one of the edges that ask
     const bool tests_told = pass.told != datapath::Told::midpoints, midpoint_told = pass.told != datapath::Told::tests;
     if (tests_told && (pass.triangle.final_edges >> k & 1) != 0) {
         // Tested with the parent, from the same ends. Without those tests that may flip, would golden split it?
@@ -174,11 +180,10 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
         compare_vector(inserted_displaced_normal, tested.displaced_normal, m.displaced_normal, bumped_bound, context);
     }
 
-    const double height = inputs_.parameters.scale * inputs_.map.code(texel) + inputs_.parameters.bias;
-    const glm::dvec3 displaced_bound =
-        bounds_.displaced_position(m.position, height, m.normal, n_bound, m.displaced_position);
-    bool flipped = midpoint_told && compare_displaced(inserted_displaced, inserted_screen, inserted_w, made.displaced,
-                                                      made.screen, m, displaced_bound, context);
+    bool flipped =
+        midpoint_told &&
+        compare_displaced(inserted_displaced, inserted_screen, inserted_w, made.displaced, made.screen, m,
+                          displaced_bound(m.position, m.texture, m.normal, n_bound, m.displaced_position), context);
     if (!tests_told) {
         flipped_edges_ += flipped ? 1 : 0;
         return;
@@ -201,8 +206,28 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
     const bool asked =
         golden.normal_test != normal_flipped || golden.summed_height_test || golden.highlight_test != highlight_flipped;
     const bool follows = asked && golden.view_test && golden.tex_coord_test && golden.generation_test;
-    decide(split_decision, split, split == follows ? golden.split : follows, split == follows, context);
+    const bool asks = cuts_one_edge() ? asks_to_split(tested) : split;
+    decide(split_decision, asks, asks == follows ? golden.split : follows, asks == follows, context);
     flipped_edges_ += flipped ? 1 : 0;
+}
+
+glm::dvec3 Scoreboard::displaced_bound(const glm::dvec3& p, const glm::dvec2& t, const glm::dvec3& n,
+                                       const glm::dvec3& n_error, const glm::dvec3& displaced) const {
+    const golden::Parameters& parameters = inputs_.parameters;
+    const golden::Filter filter = parameters.filter;
+    MapValue<double> code{inputs_.map.code(t, filter)};
+    if (filter != golden::Filter::nearest)
+        code.error = bounds_.code(code.value, inputs_.map.code(bounds_.read_at(t), filter));
+    return bounds_.displaced_position(p, parameters.scale * code.value + parameters.bias,
+                                      std::abs(parameters.scale) * code.error, n, n_error, displaced);
+}
+
+Scoreboard::MapValue<glm::dvec3> Scoreboard::map_normal_at(const glm::dvec2& t) const {
+    const golden::Filter filter = inputs_.parameters.filter;
+    MapValue<glm::dvec3> normal{inputs_.map.normal(t, filter)};
+    if (filter != golden::Filter::nearest)
+        normal.error = bounds_.map_normal(normal.value, inputs_.map.normal(bounds_.read_at(t), filter));
+    return normal;
 }
 
 bool Scoreboard::highlight_may_flip(const golden::EdgeEvaluation& golden, const glm::dvec3& normal_bound,
@@ -219,6 +244,18 @@ bool Scoreboard::highlight_may_flip(const golden::EdgeEvaluation& golden, const 
     const bool may =
         in_highlight(golden.midpoint_cosine + leeway) && differ(golden.normal_difference + difference_leeway);
     return may && !must;
+}
+
+void Scoreboard::compare_cut(const datapath::TrianglePass& pass, const std::array<golden::Vertex, 3>& given) {
+    std::array<bool, 3> asks{}, cut{};
+    std::array<int, 3> order{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        asks[k] = (pass.triangle.final_edges >> k & 1) == 0 && asks_to_split(pass.edges[k]);
+        cut[k] = (pass.split >> k & 1) != 0;
+        order[k] = golden::evaluate_edge(given[k], given[(k + 1) % 3], inputs_.map, inputs_.parameters).order;
+    }
+    const bool same = cut == golden::edge_to_cut(asks, given, order);
+    decide(cut_decision, true, same, false, Context{&pass, -1, -1, nullptr, nullptr});
 }
 
 void Scoreboard::compare_diagonal(const datapath::TrianglePass& pass, const std::array<golden::Vertex, 3>& given) {
@@ -367,7 +404,8 @@ ConformanceResult Scoreboard::result() const {
                                      s.outside, s.max_error, rms, s.max_bound, s.worst_ratio});
     }
     for (std::size_t k = 0; k < decision_count; ++k) {
-        if (k == highlight_decision && !inputs_.parameters.enabled.highlight)
+        if ((k == highlight_decision && !inputs_.parameters.enabled.highlight) ||
+            (k == cut_decision && !cuts_one_edge()))
             continue;
         const DecisionStatistics& s = decisions_[k];
         result.tests.push_back({decision_names[k].name, decision_names[k].description, s.compared, s.agreed,

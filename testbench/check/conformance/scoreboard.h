@@ -71,6 +71,7 @@ class Scoreboard : public tlm::tlm_analysis_if<datapath::TrianglePass> {
         generation_decision,
         highlight_decision,
         split_decision,
+        cut_decision,
         diagonal_decision,
         in_front_decision,
         decision_count
@@ -95,9 +96,21 @@ class Scoreboard : public tlm::tlm_analysis_if<datapath::TrianglePass> {
 
     void compare_base_vertex(const datapath::TrianglePass& pass, int k, const golden::Vertex& given);
     void compare_edge(const datapath::TrianglePass& pass, int k, const golden::Vertex& i, const golden::Vertex& j);
+    /// What golden reads of a map, and the bound on the hardware's error.
+    template <class Value>
+    struct MapValue {
+        Value value{0};
+        Value error{0};
+    };
+    MapValue<glm::dvec3> map_normal_at(const glm::dvec2& t) const;
+    /// Of P'; t: where the displacement map is read.
+    glm::dvec3 displaced_bound(const glm::dvec3& p, const glm::dvec2& t, const glm::dvec3& n, const glm::dvec3& n_error,
+                               const glm::dvec3& displaced) const;
     /// Whether HT may differ. `difference_leeway`: error bound of golden's normal_difference.
     bool highlight_may_flip(const golden::EdgeEvaluation& golden, const glm::dvec3& normal_bound,
                             double difference_leeway) const;
+    bool cuts_one_edge() const { return inputs_.parameters.diagonal == golden::Diagonal::greatest_rank; }
+    void compare_cut(const datapath::TrianglePass& pass, const std::array<golden::Vertex, 3>& given);
     void compare_diagonal(const datapath::TrianglePass& pass, const std::array<golden::Vertex, 3>& given);
     /// Returns whether in_front flipped as allowed.
     bool compare_displaced(Value position, Value screen, Value w, const datapath::Position& displaced,

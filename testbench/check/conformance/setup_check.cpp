@@ -41,9 +41,10 @@ class RegisterCheck {
         check_light();
         flag("triangulation", number(static_cast<int>(registers_.triangulation)),
              number(static_cast<int>(
-                 job_.hardware.triangulation == Triangulation::first    ? datapath::Triangulation::first
-                 : job_.hardware.triangulation == Triangulation::second ? datapath::Triangulation::second
-                                                                        : datapath::Triangulation::shorter)));
+                 job_.hardware.triangulation == Triangulation::first           ? datapath::Triangulation::first
+                 : job_.hardware.triangulation == Triangulation::second        ? datapath::Triangulation::second
+                 : job_.hardware.triangulation == Triangulation::greatest_rank ? datapath::Triangulation::greatest_rank
+                                                                               : datapath::Triangulation::shorter)));
         flag("back_face_culling", number(registers_.back_face_culling), number(job_.hardware.culling == Culling::back));
     }
 
@@ -193,10 +194,15 @@ class RegisterCheck {
         };
         layout("displacement_map", registers_.displacement_map, map.width(), map.height(), formats_.displacement.bits);
         layout("normal_map", registers_.normal_map, map.width(), map.height(), 3 * formats_.normal.bits);
-        layout("summed_height_table", registers_.summed_height_table, map.width() + 1, map.height() + 1,
-               formats_.summed_height.bits);
+        if (job_.hardware.height_test == HeightTest::rank)
+            layout("rank_table", registers_.height_table, static_cast<int>(map.rank_table().columns),
+                   static_cast<int>(map.rank_table().rows),
+                   static_cast<int>(job_.formats.rank_bits + job_.formats.bound_bits));
+        else
+            layout("summed_height_table", registers_.height_table, map.width() + 1, map.height() + 1,
+                   formats_.summed_height.bits);
         std::array<const TableLayout*, 3> tables{&registers_.displacement_map, &registers_.normal_map,
-                                                 &registers_.summed_height_table};
+                                                 &registers_.height_table};
         std::sort(tables.begin(), tables.end(),
                   [](const TableLayout* a, const TableLayout* b) { return a->base < b->base; });
         for (std::size_t k = 0; k < 2; ++k)
@@ -220,6 +226,12 @@ class RegisterCheck {
              number(golden.area));
         judge_.judge("tests.summed_height_threshold", number(tests.summed_height_threshold),
                      golden.summed_height_threshold * (golden.area ? 1 : 4), rounded_down);
+        judge_.judge("tests.rank_threshold", tests.rank_threshold, golden::rank_threshold(golden_.scene()),
+                     rounded_down, double_rounding * std::ldexp(1.0, formats_.rank_bits));
+        judge_.judge("tests.bound_threshold", tests.bound_threshold,
+                     std::min(golden::bound_threshold(golden_.scene()),
+                              number(golden_.map().rank_table().highest_bound_threshold)),
+                     rounded_down, double_rounding * std::ldexp(1.0, formats_.bound_bits));
         judge_.judge("tests.view_threshold", tests.view_threshold,
                      golden.view_threshold * lsb_per_unit(formats_.screen), rounded_down);
         flag("tests.generation_limit", tests.generation_limit, golden.generation_limit);

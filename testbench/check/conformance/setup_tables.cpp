@@ -50,7 +50,10 @@ class TableCheck {
     void run() {
         check_displacement_map();
         check_normal_map();
-        check_summed_height_table();
+        if (golden_.map().has_ranks())
+            check_rank_table();
+        else
+            check_summed_height_table();
     }
 
   private:
@@ -137,10 +140,23 @@ class TableCheck {
         Judge judge(result_, "summed height table", "every sum of codes, exact modulo 2^bits");
         const golden::Map& map = golden_.map();
         const auto mask = static_cast<std::uint64_t>(registers_.formats.summed_height.highest);
-        each_entry(judge, host_.summed_height_table, registers_.summed_height_table, map.width() + 1, map.height() + 1,
+        each_entry(judge, host_.summed_height_table, registers_.height_table, map.width() + 1, map.height() + 1,
                    [&](std::uint32_t x, std::uint32_t y, std::uint64_t sum) {
                        judge.judge([&] { return fmt::format("({}, {})", x, y); }, number(sum),
                                    number(map.sum({0, 0, x, y}) & mask), exact);
+                   });
+    }
+
+    void check_rank_table() {
+        Judge judge(result_, "rank table", "every entry as the host ranked it");
+        const golden::RankTable& table = golden_.map().rank_table();
+        each_entry(judge, host_.summed_height_table, registers_.height_table, static_cast<int>(table.columns),
+                   static_cast<int>(table.rows), [&](std::uint32_t x, std::uint32_t y, std::uint64_t entry) {
+                       const std::size_t k = std::size_t{y} * static_cast<std::size_t>(table.columns) + x;
+                       const std::uint64_t rank = table.ranks.empty() ? 0 : table.ranks[k];
+                       const std::uint64_t bound = table.bounds.empty() ? 0 : table.bounds[k];
+                       judge.judge([&] { return fmt::format("({}, {})", x, y); }, number(entry),
+                                   number(rank | bound << golden_.job().formats.rank_bits), exact);
                    });
     }
 

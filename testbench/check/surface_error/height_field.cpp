@@ -60,7 +60,7 @@ std::optional<HeightField> find_height_field(const BaseMesh& base, const HeightM
     const auto texels = [&](std::size_t triangle) {
         std::array<glm::dvec2, 3> t;
         for (std::size_t k = 0; k < 3; ++k)
-            t[k] = texel_of(corner(triangle, k), map, displacement);
+            t[k] = texel_of(corner(triangle, k), base, map, displacement);
         return t;
     };
     for (std::size_t k = 0; k < base.triangles.size(); ++k) {
@@ -114,7 +114,7 @@ std::optional<HeightField> find_height_field(const BaseMesh& base, const HeightM
         !holds("the base mesh's normals are not those of its plane",
                [&](const BaseVertex& v) { return glm::length(v.normal - field.normal) <= tolerance; }) ||
         !holds("texture coordinates are not an affine function of position", [&](const BaseVertex& v) {
-            const glm::dvec2 off = glm::abs(field.texel(v.position) - texel_of(v, map, displacement));
+            const glm::dvec2 off = glm::abs(field.texel(v.position) - texel_of(v, base, map, displacement));
             return std::max(off.x, off.y) <= texel_tolerance;
         }))
         return std::nullopt;

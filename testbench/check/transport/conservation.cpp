@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "modules/datapath/bilinear.h"
 #include "testbench/machine/totals.h"
 
 namespace tessera {
@@ -75,13 +76,13 @@ std::uint64_t bumps(const Pipeline& p, std::uint64_t vertices) {
     return p.tessellation_tests.size() == 1 ? vertices : 2 * vertices;
 }
 
-/// Reads of the normal map: of families Displace Vertex bumps the vertices, else the tests do.
-std::uint64_t normal_map_reads(const Pipeline& p, std::uint64_t vertices, std::uint64_t normal) {
+/// Requests to the normal map: of families Displace Vertex bumps the vertices, else the tests do.
+std::uint64_t normal_map_requests(const Pipeline& p, std::uint64_t vertices, std::uint64_t normal) {
     return (p.family_tessellation != nullptr ? vertices : bumps(p, vertices)) + normal;
 }
 
 /// Each edge's tests: `midpoints` of edges are displaced, `normal` and `summed_height` of `edges` edges are evaluated,
-/// `by_codes` of the latter without the Summed Height Table.
+/// `by_codes` of the latter without the Summed Height Table, `off_lattice` without the Rank Table.
 struct Tested {
     std::uint64_t vertices;
     std::uint64_t edges;
@@ -89,16 +90,20 @@ struct Tested {
     std::uint64_t normal;
     std::uint64_t summed_height;
     std::uint64_t by_codes;
+    std::uint64_t off_lattice;
 };
 
-void add_reads(Equations& list, const Pipeline& p, const Tested& tested) {
-    const auto& [vertices, edges, midpoints, normal, summed_height, by_codes] = tested;
-    list.add("reads of displacement_map by displace_vertex = vertices and midpoints",
-             p.displace_vertex.displacement_map.reads(), vertices + midpoints);
-    list.add("reads of displacement_map = vertices, midpoints and texels", p.displacement_map_reads(),
-             vertices + midpoints + by_codes);
-    list.add("reads of normal_map = vertices and edges of normal_test", p.normal_map_reads(),
-             normal_map_reads(p, vertices, normal));
+/// each: entries from which a map is read for a vertex or an edge.
+void add_reads(Equations& list, const Pipeline& p, const Tested& tested, std::uint64_t each) {
+    const auto& [vertices, edges, midpoints, normal, summed_height, by_codes, off_lattice] = tested;
+    const std::string times = each == 1 ? "" : std::to_string(each) + " times ";
+    list.add("reads of displacement_map by displace_vertex = " + times + "vertices and midpoints",
+             p.displace_vertex.displacement_map.reads(), each * (vertices + midpoints));
+    list.add("reads of displacement_map = " + times +
+                 (each == 1 ? "vertices, midpoints and texels" : "vertices and midpoints, and texels"),
+             p.displacement_map_reads(), each * (vertices + midpoints) + by_codes);
+    list.add("reads of normal_map = " + times + "vertices and edges of normal_test", p.normal_map_reads(),
+             each * normal_map_requests(p, vertices, normal));
     list.add("positions of transform = vertices and midpoints", p.transform.positions(), vertices + midpoints);
 }
 
@@ -119,7 +124,7 @@ struct Read {
 };
 
 void add_timed(Equations& list, const MachineSetup& setup, const HostedMachine& machine, const Tested& tested) {
-    const auto& [vertices, edges, midpoints, normal, summed_height, by_codes] = tested;
+    const auto& [vertices, edges, midpoints, normal, summed_height, by_codes, off_lattice] = tested;
     const Pipeline& p = machine.pipeline;
     const auto& counts = p.pass_or_tessellate.counts();
     const bool families = setup.design.work == Work::family;
@@ -166,8 +171,8 @@ void add_timed(Equations& list, const MachineSetup& setup, const HostedMachine& 
              bumps(p, vertices) + normal);
     list.add("edges in tex_coord_test = edges", lanes([](const auto& lane) { return items(lane.tex_coord_test); }),
              edges);
-    list.add("edges in summed_height_test = its edges",
-             tests([](const auto& t) { return items(t.summed_height_test); }), summed_height);
+    list.add("edges in summed_height_test or rank_test = its edges",
+             tests([](const auto& t) { return items(t.height_test); }), summed_height);
     list.add("edges in view_test = edges", lanes([](const auto& lane) { return items(lane.view_test); }), edges);
     if (!families)
         list.add("vertices taken by view_test = vertices, once a unit",
@@ -182,19 +187,22 @@ void add_timed(Equations& list, const MachineSetup& setup, const HostedMachine& 
 
     const Read displacement_map(p.displacement_map, p.displacement_map_cache);
     const Read normal_map(p.normal_map, p.normal_map_cache);
-    const Read summed_height_table(p.summed_height_table, p.summed_height_table_cache);
+    const Read height_table(p.height_table, p.height_table_cache);
     list.add("entries of displacement_map = read", displacement_map.entries(), p.displacement_map_reads());
     list.add("entries of normal_map = read", normal_map.entries(), p.normal_map_reads());
-    list.add("entries of summed_height_table = read by summed_height_test", summed_height_table.entries(),
-             p.summed_height_table_reads());
-    for (const Read& read : {displacement_map, normal_map, summed_height_table})
+    list.add("entries of summed_height_table or rank_table = read by its test", height_table.entries(),
+             p.height_table_reads());
+    for (const Read& read : {displacement_map, normal_map, height_table})
         read.add_fills(list);
     list.add("requests to displacement_map = vertices, midpoints and texels", displacement_map.requests(),
              vertices + midpoints + by_codes);
     list.add("requests to normal_map = vertices and edges of normal_test", normal_map.requests(),
-             normal_map_reads(p, vertices, normal));
-    list.add("requests to summed_height_table = three an edge, if it tests", summed_height_table.requests(),
-             setup.registers.tests.summed_height_test ? 3 * (summed_height - by_codes) : 0);
+             normal_map_requests(p, vertices, normal));
+    const bool rank = setup.registers.formats.height_test == datapath::HeightTest::rank;
+    const std::uint64_t asked = rank ? summed_height - off_lattice : 3 * (summed_height - by_codes);
+    list.add(rank ? "requests to rank_table = edges with a midpoint on the lattice, if it tests"
+                  : "requests to summed_height_table = three an edge, if it tests",
+             height_table.requests(), setup.registers.tests.summed_height_test ? asked : 0);
 
     list.add("triangles spilled = come back", p.triangle_queue.spilled(), p.triangle_queue.refilled());
     list.add("requests to off_chip_memory = out and back", items(p.off_chip_memory), 2 * p.triangle_queue.spilled());
@@ -210,8 +218,9 @@ void add_machine(Equations& list, const MachineSetup& setup, const HostedMachine
     // inside it are tested once.
     const bool final_edges = setup.registers.formats.final_edges;
     const bool families = setup.design.work == Work::family;
-    const std::uint64_t edges = families      ? 3 * counts.finished
-                                : final_edges ? 3 * base + 4 * counts.edges_split
+    // An edge that asks while another is cut is tested again.
+    const std::uint64_t edges = families      ? 3 * counts.finished + counts.edges_uncut
+                                : final_edges ? 3 * base + 4 * counts.edges_split + counts.edges_uncut
                                               : 3 * counts.passes;
     const Decisions::Evaluated& evaluated = machine.decisions.evaluated();
     const Tested tested{3 * base,
@@ -219,13 +228,14 @@ void add_machine(Equations& list, const MachineSetup& setup, const HostedMachine
                         families ? counts.edges_split : edges,
                         evaluated.normal,
                         evaluated.summed_height,
-                        evaluated.summed_height_by_codes};
+                        evaluated.summed_height_by_codes,
+                        evaluated.off_lattice};
     add_triangles(list, setup, machine);
-    list.add(families      ? "edges tested = 3 a finished triangle"
-             : final_edges ? "edges tested = 3 a base triangle, 4 a split"
+    list.add(families      ? "edges tested = 3 a finished triangle, and those tested again"
+             : final_edges ? "edges tested = 3 a base triangle, 4 a split, and those tested again"
                            : "edges tested = 3 a pass",
              counts.edges_tested, edges);
-    add_reads(list, p, tested);
+    add_reads(list, p, tested, datapath::map_entry_count(setup.registers.formats));
     if (setup.design.transport == Transport::non_blocking)
         add_timed(list, setup, machine, tested);
 }

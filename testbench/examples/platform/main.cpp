@@ -53,7 +53,7 @@ struct Places {
 
 Places write_frame(const tessera::PreparedScene& scene, Memory& memory) {
     const std::uint64_t tables = 0;  // at the addresses of their layouts
-    const tessera::datapath::TableLayout& last = scene.registers.summed_height_table;
+    const tessera::datapath::TableLayout& last = scene.registers.height_table;
     const std::uint64_t triangles = (last.base + last.bytes() + 3) / 4 * 4;
     tessera::write_tables(scene, [&](std::uint64_t address, const unsigned char* bytes, std::size_t count) {
         std::memcpy(&memory.bytes.at(tables + address), bytes, count);
@@ -71,7 +71,7 @@ int draw(tessera_driver& driver, const tessera::PreparedScene& scene, const Plac
     const tessera::datapath::Registers& r = scene.registers;
     int result = tessera::program_registers(driver.platform, r);
     tessera_set_tables(&driver, places.tables + r.displacement_map.base, places.tables + r.normal_map.base,
-                       places.tables + r.summed_height_table.base);
+                       places.tables + r.height_table.base);
     tessera_fetch_tables(&driver, 7);
     tessera_set_triangles(&driver, places.triangles, static_cast<std::uint32_t>(scene.base_triangles.size()));
     tessera_set_ring(&driver, places.ring, ring_records);

@@ -36,7 +36,7 @@ void measure(const Job& job, const BaseMesh& mesh, const HeightMap& map, const E
     row.queue_entry_bits = widths.triangle;
     row.displacement_map_bytes = setup.registers.displacement_map.bytes();
     row.normal_map_bytes = setup.registers.normal_map.bytes();
-    row.summed_height_table_bytes = setup.registers.summed_height_table.bytes();
+    row.summed_height_table_bytes = setup.registers.height_table.bytes();
 }
 
 WidthRow make_row(const Quantity& quantity, std::int64_t bits, const Job& job, const BaseMesh& mesh,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -66,6 +67,19 @@ void add_quads(BaseMesh& mesh, std::int64_t columns, std::int64_t rows) {
     }
 }
 
+/// The same with diagonals that alternate like the colours of a chessboard.
+void add_chessboard(BaseMesh& mesh, std::int64_t columns, std::int64_t rows) {
+    const auto line = static_cast<std::uint32_t>(columns + 1);
+    for (std::uint32_t j = 0; j < static_cast<std::uint32_t>(rows); ++j) {
+        for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(columns); ++i) {
+            const std::uint32_t a = j * line + i, b = a + 1, c = b + line, d = a + line;
+            const bool turned = (i + j) % 2 == 1;
+            mesh.triangles.push_back(turned ? std::array{a, b, d} : std::array{a, b, c});
+            mesh.triangles.push_back(turned ? std::array{b, c, d} : std::array{a, c, d});
+        }
+    }
+}
+
 /// The horizontal direction at column i. The seam's second copy uses the first one's index, so that both are
 /// bit-identical.
 glm::dvec2 around(std::int64_t i, std::int64_t columns) {
@@ -95,6 +109,30 @@ BaseMesh make_plane(std::int64_t columns, std::int64_t rows, double width, doubl
         return vertex;
     });
     add_quads(mesh, columns, rows);
+    return finished(std::move(mesh));
+}
+
+BaseMesh make_lattice(const std::array<std::int64_t, 2>& texels, const std::array<bool, 2>& repeats,
+                      std::int64_t spacing, double width, double depth) {
+    check_size("mesh.width", width);
+    check_size("mesh.depth", depth);
+    const auto quads = [&](std::size_t axis) {
+        const std::int64_t across = repeats[axis] ? texels[axis] : texels[axis] - 1;
+        return std::max<std::int64_t>(1, (across + spacing - 1) / spacing);
+    };
+    const std::int64_t columns = quads(0), rows = quads(1);
+    check_triangles(columns, rows);
+    BaseMesh mesh;
+    mesh.beyond_map = true;
+    add_rows(mesh, columns, 0, rows, [&](std::int64_t i, std::int64_t j) {
+        BaseVertex vertex;
+        vertex.texture = {part(2 * i * spacing + 1, 2 * texels[0]), part(2 * j * spacing + 1, 2 * texels[1])};
+        vertex.position = {width * part(2 * i * spacing + 1 - texels[0], 2 * texels[0]),
+                           depth * part(2 * j * spacing + 1 - texels[1], 2 * texels[1]), 0};
+        vertex.normal = {0, 0, 1};
+        return vertex;
+    });
+    add_chessboard(mesh, columns, rows);
     return finished(std::move(mesh));
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 
 #include "testbench/setup/mesh/base_mesh.h"
@@ -15,6 +16,13 @@ namespace tessera {
 /// Flat, z = 0, normal +z, centred on the origin; u along +x over `width`, v along +y over `depth`.
 /// 2 * columns * rows triangles. columns, rows: 1..4096.
 BaseMesh make_plane(std::int64_t columns, std::int64_t rows, double width, double depth);
+
+/// A plane whose vertices lie at centres of texels, `spacing` texels apart from the first one on, so that midpoints lie at
+/// centres too. It reaches beyond the last texels' centres of a map that `spacing` does not divide, up to `spacing` texels;
+/// where the map repeats, it closes if `spacing` divides the map. texels: the map's columns and rows, which cover
+/// `width` by `depth`. spacing: a power of two.
+BaseMesh make_lattice(const std::array<std::int64_t, 2>& texels, const std::array<bool, 2>& repeats,
+                      std::int64_t spacing, double width, double depth);
 
 /// Open, axis z, centred on the origin, normals outward; u runs counter-clockwise seen from +z, with u = 0.5
 /// towards -y; v along +z. 2 * columns * rows triangles. columns: 3..4096, rows: 1..4096.

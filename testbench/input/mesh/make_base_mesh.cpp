@@ -23,7 +23,7 @@ std::int64_t quads(std::int64_t wanted, MeshSource source) {
 }  // namespace
 
 std::array<std::int64_t, 2> quads_of(const Job::Mesh& mesh) {
-    if (mesh.source == MeshSource::file || mesh.source == MeshSource::run)
+    if (mesh.source == MeshSource::file || mesh.source == MeshSource::run || mesh.source == MeshSource::lattice)
         return {0, 0};
     return {quads(mesh.columns, mesh.source), quads(mesh.rows, mesh.source)};
 }
@@ -38,6 +38,8 @@ BaseMesh make_base_mesh(const Job::Mesh& job, const std::string& file) {
             return make_cylinder(columns, rows, job.radius, job.height);
         case MeshSource::sphere:
             return make_sphere(columns, rows, job.radius);
+        case MeshSource::lattice:
+            throw InputError("mesh.source = \"lattice\" depends on the map (load_mesh)");
         case MeshSource::file:
             if (file.empty()) {
                 throw InputError("mesh.file is empty: with mesh.source = \"file\" it must name an OBJ file");

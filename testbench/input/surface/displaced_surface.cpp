@@ -14,8 +14,11 @@ std::int64_t addressed(std::int64_t index, std::int64_t size, Addressing mode) {
     return rest < 0 ? rest + size : rest;
 }
 
-glm::dvec2 texel_of(const BaseVertex& vertex, const HeightMap& map, const DisplacementOf& displacement) {
+glm::dvec2 texel_of(const BaseVertex& vertex, const BaseMesh& mesh, const HeightMap& map,
+                    const DisplacementOf& displacement) {
     glm::dvec2 t = vertex.texture;
+    if (mesh.beyond_map)
+        return t * glm::dvec2(map.width, map.height);
     if (displacement.address_u == Addressing::clamp)
         t.x = std::clamp(t.x, 0.0, 1.0);
     if (displacement.address_v == Addressing::clamp)
@@ -37,7 +40,7 @@ DisplacedSurface::Corners DisplacedSurface::corners(std::size_t triangle) const 
         const BaseVertex& vertex = mesh_.vertices[mesh_.triangles[triangle][k]];
         corners.position[k] = frame_.to_local(vertex.position);
         corners.normal[k] = vertex.normal;
-        corners.texel[k] = texel_of(vertex, map_, displacement_);
+        corners.texel[k] = texel_of(vertex, mesh_, map_, displacement_);
     }
     corners.flat = corners.normal[0] == corners.normal[1] && corners.normal[1] == corners.normal[2];
     return corners;

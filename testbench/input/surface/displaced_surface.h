@@ -88,7 +88,8 @@ class DisplacedSurface {
 std::int64_t addressed(std::int64_t index, std::int64_t size, Addressing mode);
 
 /// A base vertex's texture coordinate in texels, set to the border if it lies outside a clamped axis.
-glm::dvec2 texel_of(const BaseVertex& vertex, const HeightMap& map, const DisplacementOf& displacement);
+glm::dvec2 texel_of(const BaseVertex& vertex, const BaseMesh& mesh, const HeightMap& map,
+                    const DisplacementOf& displacement);
 
 /// A texel's mean length in model units, the unit of errors "in texels": the mean of |dp/du| / width and |dp/dv| /
 /// height, each an area-weighted mean over the base surface (BaseMesh::texture_scale).

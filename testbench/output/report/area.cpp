@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "modules/datapath/bilinear.h"
 #include "modules/datapath/widths.h"
 #include "modules/sockets/items.h"
 #include "testbench/machine/totals.h"
@@ -28,8 +29,10 @@ class AreaCounter {
              std::uint64_t{2} * t.get_triangle.buffer * bits<datapath::Triangle>() + bits<TakenTriangle>());
         stage<GeometryOperands, BasePoint>("calculate_new_p", t.calculate_new_p);
         stage<BasePoint, DisplacedPoint>(
-            "displace_vertex", t.displace_vertex, (f.families ? M::bump : M::normalise) + M::displace, 1,
-            {displace_vertex_latency(design_), f.displacement.bits + (f.families ? 3 * f.normal.bits : 0)});
+            "displace_vertex", t.displace_vertex,
+            (f.families ? M::bump + 3 * interpolate() : M::normalise) + M::displace + interpolate(), 1,
+            {displace_vertex_latency(design_),
+             entries() * (f.displacement.bits + (f.families ? 3 * f.normal.bits : 0))});
         stage<DisplacedPoint, ScreenPoint>("transform", t.transform, M::transform + M::transform_normal,
                                            design_.transform_pipelines);
         edge_tests();
@@ -40,10 +43,12 @@ class AreaCounter {
         unit("triangle_queue", 0, t.triangle_queue.buffer * bits<datapath::Triangle>());
         areas_.back().memory_bits = queue_places * bits<datapath::Triangle>();
         stage<TriangleToLight, LitTriangle>("lighting", t.lighting, 3 * M::light);
-        table("displacement_map", registers_.displacement_map, f.displacement.bits, t.displacement_map, 1);
-        table("normal_map", registers_.normal_map, 3 * f.normal.bits, t.normal_map, 1);
-        table("summed_height_table", registers_.summed_height_table, f.summed_height.bits, t.summed_height_table,
-              corners_of_a_rectangle());
+        const auto addresses = static_cast<std::uint64_t>(entries());
+        table("displacement_map", registers_.displacement_map, f.displacement.bits, t.displacement_map, addresses);
+        table("normal_map", registers_.normal_map, 3 * f.normal.bits, t.normal_map, addresses);
+        const bool rank = f.height_test == datapath::HeightTest::rank;
+        table(table_name(f.height_test), registers_.height_table, datapath::height_entry_bits(f),
+              height_table_timing(t, f.height_test), rank ? 1 : corners_of_a_rectangle());
         return std::move(areas_);
     }
 
@@ -69,6 +74,11 @@ class AreaCounter {
                                       (std::max(in, out) + static_cast<std::uint64_t>(read.bits)),
              copies);
     }
+
+    /// Of a map, of a vertex or edge.
+    int entries() const { return static_cast<int>(datapath::map_entry_count(registers_.formats)); }
+    /// Multiplications for one value between texels.
+    unsigned interpolate() const { return entries() == 1 ? 0 : Multiplications::interpolate; }
 
     unsigned culling() const { return registers_.back_face_culling ? Multiplications::faces_away : 0; }
 
@@ -110,12 +120,17 @@ class AreaCounter {
 
         stage<TestOperands, TestOperands>("calculate_new_u", t.calculate_new_u, 0, 1, {0, 2 * f.texture.bits}, lanes);
         stage<TexCoordOperands, TexCoordResult>("tex_coord_test", t.tex_coord_test, 0, 1, {}, lanes);
-        stage<HeightOperands, HeightResult>("summed_height_test", t.summed_height_test,
-                                            area ? M::summed_height_limit : 0, 1,
-                                            {summed_height_latency(design_, f), 3 * f.summed_height.bits}, copies);
-        stage<NormalOperands, NormalResult>("normal_test", normal,
-                                            2 * M::normalise + M::bump + (tests.highlight_test ? M::highlight_test : 0),
-                                            1, {t.read_latency(t.normal_map), 3 * f.normal.bits}, normal_tests);
+        if (f.height_test == datapath::HeightTest::rank)
+            stage<HeightOperands, HeightResult>("rank_test", t.rank_test, 0, 1,
+                                                {t.read_latency(t.rank_table), datapath::height_entry_bits(f)}, copies);
+        else
+            stage<HeightOperands, HeightResult>("summed_height_test", t.summed_height_test,
+                                                area ? M::summed_height_limit : 0, 1,
+                                                {summed_height_latency(design_, f), 3 * f.summed_height.bits}, copies);
+        stage<NormalOperands, NormalResult>(
+            "normal_test", normal,
+            2 * M::normalise + M::bump + 3 * interpolate() + (tests.highlight_test ? M::highlight_test : 0), 1,
+            {t.read_latency(t.normal_map), entries() * 3 * f.normal.bits}, normal_tests);
         if (!f.families)
             areas_.back().register_bits += copies * corners;
         stage<ViewOperands, ViewResult>("view_test", t.view_test, 0, 1, {}, lanes);

@@ -197,7 +197,7 @@ std::string error_text(const Job& job, const RecordedMesh& mesh, const MeshError
                             error.interpolated.mesh_to_reference.samples, density_text(error.mesh_density, "texel")));
     text += "\n" + figures_heading("texels");
     text += surface_rows("map interpolated (the headline)", error.interpolated, error.texel);
-    text += surface_rows("map as the hardware reads it", error.nearest_texel, error.texel);
+    text += surface_rows("map's nearest texel, as without a filter", error.nearest_texel, error.texel);
     text += "\n";
     text += worst_rows("worst, reference to mesh", mesh, error.interpolated.reference_to_mesh);
     text += worst_rows("worst, mesh to reference", mesh, error.interpolated.mesh_to_reference);

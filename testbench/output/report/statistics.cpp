@@ -65,6 +65,10 @@ Collector format_figures(const MachineSetup& setup) {
     c.add("summed_height_bits_needed",
           setup.largest_rectangle_sum == 0 ? 1 : 64 - datapath::leading_zeros(setup.largest_rectangle_sum), "bit",
           "narrowest SAT entry that holds that sum");
+    if (formats.height_test == datapath::HeightTest::rank) {
+        c.add("rank_bits", formats.rank_bits, "bit", "of a rank in the Rank Table");
+        c.add("bound_bits", formats.bound_bits, "bit", "of a bound in the Rank Table");
+    }
     c.add("view_distance_fraction", formats.view_distance.fraction, "bit", "of w, as wide as a position");
     c.add("screen_bits", formats.screen.bits, "bit", "P's, x or y");
     c.add("queue_entry", widths.triangle, "bit", "one triangle in the Triangle Queue");
@@ -191,7 +195,7 @@ Collector useful_work_figures(const Totals& totals, const Decisions::Evaluated& 
     c.add("edge_tests", tested, "edge", "edges tested: one of a triangle, in each pass; final edges are not");
     c.add("normal_tests", evaluated.normal, "edge", "of these, edges whose Normal Test was evaluated");
     c.add("summed_height_tests", evaluated.summed_height, "edge",
-          "likewise the Summed Height Test, unless it is switched off");
+          "likewise the Summed Height Test, or the test in its place, unless it is switched off");
     c.add("summed_height_tests_by_codes", evaluated.summed_height_by_codes, "edge",
           "of these, edges whose rectangles are single texels, with hardware.one_texel_from_map");
     c.add("tests_per_edge", per(tested, mesh.tested_edges()), "times", "edge tests per distinct edge");
@@ -264,7 +268,7 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     decide.add("split_by_normal", decided.split_by_normal, "edge",
                "split by the Normal Test, while the Summed Height Test was false");
     decide.add("split_by_summed_height", decided.split_by_summed_height, "edge",
-               "split by the Summed Height Test, while the Normal Test was false");
+               "split by the Summed Height Test, or the test in its place, while the Normal Test was false");
     decide.add("split_by_both", decided.split_by_both, "edge", "split by both");
     if (setup.registers.tests.highlight_test) {
         decide.add("split_by_highlight", decided.split_by_highlight, "edge",
@@ -272,6 +276,9 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
         decide.add("split_in_highlight", decided.split_in_highlight, "edge",
                    "split while the Highlight Test was true, whatever the others said");
     }
+    if (setup.registers.triangulation == datapath::Triangulation::greatest_rank)
+        decide.add("edges_uncut", counts.edges_uncut, "edge",
+                   "asked to be split while another edge of the triangle was cut, and were tested again");
     decide.add("stopped_by_view", decided.stopped_by_view, "edge",
                "kept whole by the View Test (perhaps among others)");
     decide.add("stopped_by_tex_coord", decided.stopped_by_tex_coord, "edge", "likewise the Tex Coord Test");
@@ -315,8 +322,8 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     table("displacement_map", setup.registers.displacement_map, totals.displacement_map_reads,
           &Pipeline::displacement_map_cache);
     table("normal_map", setup.registers.normal_map, totals.normal_map_reads, &Pipeline::normal_map_cache);
-    table("summed_height_table", setup.registers.summed_height_table, totals.summed_height_table_reads,
-          &Pipeline::summed_height_table_cache);
+    table(table_name(setup.registers.formats.height_test), setup.registers.height_table, totals.height_table_reads,
+          &Pipeline::height_table_cache);
 
     Collector saturated("saturations");
     for (const SaturationFigure& figure : saturation_figures(setup, totals.saturations))

@@ -59,11 +59,12 @@ DirectMap::DirectMap(const datapath::MapGeometry& geometry, std::vector<std::uin
                                      codes_[(y - 1) % geometry.height * geometry.width + (x - 1) % geometry.width];
 }
 
-std::size_t DirectMap::index(std::uint32_t x, std::uint32_t y) const {
-    const auto inside = [](std::uint32_t at, std::uint32_t size, AddressMode mode) {
-        return mode == AddressMode::repeat ? at % size : std::min(at, size - 1);
+std::size_t DirectMap::index(std::int64_t x, std::int64_t y) const {
+    const auto inside = [](std::int64_t at, std::int64_t size, AddressMode mode) {
+        return static_cast<std::size_t>(mode == AddressMode::repeat ? at - divide_down(at, size) * size
+                                                                    : std::clamp<std::int64_t>(at, 0, size - 1));
     };
-    return std::size_t{inside(y, geometry_.height, geometry_.address_v)} * geometry_.width +
+    return inside(y, geometry_.height, geometry_.address_v) * geometry_.width +
            inside(x, geometry_.width, geometry_.address_u);
 }
 
@@ -76,6 +77,25 @@ std::uint64_t DirectMap::sum(std::uint32_t x, std::uint32_t y, std::uint32_t wid
 DirectEdge::Texel DirectEdge::texel(const datapath::TexCoord& t) const {
     const std::uint32_t unit = std::uint32_t{1} << registers_.formats.texture.fraction;
     return {t.u / unit, t.v / unit};
+}
+
+/// Between texels: a weighted sum of four, in quarters of the square of t's unit.
+template <class Value>
+std::int64_t DirectEdge::read(const datapath::TexCoord& t, int fraction, Value value) const {
+    const datapath::Formats& formats = registers_.formats;
+    if (formats.filter == datapath::MapFilter::nearest) {
+        const Texel at = texel(t);
+        return value(at.x, at.y);
+    }
+    const std::int64_t whole = std::int64_t{2} << formats.texture.fraction;  // a texel, in halves of t's unit
+    const std::int64_t u = 2 * std::int64_t{t.u} - whole / 2, v = 2 * std::int64_t{t.v} - whole / 2;
+    const std::int64_t x = divide_down(u, whole), y = divide_down(v, whole);
+    std::int64_t sum = 0;
+    for (std::int64_t right = 0; right < 2; ++right)
+        for (std::int64_t up = 0; up < 2; ++up)
+            sum += (whole - std::abs(u - (x + right) * whole)) * (whole - std::abs(v - (y + up) * whole)) *
+                   value(x + right, y + up);
+    return nearest(sum, 2 * formats.texture.fraction + 2 - fraction);
 }
 
 /// A tenth of an LSB in a format of 18 bits is a million times a double's rounding error.
@@ -101,20 +121,24 @@ bool DirectEdge::is_bumped(const Vertex& v) const {
         return v.handedness * nearest(a * b - c * d, fraction);
     };
     const std::int64_t bx = cross(n.y, t.z, n.z, t.y), by = cross(n.z, t.x, n.x, t.z), bz = cross(n.x, t.y, n.y, t.x);
-    const Texel at = texel(v.texture);
-    const Direction& m = map_.normal(at.x, at.y);
+    const auto component = [&](std::int32_t Direction::*which) {
+        return read(v.texture, 0, [&](auto x, auto y) { return std::int64_t{map_.normal(x, y).*which}; });
+    };
+    const std::int64_t mx = component(&Direction::x), my = component(&Direction::y), mz = component(&Direction::z);
     const auto combined = [&](std::int64_t tangent, std::int64_t bitangent, std::int64_t normal) {
-        return nearest(m.x * tangent + m.y * bitangent + m.z * normal, std::max(0, fraction - 2));
+        return nearest(mx * tangent + my * bitangent + mz * normal, std::max(0, fraction - 2));
     };
     return is_unit({combined(t.x, bx, n.x), combined(t.y, by, n.y), combined(t.z, bz, n.z)}, v.displaced_normal);
 }
 
 bool DirectEdge::is_displaced(const Vertex& v) const {
     const datapath::Formats& formats = registers_.formats;
-    const Texel at = texel(v.texture);
-    const std::int64_t height =
-        nearest(std::int64_t{registers_.displacement.scale} * map_.code(at.x, at.y), formats.displacement.bits) +
-        registers_.displacement.bias;
+    // An interpolated code is exact or keeps eight fraction bits.
+    const int fraction =
+        formats.filter == datapath::MapFilter::nearest ? 0 : std::min(8, 2 * std::max(1, formats.texture.fraction));
+    const std::int64_t code = read(v.texture, fraction, [&](auto x, auto y) { return std::int64_t{map_.code(x, y)}; });
+    const std::int64_t height = nearest(registers_.displacement.scale * code, formats.displacement.bits + fraction) +
+                                registers_.displacement.bias;
     const auto right = [&](std::int64_t base, std::int64_t normal, std::int64_t found) {
         return found == std::clamp(base + nearest(height * normal, formats.normal.fraction), formats.position.lowest,
                                    formats.position.highest);

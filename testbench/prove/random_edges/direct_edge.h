@@ -14,14 +14,14 @@ class DirectMap {
     DirectMap(const datapath::MapGeometry& geometry, std::vector<std::uint32_t> codes,
               std::vector<datapath::Direction> normals);
 
-    std::uint32_t code(std::uint32_t x, std::uint32_t y) const { return codes_[index(x, y)]; }
-    const datapath::Direction& normal(std::uint32_t x, std::uint32_t y) const { return normals_[index(x, y)]; }
+    std::uint32_t code(std::int64_t x, std::int64_t y) const { return codes_[index(x, y)]; }
+    const datapath::Direction& normal(std::int64_t x, std::int64_t y) const { return normals_[index(x, y)]; }
     /// Sum of the codes in columns x .. x + width, rows y .. y + height; x, y inside the map, the size no larger.
     std::uint64_t sum(std::uint32_t x, std::uint32_t y, std::uint32_t width, std::uint32_t height) const;
 
   private:
     /// Index of a texel; outside the map the border's texel, or the texel whole periods away.
-    std::size_t index(std::uint32_t x, std::uint32_t y) const;
+    std::size_t index(std::int64_t x, std::int64_t y) const;
 
     datapath::MapGeometry geometry_;
     std::vector<std::uint32_t> codes_;
@@ -61,6 +61,9 @@ class DirectEdge {
         std::uint32_t x, y;
     };
     Texel texel(const datapath::TexCoord& t) const;
+    /// A value of the map at t, as the design reads it, with `fraction` fraction bits if that is between texels.
+    template <class Value>
+    std::int64_t read(const datapath::TexCoord& t, int fraction, Value value) const;
     std::uint32_t first_texel(std::uint32_t coordinate, std::uint32_t extent, std::uint32_t size,
                               datapath::AddressMode mode) const;
     bool is_unit(const std::array<std::int64_t, 3>& vector, const datapath::Direction& unit) const;

@@ -1,13 +1,14 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
+#include "modules/datapath/bilinear.h"
 #include "modules/datapath/bump.h"
 #include "modules/datapath/displace.h"
 #include "modules/datapath/edge_tests.h"
-#include "modules/datapath/map_address.h"
 #include "modules/datapath/map_entry.h"
 #include "modules/datapath/midpoint.h"
 #include "modules/datapath/normalise.h"
@@ -36,8 +37,7 @@ inline Tables make_tables(datapath::Registers& registers, const std::vector<std:
     const datapath::Formats& formats = registers.formats;
     registers.displacement_map = {0x1000, width, height, datapath::entry_bytes(formats.displacement.bits)};
     registers.normal_map = {0x20000000, width, height, datapath::entry_bytes(3 * formats.normal.bits)};
-    registers.summed_height_table = {0x40000000, width + 1, height + 1,
-                                     datapath::entry_bytes(formats.summed_height.bits)};
+    registers.height_table = {0x40000000, width + 1, height + 1, datapath::entry_bytes(formats.summed_height.bits)};
     Tables tables;
     tables.codes = codes;
     for (const datapath::Direction& n : normals)
@@ -62,7 +62,7 @@ class Machine {
     datapath::Saturations saturations;
 
     std::uint64_t sum_around(const datapath::TexCoord& t, const datapath::RectangleSize& size) const {
-        const datapath::TableLayout& table = registers.summed_height_table;
+        const datapath::TableLayout& table = registers.height_table;
         return rectangle_sum(centred_rectangle(t, size, registers.map, registers.formats), registers.map, table,
                              registers.formats,
                              [&](std::uint64_t address) { return tables_.sums.at(Tables::entry(address, table)); });
@@ -76,19 +76,16 @@ class Machine {
 
     datapath::Direction bumped(const datapath::Direction& n, const datapath::Direction& t, int handedness,
                                const datapath::TexCoord& texture) {
-        const std::uint64_t address = texel_address(texture, registers.normal_map, registers.map, registers.formats);
-        return bump(n, t, handedness,
-                    datapath::unpack_normal(tables_.normals.at(Tables::entry(address, registers.normal_map)),
-                                            registers.formats.normal.bits),
-                    registers.formats, saturations);
+        const auto entries = entries_at(texture, registers.normal_map, tables_.normals);
+        return bump(n, t, handedness, map_normal(texture, entries.data(), registers.formats), registers.formats,
+                    saturations);
     }
 
     datapath::Position displaced(const datapath::Position& p, const datapath::Direction& n,
                                  const datapath::TexCoord& texture) {
-        const std::uint64_t address =
-            texel_address(texture, registers.displacement_map, registers.map, registers.formats);
-        return displace(p, n, tables_.codes.at(Tables::entry(address, registers.displacement_map)),
-                        registers.displacement, registers.formats, saturations);
+        const auto entries = entries_at(texture, registers.displacement_map, tables_.codes);
+        return displace(p, n, map_code(texture, entries.data(), registers.formats), registers.displacement,
+                        registers.formats, saturations);
     }
 
     /// Calculates a base vertex's values of its first pass.
@@ -160,6 +157,16 @@ class Machine {
     }
 
   private:
+    template <class Entry>
+    std::array<std::uint64_t, 4> entries_at(const datapath::TexCoord& texture, const datapath::TableLayout& table,
+                                            const std::vector<Entry>& map) const {
+        std::array<std::uint64_t, 4> entries{};
+        std::size_t count = 0;
+        map_entries(texture, table, registers.map, registers.formats,
+                    [&](std::uint64_t address) { entries.at(count++) = map.at(Tables::entry(address, table)); });
+        return entries;
+    }
+
     Tables tables_;
 };
 

@@ -29,6 +29,8 @@ Formats any_formats(Random& random, FormatWidths widths) {
     const int displacement = bits(1, 16);
     formats.displacement = Format::make_unsigned(displacement, displacement);
     formats.screen = Format::make_signed(screen, random.integer32(0, screen - 1));
+    if (random.coin())
+        formats.filter = datapath::MapFilter::bilinear;
     return formats;
 }
 

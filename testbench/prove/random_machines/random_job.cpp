@@ -120,6 +120,25 @@ void make_random_job(Random& random, const JobContext& context, Job& job) {
     job.limits.cycles_without_progress = 200000;
 }
 
+namespace {
+
+void choose_height_test(Random& random, Job& job) {
+    if (random.chance(75))
+        return;
+    job.hardware.height_test = HeightTest::rank;
+    if (random.chance(70))
+        job.hardware.triangulation = Triangulation::greatest_rank;
+    job.formats.rank_bits = random.one_of<std::int64_t>({0, 6, 8, 11, 16});
+    job.formats.bound_bits = job.formats.rank_bits == 0 ? 8 : random.one_of<std::int64_t>({0, 0, 6, 13});
+    job.tests.rank_threshold = random.one_of({0.002, 0.02, 0.2});
+    job.tests.bound_threshold = random.one_of({0.002, 0.02, 0.2});
+    job.timing.rank_test = {random.natural(1, 9), random.natural(1, 3), random.natural(1, 5)};
+    job.timing.rank_table = {random.natural(1, 4), random.natural(1, 4), random.natural(0, 20), 0,
+                             random.natural(1, 4)};
+}
+
+}  // namespace
+
 void choose_evaluations(Random& random, Job& job) {
     job.hardware.test_order = random.coin() ? TestOrder::parallel : TestOrder::cheap_first;
     job.hardware.final_edges = random.coin();
@@ -139,11 +158,14 @@ void choose_evaluations(Random& random, Job& job) {
         table.banks = 1U << random.natural(0, 6);
     }
     job.hardware.one_texel_from_map = random.coin();
+    if (random.coin())
+        job.hardware.displacement_filter = MapFilter::bilinear;
+    choose_height_test(random, job);
     if (random.chance(15))
         job.hardware.machines = random.integer(2, 4);
     if (random.chance(60))
         return;
-    for (MemoryTiming* memory : {&job.timing.displacement_map, &job.timing.normal_map, &table})
+    for (MemoryTiming* memory : {&job.timing.displacement_map, &job.timing.normal_map, &table, &job.timing.rank_table})
         memory->cache = {random.one_of({0U, 1U, 300U, 4096U}), random.one_of({1U, 16U, 64U, 100U}),
                          random.natural(1, 4), random.natural(1, 20)};
 }

@@ -28,6 +28,9 @@ struct BaseMesh {
         double smallest_u = 1, largest_u = 1, smallest_v = 1, largest_v = 1;
     } texture_scale;
 
+    /// Texture coordinates beyond a clamped map stay, where others are set to its border: a lattice reaches beyond it.
+    bool beyond_map = false;
+
     std::optional<glm::dvec3> up;  ///< the model's up, any length, if the source defines it
 
     std::size_t dropped_degenerate = 0;  ///< triangles of zero area or with the same vertex twice, dropped at loading

@@ -98,6 +98,19 @@ TEST_CASE("compare tells the default run's error") {
           value(error, "interpolated", "reference_to_mesh_rms"));
 }
 
+TEST_CASE("where all edges split, a bilinear filter leaves a third of the error, in either design") {
+    const TestFolder here;
+    const auto rms = [&](const std::string& filter, const std::string& design) {
+        run_job(here.path(), {"--set", "map.width=96", "--set", "map.height=96", "--set", "tests.normal_threshold=0",
+                              "--set", "tests.summed_height_threshold=0", "--set", "tests.view=false", "--set",
+                              "hardware.displacement_filter=" + filter, "--set", "hardware.design=" + design});
+        return value(compare(here.path(), "runs/half_donut"), "interpolated", "reference_to_mesh_rms");
+    };
+    const double nearest = rms("nearest", "paper"), bilinear = rms("bilinear", "paper");
+    CHECK(3 * bilinear < nearest);
+    CHECK(rms("bilinear", "modern") == bilinear);
+}
+
 TEST_CASE("an undisplaced run of a constant map has the error its bias makes") {
     const TestFolder here;
     run_job(here.path(), {"--set", "map.source=constant", "--set", "displacement.bias=0.25"});

@@ -79,6 +79,37 @@ TEST_CASE("map: nearest texel, borders, and any number of periods") {
     CHECK(mixed.texel({5, 3}) == 10);
 }
 
+TEST_CASE("map: between four texels, borders, and any number of periods") {
+    const Filter filter = Filter::bilinear;
+    const std::vector<double> codes{10, 20, 60, 30, 50, 10};  // 3 x 2
+    const Map clamped(3, 2, AddressMode::clamp, AddressMode::clamp, codes);
+    const Map repeated(3, 2, AddressMode::repeat, AddressMode::repeat, codes);
+    for (std::size_t texel = 0; texel < 6; ++texel) {
+        const glm::dvec2 centre(0.5 + static_cast<double>(texel % 3), 0.5 + static_cast<double>(texel / 3));
+        CHECK(clamped.code(centre, filter) == codes[texel]);
+        CHECK(repeated.code(centre, filter) == codes[texel]);
+    }
+    CHECK(clamped.code({0.75, 0.5}, filter) == 12.5);
+    CHECK(clamped.code({1, 0.75}, filter) == 0.75 * 15 + 0.25 * 40);
+    CHECK(clamped.code({0, 0}, filter) == 10);
+    CHECK(clamped.code({3, 2}, filter) == 10);
+    CHECK(clamped.code({3, 1}, filter) == 35);
+    CHECK(repeated.code({0, 0.5}, filter) == 35);
+    CHECK(repeated.code({3, 0.5}, filter) == 35);
+    CHECK(repeated.code({0, 0}, filter) == (10 + 60 + 30 + 10) / 4.0);
+    for (int period = -4; period <= 4; ++period)
+        CHECK(repeated.code({3 * period + 0.75, 0.5 - 2 * period}, filter) == 12.5);
+    CHECK(clamped.code({1.9, 0.2}, Filter::nearest) == 20);
+}
+
+TEST_CASE("map: normals between texels are weighted and not normalised") {
+    Map map(2, 1, AddressMode::clamp, AddressMode::clamp, {0, 0});
+    map.set_normals({{1, 0, 0}, {0, 0, 1}});
+    CHECK(map.normal({1, 0.5}, Filter::bilinear) == glm::dvec3(0.5, 0, 0.5));
+    CHECK(map.normal({0.75, 0.25}, Filter::bilinear) == glm::dvec3(0.75, 0, 0.25));
+    CHECK(map.normal({1, 0.5}, Filter::nearest) == glm::dvec3(0, 0, 1));
+}
+
 TEST_CASE("map: rectangles of the Summed Height Test") {
     const auto same = [](const Rectangle& r, std::int64_t x, std::int64_t y, std::int64_t w, std::int64_t h) {
         return r.x == x && r.y == y && r.width == w && r.height == h;

@@ -238,6 +238,9 @@ TEST_CASE("the map's range is full, data or two ends") {
     CHECK_THAT(set_error_of("map.range=[1, 2, 3]"), Contains("or two numbers"));
     CHECK_THAT(set_error_of("map.range=\"dat\""), Contains("did you mean \"data\"?"));
     CHECK_THAT(set_error_of("map.range=1"), Contains("one of full, data, or two numbers"));
+    apply_setting(job, "hardware.displacement_filter=bilinear");
+    CHECK(job.hardware.displacement_filter == MapFilter::bilinear);
+    CHECK_THAT(set_error_of("hardware.displacement_filter=bilinaer"), Contains("did you mean \"bilinear\"?"));
 }
 
 TEST_CASE("a file named without a source is an OBJ file, or an image") {

@@ -214,7 +214,15 @@ TEST_CASE("keys that contradict each other") {
             {"mesh.source=file; map.source=file", {"`mesh.file`", "\n`map.file`"}},
             {"mesh.source=cylinder; mesh.columns=2", {"a cylinder closes around itself"}},
             {"mesh.source=sphere; mesh.rows=1", {"a sphere has 2 or more"}},
+            {"mesh.source=lattice; mesh.spacing=24", {"`mesh.spacing` = 24: a lattice needs a power of two"}},
+            {"mesh.source=lattice; mesh.spacing=1", {}},
             {"map.source=text; map.text=", {"`map.text` is empty"}},
+
+            {"hardware.triangulation=greatest_rank",
+             {"`hardware.triangulation` = \"greatest_rank\", but `hardware.height_test` = \"summed_height\" has no ranks"}},
+            {"hardware.triangulation=greatest_rank; hardware.height_test=rank", {}},
+            {"formats.rank_bits=0", {"`formats.rank_bits` = 0 and `formats.bound_bits` = 0"}},
+            {"formats.rank_bits=0; formats.bound_bits=6", {}},
 
             {"formats.texture_integer=8; map.width=256; map.height=256", {}},
             {"formats.texture_integer=7", {"`formats.texture_integer` = 7 addresses at most 128"}},

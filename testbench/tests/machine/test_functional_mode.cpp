@@ -97,8 +97,8 @@ TEST_CASE("reads through DMI and by transactions are counted alike") {
     const Pipeline& p = simulation.pipeline;
     CHECK(p.displace_vertex.displacement_map.reads() == p.displacement_map.transactions());
     CHECK(p.normal_map_reads() == p.normal_map.transactions());
-    CHECK(p.summed_height_table_reads() == p.summed_height_table.transactions());
-    CHECK(p.summed_height_table.transactions() == 12 * p.edges_tested());
+    CHECK(p.height_table_reads() == p.height_table.transactions());
+    CHECK(p.height_table.transactions() == 12 * p.edges_tested());
     CHECK(p.displacement_map.transactions() == p.edges_tested() + 3 * setup.base_triangles.size());
 }
 
@@ -174,7 +174,9 @@ const CaseTable overtaking(
     {OvertakingRow{"the paper's design", ""},
      {"the cheap tests first",
       "hardware.test_order=cheap_first hardware.final_edges=true hardware.one_texel_from_map=true"},
-     {"families", "hardware.design=modern"}},
+     {"families", "hardware.design=modern"},
+     {"a bilinear filter", "hardware.displacement_filter=bilinear"},
+     {"a bilinear filter, families", "hardware.displacement_filter=bilinear hardware.design=modern"}},
     [](const OvertakingRow& row) {
         Detours detours;
         // many at a time, so that the host sends while the queue does

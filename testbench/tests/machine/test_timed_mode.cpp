@@ -51,6 +51,8 @@ const CaseTable meshes(
          "timing.summed_height_table_ports=4 timing.summed_height_table_banks=2 "
          "timing.summed_height_table_width=3"},
         {"a cylinder in repeat, three tests units, stalls", cylinder, "hardware.tests_units=3 " + stalls(5, 400), 3000},
+        {"a cylinder in repeat, a bilinear filter, stalls", cylinder,
+         "hardware.displacement_filter=bilinear " + stalls(6, 300), 3000},
 
         {"random stalls, seed 1, 100 per mille", small, stalls(1, 100)},
         {"random stalls, seed 2, 300 per mille, up to 40 cycles", small, stalls(2, 300, 40)},
@@ -124,7 +126,7 @@ TEST_CASE("timed mesh: every item through its packed form, three tests units, a 
 TEST_CASE("timed mesh: a cylinder in repeat, whose rectangles wrap") {
     const CheckedRun run(with_settings(timed_job(), cylinder));
     // up to nine entries where one wraps
-    CHECK(run.pipeline.summed_height_table.transactions() > 12 * run.pipeline.edges_tested());
+    CHECK(run.pipeline.height_table.transactions() > 12 * run.pipeline.edges_tested());
     CHECK(run.pipeline.edges_tested() > 3000);
 }
 
@@ -147,6 +149,6 @@ TEST_CASE("timed mesh: last in first out, 64 places are enough: nothing is spill
 // The same counts as without; only time differs.
 TEST_CASE("timed mesh: stalls cost cycles and nothing else") {
     const CheckedRun run(with_settings(timed_job(), small + stalls(31, 300)));
-    CHECK(run.pipeline.summed_height_table.transactions() == 12 * run.pipeline.edges_tested());
+    CHECK(run.pipeline.height_table.transactions() == 12 * run.pipeline.edges_tested());
     CHECK(run.simulation.cycles() > 36 * run.counts.passes + 17);
 }

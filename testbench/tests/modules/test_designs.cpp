@@ -186,6 +186,33 @@ const CaseTable designs(
          "timing.displacement_map_line_bytes=1 timing.normal_map_line_bytes=1 timing.summed_height_table_line_bytes=1 "
          "timing.displacement_map_cache_fills=1 timing.normal_map_cache_fills=1 "
          "timing.summed_height_table_cache_fills=1"},
+        {"a bilinear filter", "hardware.displacement_filter=bilinear"},
+        {"a bilinear filter, functional", "hardware.displacement_filter=bilinear mode=functional"},
+        {"a bilinear filter, three tests units, random stalls",
+         "hardware.displacement_filter=bilinear hardware.tests_units=3 timing.stalls_seed=3 "
+         "timing.stalls_per_mille=300 timing.stalls_longest=20"},
+        {"a bilinear filter, sums over one texel from the map",
+         "hardware.displacement_filter=bilinear hardware.one_texel_from_map=true hardware.final_edges=true"},
+        {"a bilinear filter, banks of maps",
+         "hardware.displacement_filter=bilinear timing.displacement_map_banks=4 timing.normal_map_banks=16 "
+         "timing.normal_map_ports=2 timing.normal_map_latency=7"},
+        {"a bilinear filter, caches of one line of one entry, a queue of one place that spills, random stalls",
+         "hardware.displacement_filter=bilinear timing.displacement_map_cache_bytes=1 "
+         "timing.normal_map_cache_bytes=1 timing.displacement_map_line_bytes=1 timing.normal_map_line_bytes=1 "
+         "timing.displacement_map_cache_fills=1 timing.normal_map_cache_fills=1 hardware.queue_capacity=1 "
+         "timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=20"},
+        {"a bilinear filter, families", "hardware.displacement_filter=bilinear hardware.design=modern"},
+        {"a bilinear filter, families, functional",
+         "hardware.displacement_filter=bilinear hardware.design=modern mode=functional"},
+        {"a bilinear filter, families, all tables behind caches, random stalls",
+         "hardware.displacement_filter=bilinear hardware.design=modern timing.displacement_map_cache_bytes=4096 "
+         "timing.normal_map_cache_bytes=4096 timing.summed_height_table_cache_bytes=8192 timing.stalls_seed=5 "
+         "timing.stalls_per_mille=300 timing.stalls_longest=20"},
+        {"a bilinear filter, three machines of families, a queue of one place that spills",
+         "hardware.displacement_filter=bilinear hardware.machines=3 hardware.design=modern "
+         "hardware.queue_capacity=1"},
+        {"a bilinear filter, Highlight Test and culling",
+         "hardware.displacement_filter=bilinear tests.highlight=true hardware.culling=back"},
         {"three machines", "hardware.machines=3"},
         {"three machines, functional", "hardware.machines=3 mode=functional"},
         {"three machines of families, three lanes, a queue of one place that spills, random stalls",
@@ -213,14 +240,14 @@ const CaseTable designs(
         bare.walk(expected);
         const bool summed_height = run.setup.registers.tests.summed_height_test;
         CHECK(2 * totals.counts.edges_tested == expected.edges);
-        CHECK(totals.summed_height_table_reads ==
-              (summed_height ? 6 * (expected.summed_height - expected.by_codes) : 0));
+        CHECK(totals.height_table_reads == (summed_height ? 6 * (expected.summed_height - expected.by_codes) : 0));
         if (expected.from_map && summed_height) {
             CHECK(expected.by_codes > 1000);
             CHECK((expected.families || expected.by_codes < expected.summed_height));  // whose base edges have none
         }
         const std::uint64_t corners = (run.setup.design.tests_units == 1 ? 3 : 6) * run.setup.base_triangles.size();
-        CHECK(2 * totals.normal_map_reads == 2 * corners + expected.normal);
+        const bool bilinear = run.setup.registers.formats.filter == datapath::MapFilter::bilinear;
+        CHECK(2 * totals.normal_map_reads == (bilinear ? 4 : 1) * (2 * corners + expected.normal));
         const Decisions::Counts& counts = totals.decided;
         CHECK(counts.split_by_both == expected.split_by_both);
         CHECK(counts.stopped_by_view_alone == expected.stopped_by_view_alone);

@@ -269,7 +269,7 @@ TEST_CASE("one triangle: its parts and reads") {
     CHECK(p.get_triangle.parts_sent() == 9);
     CHECK(p.displacement_map.transactions() == 6);
     CHECK(p.normal_map.transactions() == 6);
-    CHECK(p.summed_height_table.transactions() == 36);
+    CHECK(p.height_table.transactions() == 36);
     CHECK(p.pass_or_tessellate.counts().normal_passes == 1);
     // an idle machine blocks nobody but Calculate New U, from cycle 6, when the View Test's input is full, to 31, and
     // Get Triangle's way to it is free: its input has room for edge 2

@@ -276,7 +276,7 @@ void expect_halved_test(const Job& job) {
     const auto* const unit = sc_core::sc_find_object("halved.pipeline.tessellation_tests_0.summed_height_test");
     REQUIRE(unit != nullptr);
     CHECK(typeid(*unit) == typeid(HalvedHeightTest));
-    CHECK(unit == &halved.pipeline.tessellation_tests[0].summed_height_test);
+    CHECK(unit == &halved.pipeline.tessellation_tests[0].height_test);
 
     const EmittedMesh expected = bare_mesh(equal);
     CHECK(expected.triangles.size() < bare_mesh(setup).triangles.size());

@@ -48,7 +48,7 @@ void run_full_split(Simulation& simulation) {
     REQUIRE(p.pass_or_tessellate.counts().finished == finished);
     REQUIRE(p.get_triangle.parts_sent() == parts);
     // No rectangle wraps: four entries each.
-    REQUIRE(p.summed_height_table.transactions() == 12 * simulation.decisions.evaluated().summed_height);
+    REQUIRE(p.height_table.transactions() == 12 * simulation.decisions.evaluated().summed_height);
 }
 
 void require_sole_bottleneck(const Simulation& simulation, const Unit* unit) {
@@ -95,6 +95,11 @@ const CaseTable rates(
         // and through Calculate New P, Displace Vertex and Transform alike.
         {"with ports to spare a part a cycle is what binds", "timing.summed_height_table_ports=64", a_part_a_cycle,
          a_part_a_cycle + base* until_on_screen, "get_triangle", parts},
+        // Four cycles an edge, and each of a base triangle's three vertices, on both maps. The Summed Height Test, with 64
+        // ports, takes one.
+        {"a bilinear filter, ports to spare on the Summed Height Table: 12 cycles a pass",
+         "hardware.displacement_filter=bilinear timing.summed_height_table_ports=64", 4 * (3 * passes + 3 * base),
+         4 * (3 * passes + 3 * base) + 100 + base* until_on_screen, "normal_map", 4 * (3 * passes + 3 * base)},
         // The Normal Test asks for every split that the Generation Test allows: the table is hardly read.
         {"cheap tests first, one port: a part a cycle is what binds", "hardware.test_order=cheap_first", a_part_a_cycle,
          a_part_a_cycle + base* until_on_screen, "get_triangle", parts},
@@ -133,7 +138,7 @@ const CaseTable rates(
         CHECK(p.tessellation.children() == passes - base);
         const Unit& unit = unit_named(p, row.unit);
         CHECK(unit.occupied_cycles() == row.occupied);
-        if (&unit == &p.summed_height_table)
+        if (&unit == &p.height_table)
             CHECK(unit.activity().cycles_in(State::busy) == row.occupied);
         if (&unit == &p.transform)  // ceil(20 / 8) register stages in each
             CHECK(unit.activity().high_water_mark() == 3 * setup.design.transform_pipelines);
@@ -152,11 +157,11 @@ TEST_CASE("the paper's design is bound by the Summed Height Table: 36 cycles a p
     run_full_split(simulation);
     const Pipeline& p = simulation.pipeline;
     CHECK(simulation.cycles() == fill + 3 + 36 * passes + drain);
-    CHECK(p.summed_height_table.activity().cycles_in(State::busy) == 36 * passes);
-    CHECK(p.summed_height_table.occupied_cycles() == 36 * passes);
+    CHECK(p.height_table.activity().cycles_in(State::busy) == 36 * passes);
+    CHECK(p.height_table.occupied_cycles() == 36 * passes);
     // and the unit that reads it works 3 cycles on each edge and waits for it, and no other, the rest of that
     // time; behind the first triangle's second edge, and the last, there is nothing to wait for
-    const Activity& test = p.tessellation_tests[0].summed_height_test.activity();
+    const Activity& test = p.tessellation_tests[0].height_test.activity();
     CHECK(test.cycles_in(State::busy) == 3 * 3 * passes);
     CHECK(test.cycles_in(State::waiting_for_memory) == 36 * passes - 3 * (3 * passes - 2));
     CHECK(test.cycles_in(State::blocked) == 0);
@@ -189,7 +194,7 @@ TEST_CASE("two machines of the paper's design: half the passes each, in half the
     CHECK(totals.lit == finished);
     CHECK(totals.host_triangles == base);
     CHECK(totals.queued == totals.queue_triangles);
-    CHECK(totals.summed_height_table_reads == 36 * passes);
+    CHECK(totals.height_table_reads == 36 * passes);
     CHECK(simulation.monitor.mesh.triangles.size() == finished);
 }
 
@@ -246,10 +251,10 @@ TEST_CASE("a Transform of latency 400 is what the join waits for") {
 // two cycles, and the next one waits when it needs either bank, while nearly all banks idle.
 TEST_CASE("banks in conflict are a bottleneck though their ports idle") {
     MachineSetup setup = full_split();
-    setup.design.timing.summed_height_table.banks = setup.registers.summed_height_table.columns;
+    setup.design.timing.summed_height_table.banks = setup.registers.height_table.columns;
     Simulation simulation(setup, 1'000'000);
     run_full_split(simulation);
-    const TableMemory& table = simulation.pipeline.summed_height_table;
+    const TableMemory& table = simulation.pipeline.height_table;
     CHECK(table.slots_taken() < table.slots_per_cycle() * simulation.cycles() / 5);
     CHECK(simulation.cycles() > 10 * passes);
     CHECK(table.occupied_cycles() == table.cycles_held_up());

@@ -110,8 +110,11 @@ inline void require_conservation(const Simulation& simulation) {
         const std::uint64_t untested = p.family_tessellation != nullptr ? p.get_triangle.host_triangles() : 0;
         CHECK(p.tessellation.activity().items_in() == untested + made[1] + made[2] + made[3] + made[4]);
         const Decisions::Evaluated& evaluated = machine->decisions.evaluated();
-        if (simulation.setup.registers.tests.summed_height_test)
-            CHECK(p.summed_height_table_reads() >= 12 * (evaluated.summed_height - evaluated.summed_height_by_codes));
+        const datapath::Registers& registers = simulation.setup.registers;
+        if (registers.formats.height_test == datapath::HeightTest::rank)
+            CHECK(p.height_table_reads() == evaluated.summed_height - evaluated.off_lattice);
+        else if (registers.tests.summed_height_test)
+            CHECK(p.height_table_reads() >= 12 * (evaluated.summed_height - evaluated.summed_height_by_codes));
     }
 }
 
@@ -133,8 +136,8 @@ inline void require_timed_identities(const Simulation& simulation, const HostedM
     if (capacity != 0)
         CHECK(p.triangle_queue.on_chip_high_water_mark() <= capacity);
     CHECK(p.pass_or_tessellate.most_incomplete() <= simulation.setup.design.timing.pass_or_tessellate.buffer);
-    const std::uint64_t slots = p.summed_height_table.slots_taken();
-    CHECK(slots <= simulation.cycles() * p.summed_height_table.slots_per_cycle());
+    const std::uint64_t slots = p.height_table.slots_taken();
+    CHECK(slots <= simulation.cycles() * p.height_table.slots_per_cycle());
 }
 
 /// Call after a timed run that drained.

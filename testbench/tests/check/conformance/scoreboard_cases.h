@@ -32,6 +32,11 @@ inline datapath::Formats make_formats(int position_bits, int position_fraction, 
     return formats;
 }
 
+inline datapath::Formats bilinear(datapath::Formats formats) {
+    formats.filter = datapath::MapFilter::bilinear;
+    return formats;
+}
+
 /// Defaults first, then narrow, wide and lopsided ones.
 inline std::vector<datapath::Formats> many_formats() {
     return {datapath::Formats{},
@@ -42,7 +47,11 @@ inline std::vector<datapath::Formats> many_formats() {
             make_formats(12, 6, 8, 5, 2, 4, 12, 0),
             make_formats(8, 4, 6, 4, 0, 1, 8, 0),
             make_formats(32, 16, 6, 4, 12, 16, 24, 8),
-            make_formats(10, 2, 18, 16, 12, 16, 32, 16)};
+            make_formats(10, 2, 18, 16, 12, 16, 32, 16),
+            bilinear(datapath::Formats{}),
+            bilinear(make_formats(32, 31, 18, 16, 12, 16, 32, 8)),
+            bilinear(make_formats(16, 8, 10, 8, 4, 8, 16, 2)),
+            bilinear(make_formats(8, 4, 6, 4, 0, 1, 8, 0))};
 }
 
 inline double real(Random& random, double low, double high) {

@@ -1,3 +1,4 @@
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstddef>
@@ -63,7 +64,8 @@ TEST_CASE("no bound is more than four times the largest error seen") {
     Random random(2);
     for (const datapath::Formats& formats :
          {datapath::Formats{}, make_formats(32, 31, 18, 16, 12, 16, 32, 20), make_formats(24, 12, 12, 10, 8, 12, 24, 8),
-          make_formats(16, 8, 10, 8, 4, 8, 20, 8)}) {
+          make_formats(16, 8, 10, 8, 4, 8, 20, 8), bilinear(datapath::Formats{}),
+          bilinear(make_formats(24, 12, 12, 10, 8, 12, 24, 8))}) {
         // One design at a time: a large bound in one must not be excused by a large error in another.
         std::map<std::string, double> loosest;
         for (int design = 0; design < 10; ++design) {
@@ -373,6 +375,45 @@ TEST_CASE("broken arithmetic is caught") {
         });
         CHECK(quantity(result, "N_ij").outside > 100);
     }
+}
+
+TEST_CASE("broken arithmetic between texels is caught") {
+    Random random(9);
+    MachineSetup setup = Case::make_setup(random, bilinear(datapath::Formats{}), Manner::tame);
+    setup.registers.displacement = {1 << 28, 0};
+    Case c(setup, Manner::tame);
+    const datapath::Registers& registers = c.setup.registers;
+    const datapath::Formats& formats = registers.formats;
+    /// P'_ij with the code that code_at(t, the code) makes.
+    const auto displaced_with = [&](const auto& code_at) {
+        std::vector<datapath::TrianglePass> passes;
+        for (int n = 0; n < 200; ++n) {
+            datapath::TrianglePass pass = c.pass(random);
+            for (std::size_t k = 0; k < 3; ++k) {
+                datapath::NewVertex& made = pass.new_vertex[k];
+                datapath::Saturations unused;
+                made.displaced = datapath::displace(made.position, pass.edges[k].normal, code_at(made.texture),
+                                                    registers.displacement, formats, unused);
+                made.screen = datapath::transform(made.displaced, registers.transform, formats, unused);
+            }
+            passes.push_back(pass);
+        }
+        return quantity(check(c, passes), "P'_ij").outside;
+    };
+    const auto code_at = [&](const datapath::TexCoord& t, int fraction) {
+        std::array<std::int64_t, 4> codes{};
+        std::size_t count = 0;
+        datapath::map_entries(t, {0, registers.map.width, registers.map.height, 1}, registers.map, formats,
+                              [&](std::uint64_t index) { codes.at(count++) = c.setup.map.codes[index]; });
+        return datapath::interpolate(codes, datapath::bilinear_weights(t, formats), fraction, formats);
+    };
+    CHECK(displaced_with([&](datapath::TexCoord t) { return static_cast<std::uint32_t>(code_at(t, 8)); }) == 0);
+    // Rounded down; to whole codes; a weight one LSB off.
+    CHECK(displaced_with([&](datapath::TexCoord t) { return static_cast<std::uint32_t>(code_at(t, 24) >> 16); }) > 100);
+    CHECK(displaced_with([&](datapath::TexCoord t) { return static_cast<std::uint32_t>(code_at(t, 0) << 8); }) > 100);
+    CHECK(displaced_with([&](datapath::TexCoord t) {
+              return static_cast<std::uint32_t>(code_at({t.u ^ 1u, t.v}, 8));
+          }) > 100);
 }
 
 TEST_CASE("another diagonal is caught") {

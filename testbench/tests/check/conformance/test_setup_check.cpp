@@ -123,7 +123,7 @@ std::vector<Mistake> register_mistakes() {
     };
     table("displacement_map", &datapath::Registers::displacement_map);
     table("normal_map", &datapath::Registers::normal_map);
-    table("summed_height_table", &datapath::Registers::summed_height_table);
+    table("summed_height_table", &datapath::Registers::height_table);
     list.push_back(
         {"overlap", [](MachineSetup& s) { s.registers.normal_map.base = s.registers.displacement_map.base + 2; }});
 
@@ -297,7 +297,7 @@ TEST_CASE("one wrong register, base vertex or table entry fails the default job"
     every("normal map", host.normal_map, registers.normal_map, ".x", 0);  // 16 bits each
     every("normal map", host.normal_map, registers.normal_map, ".y", 2);
     every("normal map", host.normal_map, registers.normal_map, ".z", 4);
-    every("summed height table", host.summed_height_table, registers.summed_height_table);
+    every("summed height table", host.summed_height_table, registers.height_table);
     CHECK(run.check().passed());
 }
 

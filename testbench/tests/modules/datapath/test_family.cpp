@@ -36,7 +36,7 @@ TEST_CASE("family: 2 k halves and k edges inside, each once, in the order of the
     for (unsigned split = 1; split < 8; ++split) {
         for (const bool second : {false, true}) {
             const ChildIndices indices = triangulate(split, second);
-            const FamilyEdges family = family_edges(indices, false);
+            const FamilyEdges family = family_edges(indices, 0);
             const std::map<Ends, int> expected = new_edges(indices);
             const auto k = static_cast<unsigned>(__builtin_popcount(split));
             CHECK(family.count == 3 * k);
@@ -65,15 +65,32 @@ TEST_CASE("family: 2 k halves and k edges inside, each once, in the order of the
 }
 
 TEST_CASE("family: a base triangle's three edges are new, a finished one has none") {
-    const FamilyEdges base = family_edges(triangulate(0, false), true);
+    const FamilyEdges base = family_edges(triangulate(0, false), open_edges(true, 0));
     CHECK(base.count == 3);
     for (std::uint8_t e = 0; e < 3; ++e) {
         CHECK(base.of_child[0][e] == e);
         CHECK(base.edges[e].i == e);
         CHECK(base.edges[e].j == (e + 1) % 3);
     }
-    const FamilyEdges finished = family_edges(triangulate(0, false), false);
+    const FamilyEdges finished = family_edges(triangulate(0, false), open_edges(false, 0));
     CHECK(finished.count == 0);
     for (std::size_t e = 0; e < 3; ++e)
         CHECK(finished.of_child[0][e] == FamilyEdges::whole);
+}
+
+TEST_CASE("family: edges that asked while another was cut are tested with the children's") {
+    for (unsigned cut = 1; cut < 8; cut *= 2) {
+        for (unsigned uncut = 0; uncut < 8; ++uncut) {
+            if ((uncut & cut) != 0)
+                continue;
+            const ChildIndices indices = triangulate(cut, false);
+            const FamilyEdges family = family_edges(indices, open_edges(false, static_cast<std::uint8_t>(uncut)));
+            CHECK(family.count == 3 + static_cast<unsigned>(__builtin_popcount(uncut)));
+            unsigned whole = 0;
+            for (std::size_t c = 0; c < 2; ++c)
+                for (std::size_t e = 0; e < 3; ++e)
+                    whole += family.of_child[c][e] == FamilyEdges::whole ? 1u : 0u;
+            CHECK(whole == 2 - static_cast<unsigned>(__builtin_popcount(uncut)));
+        }
+    }
 }

@@ -54,6 +54,7 @@ std::vector<Formats> formats_to_try() {
          Format::make_unsigned(48, 0));
     vary([](Formats& f, const Format& format) { f.screen = format; }, Format::make_signed(8, 7),
          Format::make_signed(31, 0));
+    vary([](Formats& f, MapFilter filter) { f.filter = filter; }, MapFilter::bilinear);
     return all;
 }
 
@@ -80,9 +81,10 @@ void check_displace(const Formats& f, bool tight) {
         for (const Wide scale : {f.position.lowest, f.position.highest})
             for (const Wide bias : {f.position.lowest, f.position.highest})
                 for (const Wide n : {f.normal.lowest, f.normal.highest}) {
-                    const Wide scaled = scale * f.displacement.highest;
-                    const Wide h = nearest(scaled, f.displacement.bits) + bias;
-                    product.see(scaled + half(f.displacement.bits));
+                    const int fraction = f.displacement.bits + code_fraction(f);
+                    const Wide scaled = scale * (Wide{f.displacement.highest} << code_fraction(f));
+                    const Wide h = nearest(scaled, fraction) + bias;
+                    product.see(scaled + half(fraction));
                     height.see(h);
                     along.see(h * n + half(f.normal.fraction));
                     step.see(nearest(h * n, f.normal.fraction));
@@ -93,6 +95,32 @@ void check_displace(const Formats& f, bool tight) {
     check("displace", widths.along, along, tight);
     check("displace", widths.step, step, tight);
     check("displace", widths.sum, sum, tight);
+}
+
+/// The corners of the operands' range: codes, and normals' components; every other value lies between them.
+void check_bilinear(const Formats& f, bool tight) {
+    const BilinearWidths widths{f};
+    const Wide one = Wide{1} << weight_bits(f);
+    Reach place, columns, row, rows, product, sum;
+    for (const std::uint32_t t : {std::uint32_t{0}, 1u << (f.texture.bits - 1)})
+        place.see(place_between_centres(t, f));
+    const std::array<std::array<Wide, 2>, 2> ranges{{{0, f.displacement.highest}, {f.normal.lowest, f.normal.highest}}};
+    for (const auto& range : ranges)
+        for (const Wide a : range)
+            for (const Wide b : range) {
+                columns.see(b - a);
+                product.see((b - a) * (one - 1));
+                row.see(a * one + (b - a) * (one - 1));
+                rows.see((b - a) * one);
+                product.see((b - a) * one * (one - 1));
+                sum.see(a * one * one + (b - a) * one * (one - 1) + one * one / 2);
+            }
+    check("interpolate", widths.place, place, tight);
+    check("interpolate", widths.columns, columns, tight);
+    check("interpolate", widths.row, row, tight);
+    check("interpolate", widths.rows, rows, tight);
+    check("interpolate", widths.product, product, tight);
+    check("interpolate", widths.sum, sum, tight);
 }
 
 void check_bump(const Formats& f, bool tight) {
@@ -289,6 +317,7 @@ void check_filtered_tests(const Formats& f, bool tight) {
 TEST_CASE("intermediates: operands at their limits need no more bits than declared, nor much less") {
     bool tight = true;  // the first are the default formats
     for (const Formats& formats : formats_to_try()) {
+        check_bilinear(formats, tight);
         check_displace(formats, tight);
         check_bump(formats, tight);
         check_transform(formats, tight);
@@ -371,7 +400,7 @@ TEST_CASE(
     }
     Formats formats;
     formats.normal = Format::make_signed(40, 26);
-    CHECK(misfit(formats) == "displace: (S * d + bias) * N");
+    CHECK(misfit(formats) == "interpolate: that, times a weight");
     formats = Formats{};
     formats.position = Format::make_signed(38, 16);
     CHECK(misfit(formats) == "transform: row . (P', 1)");

@@ -113,9 +113,20 @@ TEST_CASE("the README's intermediates are those of the code, with their widths i
         CHECK(std::vector<std::string>{rows[k].at(0), rows[k].at(1), rows[k].at(3)} == expected[k]);
 }
 
-TEST_CASE("the README's registers are those of the code, with their widths in the default formats") {
+namespace {
+
+Registers with_every_register() {
     Registers registers;
     registers.formats.highlight_tag = true;
+    registers.formats.height_test = HeightTest::rank;
+    registers.formats.bound_bits = 8;
+    return registers;
+}
+
+}  // namespace
+
+TEST_CASE("the README's registers are those of the code, with their widths in the default formats") {
+    const Registers registers = with_every_register();
     std::vector<std::vector<std::string>> expected;
     visit_registers(registers, [&](const Register& field, const auto& values) {
         expected.push_back({in_code(field.name),
@@ -131,8 +142,7 @@ TEST_CASE("the README's registers are those of the code, with their widths in th
 }
 
 TEST_CASE("registers: the table has every parameter") {
-    Registers registers;
-    registers.formats.highlight_tag = true;
+    const Registers registers = with_every_register();
     std::map<std::string, std::size_t> found;  // by the group before the first dot
     visit_registers(registers, [&](const Register& field, const auto&) {
         const std::string name = field.name;
@@ -156,6 +166,17 @@ TEST_CASE("registers: only a design with a Highlight Test has those of the test"
     };
     CHECK(names(false).count("tests.highlight_cosine") == 0);
     CHECK(names(true).size() == names(false).size() + 4);
+}
+
+TEST_CASE("registers: only a design with a Rank Test has those of the test, the last ones") {
+    Registers registers;
+    std::vector<std::string> without, with;
+    visit_registers(registers, [&](const Register& field, const auto&) { without.emplace_back(field.name); });
+    registers.formats.height_test = HeightTest::rank;
+    registers.formats.rank_bits = registers.formats.bound_bits = 6;
+    visit_registers(registers, [&](const Register& field, const auto&) { with.emplace_back(field.name); });
+    REQUIRE(with.size() == without.size() + 4);
+    CHECK(std::equal(without.begin(), without.end(), with.begin()));
 }
 
 TEST_CASE("registers: a register holds what its bits hold") {

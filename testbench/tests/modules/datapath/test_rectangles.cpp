@@ -173,7 +173,7 @@ TEST_CASE("rectangles: four reads inside the map, six across one border, nine ac
     Registers registers;
     registers.map = {6, 4, AddressMode::repeat, AddressMode::repeat};
     const Tables tables = make_tables(registers, std::vector<std::uint32_t>(24, 1), std::vector<Direction>(24));
-    const TableLayout& table = registers.summed_height_table;
+    const TableLayout& table = registers.height_table;
     const auto reads = [&](const Rectangle& r) {
         int count = 0;
         rectangle_sum(r, registers.map, table, registers.formats, [&](std::uint64_t address) {
@@ -264,7 +264,7 @@ TEST_CASE("rectangles: a constant map never splits, long edges of odd-sized maps
 TEST_CASE("rectangles: the largest table address is the last entry") {
     const Machine machine =
         machine_of(5, 3, AddressMode::repeat, AddressMode::clamp, 40, std::vector<std::uint32_t>(15, 1));
-    const TableLayout& table = machine.registers.summed_height_table;
+    const TableLayout& table = machine.registers.height_table;
     CHECK(table.columns == 6);
     CHECK(table.rows == 4);
     CHECK(table.entry_bytes == 5);

@@ -140,12 +140,12 @@ TEST_CASE("tessellate: children carry complete vertices and the parent's tags") 
             for (std::size_t v = 0; v < 3; ++v)
                 if (!same_bits(child.vertices[v], expected[indices.children[c][v]]))
                     FAIL("split " << int{pass.split} << ", child " << c << ", vertex " << v);
-            // Final: the parent's own edges that are not split, whichever of the child's they are.
+            // Final: the parent's own edges that neither are split nor ask to be, whichever of the child's they are.
             unsigned final_edges = 0;
             for (unsigned e = 0; e < 3; ++e)
                 for (unsigned of_parent = 0; of_parent < 3; ++of_parent)
-                    if ((pass.split >> of_parent & 1) == 0 && indices.children[c][e] == of_parent &&
-                        indices.children[c][(e + 1) % 3] == (of_parent + 1) % 3)
+                    if ((pass.split >> of_parent & 1) == 0 && !split_decision(pass.edges[of_parent].tests) &&
+                        indices.children[c][e] == of_parent && indices.children[c][(e + 1) % 3] == (of_parent + 1) % 3)
                         final_edges |= 1u << e;
             CHECK(child.final_edges == (formats.final_edges ? final_edges : 0));
             CHECK(child.parent == (pass.split == 0 ? pass.triangle.parent : pass.number));

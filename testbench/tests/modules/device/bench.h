@@ -215,7 +215,10 @@ inline datapath::Registers formats_of(const MachineSetup& setup) {
 inline DeviceDesign design_of(const MachineSetup& setup) {
     DeviceDesign design;
     design.machine = setup.design;
-    design.largest_map = {std::max(64u, setup.registers.map.width), std::max(64u, setup.registers.map.height)};
+    const datapath::TableLayout& height_table =
+        setup.registers.height_table;  // a Rank Table may be larger than the map
+    design.largest_map = {std::max({64u, setup.registers.map.width, height_table.columns}),
+                          std::max({64u, setup.registers.map.height, height_table.rows})};
     return design;
 }
 

@@ -25,15 +25,15 @@ inline FrameImage image_of(const MachineSetup& setup, bool beyond = false) {
     FrameImage image;
     const datapath::Registers& r = setup.registers;
     write_tables(setup, [&](std::uint64_t address, const unsigned char* bytes, std::size_t count) {
-        auto& table = address >= r.summed_height_table.base ? image.summed_height_table
-                      : address >= r.normal_map.base        ? image.normal_map
-                                                            : image.displacement_map;
+        auto& table = address >= r.height_table.base ? image.summed_height_table
+                      : address >= r.normal_map.base ? image.normal_map
+                                                     : image.displacement_map;
         table.insert(table.end(), bytes, bytes + count);
     });
     if (beyond) {
         fill_beyond(image.displacement_map, r.displacement_map.entry_bytes, r.formats.displacement.bits);
         fill_beyond(image.normal_map, r.normal_map.entry_bytes, 3 * r.formats.normal.bits);
-        fill_beyond(image.summed_height_table, r.summed_height_table.entry_bytes, r.formats.summed_height.bits);
+        fill_beyond(image.summed_height_table, r.height_table.entry_bytes, datapath::height_entry_bits(r.formats));
     }
     image.triangles.resize(setup.base_triangles.size() * base_triangle_bytes);
     for (std::size_t k = 0; k < setup.base_triangles.size(); ++k)

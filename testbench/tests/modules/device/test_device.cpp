@@ -60,6 +60,13 @@ void same_as_testbench(const Row& row, const MachineSetup& setup) {
     CHECK_FALSE(bench.devices[0]->busy());
 }
 
+constexpr const char* rank_test =
+    "mesh.source=lattice mesh.spacing=16 hardware.height_test=rank hardware.triangulation=greatest_rank "
+    "tests.normal=false tests.view=false tests.rank_threshold=0.01 formats.bound_bits=7";
+constexpr const char* rank_test_modern =
+    "hardware.design=modern mesh.source=lattice mesh.spacing=16 hardware.height_test=rank "
+    "hardware.triangulation=greatest_rank tests.normal=false tests.view=false tests.rank_threshold=0.01";
+
 const CaseTable<Row> same{
     "the device writes the testbench's triangles: ",
     {
@@ -90,6 +97,12 @@ const CaseTable<Row> same{
          "timing.summed_height_table_cache_bytes=1024 timing.normal_map_cache_bytes=1024 "
          "timing.displacement_map_cache_bytes=1024",
          true},
+        {"functional, a bilinear filter, a repeated map",
+         "hardware.displacement_filter=bilinear map.address_u=repeat map.address_v=repeat", false},
+        {"timed, a bilinear filter, modern design", "hardware.displacement_filter=bilinear hardware.design=modern",
+         true},
+        {"functional, a Rank Test on a lattice wider than the map", rank_test, false, 100, false, 0, 64, true},
+        {"timed, a Rank Test, modern design", rank_test_modern, true},
         {"functional, watermark 50", "hardware.queue_watermark=50", false, 3},
         {"timed, watermark 50", "hardware.queue_watermark=50", true, 3},
         {"functional, narrow formats", narrow_formats, false},

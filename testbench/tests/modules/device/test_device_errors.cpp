@@ -367,7 +367,8 @@ TEST_CASE("registers of other formats than the device's are not written") {
         const tessera_platform platform = bench.contexts[0].platform();
         for (const char* const other :
              {"formats.summed_height_bits=40", "formats.displacement_bits=8", "formats.position_fraction=15",
-              "formats.screen_fraction=7", "hardware.one_texel_from_map=true", "hardware.work=family"}) {
+              "formats.screen_fraction=7", "hardware.one_texel_from_map=true", "hardware.work=family",
+              "hardware.displacement_filter=bilinear"}) {
             INFO(other);
             CHECK(program_registers(platform, setup_for({"", false}, other).registers) == TESSERA_NO_DEVICE);
         }

@@ -20,7 +20,7 @@ struct Mode {
 };
 
 const char* const modern =
-    "hardware.design=modern hardware.one_texel_from_map=true formats.displacement_bits=5 formats.normal_bits=11 "
+    "hardware.design=modern hardware.displacement_filter=bilinear hardware.one_texel_from_map=true formats.displacement_bits=5 formats.normal_bits=11 "
     "formats.normal_fraction=9 formats.position_bits=24 formats.position_fraction=12 tests.highlight=true";
 
 std::uint64_t from_environment(const char* name, std::uint64_t value) {

@@ -84,7 +84,7 @@ struct BridgedMachine {
     std::uint64_t cycles() const { return pipeline.clock.last_cycle() + 1; }
     void require_drained() const {
         CHECK(pipeline.idle());
-        CHECK(pipeline.summed_height_table.transactions() == 0);
+        CHECK(pipeline.height_table.transactions() == 0);
         CHECK(pipeline.displacement_map.transactions() == 0);
         CHECK(pipeline.off_chip_memory.bytes_written() == 0);
     }

@@ -107,6 +107,8 @@ TEST_CASE("area: what each parameter changes") {
     CHECK(area("timing.transform_interval=5")["transform"].multipliers == 5);
     CHECK(area("hardware.transform_pipelines=2")["transform"].multipliers == 48);
     CHECK(area("hardware.tests_units=3")["normal_test"].multipliers == 3 * 51);
+    CHECK(area("hardware.displacement_filter=bilinear")["normal_test"].multipliers == 51 + 9);
+    CHECK(area("hardware.displacement_filter=bilinear")["displace_vertex"].multipliers == 16 + 3);
     CHECK(area("tests.highlight=true")["normal_test"].multipliers == 51 + 9);
     CHECK(area("hardware.culling=back")["pass_or_tessellate"].multipliers == 2);
     CHECK(area("tests.summed_height_unit=area")["summed_height_test"].multipliers == 2);

@@ -105,7 +105,7 @@ TEST_CASE("statistics: two triangles split once, by hand") {
     f.require("triangle_queue", {{"taken", 8}});
     f.require_all("lighting", {{"triangles", 8}});
     // a byte or two a code; three components of 16 bits; 9 x 9 sums
-    const std::uint64_t sum = setup.registers.summed_height_table.entry_bytes;
+    const std::uint64_t sum = setup.registers.height_table.entry_bytes;
     // one a cycle of each table; 16 + 24 + 51 + 12
     f.require("area", {{"transform_multipliers", 24},
                        {"transform_register_bits", 300 + 20 * 381},

@@ -302,8 +302,8 @@ struct PassOrTessellateBench : Surroundings {
     void add(unsigned number) {
         const Family family = family_of(number);
         from_tessellation.items.push_back(family);
-        const datapath::FamilyEdges edges =
-            datapath::family_edges(datapath::triangulate(split_of(number), family.second_diagonal), family.untested);
+        const datapath::FamilyEdges edges = datapath::family_edges(
+            datapath::triangulate(split_of(number), family.second_diagonal), datapath::open_edges(family.untested, 0));
         std::vector<unsigned> order(edges.count);
         for (unsigned k = 0; k < edges.count; ++k)
             order[k] = k;

@@ -1,0 +1,92 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "modules/datapath/intermediate.h"
+#include "modules/datapath/map_address.h"
+#include "modules/datapath/parameters.h"
+#include "modules/datapath/vertex.h"
+
+namespace tessera::datapath {
+
+struct RankWidths : Intermediates {
+    using Intermediates::Intermediates;
+    Width difference{"RT: abs(du), abs(dv)", f.texture.bits};
+    Width length{"RT: their sum", f.texture.bits + 1};
+    Width entry{"RT: rank and bound", FormatLimits::rank_bits.most + FormatLimits::bound_bits.most};
+    constexpr auto all() const { return std::array{difference, length, entry}; }
+};
+static_assert(fits_every_format<RankWidths>());
+
+/// Manhattan length of an edge in the map, in the texture's format.
+constexpr std::uint32_t texture_length(const TexCoord& i, const TexCoord& j) {
+    return (i.u > j.u ? i.u - j.u : j.u - i.u) + (i.v > j.v ? i.v - j.v : j.v - i.v);
+}
+
+/// Whether the edge's midpoint is a point of the lattice its ends lie on: |du| and |dv| are even numbers of texels. Ends
+/// the recursion, since an edge of odd length is never split.
+constexpr bool has_lattice_midpoint(const TexCoord& i, const TexCoord& j, const Formats& formats) {
+    const std::uint32_t below_two_texels = (2u << formats.texture.fraction) - 1;
+    return (((i.u - j.u) | (i.v - j.v)) & below_two_texels) == 0 && !(i == j);
+}
+
+/// Byte address of a midpoint's entry: one a texel. Beyond the table as beyond the map.
+constexpr std::uint64_t rank_address(const TexCoord& t_ij, const TableLayout& table, const MapGeometry& map,
+                                     const Formats& formats) {
+    return table.address(texel_index(integer_part(t_ij.u, formats), table.columns, map.address_u),
+                         texel_index(integer_part(t_ij.v, formats), table.rows, map.address_v));
+}
+
+/// What leaving a midpoint out costs, on logarithmic scales that the host chooses.
+struct RankEntry {
+    std::uint32_t rank = 0;   ///< squared error
+    std::uint32_t bound = 0;  ///< largest error
+};
+
+/// An entry's fields: the rank in its lowest bits, the bound above.
+constexpr RankEntry rank_entry(std::uint64_t bits, const Formats& formats) {
+    const std::uint64_t rank_mask = (std::uint64_t{1} << formats.rank_bits) - 1;
+    return {static_cast<std::uint32_t>(bits & rank_mask), static_cast<std::uint32_t>(bits >> formats.rank_bits)};
+}
+
+/// RT: the rank is above its threshold, or the bound above its own. What a design's entries lack is 0 and never is.
+constexpr bool rank_test(const RankEntry& entry, const TestParameters& parameters) {
+    return entry.rank > parameters.rank_threshold || entry.bound > parameters.bound_threshold;
+}
+
+/// By which edges of a triangle are compared.
+constexpr std::uint16_t ordering_rank(const RankEntry& entry, const Formats& formats) {
+    return static_cast<std::uint16_t>(formats.rank_bits > 0 ? entry.rank : entry.bound);
+}
+
+/// The cut `greatest_rank`: of the edges that ask to be split (bit k: edge k) the one of greatest rank; of equal ones the
+/// longer, then the first. The others are whole, and are tested again as edges of a child.
+/// ranks: of the edges' midpoints. lengths: texture_length.
+constexpr unsigned edge_of_greatest_rank(unsigned asked, const std::array<std::uint16_t, 3>& ranks,
+                                         const std::array<std::uint32_t, 3>& lengths) {
+    unsigned cut = 0;
+    std::size_t best = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        if ((asked >> k & 1u) == 0)
+            continue;
+        if (cut == 0 || ranks[k] > ranks[best] || (ranks[k] == ranks[best] && lengths[k] > lengths[best])) {
+            best = k;
+            cut = 1u << k;
+        }
+    }
+    return cut;
+}
+
+/// The edges of a pass that are split: those that ask, or with `greatest_rank` one of them.
+template <class Pass>
+constexpr unsigned edges_to_split(unsigned asked, Triangulation choice, const Pass& pass) {
+    if (choice != Triangulation::greatest_rank)
+        return asked;
+    const auto& v = pass.triangle.vertices;
+    return edge_of_greatest_rank(
+        asked, {pass.edges[0].rank, pass.edges[1].rank, pass.edges[2].rank},
+        {texture_length(v[0].texture, v[1].texture), texture_length(v[1].texture, v[2].texture),
+         texture_length(v[2].texture, v[0].texture)});
+}
+
+}  // namespace tessera::datapath

@@ -1,0 +1,34 @@
+#pragma once
+#include <systemc>
+
+#include "modules/datapath/rank.h"
+#include "modules/units/edge_tests/height_test.h"
+
+namespace tessera {
+
+/// Rank Test, in the Summed Height Test's place: does the mesh need the edge's midpoint? The host has ranked every point
+/// of the base mesh's lattice beforehand.
+///
+/// In:   HeightOperands. Out: HeightResult, with the rank, by which the cut `greatest_rank` chooses.
+/// Memory: one entry an edge of even length, of the Rank Table: a rank, a bound, or both.
+/// Arithmetic: two subtractions, an OR of their lowest bits, two compares.
+/// Timing: latency 1 after the entry; interval 1 by default.
+/// Waits for Calculate New U and the Rank Table; held back by the collection of the tests.
+class RankTest : public HeightTestUnit {
+  public:
+    RankTest(const sc_core::sc_module_name& name, const UnitContext& context);
+
+    void trace_signals(Signals& signals) const override;
+
+  protected:
+    void reads(const HeightOperands& edge, Reads& reads) const override;
+    HeightResult process(const HeightOperands& edge, const Entries& entries) override;
+    void trace_processed(Signals& signals, const HeightOperands& edge, const HeightResult& result) const override;
+
+  private:
+    bool may_split(const HeightOperands& edge) const;
+
+    datapath::RankEntry entry_;  // of the edge decided last
+};
+
+}  // namespace tessera

@@ -1,0 +1,133 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "testbench/setup/tables/rank_table.h"
+#include "testbench/tests/support/case_table.h"
+#include "testbench/tests/support/checked_run.h"
+#include "testbench/tests/support/job_settings.h"
+
+// Designs with a Rank Test in the Summed Height Test's place: closed, the bare recursion's mesh bit for bit, every
+// decision and cut golden's, nothing lost; with the host's tables and with tables of random bits.
+
+using namespace tessera;
+using namespace tessera::testing;
+
+namespace {
+
+const char* const on_a_lattice =
+    "mesh.source=lattice mesh.spacing=16 map.width=60 map.height=44 hardware.height_test=rank "
+    "hardware.triangulation=greatest_rank tests.normal=false tests.view=false tests.rank_threshold=0.002 "
+    "tests.bound_threshold=0.002";
+
+MachineSetup ranked(const std::string& settings) {
+    return setup_of(with_settings(with_settings(timed_job(), on_a_lattice), settings));
+}
+
+/// Any table is as good as the host's, as far as cracks go.
+MachineSetup with_random_ranks(MachineSetup setup, unsigned seed) {
+    std::mt19937 random(seed);
+    const datapath::Formats& formats = setup.registers.formats;
+    for (std::uint16_t& entry : setup.rank_tables.rank)
+        entry = static_cast<std::uint16_t>(random() % (1u << formats.rank_bits));
+    for (std::uint16_t& entry : setup.rank_tables.bound)
+        entry = static_cast<std::uint16_t>(random() % (1u << formats.bound_bits));
+    setup.registers.tests.rank_threshold = (1u << formats.rank_bits) / 3;
+    setup.registers.tests.bound_threshold = (1u << formats.bound_bits) / 2;
+    return setup;
+}
+
+/// One read of the Rank Table an edge that the test is asked for and that has a midpoint on the lattice, no other:
+/// CheckedRun compares them.
+void check_reads(const CheckedRun& run) {
+    CHECK(Totals(run.simulation).height_table_reads > 0);
+    for (const Conservation& equation : conservation(run.simulation)) {
+        INFO(equation.name);
+        CHECK(equation.left == equation.right);
+    }
+}
+
+struct Row {
+    std::string name;
+    std::string settings;
+};
+
+const CaseTable designs(
+    "with a Rank Test, ",
+    {
+        Row{"the paper's design", ""},
+        {"functional", "mode=functional"},
+        {"ranks of 6 bits", "formats.rank_bits=6"},
+        {"ranks of 16 bits", "formats.rank_bits=16"},
+        {"bounds alone", "formats.rank_bits=0 formats.bound_bits=8"},
+        {"ranks and bounds", "formats.rank_bits=12 formats.bound_bits=10"},
+        {"all edges that split cut at once", "hardware.triangulation=shorter"},
+        {"beside the other tests", "tests.normal=true tests.view=true tests.highlight=true hardware.culling=back"},
+        {"the Generation Test in the way", "tests.generation_limit=5"},
+        {"three tests units, random stalls",
+         "hardware.tests_units=3 timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=20"},
+        {"final edges", "hardware.final_edges=true"},
+        {"cheap tests first, final edges", "hardware.test_order=cheap_first hardware.final_edges=true"},
+        {"cheap tests first, final edges, beside the other tests, random stalls",
+         "hardware.test_order=cheap_first hardware.final_edges=true tests.normal=true tests.view=true "
+         "timing.stalls_seed=5 timing.stalls_per_mille=300 timing.stalls_longest=20"},
+        {"cheap tests first, functional", "hardware.test_order=cheap_first mode=functional"},
+        {"cheap tests first, places for one",
+         "hardware.test_order=cheap_first timing.edges_in_sequence=1 timing.results_buffer=1"},
+        {"a slow table behind a cache",
+         "timing.rank_table_cache_bytes=256 timing.rank_table_latency=9 timing.rank_test_latency=7 "
+         "timing.rank_test_interval=2"},
+        {"families", "hardware.work=family"},
+        {"families, functional, ranks and bounds", "hardware.work=family mode=functional formats.bound_bits=8"},
+        {"the modern design", "hardware.design=modern"},
+        {"the modern design, all edges that split cut at once",
+         "hardware.design=modern hardware.triangulation=shorter"},
+        {"the modern design, beside the other tests",
+         "hardware.design=modern tests.normal=true tests.view=true tests.highlight=true"},
+        {"the modern design, a queue of one place that spills, random stalls",
+         "hardware.design=modern hardware.queue_capacity=1 timing.stalls_seed=3 timing.stalls_per_mille=300 "
+         "timing.stalls_longest=20"},
+        {"three modern machines", "hardware.design=modern hardware.machines=3"},
+    },
+    [](const Row& row) {
+        const CheckedRun run(ranked(row.settings));
+        REQUIRE(run.counts.edges_split > 100);
+        check_reads(run);
+        run.expect_closed_in_texture();
+    });
+
+const CaseTable random_tables(
+    "a Rank Table of random bits: ",
+    {
+        Row{"the paper's design", "formats.bound_bits=6"},
+        {"all edges that split cut at once", "hardware.triangulation=shorter"},
+        {"cheap tests first, final edges", "hardware.test_order=cheap_first hardware.final_edges=true"},
+        {"the modern design", "hardware.design=modern formats.rank_bits=12 formats.bound_bits=12"},
+        {"the modern design, functional", "hardware.design=modern mode=functional"},
+    },
+    [](const Row& row) {
+        const CheckedRun run(with_random_ranks(ranked(row.settings), 7));
+        REQUIRE(run.counts.edges_split > 500);
+        check_reads(run);
+        run.expect_closed_in_texture();
+    });
+
+}  // namespace
+
+TEST_CASE("a Rank Table on a base mesh off the lattice splits nothing that it cannot", "[rank]") {
+    // Corners at whole multiples of 11 texels: no edge is of even length.
+    const CheckedRun run(ranked("mesh.source=plane mesh.columns=4 mesh.rows=4 map.width=44 map.height=44"));
+    CHECK(run.counts.edges_split == 0);
+    CHECK(Totals(run.simulation).height_table_reads == 0);
+}
+
+TEST_CASE("the Rank Test's threshold is the only number in its decision", "[rank]") {
+    MachineSetup setup = ranked("mode=functional");
+    setup.registers.tests.rank_threshold =
+        *std::max_element(setup.rank_tables.rank.begin(), setup.rank_tables.rank.end());
+    const CheckedRun run(setup);
+    CHECK(run.counts.edges_split == 0);
+}
