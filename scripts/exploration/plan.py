@@ -76,8 +76,6 @@ class Planner:
             settings.update(point.settings)
         if sweep.measures_error:
             settings["output.ply"] = True
-        # The program lets it set other keys: those of the sweep come after it.
-        settings = {**{key: settings[key] for key in settings if key == "hardware.design"}, **settings}
         cells = tuple(cell for point in points for cell in point.cells)
         return Design(number, scene, cells, sweep.scenes[scene], settings, positions=positions)
 

@@ -9,8 +9,7 @@ namespace tessera {
 Job load_job(const std::string& file, const std::vector<std::string>& settings,
              const std::filesystem::path& data_folder) {
     Job job = file.empty() ? Job{} : read_job(file);
-    for (const std::string& setting : settings)
-        apply_setting(job, setting);
+    apply_settings(job, settings);
     validate(job);
     resolve_paths(job, data_folder);
     return job;

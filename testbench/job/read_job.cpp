@@ -8,7 +8,6 @@
 #include <optional>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 #include "testbench/common/error.h"
 #include "testbench/job/design_preset.h"
@@ -318,6 +317,16 @@ void apply_setting(Job& job, std::string_view setting) {
         job = std::move(changed);
     } catch (const InputError& error) {
         throw InputError(fmt::format("--set {}: {}", printable(setting), error.what()));
+    }
+}
+
+void apply_settings(Job& job, const std::vector<std::string>& settings) {
+    for (const bool presets : {true, false}) {
+        for (const std::string& setting : settings) {
+            if ((trimmed(std::string_view(setting).substr(0, setting.find('='))) == design_key) == presets) {
+                apply_setting(job, setting);
+            }
+        }
     }
 }
 

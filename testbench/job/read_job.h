@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "testbench/job/job.h"
 
@@ -19,5 +20,9 @@ Job parse_job(std::string_view text, const std::string& name);
 /// no quotes. A relative path is relative to the current directory (job_paths.h). Throws
 /// InputError naming the setting; the job is then unchanged.
 void apply_setting(Job& job, std::string_view setting);
+
+/// Applies all of them, a preset (hardware.design) first: the keys it sets may stand before or after it, as in a file.
+/// Throws what apply_setting throws; the job may then be changed in part.
+void apply_settings(Job& job, const std::vector<std::string>& settings);
 
 }  // namespace tessera

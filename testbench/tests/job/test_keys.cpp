@@ -184,6 +184,19 @@ TEST_CASE("a preset sets its keys, and those beside it in the job are set alone,
     CHECK(same_settings(parse_job(short_text, "short.toml"), job));
     apply_setting(job, "hardware.design=paper");
     CHECK(same_settings(job, Job{}));
+
+    INFO("on a command line, too");
+    for (const std::vector<std::string>& settings :
+         {std::vector<std::string>{"hardware.edge_lanes=2", "timing.summed_height_table_banks=1",
+                                   " hardware.design = modern"},
+          std::vector<std::string>{"hardware.edge_lanes=2", "hardware.design=modern",
+                                   "timing.summed_height_table_banks=1"},
+          std::vector<std::string>{"hardware.design=paper", "hardware.design=modern", "hardware.edge_lanes=2",
+                                   "timing.summed_height_table_banks=1"}}) {
+        Job set;
+        apply_settings(set, settings);
+        CHECK(same_settings(set, before));
+    }
 }
 
 TEST_CASE("what may be left to the program reads as auto, and is so by default") {
