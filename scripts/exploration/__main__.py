@@ -6,10 +6,10 @@ import statistics
 import sys
 from pathlib import Path
 
-from engine import duration, run_designs, run_search
+from engine import SHORTEST_JOB, duration, run_search, run_tasks
 from page import write_page
 from plan import Planner
-from run_design import perform
+from run_job import perform
 from store import Store
 from sweep_file import SweepError, read_sweep
 from table import make_table, measured, write_csv, write_sqlite
@@ -29,11 +29,14 @@ def options_from(arguments):
     parser.add_argument("--jobs", type=int, help="runs at a time (all cores; with --slurm as the profile says)")
     parser.add_argument("--slurm", action="store_true", help="run on Slurm; the folders must be visible to all nodes")
     parser.add_argument("--profile", type=Path, help="Snakemake profile instead of scripts/exploration/slurm")
-    parser.add_argument("--group", type=int, default=50, help="runs in a job of Slurm (%(default)s)")
+    parser.add_argument("--group", type=int, help="runs in a job (50 with --slurm, else as many as take two seconds)")
     parser.add_argument("--program", type=Path, help=argparse.SUPPRESS)
     options = parser.parse_args(arguments)
     options.output = options.output or Path("runs/sweeps") / (options.file.stem + ("_search" if options.search else ""))
-    if not options.slurm:
+    options.program = options.program.resolve()
+    if options.slurm:
+        options.group = options.group or 50
+    else:
         options.jobs = options.jobs or os.cpu_count()
     return options
 
@@ -49,7 +52,7 @@ def lock(folder):
     return file
 
 
-def probe(options, sweep, store, designs):
+def probe(sweep, planner, store, designs):
     """Runs a design of each scene, unless there is a result; checks the figures' names. Returns seconds a run by scene."""
     seconds, known, tried = {}, set(), []
     for scene in sweep.scenes:
@@ -57,8 +60,7 @@ def probe(options, sweep, store, designs):
         if not here:
             continue
         if not any(store.has(design.key) for design in here):
-            perform(store, here[0].key, options.program, here[0].job, here[0].settings, sweep.measures_error,
-                    sweep.longest_run)
+            perform(store, planner.task(here[0]), sweep.longest_run)
         results = [store.read(design.key) for design in here if store.has(design.key)][:100]
         if results:
             seconds[scene] = statistics.mean(result["seconds"] for result in results)
@@ -135,11 +137,12 @@ def main():
             return report(options, sweep, search(options, sweep, planner, store), store)
         designs = planner.grid(os.cpu_count())
         if not options.report:
-            seconds = probe(options, sweep, store, designs)
+            seconds = probe(sweep, planner, store, designs)
             announce(options, sweep, store, designs, seconds)
             if options.check:
                 return 0
-            run_designs(options, sweep, store, designs)
+            tasks = [(seconds.get(design.scene, SHORTEST_JOB), planner.task(design)) for design in designs if design.key]
+            run_tasks(options, store, sorted(tasks, key=lambda task: -task[0]), sweep.longest_run)
         return report(options, sweep, designs, store)
     except (SweepError, OSError) as error:
         print(f"scripts/sweep: {error}", file=sys.stderr)

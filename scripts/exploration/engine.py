@@ -1,4 +1,6 @@
-"""Runs a plan with Snakemake, and reports progress."""
+"""Runs tasks with Snakemake, and reports progress."""
+import json
+import shlex
 import shutil
 import subprocess
 import sys
@@ -7,8 +9,9 @@ from pathlib import Path
 
 from plan_file import write_plan
 
-# Runs that Snakemake is given at a time: its scheduler looks at every waiting run whenever one ends (README.md).
-PORTION = 2000
+SHORTEST_JOB = 2  # seconds: runs that take less share a job, since Snakemake and Python need a tenth of a second for one
+# Jobs that Snakemake is given at a time: its scheduler looks at every waiting one whenever one ends (README.md).
+MOST_JOBS = 2000
 HERE = Path(__file__).resolve().parent
 
 
@@ -44,30 +47,25 @@ def duration(seconds):
     return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
 
 
-def snakemake_command(options, sweep, store, target, config):
+def call_snakemake(options, words, count, report):
+    """Runs Python with these words and a number, for each number below count. Snakemake's exit code; its output goes to
+    snakemake.log."""
     # Absolute: jobs of a cluster run wherever the scheduler starts them.
-    command = [shutil.which("snakemake"), target, "--snakefile", HERE / "Snakefile", "--directory", options.output.resolve(),
-               "--config", f"store={store.folder.resolve()}", f"program={options.program.resolve()}",
-               f"python={sys.executable}", *config]
-    # Results appear complete or not at all, and are addressed by content: neither age nor interruption makes them stale.
-    command += ["--rerun-triggers", "mtime", "--ignore-incomplete", "--nolock", "--keep-going", "--scheduler", "greedy",
-                "--quiet"]
+    folder = options.output.resolve()
+    config = {"count": count, "finished": f"{folder}/finished",
+              "command": shlex.join([sys.executable, "-B", *map(str, words)])}
+    (folder / "engine.json").write_text(json.dumps(config), encoding="utf-8")
+    shutil.rmtree(folder / "finished", ignore_errors=True)
+    command = [shutil.which("snakemake"), "--snakefile", HERE / "Snakefile", "--directory", folder,
+               "--configfile", folder / "engine.json", "--ignore-incomplete", "--drop-metadata", "--nolock", "--keep-going",
+               "--rerun-triggers", "mtime", "--scheduler", "greedy", "--quiet"]
     if options.slurm:
-        command += ["--profile", options.profile or HERE / "slurm"]
-        command += ["--group-components", f"designs={options.group}"]
-        if options.jobs:
-            command += ["--jobs", options.jobs]
+        command += ["--profile", options.profile or HERE / "slurm", *(["--jobs", options.jobs] if options.jobs else [])]
     else:
         command += ["--cores", options.jobs]
-    return [str(word) for word in command]
-
-
-def call_snakemake(options, sweep, store, target, config, report):
-    """Snakemake's exit code. Its own output goes to snakemake.log in the sweep's folder."""
-    command = snakemake_command(options, sweep, store, target, config)
-    with open(options.output / "snakemake.log", "a", encoding="utf-8") as log:
+    with open(folder / "snakemake.log", "a", encoding="utf-8") as log:
         # Snakemake ends with this process, even if that is killed.
-        with subprocess.Popen(["setpriv", "--pdeathsig", "TERM", *command], stdout=log, stderr=log) as process:
+        with subprocess.Popen(["setpriv", "--pdeathsig", "TERM", *map(str, command)], stdout=log, stderr=log) as process:
             try:
                 while process.poll() is None:
                     report()
@@ -78,18 +76,35 @@ def call_snakemake(options, sweep, store, target, config, report):
             return process.returncode
 
 
-def run_designs(options, sweep, store, designs):
-    """Computes the results that are missing."""
-    missing = list({design.key: design for design in designs if design.key and not store.has(design.key)}.values())
+def in_jobs(tasks, group, cores):
+    """Lists of tasks, from pairs of seconds and task: of `group` tasks each, or of as many as take SHORTEST_JOB."""
+    room, jobs = 0, []
+    # Few tasks are spread over the cores.
+    most = group or min(SHORTEST_JOB, sum(seconds for seconds, _ in tasks) / (4 * cores))
+    for seconds, task in tasks:
+        if room <= 0:
+            jobs.append([])
+            room = most
+        jobs[-1].append(task)
+        room -= 1 if group else seconds
+    return jobs
+
+
+def run_tasks(options, store, tasks, longest=None):
+    """Computes the results that are missing. tasks: pairs of the seconds that one may take, and the task."""
+    missing = list({task.key: (seconds, task) for seconds, task in tasks if not store.has(task.key)}.values())
     if not missing:
         return
     plan = options.output.resolve() / "plan.sqlite"
-    progress = Progress(store, [design.key for design in missing])
-    config = [f"plan={plan}", f"measures_error={int(sweep.measures_error)}", f"longest={sweep.longest_run or 0}"]
+    progress = Progress(store, [task.key for _, task in missing])
+    jobs = in_jobs(missing, options.group, options.jobs or 1)
     codes = []
-    for begin in range(0, len(missing), PORTION):
-        write_plan(plan, missing[begin:begin + PORTION])
-        codes.append(call_snakemake(options, sweep, store, "all", config, progress.report))
+    for begin in range(0, len(jobs), MOST_JOBS):
+        portion = jobs[begin:begin + MOST_JOBS]
+        write_plan(plan, portion)
+        # -S: no packages of the system are needed, and looking for them takes time.
+        words = ["-S", HERE / "run_job.py", store.folder.resolve(), plan, longest or 0]
+        codes.append(call_snakemake(options, words, len(portion), progress.report))
     done = progress.done()
     print(f"  {done} of {progress.count} runs in {duration(time.monotonic() - progress.begin)}", file=sys.stderr)
     if any(codes):
@@ -97,12 +112,9 @@ def run_designs(options, sweep, store, designs):
 
 
 def run_search(options, sweep, store, runs, storage):
-    """Optuna's workers, as jobs of Snakemake. `storage` is a file, or a database's address."""
-    config = [f"sweep={sweep.path.resolve()}", f"storage={storage}", f"runs={runs}", f"workers={options.workers}",
-              f"finished={options.output.resolve()}"]
-    for finished in options.output.glob("worker_*"):
-        finished.unlink()
+    """Optuna's workers. `storage` is a file, or a database's address."""
     begin = time.monotonic()
-    if call_snakemake(options, sweep, store, "search", config, lambda: None) != 0:
+    words = [HERE / "search.py", sweep.path.resolve(), options.program, store.folder.resolve(), storage, runs]
+    if call_snakemake(options, words, options.workers, lambda: None) != 0:
         print(f"  a worker ended early; {options.output}/snakemake.log says why", file=sys.stderr)
     print(f"  searched for {duration(time.monotonic() - begin)}", file=sys.stderr)

@@ -4,7 +4,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from program import QUIET, ContentHash, Refused, effective_job
+from program import QUIET, ContentHash, Refused, Task, effective_job, run_commands
 
 
 @dataclass
@@ -88,8 +88,11 @@ class Planner:
             return design
         if not all(constraint.value(keys) for constraint in self.sweep.constraints):
             return None
-        design.key = self.hash.of(keys, design.job.parent, self.sweep.measures_error)
+        design.key = self.hash.address(self.hash.job(keys, design.job.parent), self.sweep.measures_error)
         return design
+
+    def task(self, design):
+        return Task(design.key, run_commands(self.program, design.job, design.settings, self.sweep.measures_error), False)
 
     def grid(self, jobs):
         """All designs that the constraints allow."""

@@ -1,30 +1,26 @@
-"""The runs to do, for run_design.py and the Snakefile: a table of addresses, jobs and settings."""
+"""The tasks to do, in jobs of Snakemake: a file that their processes read."""
 import json
 import sqlite3
 
+from program import Task
 
-def write_plan(path, designs):
-    """What run_design.py needs, one row a run."""
+
+def write_plan(path, jobs):
+    """jobs: a list of tasks each."""
     part = path.with_name(f"{path.name}.part")
     part.unlink(missing_ok=True)
-    rows = {design.key: (design.key, str(design.job), json.dumps(design.settings)) for design in designs if design.key}
     with sqlite3.connect(part) as database:
-        database.execute("create table runs (key text primary key, job text, settings text)")
-        database.executemany("insert into runs values (?, ?, ?)", rows.values())
+        database.execute("create table tasks (job integer, task text)")
+        database.executemany("insert into tasks values (?, ?)",
+                             ((number, json.dumps(task)) for number, tasks in enumerate(jobs) for task in tasks))
+        database.execute("create index jobs on tasks (job)")
     database.close()
     part.replace(path)
 
 
-def read_plan(path, key):
-    """(job, settings)"""
+def read_plan(path, job):
     database = sqlite3.connect(f"file:{path}?mode=ro&immutable=1", uri=True)
-    job, settings = database.execute("select job, settings from runs where key = ?", (key,)).fetchone()
+    tasks = [Task(*json.loads(task)) for task, in
+             database.execute("select task from tasks where job = ? order by rowid", (job,))]
     database.close()
-    return job, json.loads(settings)
-
-
-def planned_keys(path):
-    database = sqlite3.connect(f"file:{path}?mode=ro&immutable=1", uri=True)
-    keys = [key for key, in database.execute("select key from runs order by rowid")]
-    database.close()
-    return keys
+    return tasks

@@ -1,14 +1,18 @@
-"""The program: effective jobs, and runs of it with what they leave."""
+"""The program: effective jobs, addresses of results, and runs with what they leave."""
 import hashlib
 import json
 import re
 import resource
 import subprocess
-import tempfile
+from collections import namedtuple
 from pathlib import Path
 
 # Files that no figure needs. A sweep's `set` may ask for them.
 QUIET = {"output.picture": False, "output.ply": False, "output.obj": False}
+FOLDER = "{folder}"  # in the words of a command: where its files go
+
+# Commands with one result. Each begins if the one before ended with exit code 0. `kept`: their files stay in the store.
+Task = namedtuple("Task", "key commands kept")
 
 
 class Refused(Exception):
@@ -27,11 +31,18 @@ def set_options(settings):
     return [word for key, value in settings.items() for word in ("--set", f"{key}={toml(value)}")]
 
 
+def run_commands(program, job, settings, measures_error):
+    """A run, and its error. job: None for the default."""
+    place = f"{FOLDER}/run"
+    run = [str(program), "run", *([str(job)] if job else []), *set_options({**settings, "output.folder": place})]
+    return [run, [str(program), "compare", place]] if measures_error else [run]
+
+
 def effective_job(program, job, settings):
     """{key: value} of every key. Raises Refused."""
     import tomllib  # a run does not need it
-    done = subprocess.run([program, "run", job, *set_options(settings), "--dump-config"], capture_output=True,
-                          text=True, check=False)
+    done = subprocess.run([program, "run", *([job] if job else []), *set_options(settings), "--dump-config"],
+                          capture_output=True, text=True, check=False)
     if done.returncode != 0:
         words = done.stderr.strip().removeprefix("tessera: ") or f"exit code {done.returncode}"
         raise Refused(re.sub(r"^--set [^`]*: (?=`|unknown)", "", words))
@@ -48,28 +59,30 @@ def file_hash(path):
 
 
 class ContentHash:
-    """Addresses a result: a hash of the effective job, of the files it names, and of the program."""
+    """Addresses of results: hashes of the program and of what its commands read."""
 
-    def __init__(self, program, data=None):
+    def __init__(self, program):
         self.version = file_hash(program)
-        self.data = data
         self.files = {}
 
     def _file(self, name, folder):
-        path = Path(self.data or ".") / name.removeprefix("data:") if name.startswith("data:") else folder / name
+        path = Path(name.removeprefix("data:")) if name.startswith("data:") else folder / name
         if path.is_dir():
             path = path / "mesh.ply"
         if path not in self.files:
             self.files[path] = file_hash(path) if path.is_file() else "absent"
         return self.files[path]
 
-    def of(self, keys, folder, measures_error):
+    def job(self, keys, folder):
+        """What determines a run: its effective job, and the content of the files it names, relative to the folder."""
         content = {key: value for key, value in keys.items() if key != "output.folder"}
         for key in ("mesh.file", "map.file"):
             if content.get(key):
                 content[key] = self._file(content[key], folder)
-        text = json.dumps([self.version, measures_error, content], sort_keys=True)
-        return hashlib.sha256(text.encode()).hexdigest()[:32]
+        return content
+
+    def address(self, *content):
+        return hashlib.sha256(json.dumps([self.version, *content], sort_keys=True).encode()).hexdigest()[:32]
 
 
 def figures_of(path, prefix=""):
@@ -81,31 +94,27 @@ def figures_of(path, prefix=""):
             for name, figure in figures.items() if isinstance(figure, dict) and "value" in figure}
 
 
-def run(program, job, settings, measures_error, longest):
-    """The result of a run: exit code, reason of a failure, figures, timing table, seconds of processor time.
+def run(task, folder, longest):
+    """The result of a task: exit code, reason of a failure, figures, timing table, seconds of processor time.
 
-    Raises OSError or subprocess.TimeoutExpired if the program came to no end of its own.
+    Raises OSError or subprocess.TimeoutExpired if a command came to no end of its own.
     """
-    with tempfile.TemporaryDirectory(prefix="tessera_run_") as name:
-        folder = Path(name, "run")
-        begin = resource.getrusage(resource.RUSAGE_CHILDREN)
-
-        def call(*arguments):
-            done = subprocess.run([program, *arguments], capture_output=True, text=True, check=False, timeout=longest)
-            if done.returncode < 0:
-                raise OSError(f"signal {-done.returncode} ended the program")
-            return done
-
-        done = call("run", job, *set_options({**settings, "output.folder": folder}))
-        if done.returncode == 0 and measures_error:
-            done = call("compare", folder)
-        end = resource.getrusage(resource.RUSAGE_CHILDREN)
-        figures = {**figures_of(folder / "statistics.json"), **figures_of(folder / "conformance.json"),
-                   **figures_of(folder / "error.json", "error.")}
-        mesh, timing = folder / "mesh.ply", folder / "timing.txt"
-        if mesh.is_file():
-            figures["mesh.sha256"] = [file_hash(mesh), ""]
-        reason = "" if done.returncode == 0 else done.stderr.replace(str(folder), "RUN").strip()
-        return {"exit_code": done.returncode, "reason": reason.removeprefix("tessera: "), "figures": figures,
-                "timing": timing.read_text() if timing.is_file() else "",
-                "seconds": round(end.ru_utime + end.ru_stime - begin.ru_utime - begin.ru_stime, 3)}
+    begin = resource.getrusage(resource.RUSAGE_CHILDREN)
+    for command in task.commands:
+        done = subprocess.run([word.replace(FOLDER, str(folder)) for word in command], capture_output=True, text=True,
+                              check=False, timeout=longest)
+        if done.returncode < 0:
+            raise OSError(f"signal {-done.returncode} ended the program")
+        if done.returncode > 0:
+            break
+    end = resource.getrusage(resource.RUSAGE_CHILDREN)
+    place = Path(folder, "run")
+    figures = {**figures_of(place / "statistics.json"), **figures_of(place / "conformance.json"),
+               **figures_of(place / "error.json", "error.")}
+    mesh, timing = place / "mesh.ply", place / "timing.txt"
+    if mesh.is_file():
+        figures["mesh.sha256"] = [file_hash(mesh), ""]
+    reason = "" if done.returncode == 0 else done.stderr.replace(str(place), "RUN").strip()
+    return {"exit_code": done.returncode, "reason": reason.removeprefix("tessera: "), "figures": figures,
+            "timing": timing.read_text() if timing.is_file() else "",
+            "seconds": round(end.ru_utime + end.ru_stime - begin.ru_utime - begin.ru_stime, 3)}

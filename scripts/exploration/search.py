@@ -9,7 +9,7 @@ from pathlib import Path
 import optuna
 
 from plan import Planner
-from run_design import perform
+from run_job import perform
 from store import Store
 from sweep_file import read_sweep
 from table import costs, measured
@@ -72,8 +72,7 @@ def run_trial(study, planner, store, runs):
         study.tell(trial, state=give_up)
         return
     found = None
-    if store.has(design.key) or perform(store, design.key, planner.program, design.job, design.settings,
-                                        sweep.measures_error, sweep.longest_run):
+    if store.has(design.key) or perform(store, planner.task(design), sweep.longest_run):
         result = store.read(design.key)
         if result["exit_code"] == 0:
             found = costs(sweep, measured(sweep, result)[0])

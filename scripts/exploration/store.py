@@ -2,6 +2,9 @@
 import gzip
 import json
 import os
+import shutil
+import tempfile
+from contextlib import contextmanager
 from pathlib import Path
 
 
@@ -14,6 +17,22 @@ class Store:
 
     def has(self, key):
         return self.path(key).is_file()
+
+    def files(self, key):
+        """The folder of a result whose files are kept."""
+        return self.folder / key[:2] / key
+
+    @contextmanager
+    def folder_for(self, task):
+        """An empty folder. Files that are kept are written in their place, since they name one another."""
+        if task.kept:
+            folder = self.files(task.key)
+            shutil.rmtree(folder, ignore_errors=True)
+            folder.mkdir(parents=True)
+            yield folder
+        else:
+            with tempfile.TemporaryDirectory(prefix="tessera_run_") as folder:
+                yield Path(folder)
 
     def read(self, key):
         return json.loads(gzip.decompress(self.path(key).read_bytes()))
