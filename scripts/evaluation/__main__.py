@@ -1,21 +1,26 @@
 """Runs the paper's evaluation; see scripts/figures."""
 import argparse
 import importlib
+import os
+import shutil
 import sys
 import traceback
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from page import write_page
-from section import FAILED, Claim, Section
-from study import ROOT, ProgramError, Study
+sys.path.append(str(Path(__file__).resolve().parent.parent / "exploration"))
+
+from engine import SHORTEST_JOB, lock, run_tasks  # noqa: E402  (the path must be set before)
+from page import write_page  # noqa: E402
+from program import ContentHash, Refused  # noqa: E402
+from section import FAILED, Claim, Section  # noqa: E402
+from store import Store  # noqa: E402
+from study import ROOT, ProgramError, Study  # noqa: E402
 
 # In the order of the page.
 NAMES = ["text_plane", "two_tests", "view_distances", "crater_lake", "teapot", "tex_coord_test", "generation_limit",
          "triangulation", "tests_units", "designs", "ladder", "off_chip", "host_bandwidth", "highlight_test", "curved_surfaces",
          "displacement_scale"]
-LONGEST_FIRST = ["crater_lake", "off_chip", "ladder", "view_distances", "tests_units", "designs", "two_tests", "teapot",
-                 "tex_coord_test"]
 
 
 def options_from(arguments):
@@ -23,12 +28,14 @@ def options_from(arguments):
     parser.add_argument("--output", type=Path, help="folder to leave (runs/figures; with --only runs/figures_only, so that the whole page stays)")
     parser.add_argument("--only", action="append", choices=NAMES, metavar="NAME", help="this experiment; may be repeated")
     parser.add_argument("--list", action="store_true", help="name the experiments and stop")
-    parser.add_argument("--jobs", type=int, default=2, help="experiments at a time (%(default)s)")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="runs at a time (all cores)")
+    parser.set_defaults(slurm=False, group=1)
     parser.add_argument("--picture-width", type=int, default=800, help="pixels (%(default)s)")
     parser.add_argument("--program", type=Path, default=ROOT / "build/release/testbench/commands/tessera",
                         help=argparse.SUPPRESS)
     options = parser.parse_args(arguments)
     options.output = options.output or Path("runs/figures_only" if options.only else "runs/figures")
+    options.program = options.program.resolve()
     return options
 
 
@@ -36,30 +43,48 @@ def load(name):
     return importlib.import_module(f"experiments.{name}").EXPERIMENT
 
 
-def perform(experiment, options):
-    """(Section, commands). A failed command becomes a claim, so that the page is still written."""
-    folder = (options.output / "runs" / experiment.name).resolve()
-    study = Study(options.program, folder, options.picture_width)
-
-    def nameless(text):
-        """Removes this machine's paths from the page."""
-        for place, name in ((f"{folder}/", f"runs/figures/runs/{experiment.name}/"), (f"{ROOT}/", ""),
-                            (str(options.program), "tessera")):
-            text = text.replace(place, name)
-        return text
-
-    print(f"  {experiment.name}: begun", file=sys.stderr, flush=True)
+def steps(experiment, study):
+    """measure() of the experiment, with its pictures. A failed run becomes a claim, so that the page is still written."""
     try:
-        section = experiment.measure(study)
+        section = yield from experiment.measure(study)
+        yield
+        for picture in study.pictures:
+            picture.finished()
     except Exception as error:  # after any error the page of the other experiments is still written
         print(f"  {experiment.name}: {FAILED}: {error}", file=sys.stderr, flush=True)
-        if not isinstance(error, ProgramError):
+        if not isinstance(error, (ProgramError, Refused)):
             traceback.print_exc()
         section = Section(claims=[Claim(f"{experiment.figure}: {experiment.title}", experiment.figure,
-                                        nameless(f"{type(error).__name__}: {error}"), FAILED)])
-    else:
-        print(f"  {experiment.name}: done", file=sys.stderr, flush=True)
-    return section, [nameless(command) for command in study.commands]
+                                        study.nameless(f"{type(error).__name__}: {error}"), FAILED)])
+    return section
+
+
+def measure_all(experiments, options, store):
+    """{name: (Section, Study)}."""
+    content_hash, pool = ContentHash(options.program), ThreadPoolExecutor(options.jobs)
+    studies = {each.name: Study(each.name, options, store, content_hash, pool) for each in experiments}
+    waiting = {each.name: steps(each, studies[each.name]) for each in experiments}
+    results = {}
+    while waiting:
+        for name, generator in list(waiting.items()):
+            try:
+                next(generator)
+            except StopIteration as end:
+                results[name] = (end.value, studies[name])
+                del waiting[name]
+        run_tasks(options, store, [(SHORTEST_JOB, task) for name in waiting for task in studies[name].tasks()])
+    return results
+
+
+def link_runs(folder, studies):
+    """The files of runs by name: FOLDER/EXPERIMENT/RUN."""
+    shutil.rmtree(folder, ignore_errors=True)
+    for study in studies:
+        for run in study.runs.values():
+            link = folder / Path(study.place).name / run.name
+            if run.keep and not run.address.exception():
+                link.parent.mkdir(parents=True, exist_ok=True)
+                link.symlink_to(os.path.relpath(run.files, link.parent))
 
 
 def main():
@@ -69,21 +94,22 @@ def main():
             print(f"{name:20} {load(name).title} ({load(name).figure})")
         return 0
     names = [name for name in NAMES if not options.only or name in options.only]
-    order = sorted(names, key=lambda name: LONGEST_FIRST.index(name) if name in LONGEST_FIRST else len(LONGEST_FIRST))
-    for taken in ("pictures", "tables"):
+    for taken in ("pictures", "tables", "runs"):
         if (options.output / taken).exists() and not (options.output / "index.html").is_file():
             print(f"scripts/figures: --output {options.output}: {options.output / taken} would be replaced, and no evaluation left "
                   "it: there is no index.html beside it; choose another folder", file=sys.stderr)
             return 2
     options.output.mkdir(parents=True, exist_ok=True)
-    print(f"{len(names)} experiments, {options.jobs} at a time", file=sys.stderr)
-    with ThreadPoolExecutor(options.jobs) as pool:
-        pending = {name: pool.submit(perform, load(name), options) for name in order}
-        results = {name: pending[name].result() for name in names}
-    write_page(options.output, [(load(name), *results[name]) for name in names])
+    held = lock(options.output, "scripts/figures")
+    store = Store(options.output.resolve() / "results")
+    results = measure_all([load(name) for name in names], options, store)
+    link_runs(options.output / "runs", [study for _, study in results.values()])
+    write_page(options.output, [(load(name), results[name][0], results[name][1].commands) for name in names])
+    if not options.only:
+        store.keep_only({task.key for _, study in results.values() for task in study.tasks()})
     print(options.output / "index.html")
-    verdicts = [claim.verdict for section, _ in results.values() for claim in section.claims]
-    return 1 if FAILED in verdicts else 0
+    held.close()
+    return 1 if FAILED in [claim.verdict for section, _ in results.values() for claim in section.claims] else 0
 
 
 if __name__ == "__main__":

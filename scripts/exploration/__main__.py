@@ -1,12 +1,11 @@
 """Runs a sweep; see scripts/sweep."""
 import argparse
-import fcntl
 import os
 import statistics
 import sys
 from pathlib import Path
 
-from engine import SHORTEST_JOB, duration, run_search, run_tasks
+from engine import SHORTEST_JOB, duration, lock, run_search, run_tasks
 from page import write_page
 from plan import Planner
 from run_job import perform
@@ -39,17 +38,6 @@ def options_from(arguments):
     else:
         options.jobs = options.jobs or os.cpu_count()
     return options
-
-
-def lock(folder):
-    """Waits for another sweep in this folder. The lock ends with the process."""
-    file = open(folder / "lock", "w", encoding="utf-8")
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        print(f"scripts/sweep: waits for another sweep in {folder}", file=sys.stderr)
-        fcntl.flock(file, fcntl.LOCK_EX)
-    return file
 
 
 def probe(sweep, planner, store, designs):
@@ -131,7 +119,7 @@ def main():
         planner = Planner(sweep, options.program)
         planner.check_keys()
         options.output.mkdir(parents=True, exist_ok=True)
-        held = lock(options.output)
+        held = lock(options.output, "scripts/sweep")
         store = Store(options.store)
         if options.search:
             return report(options, sweep, search(options, sweep, planner, store), store)

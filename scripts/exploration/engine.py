@@ -1,4 +1,5 @@
 """Runs tasks with Snakemake, and reports progress."""
+import fcntl
 import json
 import shlex
 import shutil
@@ -45,6 +46,17 @@ def duration(seconds):
     if seconds < 90:
         return f"{seconds:.0f} s"
     return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
+
+
+def lock(folder, script):
+    """Waits for another process in this folder. The lock ends with this one."""
+    file = open(folder / "lock", "w", encoding="utf-8")
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        print(f"{script}: waits for another in {folder}", file=sys.stderr)
+        fcntl.flock(file, fcntl.LOCK_EX)
+    return file
 
 
 def call_snakemake(options, words, count, report):

@@ -95,7 +95,8 @@ def figures_of(path, prefix=""):
 
 
 def run(task, folder, longest):
-    """The result of a task: exit code, reason of a failure, figures, timing table, seconds of processor time.
+    """The result of a task: exit code, reason of a failure, figures, timing table, seconds of processor time, and what a
+    task without figures printed.
 
     Raises OSError or subprocess.TimeoutExpired if a command came to no end of its own.
     """
@@ -116,5 +117,5 @@ def run(task, folder, longest):
         figures["mesh.sha256"] = [file_hash(mesh), ""]
     reason = "" if done.returncode == 0 else done.stderr.replace(str(place), "RUN").strip()
     return {"exit_code": done.returncode, "reason": reason.removeprefix("tessera: "), "figures": figures,
-            "timing": timing.read_text() if timing.is_file() else "",
+            "timing": timing.read_text() if timing.is_file() else "", "output": "" if figures else done.stdout,
             "seconds": round(end.ru_utime + end.ru_stime - begin.ru_utime - begin.ru_stime, 3)}

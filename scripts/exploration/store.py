@@ -52,6 +52,12 @@ class Store:
         path = self._failure(key)
         return path.read_text(encoding="utf-8") if path.is_file() else "not run"
 
+    def keep_only(self, keys):
+        """Removes all other results."""
+        for path in self.folder.glob("*/*"):
+            if path.name.split(".")[0] not in keys:
+                shutil.rmtree(path) if path.is_dir() else path.unlink()
+
     @staticmethod
     def _replace(path, content):
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -7,7 +7,7 @@ import numpy as np
 
 from emitted_mesh import density_in, values_at
 from section import Chart, Claim, Experiment, Picture, Section, Table, REPRODUCED, NOT_REPRODUCED, PARTLY, reproduced_if
-from study import JOBS
+from sweep_file import JOBS
 import charts
 
 MAP = JOBS / "crater_lake_west.png"
@@ -165,10 +165,11 @@ def low_counts(rows, references):
 def measure(study):
     height = elevations(MAP)
     regions = regions_of(height)
-    section, rows, runs = Section(), [], {}
-    for budget in BUDGETS:
-        run = runs[budget] = study.tune(f"budget_{budget}", budget, "crater_lake_704",
-                                        settings={"tests.view": False}, grid=GRIDS)
+    section, rows = Section(), []
+    runs = {budget: study.tune(f"budget_{budget}", budget, "crater_lake_704", settings={"tests.view": False}, grid=GRIDS)
+            for budget in BUDGETS}
+    yield
+    for budget, run in runs.items():
         tests = run.tuned["tests"]
         rows.append([budget, run.triangles, run.tuned["base"]["name"], run.figures["host.base_triangles"],
                      run.error[RMS], run.error[MAXIMUM],

@@ -10,12 +10,10 @@ SURFACES = {"pillow": ("a bicubic Bezier patch over a plane", None),
 
 def measure(study):
     section, rows = Section(), []
-    study.folder.mkdir(parents=True, exist_ok=True)
-    for name, (title, base) in SURFACES.items():
-        baked = study.folder / f"{name}.exr"
-        mesh = ["--mesh", EXAMPLES / f"{base}.toml"] if base else []
-        study.call("bake", EXAMPLES / f"{name}.toml", *mesh, "--output", baked)
-        run = study.run(name, study.folder / f"{name}.job.toml")
+    runs = {title: study.bake(name, EXAMPLES / f"{name}.toml", base and EXAMPLES / f"{base}.toml")
+            for name, (title, base) in SURFACES.items()}
+    yield
+    for title, run in runs.items():
         rows.append([title, run.figures["host.base_triangles"], run.triangles,
                      run.error["interpolated.reference_to_mesh_rms_texels"],
                      run.error["interpolated.reference_to_mesh_max_texels"]])

@@ -2,7 +2,6 @@
 import csv
 
 from section import NOT_REPRODUCED, PARTLY, REPRODUCED, Claim, Experiment, Picture, Section, Table, reproduced_if
-from study import Run
 
 FRAMES = 5
 SCALE = 0.25  # of the last frame
@@ -17,13 +16,11 @@ CASES = {
 }
 
 
-def traffic(study):
+def traffic(runs):
     """One row per case: bytes sent for the frames, and bytes of the tessellated meshes."""
     rows = []
-    for number, (title, settings) in enumerate(CASES.items()):
-        name = f"traffic_{number}"
-        study.run(name, settings={"frames.count": FRAMES, "frames.first_scale": 0, "displacement.scale": SCALE, **settings})
-        frames = read_frames(study.folder / name)
+    for title, run in runs.items():
+        frames = read_frames(run)
         sent = [int(frame["sent_bytes"]) for frame in frames]
         meshes = [int(frame["tessellated_mesh_bytes"]) for frame in frames]
         texels = int(frames[0]["displacement_map_bytes"]) // 2
@@ -32,8 +29,9 @@ def traffic(study):
     return rows
 
 
-def read_frames(folder):
-    with open(folder / "frames.csv", encoding="utf-8", newline="") as file:
+def read_frames(run):
+    run.finished()
+    with open(run.folder / "frames.csv", encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 
 
@@ -43,16 +41,19 @@ def less(rows):
 
 def measure(study):
     section = Section()
-    study.run("frames", settings={"frames.count": FRAMES, "frames.first_scale": 0, "displacement.scale": SCALE})
-    frames = read_frames(study.folder / "frames")
+    runs = {title: study.run(f"traffic_{number}", settings={
+        "frames.count": FRAMES, "frames.first_scale": 0, "displacement.scale": SCALE, **settings})
+            for number, (title, settings) in enumerate(CASES.items())}
+    yield
+    run = next(iter(runs.values()))
+    frames = read_frames(run)
     rows = [[float(frame["displacement_scale"]),
              *(int(frame[name]) for name in ("triangles", "edges_tested", "base_mesh_bytes", "displacement_map_bytes",
                                              "normal_map_bytes", "summed_height_table_bytes", "register_bytes",
                                              "sent_bytes", "tessellated_mesh_bytes"))] for frame in frames]
     for frame in (frames[1], frames[-1]):
-        run = Run(study, study.folder / "frames" / frame["frame"])
-        section.pictures.append(Picture(run.render("wireframe"),
-                                        f"S = {float(frame['displacement_scale']):g}: {run.triangles:,} triangles"))
+        section.pictures.append(Picture(run.render("wireframe", part=frame["frame"]),
+                                        f"S = {float(frame['displacement_scale']):g}: {int(frame['triangles']):,} triangles"))
     first, later = rows[0], rows[-1]
     section.claims = [Claim(
         "The displacement can be scaled; the normal map is computed anew for each scale.", "section 5.1",
@@ -60,7 +61,7 @@ def measure(study):
         f"normal map; the displacement map and the Summed Height Table stay. Sent whole, the last frame's mesh would be "
         f"{later[-1]:,} bytes.",
         reproduced_if(later[4] == 0 and later[6] == 0 and later[5] > 0 and later[1] > first[1]))]
-    cases = traffic(study)
+    cases = traffic(runs)
     section.claims.append(Claim(
         "Displacement mapping as a primitive can significantly reduce the bottleneck of sending triangle data.", "section 5",
         f"over {FRAMES} frames the host sends " + "; ".join(f"{row[-1]:.2f} times the tessellated meshes' bytes ({row[0]})"

@@ -9,9 +9,11 @@ def study_table(text):
 
 
 def measure(study):
-    rows = study_table(study.call_highlight_study().stdout)
-    off, on, equal = rows
+    light = study.highlight_study()
     run = study.run("on", settings={"tests.highlight": True})
+    yield
+    rows = study_table(light.finished()["output"])
+    off, on, equal = rows
     return Section(
         claims=[Claim(
             "Tests on the normals could find the triangles near the Phong highlight and improve per-vertex lighting there.",

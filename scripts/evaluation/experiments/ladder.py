@@ -33,12 +33,14 @@ def cycles_chart(cycles):
 
 def measure(study):
     section, rows, cycles, area, different = Section(), [], {}, {}, []
+    runs = {(job, design): study.run(f"{job}_{number}", job, {**QUIET, **settings, "output.ply": True}, keep=False)
+            for job in JOBS for number, (design, settings) in enumerate(DESIGNS.items())}
+    yield
     for job in JOBS:
         meshes = set()
-        for number, (design, settings) in enumerate(DESIGNS.items()):
-            run = study.run(f"{job}_{number}", job=job, settings={**QUIET, **settings, "output.ply": True})
-            meshes.add((run.folder / "mesh.ply").read_bytes())
-            figures = run.figures
+        for design in DESIGNS:
+            figures = runs[job, design].figures
+            meshes.add(figures["mesh.sha256"])
             triangles = figures["mesh.triangles"]
             cycles[job, design] = figures["timing.cycles_per_triangle"]
             area[job, design] = figures["area.total_register_bits"] + figures["area.triangle_queue_memory_bits"]

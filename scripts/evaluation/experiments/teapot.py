@@ -16,15 +16,17 @@ def figures_of(run):
 def measure(study):
     section = Section()
     first = study.run("donuts", "teapot", FIRST)
+    yield
     second = study.run("second_map", "teapot", {**SECOND, "mesh.file": first.folder})
+    yield
     section.pictures = [
         Picture(first.render("shaded"), f"The half donut on every patch: {first.triangles:,} triangles from 992"),
         Picture(first.render("wireframe"), "Its triangles"),
         Picture(second.render("shaded"), f"A second map on the result: {second.triangles:,} triangles"),
         Picture(second.render("wireframe", zoom=(0.45, 0.5, 3)), "Close up"),
     ]
-    seams = {run: run.conformance["invariants.open_texture_seam_edges"] for run in (first, second)}
-    cracks = {run: run.conformance["invariants.cracks"] + run.conformance["invariants.t_vertices"] for run in (first, second)}
+    seams = {run: run.figures["invariants.open_texture_seam_edges"] for run in (first, second)}
+    cracks = {run: run.figures["invariants.cracks"] + run.figures["invariants.t_vertices"] for run in (first, second)}
     section.claims = [
         Claim("Any base mesh can be displaced: the half donut on the well-known Utah teapot.", "section 4, figure 11 (b)",
               f"{first.figures['host.base_triangles']} triangles of 32 Bezier patches became {first.triangles:,}: {cracks[first]} cracks and T-vertices. "

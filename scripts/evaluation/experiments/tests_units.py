@@ -13,7 +13,7 @@ def timed(study, units, ports, latency=None):
     if latency is not None:
         settings["timing.transform_latency"] = latency
         name += f"_transform_{latency}"
-    return study.run(name, settings=settings).figures
+    return study.run(name, settings=settings, keep=False)
 
 
 def waited_for_tests(figures):
@@ -26,19 +26,22 @@ def waited_for_tests(figures):
 
 def measure(study):
     section, rows, passes = Section(), [], {}
-    for units in (1, 3):
-        for ports in (1, 2, 4, 12):
-            figures = timed(study, units, ports)
-            passes[units, ports] = figures["timing.cycles_per_pass"]
-            rows.append([units, ports, figures["timing.cycles"], figures["timing.cycles_per_pass"],
-                         figures["timing.cycles_per_triangle"], 100 * figures["timing.summed_height_table.utilisation"],
-                         figures["timing.bottleneck"]])
+    runs = {(units, ports): timed(study, units, ports) for units in (1, 3) for ports in (1, 2, 4, 12)}
+    with_latency = {(units, ports, latency): timed(study, units, ports, latency)
+                    for units, ports in ((1, 1), (1, 4), (3, 12)) for latency in LATENCIES}
+    yield
+    for (units, ports), run in runs.items():
+        figures = run.figures
+        passes[units, ports] = figures["timing.cycles_per_pass"]
+        rows.append([units, ports, figures["timing.cycles"], figures["timing.cycles_per_pass"],
+                     figures["timing.cycles_per_triangle"], 100 * figures["timing.summed_height_table.utilisation"],
+                     figures["timing.bottleneck"]])
     waits, by_latency = {}, []
     for units, ports in ((1, 1), (1, 4), (3, 12)):
         name = f"{units} tests unit{'s' if units > 1 else ''}, {ports} port{'s' if ports > 1 else ''}"
         waits[name] = []
         for latency in LATENCIES:
-            figures = timed(study, units, ports, latency)
+            figures = with_latency[units, ports, latency].figures
             waits[name].append(100 * waited_for_tests(figures) / figures["timing.cycles"])
             for_transform = figures.get("timing.pass_or_tessellate.starved_of_transform", 0)
             by_latency.append([units, ports, latency, figures["timing.cycles"], waits[name][-1],

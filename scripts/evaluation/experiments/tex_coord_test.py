@@ -15,10 +15,12 @@ def measure(study):
     section, rows, savings = Section(sources=[SOURCE]), [], {}
     cases = [("noise", None, {**NOISE, "tests.view_threshold": threshold}) for threshold in VIEW_THRESHOLDS]
     cases.append(("head", "head", HEAD))
-    for name, job, settings in cases:
-        threshold = settings["tests.view_threshold"]
-        runs = {state: study.run(f"{name}_{threshold}_{state}", job, {**settings, "tests.tex_coord": state == "on"})
-                for state in ("on", "off")}
+    both = {(name, settings["tests.view_threshold"]): {
+        state: study.run(f"{name}_{settings['tests.view_threshold']}_{state}", job,
+                         {**settings, "tests.tex_coord": state == "on"}, error=True) for state in ("on", "off")}
+            for name, job, settings in cases}
+    yield
+    for (name, threshold), runs in both.items():
         savings[name, threshold] = 1 - runs["on"].triangles / runs["off"].triangles
         for state, run in runs.items():
             rows.append([name, threshold, state, run.triangles, run.figures["run.edges_tested"],

@@ -35,7 +35,8 @@ def beyond_the_plane(positions):
 
 
 def measure(study):
-    run = study.run("text", settings=SETTINGS)
+    run = study.run("text", settings=SETTINGS, error=True)
+    yield
     size = f"{study.picture_width}x{study.picture_width * 46 // 100}"
     outside = beyond_the_plane(run.mesh.positions)
     rms = run.error["interpolated.reference_to_mesh_rms_texels"]

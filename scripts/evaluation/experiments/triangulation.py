@@ -6,8 +6,10 @@ from section import Claim, Experiment, Picture, Section, Table, NOT_REPRODUCED, 
 
 def measure(study):
     section, rows, thin, error = Section(), [], {}, {}
-    for choice in ("shorter", "first", "second"):
-        run = study.run(choice, settings={"hardware.triangulation": choice, "tests.view": False})
+    runs = {choice: study.run(choice, settings={"hardware.triangulation": choice, "tests.view": False}, error=True)
+            for choice in ("shorter", "first", "second")}
+    yield
+    for choice, run in runs.items():
         angles = run.mesh.smallest_angles()
         thin[choice] = float((angles < 10).mean())
         error[choice] = run.error["interpolated.reference_to_mesh_rms_texels"]

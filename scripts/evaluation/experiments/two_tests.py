@@ -27,7 +27,7 @@ def verdict(runs, alone):
 
 
 def row_of(title, run, ring):
-    tests = run.tuned["tests"] if run.tuned else None
+    tests = run.tuned and run.tuned["tests"]
     texel = run.error["measurement.texel"]
     return [title, run.triangles, run.error[RMS] / texel, run.error[MAXIMUM] / texel,
             run.error["interpolated.reference_to_mesh_rms_texels"], density_in(run.mesh, ring), density_in(run.mesh, ~ring),
@@ -45,8 +45,9 @@ def measure(study):
     runs = {(title, budget): study.tune(f"{tests.replace(',', '_')}_{budget}", budget, None, tests,
                                         {"tests.view": False, **only(tests)})
             for budget in BUDGETS for title, tests in TESTS.items()}
-    switched = {title: study.run(f"switched_{tests.replace(',', '_')}", settings={"tests.view": False, **only(tests)})
+    switched = {title: study.run(f"switched_{tests.replace(',', '_')}", settings={"tests.view": False, **only(tests)}, error=True)
                 for title, tests in TESTS.items()}
+    yield
     scale = runs["both", SHOWN].error["interpolated.reference_to_mesh_max"]
     for title in TESTS:
         run = runs[title, SHOWN]

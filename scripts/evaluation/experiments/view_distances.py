@@ -28,13 +28,14 @@ def region(boxes, side=512):
 
 def measure(study):
     section = Section(sources=[SOURCE])
-    rows, density_rows, triangles, runs = [], [], [], []
-    for distance in DISTANCES:
-        eye = TARGET + distance * (EYE - TARGET)
-        run = study.run(f"distance_{distance}", "head", {"camera.eye": [round(float(x), 4) for x in eye]})
-        runs.append(run)
+    rows, density_rows, triangles = [], [], []
+    eyes = {distance: TARGET + distance * (EYE - TARGET) for distance in DISTANCES}
+    runs = {distance: study.run(f"distance_{distance}", "head", {"camera.eye": [round(float(x), 4) for x in eye]}, error=True)
+            for distance, eye in eyes.items()}
+    yield
+    for distance, run in runs.items():
         triangles.append(run.triangles)
-        rows.append([distance, float(np.linalg.norm(eye - TARGET)), run.triangles, run.figures["run.edges_tested"],
+        rows.append([distance, float(np.linalg.norm(eyes[distance] - TARGET)), run.triangles, run.figures["run.edges_tested"],
                      run.error["interpolated.reference_to_mesh_rms_texels"],
                      run.error["interpolated.reference_to_mesh_max_texels"]])
         density_rows.append([distance, *(density_in(run.mesh, region(boxes)) for boxes in REGIONS.values())])
@@ -45,7 +46,7 @@ def measure(study):
                                zoom=(0.42, 0.54, 2.0)),
                     "The same mesh close up: eyes, nose and mouth of what was tessellated for "
                     f"{distance} times the distance. {LICENCE}")]
-    section.pictures.append(Picture(runs[0].render("generation"),
+    section.pictures.append(Picture(runs[DISTANCES[0]].render("generation"),
                                     f"From the first distance, colour by generation: how often an edge was split. {LICENCE}"))
     densities = [dict(zip(REGIONS, row[1:])) for row in density_rows]
     features = ("eyes", "nose", "mouth")
