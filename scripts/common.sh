@@ -48,6 +48,18 @@ build() {
     ) 9>"$folder/lock"
 }
 
+# python_with MODULE...: the path of a Python that has them. Debian's packages need Debian's interpreter, which may not be
+# the first in the path.
+python_with() {
+    local candidate
+    for candidate in $(type -ap python3 | uniq); do
+        "$candidate" -c 'import sys; from importlib.util import find_spec as find
+exit(not all(map(find, sys.argv[1:])))' "$@" 2>/dev/null && echo "$candidate" && return
+    done
+    echo "$(basename "$0"): no python3 in the path has $*; scripts/install installs them" >&2
+    return 2
+}
+
 # Prints a script's leading comment; its first line is a summary.
 explain() {
     sed -E '1d; /^(set |"""$)/Q; s/^(# ?|""")//' "$1"

@@ -42,14 +42,22 @@ TEST_CASE("figures: the page holds what the runs left") {
         CHECK(times(page, source_folder().string()) == 0);
     }
     SECTION("figures are the runs' own") {
-        const auto statistics = nlohmann::json::parse(read_all(folder / "runs/curved_surfaces/hills/statistics.json"));
+        const auto statistics =
+            nlohmann::json::parse(read_all(folder / "runs/curved_surfaces/hills/run/statistics.json"));
         const long triangles = statistics["mesh"]["triangles"]["value"];
         const std::vector<std::string> rows = lines_of(read_all(folder / "tables/curved_surfaces.csv"));
         REQUIRE(rows.size() == 4);
         CHECK_THAT(rows[2], Contains("," + std::to_string(triangles) + ","));
     }
-    SECTION("the same bytes once more") {
-        REQUIRE(checkout.run(experiment).exit_code == 0);
+    SECTION("the same bytes once more, and nothing runs twice") {
+        const ProgramEnd again = checkout.run(experiment);
+        REQUIRE(again.exit_code == 0);
+        CHECK_THAT(again.err, !Contains(" runs"));
+        CHECK(read_all(folder / "index.html") == page);
+        fs::remove_all(folder / "results");
+        const ProgramEnd anew = checkout.run(experiment);
+        REQUIRE(anew.exit_code == 0);
+        CHECK_THAT(anew.err, Contains("3 of 3 runs") && Contains("6 of 6 runs"));
         CHECK(read_all(folder / "index.html") == page);
     }
 }
@@ -57,11 +65,12 @@ TEST_CASE("figures: the page holds what the runs left") {
 TEST_CASE("figures: a program that fails is named on the page, and by the exit code") {
     const Checkout checkout;
     fs::remove(checkout.root() / "build/release/testbench/commands/tessera");
-    write_all(checkout.root() / "build/release/testbench/commands/tessera", "#!/bin/sh\necho no luck >&2\nexit 3\n");
+    write_all(checkout.root() / "build/release/testbench/commands/tessera",
+              "#!/bin/sh\ncase \"$*\" in *--dump-config) exit 0 ;; esac\necho no luck >&2\nexit 3\n");
     fs::permissions(checkout.root() / "build/release/testbench/commands/tessera", fs::perms::owner_all);
     const ProgramEnd end = checkout.run("scripts/figures --only text_plane");
     CHECK(end.exit_code == 1);
-    CHECK_THAT(end.err, Contains("exit code 3") && Contains("no luck"));
+    CHECK_THAT(end.err, Contains("text: exit code 3: no luck"));
     CHECK_THAT(read_all(checkout.root() / "runs/figures_only/index.html"), Contains("no luck"));
 }
 
