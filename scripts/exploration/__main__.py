@@ -89,8 +89,11 @@ def search(options, sweep, planner, store):
         raise sweep.error("a search needs `minimise` or `maximise`")
     runs = sweep.search.get("runs") or max(1, round(planner.size * sweep.search["share"]))
     print(f"{sweep.name}: {planner.size} designs, a search of {runs} with {options.workers} workers", file=sys.stderr, flush=True)
-    storage = options.storage or str(options.output.resolve() / "search.journal")
-    study = open_study(sweep, storage, 0)
+    storage = options.storage or str(options.output / "search.journal")
+    sqlite, _, path = storage.rpartition("sqlite:///")
+    if sqlite == "" and "://" not in path:  # a file; the workers have another working directory
+        storage = storage.removesuffix(path) + str(Path(path).resolve())
+    study = open_study(planner, storage, 0)
     if not options.storage:  # others may share a database
         release(study)
     run_search(options, sweep, store, runs, storage)

@@ -59,7 +59,7 @@ def lock(folder, script):
     return file
 
 
-def call_snakemake(options, words, count, report):
+def call_snakemake(options, words, count, cores, report):
     """Runs Python with these words and a number, for each number below count. Snakemake's exit code; its output goes to
     snakemake.log."""
     # Absolute: jobs of a cluster run wherever the scheduler starts them.
@@ -74,7 +74,7 @@ def call_snakemake(options, words, count, report):
     if options.slurm:
         command += ["--profile", options.profile or HERE / "slurm", *(["--jobs", options.jobs] if options.jobs else [])]
     else:
-        command += ["--cores", options.jobs]
+        command += ["--cores", cores]
     with open(folder / "snakemake.log", "a", encoding="utf-8") as log:
         # Snakemake ends with this process, even if that is killed.
         with subprocess.Popen(["setpriv", "--pdeathsig", "TERM", *map(str, command)], stdout=log, stderr=log) as process:
@@ -116,7 +116,7 @@ def run_tasks(options, store, tasks, longest=None):
         write_plan(plan, portion)
         # -S: no packages of the system are needed, and looking for them takes time.
         words = ["-S", HERE / "run_job.py", store.folder.resolve(), plan, longest or 0]
-        codes.append(call_snakemake(options, words, len(portion), progress.report))
+        codes.append(call_snakemake(options, words, len(portion), options.jobs, progress.report))
     done = progress.done()
     print(f"  {done} of {progress.count} runs in {duration(time.monotonic() - progress.begin)}", file=sys.stderr)
     if any(codes):
@@ -127,6 +127,6 @@ def run_search(options, sweep, store, runs, storage):
     """Optuna's workers. `storage` is a file, or a database's address."""
     begin = time.monotonic()
     words = [HERE / "search.py", sweep.path.resolve(), options.program, store.folder.resolve(), storage, runs]
-    if call_snakemake(options, words, options.workers, lambda: None) != 0:
+    if call_snakemake(options, words, options.workers, options.workers, lambda: None) != 0:
         print(f"  a worker ended early; {options.output}/snakemake.log says why", file=sys.stderr)
     print(f"  searched for {duration(time.monotonic() - begin)}", file=sys.stderr)

@@ -19,14 +19,17 @@ warnings.simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
 optuna.logging.set_verbosity(optuna.logging.WARNING)
 
 
-def open_study(sweep, storage, number):
+def open_study(planner, storage, number):
+    sweep = planner.sweep
     if "://" not in storage:
         # A file that only grows: works on network file systems, too.
         storage = optuna.storages.JournalStorage(optuna.storages.JournalFileStorage(storage))
     # Every worker draws designs of its own.
     sampler = optuna.samplers.TPESampler(seed=sweep.search["seed"] + number, multivariate=True, constant_liar=True,
                                          n_startup_trials=max(10, 2 * len(sweep.axes)))
-    return optuna.create_study(study_name=sweep.name, storage=storage, load_if_exists=True, sampler=sampler,
+    # Another program or another sweep file is another study: its designs have other results.
+    name = f"{sweep.name} {planner.hash.address(sweep.text)}"
+    return optuna.create_study(study_name=name, storage=storage, load_if_exists=True, sampler=sampler,
                                directions=["minimize"] * len(sweep.objectives))
 
 
@@ -83,7 +86,7 @@ def main():
     path, program, folder, storage, runs, number = sys.argv[1:]
     sweep = read_sweep(Path(path))
     planner, store = Planner(sweep, Path(program)), Store(folder)
-    study = open_study(sweep, storage, int(number))
+    study = open_study(planner, storage, int(number))
     # Trials in progress count: the workers together stop at the number. Few new designs may be left.
     while len(designs_of(study, finished=False)) < int(runs) and len(study.get_trials(deepcopy=False)) < 5 * int(runs):
         run_trial(study, planner, store, int(runs))

@@ -144,7 +144,9 @@ TEST_CASE("sweep: workers that share a study search some of the designs, each ru
     if (!sweeps_run())
         return;
     const Checkout checkout;
-    const ProgramEnd end = sweep(checkout, small + "\n[search]\nruns = 5\n", "--search --workers 2");
+    const auto [storage, file] = GENERATE(table<std::string, std::string>(
+        {{"", "runs/sweeps/small_search/search.journal"}, {" --storage sqlite:///study.db", "study.db"}}));
+    const ProgramEnd end = sweep(checkout, small + "\n[search]\nruns = 5\n", "--search --workers 2" + storage);
     INFO(end.text());
     REQUIRE(end.exit_code == 0);
     const fs::path folder = checkout.root() / "runs/sweeps";
@@ -152,7 +154,58 @@ TEST_CASE("sweep: workers that share a study search some of the designs, each ru
     CHECK(rows.size() > 3);
     CHECK(rows.size() <= 7);  // both workers may take the last
     CHECK(results_in(folder / "results") == rows.size() - 1);
-    CHECK(fs::exists(folder / "small_search/search.journal"));
+    CHECK(fs::exists(checkout.root() / file));
+
+    INFO("the study of another sweep file is another one");
+    const ProgramEnd other =
+        checkout.run("sed -i 's/1, 2, 4/3, 6, 8/' small.toml; scripts/sweep small.toml --search --workers 2" + storage);
+    INFO(other.text());
+    CHECK(other.exit_code == 0);
+}
+
+TEST_CASE("sweep: the error of each design is measured if a figure asks for it") {
+    if (!sweeps_run())
+        return;
+    const Checkout checkout;
+    const ProgramEnd end = sweep(checkout,
+                                 "job = \"half_donut\"\n"
+                                 "minimise = [\"mesh.triangles\", \"error.interpolated.reference_to_mesh_rms\"]\n"
+                                 "[set]\n\"mode\" = \"functional\"\n\"map.width\" = 32\n\"map.height\" = 32\n"
+                                 "[[axis]]\nkey = \"tests.generation_limit\"\nvalues = [1, 4]\n");
+    INFO(end.text());
+    REQUIRE(end.exit_code == 0);
+    CHECK_THAT(end.err, Contains("2 ok; 2 on the front"));  // fewer triangles, or a smaller error
+    CHECK_THAT(read_all(checkout.root() / "runs/sweeps/small/table.csv"),
+               Contains("error.interpolated.reference_to_mesh_rms [model unit]"));
+}
+
+TEST_CASE("sweep: the first commands of its README run") {
+    if (!sweeps_run())
+        return;
+    const Checkout checkout;
+    unsigned commands = 0;
+    for (const std::string& line : lines_of(read_all(source_folder() / "scripts/exploration/README.md"))) {
+        if (line.rfind("scripts/sweep testbench/examples/sweeps/first.toml", 0) != 0)
+            continue;
+        ++commands;
+        const ProgramEnd end = checkout.run(line);
+        INFO(line << end.text());
+        CHECK(end.exit_code == 0);
+        CHECK_THAT(end.err, Contains(commands == 1 ? "first: 8 designs; 7 runs to do" : "8 ok; "));
+    }
+    CHECK(commands == 2);
+}
+
+TEST_CASE("sweep: where Slurm cannot start, its check is told why") {
+    const Checkout checkout;
+    for (const char* const tool : {"munged", "slurmctld", "slurmd", "sbatch"}) {
+        write_all(checkout.root() / "tools" / tool, "#!/bin/sh\nexit 1\n");
+        fs::permissions(checkout.root() / "tools" / tool, fs::perms::owner_all);
+    }
+    const ProgramEnd end = checkout.run("scripts/checks/sweep_tests/slurm_cluster start cluster");
+    INFO(end.text());
+    CHECK(end.exit_code == 3);
+    CHECK_THAT(end.err, Contains("slurm_cluster: munged does not start") || Contains("only as root"));
 }
 
 TEST_CASE("sweep: what cannot be run is refused before the first run, with file and line") {
