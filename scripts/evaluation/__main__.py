@@ -5,7 +5,6 @@ import os
 import shutil
 import sys
 import traceback
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 sys.path.append(str(Path(__file__).resolve().parent.parent / "exploration"))
@@ -61,8 +60,8 @@ def steps(experiment, study):
 
 def measure_all(experiments, options, store):
     """{name: (Section, Study)}."""
-    content_hash, pool = ContentHash(options.program), ThreadPoolExecutor(options.jobs)
-    studies = {each.name: Study(each.name, options, store, content_hash, pool) for each in experiments}
+    content_hash = ContentHash(options.program)
+    studies = {each.name: Study(each.name, options, store, content_hash) for each in experiments}
     waiting = {each.name: steps(each, studies[each.name]) for each in experiments}
     results = {}
     while waiting:
@@ -72,7 +71,7 @@ def measure_all(experiments, options, store):
             except StopIteration as end:
                 results[name] = (end.value, studies[name])
                 del waiting[name]
-        run_tasks(options, store, [(SHORTEST_JOB, task) for name in waiting for task in studies[name].tasks()])
+        run_tasks(options, store, [(SHORTEST_JOB, run.task) for name in waiting for run in studies[name].runs])
     return results
 
 
@@ -80,9 +79,9 @@ def link_runs(folder, studies):
     """The files of runs by name: FOLDER/EXPERIMENT/RUN."""
     shutil.rmtree(folder, ignore_errors=True)
     for study in studies:
-        for run in study.runs.values():
+        for run in study.runs:
             link = folder / Path(study.place).name / run.name
-            if run.keep and not run.address.exception():
+            if run.folder.is_dir():
                 link.parent.mkdir(parents=True, exist_ok=True)
                 link.symlink_to(os.path.relpath(run.files, link.parent))
 
@@ -106,7 +105,7 @@ def main():
     link_runs(options.output / "runs", [study for _, study in results.values()])
     write_page(options.output, [(load(name), results[name][0], results[name][1].commands) for name in names])
     if not options.only:
-        store.keep_only({task.key for _, study in results.values() for task in study.tasks()})
+        store.keep_only({run.task.key for _, study in results.values() for run in study.runs})
     print(options.output / "index.html")
     held.close()
     return 1 if FAILED in [claim.verdict for section, _ in results.values() for claim in section.claims] else 0

@@ -19,113 +19,89 @@ class ProgramError(Exception):
 
 
 class Study:
-    """The runs of an experiment, and its commands as the page shows them."""
+    """The runs of an experiment, and its pictures."""
 
     # The golden model checks every edge of every run; files that are not used here are not written.
     QUIET = {"mode": "functional", "check.end_to_end": False, "output.obj": False, "output.picture": False}
 
-    def __init__(self, name, options, store, content_hash, pool):
+    def __init__(self, name, options, store, content_hash):
         self.place = f"runs/figures/runs/{name}"
         self.program = options.program
         self.picture_width = options.picture_width
         self.store = store
         self.hash = content_hash
-        self.pool = pool  # for asking the program for effective jobs
-        self.runs = {}
+        self.runs = []
         self.pictures = []
 
     def run(self, name, job=None, settings=None, error=False, keep=True):
         """job: a name in testbench/examples/jobs, or None for the half donut. error: measured as `tessera compare` does.
         keep: the files stay, for meshes, pictures and frames."""
         job, settings = job and JOBS / f"{job}.toml", {**self.QUIET, **(settings or {})}
-        return self._add(name, lambda: [self._content(job, settings), error, keep],
-                         run_commands(self.program, job, settings, error), keep)
+        return self.add(name, [self._content(job, settings), error], run_commands(self.program, job, settings, error), keep)
 
     def tune(self, name, triangles, job=None, tests="normal,summed_height", settings=None, grid=None):
         """A run with the thresholds (and, with `grid`, the base mesh) of least RMS error for a number of triangles."""
-        job, tuned = job and JOBS / f"{job}.toml", f"{FOLDER}/tuned.toml"
-        tune = [str(self.program), "tune", *([str(job)] if job else []), "--triangles", str(triangles), "--tests", tests,
-                "--output", tuned, *(["--grid", grid] if grid else []), *set_options(settings or {})]
-        return self._add(name, lambda: [self._content(job, settings or {}), tune[2:], self.QUIET],
-                         [tune, *run_commands(self.program, tuned, self.QUIET, True)])
+        job, settings, tuned = job and JOBS / f"{job}.toml", settings or {}, f"{FOLDER}/tuned.toml"
+        tune = self.words("tune", job, "--triangles", triangles, "--tests", tests, "--output", tuned, grid and "--grid", grid,
+                          *set_options(settings))
+        return self.add(name, [self._content(job, settings), tune[1:], self.QUIET],
+                        [tune, *run_commands(self.program, tuned, self.QUIET, True)])
 
     def bake(self, name, surface, mesh=None):
         """A run on the map that a surface file gives over the mesh of another file."""
-        bake = [str(self.program), "bake", str(surface), *(["--mesh", str(mesh)] if mesh else []),
-                "--output", f"{FOLDER}/{name}.exr"]
-        return self._add(name, lambda: [[file_hash(file) for file in (surface, mesh) if file], self.QUIET],
-                         [bake, *run_commands(self.program, f"{FOLDER}/{name}.job.toml", self.QUIET, True)])
+        bake = self.words("bake", surface, mesh and "--mesh", mesh, "--output", f"{FOLDER}/{name}.exr")
+        return self.add(name, [[file_hash(file) for file in (surface, mesh) if file], self.QUIET],
+                        [bake, *run_commands(self.program, f"{FOLDER}/{name}.job.toml", self.QUIET, True)])
 
     def highlight_study(self):
         """The separate program that measures per-vertex light, on the half donut."""
         program = self.program.parent.parent / "benchmark/tessera_highlight_study"
-        return self._add("study", lambda: [file_hash(program)], [[str(program)]], keep=False)
+        return self.add("study", file_hash(program), [[str(program)]])
+
+    def words(self, *arguments):
+        return [str(word) for word in (self.program, *arguments) if word is not None]
 
     def _content(self, job, settings):
         return self.hash.job(effective_job(self.program, job, settings), job.parent if job else Path())
 
-    def _add(self, name, content, commands, keep=True):
-        """content: called for what the result depends on."""
-        run = Run(self, name, commands, keep, self.pool.submit(lambda: self.hash.address(*content())))
-        self.runs[name] = run
-        return run
-
-    def tasks(self):
-        """Those of the runs that the program does not refuse."""
-        for run in [*self.runs.values(), *self.pictures]:
-            if not run.address.exception():
-                yield run.task
+    def add(self, name, content, commands, keep=True):
+        """content: what the result depends on."""
+        self.runs.append(Run(self, name, Task(self.hash.address(content, keep), commands, keep)))
+        return self.runs[-1]
 
     @property
     def commands(self):
-        named = [*self.runs.values(), *self.pictures]
+        """As the page shows them."""
         return [self.nameless(shlex.join(word.replace(FOLDER, f"{self.place}/{run.name}") for word in
                                          [Path(command[0]).name, *command[1:]]))
-                for run in named for command in run.commands]
+                for run in self.runs for command in run.task.commands]
 
     def nameless(self, text):
         """Removes this machine's paths."""
-        for run in self.runs.values():
-            if not run.address.exception():
-                text = text.replace(str(run.files), f"{self.place}/{run.name}")
+        for run in self.runs:
+            text = text.replace(str(run.files), f"{self.place}/{run.name}")
         return text.replace(f"{ROOT}/", "").replace(str(self.program), "tessera")
 
 
 class Run:
-    def __init__(self, study, name, commands, keep, address):
+    def __init__(self, study, name, task):
         self.study = study
         self.name = name
-        self.commands = commands
-        self.keep = keep
-        self.address = address  # a future
-
-    @property
-    def task(self):
-        return Task(self.address.result(), self.commands, self.keep)
-
-    @property
-    def files(self):
-        return self.study.store.files(self.address.result())
-
-    @property
-    def folder(self):
-        return self.files / "run"
+        self.task = task
+        self.files = study.store.files(task.key)
+        self.folder = self.files / "run"
 
     @cached_property
     def result(self):
-        key, store = self.address.result(), self.study.store
+        key, store = self.task.key, self.study.store
         if not store.has(key):
             raise ProgramError(f"{self.name}: {store.failure(key)}")
         return store.read(key)
 
-    @property
-    def exit_code(self):
-        return self.result["exit_code"]
-
     def finished(self):
         """The result of a run that did not fail."""
-        if self.exit_code != 0:
-            raise ProgramError(f"{self.name}: exit code {self.exit_code}: {self.result['reason']}")
+        if self.result["exit_code"] != 0:
+            raise ProgramError(f"{self.name}: exit code {self.result['exit_code']}: {self.result['reason']}")
         return self.result
 
     @cached_property
@@ -137,34 +113,27 @@ class Run:
         return self.figures["mesh.triangles"]
 
     @cached_property
+    def error(self):
+        return {name.removeprefix("error."): value for name, value in self.figures.items() if name.startswith("error.")}
+
+    @cached_property
     def mesh(self):
         self.finished()
         return read_mesh(self.folder / "mesh.ply")
 
     @property
     def tuned(self):
-        """What `tessera tune` found; None for another run."""
-        file = self.files / "tuned.json"
-        return json.loads(file.read_text()) if file.is_file() else None
-
-    @cached_property
-    def error(self):
-        """The error against the densely displaced surface with the map interpolated: see `tessera compare`."""
-        return {name.removeprefix("error."): value for name, value in self.figures.items() if name.startswith("error.")}
+        """What `tessera tune` found."""
+        return json.loads((self.files / "tuned.json").read_text())
 
     def render(self, view, name=None, part="", **options):
-        """A picture, NAME.png, drawn at the end; options of `tessera render` with underscores for hyphens. part: of the
-        run's folder, a frame."""
-        self.finished()
-        file = f"{name or view}.png"
-        arguments = ["render", str(self.folder / part), "--view", view, "--output", f"{FOLDER}/{file}"]
-        if "size" not in options:
-            options["size"] = f"{self.study.picture_width}x{self.study.picture_width * 3 // 4}"
-        for option, value in options.items():
-            arguments.append("--" + option.replace("_", "-"))
-            if value is not True:
-                arguments += map(str, value if isinstance(value, (list, tuple)) else [value])
-        picture = Run(self.study, self.name, [[str(self.study.program), *arguments]], True,
-                      self.study.pool.submit(lambda: self.study.hash.address(arguments)))
-        self.study.pictures.append(picture)
-        return picture.files / file
+        """A picture, NAME.png, drawn after the page's figures; options of `tessera render` with underscores for hyphens.
+        part: a frame's folder in the run's."""
+        width = self.study.picture_width
+        file, words = f"{name or view}.png", []
+        for option, value in {"size": f"{width}x{width * 3 // 4}", **options}.items():
+            words += ["--" + option.replace("_", "-"),
+                      *(value if isinstance(value, (list, tuple)) else [] if value is True else [value])]
+        render = self.study.words("render", self.folder / part, "--view", view, "--output", f"{FOLDER}/{file}", *words)
+        self.study.pictures.append(self.study.add(self.name, render[1:], [render]))
+        return self.study.pictures[-1].files / file

@@ -19,7 +19,7 @@ def measure(study):
         rows.append([str(limit), run.triangles, run.figures["run.edges_tested"],
                      run.error["interpolated.reference_to_mesh_rms_texels"],
                      run.error["interpolated.reference_to_mesh_max_texels"], int((run.mesh.smallest_angles() < 1).sum())])
-    ended = unlimited.exit_code != STOPPED
+    ended = unlimited.result["exit_code"] != STOPPED
     section.claims.append(Claim(
         "The Tex Coord Test stops the recursive subdivision at the map's resolution.", "section 2.5",
         (f"without the Generation Test the half donut ends with {unlimited.triangles:,} triangles" if ended else

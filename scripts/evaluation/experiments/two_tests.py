@@ -27,13 +27,15 @@ def verdict(runs, alone):
 
 
 def row_of(title, run, ring):
-    tests = run.tuned and run.tuned["tests"]
     texel = run.error["measurement.texel"]
     return [title, run.triangles, run.error[RMS] / texel, run.error[MAXIMUM] / texel,
-            run.error["interpolated.reference_to_mesh_rms_texels"], density_in(run.mesh, ring), density_in(run.mesh, ~ring),
-            *([tests["normal_threshold"] if tests["normal"] else "off",
-               tests["summed_height_threshold"] if tests["summed_height"] else "off", tests["generation_limit"]]
-              if tests else [])]
+            run.error["interpolated.reference_to_mesh_rms_texels"], density_in(run.mesh, ring), density_in(run.mesh, ~ring)]
+
+
+def thresholds_of(run):
+    tests = run.tuned["tests"]
+    return [tests["normal_threshold"] if tests["normal"] else "off",
+            tests["summed_height_threshold"] if tests["summed_height"] else "off", tests["generation_limit"]]
 
 
 COLUMNS = [("tests", ""), ("triangles", ""), ("RMS vertical error", "texel"), ("maximum vertical error", "texel"),
@@ -81,7 +83,8 @@ def measure(study):
     section.tables = [
         Table("two_tests", "Thresholds tuned for a number of triangles, least RMS vertical error",
               [*COLUMNS, ("Normal Test threshold", ""), ("Summed Height Test threshold", ""), ("generation limit", "")],
-              [row_of(title, runs[title, budget], ring) for budget in BUDGETS for title in TESTS]),
+              [[*row_of(title, runs[title, budget], ring), *thresholds_of(runs[title, budget])]
+               for budget in BUDGETS for title in TESTS]),
         Table("two_tests_switched", "The default job's thresholds, one test switched off, without the View Test",
               COLUMNS, [row_of(title, run, ring) for title, run in switched.items()])]
     return section
