@@ -67,7 +67,7 @@ def call_snakemake(options, words, count, cores, report):
     config = {"count": count, "finished": f"{folder}/finished",
               "command": shlex.join([sys.executable, "-B", *map(str, words)])}
     (folder / "engine.json").write_text(json.dumps(config), encoding="utf-8")
-    shutil.rmtree(folder / "finished", ignore_errors=True)
+    shutil.rmtree(folder / "finished", ignore_errors=True)  # of a sweep that was interrupted
     command = [shutil.which("snakemake"), "--snakefile", HERE / "Snakefile", "--directory", folder,
                "--configfile", folder / "engine.json", "--ignore-incomplete", "--drop-metadata", "--nolock", "--keep-going",
                "--rerun-triggers", "mtime", "--scheduler", "greedy", "--quiet"]

@@ -1,4 +1,5 @@
 """Results, one compressed file each, addressed by content. A file appears when it is complete."""
+import fcntl
 import gzip
 import json
 import os
@@ -27,9 +28,13 @@ class Store:
         """An empty folder. Files that are kept are written in their place, since they name one another."""
         if task.kept:
             folder = self.files(task.key)
-            shutil.rmtree(folder, ignore_errors=True)
-            folder.mkdir(parents=True)
-            yield folder
+            folder.parent.mkdir(parents=True, exist_ok=True)
+            with open(f"{folder}.lock", "w", encoding="utf-8") as lock:
+                # The process of an evaluation that was killed may still be at it.
+                fcntl.flock(lock, fcntl.LOCK_EX)
+                shutil.rmtree(folder, ignore_errors=True)
+                folder.mkdir()
+                yield folder
         else:
             with tempfile.TemporaryDirectory(prefix="tessera_run_") as folder:
                 yield Path(folder)
