@@ -7,6 +7,7 @@ import jinja2
 
 import section as vocabulary
 from study import ROOT
+from table import heading
 
 HERE = ROOT / "scripts/evaluation"
 
@@ -20,11 +21,6 @@ def cell_text(value):
     if isinstance(value, float):
         return f"{value:,.4g}" if abs(value) < 10000 else f"{value:,.0f}"
     return str(value)
-
-
-def heading(column):
-    name, unit = column
-    return f"{name} [{unit}]" if unit else name
 
 
 def write_tables(folder, sections):

@@ -90,9 +90,9 @@ def search(options, sweep, planner, store):
     runs = sweep.search.get("runs") or max(1, round(planner.size * sweep.search["share"]))
     print(f"{sweep.name}: {planner.size} designs, a search of {runs} with {options.workers} workers", file=sys.stderr, flush=True)
     storage = options.storage or str(options.output / "search.journal")
-    sqlite, _, path = storage.rpartition("sqlite:///")
-    if sqlite == "" and "://" not in path:  # a file; the workers have another working directory
-        storage = storage.removesuffix(path) + str(Path(path).resolve())
+    scheme = "sqlite:///" if storage.startswith("sqlite:///") else ""
+    if scheme or "://" not in storage:  # a file; the workers have another working directory
+        storage = scheme + str(Path(storage.removeprefix(scheme)).resolve())
     study = open_study(planner, storage, 0)
     if not options.storage:  # others may share a database
         release(study)

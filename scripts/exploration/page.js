@@ -149,11 +149,12 @@ function drawDetails() {
         compared("Keys", keys.map((key) => [key, designs.map((design) => design.settings[key])]), designs) +
         compared("Figures", measured, designs) +
         compared("Result", [["status", designs.map((design) => design.cells[statusColumn])],
-                            ["bottleneck", designs.map((design) => design.bottleneck)]], designs) + "</table>" +
+                            ...(designs.some((design) => design.bottleneck) ? [["bottleneck", designs.map((design) => design.bottleneck)]] : [])],
+                 designs) + "</table>" +
         designs.map((design) =>
             `<h2>Run ${design.run}</h2><pre class="command">${escaped(design.command)}</pre>` +
             (design.reason ? `<pre class="bad">${escaped(design.reason)}</pre>` : "") +
-            `<pre class="timing">${escaped(design.timing)}</pre>`).join("");
+            (design.timing ? `<pre class="timing">${escaped(design.timing)}</pre>` : "")).join("");
 }
 
 function choose(run, add) {

@@ -14,11 +14,15 @@ HERE = Path(__file__).resolve().parent
 MOST_TIMING_TABLES = 2000  # 4 kB each; beyond, only designs on a front have theirs
 
 
-def command(design):
+def command(design, measures_error):
     """As a user would repeat the run, from the project's folder."""
     job = design.job.stem if design.job.parent == JOBS else design.job.name
     settings = {key: value for key, value in design.settings.items() if QUIET.get(key) != value}
-    return shlex.join(["scripts/run", job, *set_options(settings)])
+    if not measures_error:
+        return shlex.join(["scripts/run", job, *set_options(settings)])
+    folder = f"runs/run_{design.number}"
+    return (shlex.join(["scripts/run", job, *set_options({**settings, "output.folder": folder})])
+            + f" && build/release/testbench/commands/tessera compare {folder}")
 
 
 def json_text(content):
@@ -31,7 +35,7 @@ def write_page(table, path):
     columns = [{"name": name, "unit": unit, "kind": "axis" if name in axes else "figure" if name in figures else "note"}
                for name, unit in table.columns]
     all_tables = len(table.rows) <= MOST_TIMING_TABLES
-    rows = [{"run": row.design.number, "cells": table.cells(row), "command": command(row.design), "reason": row.reason,
+    rows = [{"run": row.design.number, "cells": table.cells(row), "command": command(row.design, sweep.measures_error), "reason": row.reason,
              "bottleneck": row.bottleneck,
              "settings": {key: value for key, value in row.design.settings.items() if QUIET.get(key) != value},
              "timing": row.timing if all_tables or row.front else
