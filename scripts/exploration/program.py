@@ -102,8 +102,9 @@ def run(task, folder, longest):
     """
     begin = resource.getrusage(resource.RUSAGE_CHILDREN)
     for command in task.commands:
+        # In its own folder: that of the sweep may be removed while a run of a killed one has not ended.
         done = subprocess.run([word.replace(FOLDER, str(folder)) for word in command], capture_output=True, text=True,
-                              check=False, timeout=longest)
+                              check=False, timeout=longest, cwd=folder)
         if done.returncode < 0:
             raise OSError(f"signal {-done.returncode} ended the program")
         if done.returncode > 0:
