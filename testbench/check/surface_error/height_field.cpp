@@ -133,6 +133,11 @@ VerticalError measure_vertical_error(const HeightField& field, const BaseMesh& b
             low = glm::min(low, t);
             high = glm::max(high, t);
         }
+    // A mesh that reaches beyond a clamped map has no grid points there.
+    if (base.beyond_map && displacement.address_u == Addressing::clamp)
+        high.x = std::min(high.x, static_cast<double>(map.width));
+    if (base.beyond_map && displacement.address_v == Addressing::clamp)
+        high.y = std::min(high.y, static_cast<double>(map.height));
     const GridRange columns = grid_lines(low.x, high.x), rows = grid_lines(low.y, high.y);
     const std::int64_t width = columns.last - columns.first + 1, height = rows.last - rows.first + 1;
     if (width < 1 || height < 1)
