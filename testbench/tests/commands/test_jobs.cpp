@@ -87,6 +87,9 @@ TEST_CASE("the job crater_lake_24 passes") {
 TEST_CASE("the job crater_lake_704 passes") {
     run_job_well("crater_lake_704");
 }
+TEST_CASE("the job crater_lake_rank passes") {
+    run_job_well("crater_lake_rank");
+}
 TEST_CASE("the job half_donut passes") {
     run_job_well("half_donut");
 }

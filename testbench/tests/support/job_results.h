@@ -18,9 +18,10 @@ struct JobResult {
     std::uint64_t mesh;
 };
 
-inline constexpr std::array<JobResult, 5> job_results{{
+inline constexpr std::array<JobResult, 6> job_results{{
     {"crater_lake_24", 13911, 13887, 69408, 832913, 0xfa8fb8b4afaaa589},
     {"crater_lake_704", 13542, 12838, 67305, 807677, 0x4c430db663d9fa69},
+    {"crater_lake_rank", 5081, 5057, 30414, 48226, 0x6fd3aef843b0009f},
     {"half_donut", 11948, 11930, 59100, 709217, 0xd542341843ddeb42},
     {"head", 21030, 19230, 99663, 1197630, 0x31756b521c938bb6},
     {"teapot", 83959, 82967, 402216, 4826617, 0xe43464d87e28f74b},

@@ -170,15 +170,16 @@ void require_consistent(const RunFolder& run) {
           Approx(static_cast<double>(edges) / static_cast<double>(finished)));
 
     // Memories: bytes follow from entries, and the ratio from the same edges.
-    for (const char* const memory : {"displacement_map", "normal_map", "summed_height_table"}) {
+    const std::string height_table = run.statistics.contains("rank_table") ? "rank_table" : "summed_height_table";
+    for (const std::string& memory : {std::string("displacement_map"), std::string("normal_map"), height_table}) {
         INFO(memory);
         CHECK(run.count(memory, "bytes_read") == run.count(memory, "reads") * run.count(memory, "entry"));
         if (edges > 0)
             CHECK(run.statistics.at(memory).at("reads_per_edge").at("value").get<double>() ==
                   Approx(static_cast<double>(run.count(memory, "reads")) / static_cast<double>(edges)));
     }
-    CHECK(run.count("host", "table_bytes") == run.count("displacement_map", "size") + run.count("normal_map", "size") +
-                                                  run.count("summed_height_table", "size"));
+    CHECK(run.count("host", "table_bytes") ==
+          run.count("displacement_map", "size") + run.count("normal_map", "size") + run.count(height_table, "size"));
 
     // A unit's cycles add up to the run's exactly, and it is empty at the end.
     const bool timed = run.statistics.contains("timing");
