@@ -53,6 +53,7 @@ RandomCase draw(Random& random) {
     job.map.address_u = random.coin() ? Addressing::repeat : Addressing::clamp;
     job.map.address_v = random.coin() ? Addressing::repeat : Addressing::clamp;
     make_random_job(random, context_of(made.base_mesh(), made.map), job);
+    choose_mesh_options(random, job);
     job.output.folder = "run";
     return made;
 }
@@ -69,6 +70,8 @@ void coarsen(Random& random, Job::Tests& tests) {
     }
     tests.normal_threshold = std::min(2.0, 2 * tests.normal_threshold + 0.005);
     tests.highlight_normal_threshold = std::min(2.0, 2 * tests.highlight_normal_threshold + 0.005);
+    tests.rank_threshold = 2 * tests.rank_threshold + 0.005;
+    tests.bound_threshold = std::min(1.0, 2 * tests.bound_threshold + 0.005);
     const bool area = tests.summed_height_unit == SummedHeightUnit::area;
     tests.summed_height_threshold =
         std::min(area ? 2.0 : 4096.0, 2 * tests.summed_height_threshold + (area ? 0.001 : 0.05));
@@ -78,6 +81,8 @@ void coarsen(Random& random, Job::Tests& tests) {
 void refine(Random& random, const Job::Formats& formats, Job::Tests& tests) {
     tests.normal_threshold /= 4;
     tests.summed_height_threshold /= 4;
+    tests.rank_threshold /= 4;
+    tests.bound_threshold /= 4;
     if (random.coin())
         tests.view_threshold /= 4;
     else

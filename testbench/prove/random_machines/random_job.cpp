@@ -120,9 +120,9 @@ void make_random_job(Random& random, const JobContext& context, Job& job) {
     job.limits.cycles_without_progress = 200000;
 }
 
-namespace {
-
-void choose_height_test(Random& random, Job& job) {
+void choose_mesh_options(Random& random, Job& job) {
+    if (random.coin())
+        job.hardware.displacement_filter = MapFilter::bilinear;
     if (random.chance(75))
         return;
     job.hardware.height_test = HeightTest::rank;
@@ -136,8 +136,6 @@ void choose_height_test(Random& random, Job& job) {
     job.timing.rank_table = {random.natural(1, 4), random.natural(1, 4), random.natural(0, 20), 0,
                              random.natural(1, 4)};
 }
-
-}  // namespace
 
 void choose_evaluations(Random& random, Job& job) {
     job.hardware.test_order = random.coin() ? TestOrder::parallel : TestOrder::cheap_first;
@@ -158,9 +156,6 @@ void choose_evaluations(Random& random, Job& job) {
         table.banks = 1U << random.natural(0, 6);
     }
     job.hardware.one_texel_from_map = random.coin();
-    if (random.coin())
-        job.hardware.displacement_filter = MapFilter::bilinear;
-    choose_height_test(random, job);
     if (random.chance(15))
         job.hardware.machines = random.integer(2, 4);
     if (random.chance(60))

@@ -16,6 +16,9 @@ struct JobContext {
 /// spill, one or three Tessellation Tests units, ports, banks, latencies, buffers, random stalls.
 void make_random_job(Random& random, const JobContext& context, Job& job);
 
+/// The maps' filter; a Rank Test in the Summed Height Test's place.
+void choose_mesh_options(Random& random, Job& job);
+
 /// Which work the design leaves out, banks, and caches. Apart, and drawn last: a seed's mesh does not depend on it.
 void choose_evaluations(Random& random, Job& job);
 
