@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "modules/datapath/rank.h"
 #include "testbench/setup/tables/log_scale.h"
 #include "testbench/setup/tables/split_hierarchy.h"
 #include "testbench/setup/tables/table_extent.h"
@@ -205,7 +206,7 @@ std::uint64_t count_whole_base_edges(const std::vector<TextureTriangle>& base, c
     for (const TextureTriangle& triangle : base) {
         for (std::size_t k = 0; k < 3; ++k) {
             TexCoord a = triangle[k], b = triangle[(k + 1) % 3];
-            if (edge_may_split(a, b, formats))
+            if (datapath::has_lattice_midpoint(a, b, formats))
                 continue;
             if (std::tie(b.u, b.v) < std::tie(a.u, a.v))
                 std::swap(a, b);

@@ -7,14 +7,10 @@
 #include <tuple>
 
 #include "modules/datapath/midpoint.h"
+#include "modules/datapath/rank.h"
 #include "testbench/setup/tables/triangle_fit.h"
 
 namespace tessera {
-
-bool edge_may_split(const datapath::TexCoord& a, const datapath::TexCoord& b, const datapath::Formats& formats) {
-    const std::uint32_t odd = (std::uint32_t{2} << formats.texture.fraction) - 1;
-    return !(a == b) && ((a.u - b.u) & odd) == 0 && ((a.v - b.v) & odd) == 0;
-}
 
 namespace {
 
@@ -174,7 +170,7 @@ class Refinement {
         const MeshTriangle& one = triangles_[first / 3];
         const std::size_t from = first % 3, to = (from + 1) % 3;
         edges_[edge].merit = -1;
-        if (!edge_may_split(one.corner[from], one.corner[to], formats_))
+        if (!datapath::has_lattice_midpoint(one.corner[from], one.corner[to], formats_))
             return;
         double squared = 0, lean = 0, weight = 0, longest = 0, count = 0;
         for (std::uint32_t side = first; side != nothing; side = next_side(side)) {

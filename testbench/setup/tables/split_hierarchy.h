@@ -28,10 +28,6 @@ struct SplitHierarchy {
     double least_error = 0;                     ///< the largest error once all are made, codes
 };
 
-/// Whether the hardware may bisect the edge: its ends differ by even whole texels, so that the midpoint lies as its
-/// ends do in their texels.
-bool edge_may_split(const datapath::TexCoord& a, const datapath::TexCoord& b, const datapath::Formats& formats);
-
 /// Greedy, top down: next is the edge for which (max(0, fall) + best fall + 0.8 squared error) * (length / longest)^2,
 /// per triangle, is largest. fall: of the squared error when it is bisected; best fall: if the midpoint might have any
 /// height; longest: of the edges of its triangles. Equal: the edge that appeared first.
