@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
+#include <limits>
 
 #include "testbench/commands/load_job.h"
 #include "testbench/commands/output_folder.h"
@@ -38,18 +39,34 @@ std::int64_t number_in(const std::string& text) {
     return digits ? std::stol(text) : 0;
 }
 
-void add_grid(const std::string& grid, const TuneRequest& request, const HeightMap& map,
+/// Which tests are searched: the paper's, a Rank or Bound Test, or first one and then the other.
+struct Searched {
+    bool paper = true, ranks = false;
+};
+
+void add_own_base(const Searched& tests, std::vector<BaseChoice>& bases) {
+    if (tests.paper)
+        bases.emplace_back();
+    if (tests.ranks)
+        bases.emplace_back().ranks = true;
+}
+
+void add_grid(const std::string& grid, const TuneRequest& request, const Searched& tests, const HeightMap& map,
               std::vector<BaseChoice>& bases) {
     const auto refuse = [&](const std::string& why) { throw InputError(fmt::format("--grid {}: {}", grid, why)); };
-    if (request.job.mesh.source != MeshSource::plane)
-        refuse("applies to a plane (mesh.source = \"plane\") only; leave --grid out");
+    if (request.job.mesh.source != MeshSource::plane && request.job.mesh.source != MeshSource::lattice)
+        refuse("applies to a plane (mesh.source = \"plane\" or \"lattice\") only; leave --grid out");
+    const auto add = [&](const std::vector<BaseChoice>& more) { bases.insert(bases.end(), more.begin(), more.end()); };
+    const auto most = std::numeric_limits<std::uint64_t>::max();
     if (grid == "auto") {
-        bases.emplace_back();
-        const std::uint64_t most = request.goal.triangles > 0
-                                       ? std::max<std::uint64_t>(2, request.goal.triangles / 10 * 9)
-                                       : largest_base_for_error;
-        for (const BaseChoice& base : usual_bases(request.job.mesh, map.width, map.height, most))
-            bases.push_back(base);
+        add_own_base(tests, bases);
+        const std::uint64_t largest = request.goal.triangles > 0
+                                          ? std::max<std::uint64_t>(2, request.goal.triangles / 10 * 9)
+                                          : largest_base_for_error;
+        if (tests.paper)
+            add(usual_bases(request.job.mesh, map.width, map.height, largest));
+        if (tests.ranks)
+            add(rank_lattices(request.job, map.width, map.height, largest));
         return;
     }
     const std::string lattice = "lattice";
@@ -59,7 +76,16 @@ void add_grid(const std::string& grid, const TuneRequest& request, const HeightM
             refuse(fmt::format("a lattice's spacing is a power of two of at most {} texels, as in lattice32",
                                std::min(map.width, map.height)));
         for (const bool alternate : {false, true})
-            bases.push_back(lattice_choice(spacing, alternate, map.width, map.height));
+            if (tests.paper)
+                bases.push_back(lattice_choice(spacing, alternate, map.width, map.height));
+        std::vector<BaseChoice> choices = rank_lattices(request.job, map.width, map.height, most);
+        choices.erase(std::remove_if(choices.begin(), choices.end(),
+                                     [&](const BaseChoice& choice) { return choice.spacing != spacing; }),
+                      choices.end());
+        if (tests.ranks && choices.empty())
+            refuse("a lattice for ranks has a spacing of 2 to 128 texels, which divides the width of a map that repeats");
+        if (tests.ranks)
+            add(choices);
         return;
     }
     const std::size_t x = grid.find('x');
@@ -71,15 +97,25 @@ void add_grid(const std::string& grid, const TuneRequest& request, const HeightM
     }
     if (plane.columns == 0 || plane.rows == 0)
         refuse("expected auto, COLUMNSxROWS as in 16x22, or latticeSPACING as in lattice32");
+    if (!tests.paper)
+        refuse("ranks need a lattice: auto, or latticeSPACING as in lattice32");
     bases.push_back(plane);
 }
 
-void choose_tests(const TuneOrder& order, TuneRequest& request) {
+Searched choose_tests(const TuneOrder& order, TuneRequest& request) {
     Job::Tests& tests = request.job.tests;
+    Job::Hardware& hardware = request.job.hardware;
     const auto listed = [&](const char* name) {
         return std::find(order.tests.begin(), order.tests.end(), name) != order.tests.end();
     };
     const bool by_job = order.tests.empty();
+    Searched searched;
+    searched.ranks = by_job ? hardware.height_test == HeightTest::rank : listed("rank");
+    searched.paper = by_job ? !searched.ranks : listed("normal") || listed("summed_height") || listed("view");
+    if (hardware.height_test == HeightTest::rank) {
+        hardware.height_test = HeightTest::summed_height;
+        hardware.triangulation = Job::Hardware{}.triangulation;
+    }
     request.space = order.vary;
     request.space.normal = by_job ? tests.normal : listed("normal");
     request.space.summed_height = by_job ? tests.summed_height : listed("summed_height");
@@ -88,7 +124,7 @@ void choose_tests(const TuneOrder& order, TuneRequest& request) {
     tests.normal = tests.normal || request.space.normal;
     tests.summed_height = tests.summed_height || request.space.summed_height;
     tests.view = tests.view || request.space.view;
-    if (!tests.normal && !tests.summed_height)
+    if (searched.paper && !tests.normal && !tests.summed_height)
         throw InputError(
             "tests.normal and tests.summed_height are both off: no edge is ever split; switch one on, or "
             "name it "
@@ -111,13 +147,14 @@ void choose_tests(const TuneOrder& order, TuneRequest& request) {
         throw InputError(
             "hardware.culling = \"back\": culled triangles cannot be measured; tune with --set "
             "hardware.culling=none and set it in the tuned job");
+    return searched;
 }
 
-TuneRequest request_of(const TuneOrder& order, const fs::path& data_folder) {
+TuneRequest request_of(const TuneOrder& order, const fs::path& data_folder, Searched& searched) {
     TuneRequest request;
     request.job = load_job(order.job_file, order.settings, data_folder);
     request.threads = order.jobs;
-    choose_tests(order, request);
+    searched = choose_tests(order, request);
     request.goal.triangles = order.triangles;
     request.goal.largest = order.largest;
     request.goal.most_triangles =
@@ -177,7 +214,8 @@ Job finished_job(const TuneResult& result, const fs::path& job_file, const fs::p
 }  // namespace
 
 ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
-    TuneRequest request = request_of(order, data_folder);
+    Searched searched;
+    TuneRequest request = request_of(order, data_folder, searched);
     const fs::path job_file = order.output;
     const auto beside = [&](const char* extension) { return fs::path(job_file).replace_extension(extension); };
     const fs::path json_file = beside(".json"), obj_file = beside(".obj");
@@ -200,9 +238,9 @@ ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
     const HeightMap& map = inputs.map;
     request.job = inputs.resolved.job;
     if (order.grids.empty())
-        request.bases.emplace_back();
+        add_own_base(searched, request.bases);
     for (const std::string& grid : order.grids)
-        add_grid(grid, request, map, request.bases);
+        add_grid(grid, request, searched, map, request.bases);
 
     // The search's error and the measured one differ by rounding; the bound applies to the measured one.
     TuneResult result;
@@ -211,7 +249,7 @@ ExitCode tune_command(const TuneOrder& order, const fs::path& data_folder) {
     double bound = 0;
     for (int round = 0; round < most_rounds; ++round) {
         if (order.error > 0 && round == 0) {
-            const Job job = job_with_base(request.job, request.bases.front());
+            const Job job = job_with_base(request.job, request.bases.front(), request.goal);
             unit = error_unit(job, base_mesh_of(job, request.bases.front(), map), map);
             bound = order.error * unit.model_units;
             request.goal.error = bound;

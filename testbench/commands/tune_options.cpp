@@ -40,7 +40,8 @@ void TuneOptions::add_to(CLI::App& tune) {
                                    "a height field, else model units");
     tune.add_option("--metric", metric_, "error to use: rms or max");
     tune.add_option("--tests", order_.tests,
-                    "thresholds to search: normal, summed_height, view; default: of the tests the job enables")
+                    "thresholds to search: normal, summed_height, view; rank: of a Rank Test, with --metric max of a "
+                    "Bound Test; with both, the better is taken; default: of the tests the job enables")
         ->delimiter(',')
         ->allow_extra_args(false);
     vary_given_ = tune.add_option("--vary", vary_,
@@ -73,8 +74,8 @@ TuneOrder TuneOptions::order() const {
         refuse(fmt::format("--metric {}: must be rms or max", metric_));
     order.largest = metric_ == "max";
     for (const std::string& test : order.tests)
-        if (test != "normal" && test != "summed_height" && test != "view")
-            refuse(fmt::format("--tests {}: must be normal, summed_height or view", test));
+        if (test != "normal" && test != "summed_height" && test != "view" && test != "rank")
+            refuse(fmt::format("--tests {}: must be normal, summed_height, view or rank", test));
     if (vary_given_->count() > 0) {
         order.vary.summed_height_unit = order.vary.generation_limit = order.vary.triangulation = false;
         for (const std::string& choice : vary_) {

@@ -16,7 +16,9 @@ std::string BaseChoice::name() const {
             return fmt::format("{} x {}", columns, rows);
         case Kind::lattice:
             return fmt::format("lattice of {} texels, {} x {}{}", spacing, columns, rows,
-                               alternate ? ", alternate diagonals" : "");
+                               ranks       ? ", for ranks"
+                               : alternate ? ", alternate diagonals"
+                                           : "");
     }
     return {};
 }
@@ -41,6 +43,29 @@ BaseChoice lattice_choice(std::int64_t spacing, bool alternate, std::int64_t map
     choice.columns = static_cast<std::int64_t>(lattice_lines(map_width, spacing).size()) - 1;
     choice.rows = static_cast<std::int64_t>(lattice_lines(map_height, spacing).size()) - 1;
     return choice;
+}
+
+std::vector<BaseChoice> rank_lattices(const Job& job, std::int64_t map_width, std::int64_t map_height,
+                                      std::uint64_t most_triangles) {
+    constexpr std::int64_t largest_spacing = 128;  // edges of twice as much would need more generations than there are
+    std::vector<BaseChoice> choices;
+    const bool repeats_u = job.map.address_u == Addressing::repeat, repeats_v = job.map.address_v == Addressing::repeat;
+    for (std::int64_t spacing = 2; spacing <= largest_spacing; spacing *= 2) {
+        if ((repeats_u && map_width % spacing != 0) || (repeats_v && map_height % spacing != 0))
+            continue;
+        const auto quads = [&](std::int64_t texels, bool repeats) {
+            return std::max<std::int64_t>(1, (texels - (repeats ? 0 : 1) + spacing - 1) / spacing);
+        };
+        BaseChoice choice;
+        choice.kind = BaseChoice::Kind::lattice;
+        choice.ranks = true;
+        choice.spacing = spacing;
+        choice.columns = quads(map_width, repeats_u);
+        choice.rows = quads(map_height, repeats_v);
+        if (choice.triangles() <= most_triangles)
+            choices.push_back(choice);
+    }
+    return choices;
 }
 
 std::string lattice_obj(const BaseChoice& choice, const Job::Mesh& mesh, std::int64_t map_width,

@@ -97,8 +97,12 @@ TexelError::Sum TexelError::of(const std::array<const datapath::Vertex*, 3>& cor
     const std::int64_t step_0 = -(t[2].v - t[1].v) * texel, step_1 = -(t[0].v - t[2].v) * texel,
                        step_2 = -(t[1].v - t[0].v) * texel;
     const double scale = 1 / static_cast<double>(area);
-    const std::int64_t first_u = (low_u + half - 1) >> shift, last_u = (high_u - half) >> shift;
-    const std::int64_t last_v = (high_v - half) >> shift;
+    const auto inside = [](std::int64_t last, int size, Addressing address) {
+        return address == Addressing::clamp ? std::min<std::int64_t>(last, size - 1) : last;
+    };
+    const std::int64_t first_u = (low_u + half - 1) >> shift;
+    const std::int64_t last_u = inside((high_u - half) >> shift, map_.width, displacement_.address_u);
+    const std::int64_t last_v = inside((high_v - half) >> shift, map_.height, displacement_.address_v);
     for (std::int64_t y = (low_v + half - 1) >> shift; y <= last_v; ++y) {
         const Point start{(first_u << shift) + half, (y << shift) + half};
         std::int64_t w0 = side(t[1], t[2], start), w1 = side(t[2], t[0], start), w2 = side(t[0], t[1], start);

@@ -13,9 +13,10 @@
 namespace tessera {
 
 /// The error of one emitted triangle, independent of all others, so that it stays valid when thresholds change: at
-/// every texel centre that the triangle covers in texture space, the distance between the triangle and the displaced
+/// every texel centre of the map that the triangle covers in texture space, the distance between the triangle and the displaced
 /// surface at the same texture coordinate. On a height field this is the vertical error of
-/// check/surface_error/height_field.h, except that a centre on an edge belongs to one of the two triangles here.
+/// check/surface_error/height_field.h, except that a centre on an edge belongs to one of the two triangles here, and
+/// one on the mesh's border may belong to none.
 /// Elsewhere it is an upper bound on the distance from that point of the surface to the mesh.
 class TexelError {
   public:

@@ -11,6 +11,7 @@
 
 #include "testbench/common/error.h"
 #include "testbench/common/parallel.h"
+#include "testbench/explore/thresholds/rank_search.h"
 #include "testbench/explore/thresholds/texel_error.h"
 #include "testbench/explore/thresholds/tuned_figures.h"
 #include "testbench/input/mesh/obj_reader.h"
@@ -30,7 +31,7 @@ struct Ground {
     RefinementForest forest;
 
     Ground(const TuneRequest& request, const BaseChoice& base, const HeightMap& map)
-        : job(job_with_base(request.job, base)),
+        : job(job_with_base(request.job, base, request.goal)),
           setup(make_setup(job, base_mesh_of(job, base, map), map)),
           errors(setup, map, DisplacementOf::from(job, map)),
           forest(setup, &errors) {}
@@ -118,12 +119,13 @@ void refuse_beyond_finest(const TuneRequest& request, const std::vector<Explored
 
 }  // namespace
 
-Job job_with_base(const Job& job, const BaseChoice& base) {
-    Job result = job;
+Job job_with_base(const Job& job, const BaseChoice& base, const TuneGoal& goal) {
+    Job result = base.ranks ? RankSearch::job_for(job, goal) : job;
     if (base.kind == BaseChoice::Kind::job)
         return result;
     const bool lattice = base.kind == BaseChoice::Kind::lattice;
-    result.mesh.source = lattice ? MeshSource::file : MeshSource::plane;
+    result.mesh.source = base.ranks ? MeshSource::lattice : lattice ? MeshSource::file : MeshSource::plane;
+    result.mesh.spacing = base.ranks ? base.spacing : job.mesh.spacing;
     result.mesh.file.clear();
     result.mesh.path.clear();
     result.mesh.fingerprint.clear();
@@ -133,7 +135,7 @@ Job job_with_base(const Job& job, const BaseChoice& base) {
 }
 
 BaseMesh base_mesh_of(const Job& job, const BaseChoice& base, const HeightMap& map) {
-    if (base.kind == BaseChoice::Kind::lattice)
+    if (base.kind == BaseChoice::Kind::lattice && !base.ranks)
         return parse_obj(lattice_obj(base, job.mesh, map.width, map.height), "lattice");
     return load_mesh(job);
 }
@@ -151,6 +153,13 @@ TuneResult tune(const TuneRequest& request, const HeightMap& map,
         e.too_large = goal.triangles > 0 && e.base_triangles > goal.triangles;
         if (e.too_large)
             return;
+        if (request.bases[k].ranks) {
+            RankSearch search(ground.setup, ground.job, ground.errors, goal);
+            if (goal.triangles > 0)
+                e.finest = search.outcome(0, goal.triangles, false);
+            e.found = search.search();
+            return;
+        }
         ThresholdSearch search(ground.forest, ground.setup, ground.job, goal, request.space, [&](double done) {
             exploring.set(k, done, fmt::format("exploring {} base meshes", bases), 0, 0.5);
         });
@@ -170,7 +179,7 @@ TuneResult tune(const TuneRequest& request, const HeightMap& map,
     if (order.empty()) {
         if (goal.triangles > 0)
             refuse_budget(request, explored);
-        const Job job = job_with_base(request.job, request.bases.front());
+        const Job job = job_with_base(request.job, request.bases.front(), goal);
         const ErrorUnit unit = error_unit(job, base_mesh_of(job, request.bases.front(), map), map);
         refuse_error(request, explored, unit.model_units, unit.map_units ? "map units" : "model units");
     }
@@ -181,11 +190,14 @@ TuneResult tune(const TuneRequest& request, const HeightMap& map,
     SharedProgress refining(order.size(), on_progress);
     std::vector<ThresholdSearch::Found> refined(order.size());
     parallel_for(order.size(), request.threads, [&](std::size_t k) {
+        refined[k] = explored[order[k]].found;
+        if (request.bases[order[k]].ranks)
+            return;
         Ground ground(request, request.bases[order[k]], map);
         ThresholdSearch search(ground.forest, ground.setup, ground.job, goal, request.space, [&](double done) {
             refining.set(k, done, fmt::format("refining the best {}", order.size()), 0.5, 1);
         });
-        search.start_from(explored[order[k]].found);
+        search.start_from(refined[k]);
         search.refine();
         refined[k] = search.found();
     });
@@ -204,10 +216,10 @@ TuneResult tune(const TuneRequest& request, const HeightMap& map,
             result.base = k;
     result.point = explored[result.base].found.best->point;
     const BaseChoice& base = request.bases[result.base];
-    result.job = job_with_base(request.job, base);
+    result.job = job_with_base(request.job, base, goal);
     result.job.tests = result.point.tests;
     result.job.hardware.triangulation = result.point.triangulation;
-    if (base.kind == BaseChoice::Kind::lattice)
+    if (base.kind == BaseChoice::Kind::lattice && !base.ranks)
         result.base_obj = lattice_obj(base, request.job.mesh, map.width, map.height);
     return result;
 }

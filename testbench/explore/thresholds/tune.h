@@ -29,19 +29,20 @@ struct TriedPoint {
 struct TuneResult {
     std::size_t base = 0;
     TunedPoint point;
-    Job job;               ///< thresholds and base mesh set; for a lattice, mesh.file is empty
-    std::string base_obj;  ///< for a lattice
+    Job job;               ///< thresholds and base mesh set; for a lattice of the paper's tests, mesh.file is empty
+    std::string base_obj;  ///< for such a lattice
     std::vector<TriedPoint> tried;
     std::uint64_t evaluations = 0;  ///< meshes counted or measured
 };
 
-/// The job with this base mesh. For a lattice, mesh.file is empty: the caller names it.
-Job job_with_base(const Job& job, const BaseChoice& base);
+/// The job with this base mesh and its tests. For a lattice of the paper's tests, mesh.file is empty: the caller names it.
+Job job_with_base(const Job& job, const BaseChoice& base, const TuneGoal& goal);
 
 /// Its base mesh, exactly as the job will read it.
 BaseMesh base_mesh_of(const Job& job, const BaseChoice& base, const HeightMap& map);
 
-/// Finds the best thresholds over all base meshes: explore() on each, refine() on the best three. The result does not
+/// Finds the best thresholds over all base meshes: explore() on each, refine() on the best three; RankSearch on those for
+/// ranks. The result does not
 /// depend on the number of threads. on_progress(what, 0..1) is called from one thread at a time. Throws InputError if
 /// the goal cannot be met, naming the nearest that can, and what make_setup() throws.
 TuneResult tune(const TuneRequest& request, const HeightMap& map,

@@ -16,10 +16,9 @@ constexpr double well_used = 0.97;
 
 std::string goal_text(const TuneRequest& request, const ErrorUnit& unit) {
     const TuneGoal& goal = request.goal;
-    const char* const metric = goal.largest ? "largest" : "RMS";
     if (goal.triangles > 0)
-        return fmt::format("the least {} error with at most {} triangles", metric, goal.triangles);
-    return fmt::format("the fewest triangles with an {} error of at most {:.6g} {}s", metric,
+        return fmt::format("the least {} error with at most {} triangles", goal.largest ? "largest" : "RMS", goal.triangles);
+    return fmt::format("the fewest triangles with {} error of at most {:.6g} {}s", goal.largest ? "a largest" : "an RMS",
                        goal.error / unit.model_units, unit.map_units ? "map unit" : "model unit");
 }
 
@@ -60,10 +59,14 @@ std::string tune_text(const TuneRequest& request, const TuneResult& result, cons
     text += fmt::format("tessera tune: {}\n", goal_text(request, unit));
     row("result", figures_text(figures));
     row("base mesh", base_text(request, result));
-    row("Normal Test", threshold_text(tests.normal, tests.normal_threshold));
-    row("Summed Height Test",
-        threshold_text(tests.summed_height, tests.summed_height_threshold) +
-            (tests.summed_height ? fmt::format(", {}", name_of(tests.summed_height_unit)) : std::string{}));
+    row("Normal Test", threshold_text(result.job.tests.normal, tests.normal_threshold));
+    if (request.bases[result.base].ranks)
+        row(request.goal.largest ? "Bound Test" : "Rank Test",
+            toml_number(request.goal.largest ? tests.bound_threshold : tests.rank_threshold));
+    else
+        row("Summed Height Test",
+            threshold_text(tests.summed_height, tests.summed_height_threshold) +
+                (tests.summed_height ? fmt::format(", {}", name_of(tests.summed_height_unit)) : std::string{}));
     row("View Test", threshold_text(tests.view, tests.view_threshold));
     row("generation limit", tests.generation ? std::to_string(tests.generation_limit) : "off");
     row("triangulation", std::string(name_of(result.point.triangulation)));
@@ -98,11 +101,14 @@ std::string tune_json(const TuneRequest& request, const TuneResult& result, cons
                      {"summed_height", tests.summed_height},
                      {"summed_height_threshold", tests.summed_height_threshold},
                      {"summed_height_unit", name_of(tests.summed_height_unit)},
+                     {"rank_threshold", tests.rank_threshold},
+                     {"bound_threshold", tests.bound_threshold},
                      {"view", tests.view},
                      {"view_threshold", tests.view_threshold},
                      {"tex_coord", tests.tex_coord},
                      {"generation", tests.generation},
                      {"generation_limit", tests.generation_limit}};
+    json["height_test"] = name_of(result.job.hardware.height_test);
     json["triangulation"] = name_of(result.point.triangulation);
     json["base"] = {{"name", base.name()}};
     if (base.kind != BaseChoice::Kind::job) {
@@ -118,18 +124,23 @@ std::string tune_json(const TuneRequest& request, const TuneResult& result, cons
 
 std::string tried_csv(const TuneRequest& request, const TuneResult& result, const ErrorUnit& unit) {
     std::string text = fmt::format(
-        "base,normal_threshold,summed_height_threshold,summed_height_unit,view_threshold,generation_limit,"
-        "triangulation,triangles,rms [{0}],max [{0}]\n",
+        "base,height_test,normal_threshold,summed_height_threshold,summed_height_unit,view_threshold,generation_limit,"
+        "triangulation,rank_threshold,bound_threshold,triangles,rms [{0}],max [{0}]\n",
         unit.map_units ? "map unit" : "model unit");
     for (const TriedPoint& tried : result.tried) {
         const Job::Tests& tests = tried.point.tests;
         const Outcome& outcome = tried.point.outcome;
-        text += fmt::format("\"{}\",{},{},{},{},{},{},{},{:.6g},{:.6g}\n", request.bases[tried.base].name(),
-                            threshold_text(tests.normal, tests.normal_threshold),
-                            threshold_text(tests.summed_height, tests.summed_height_threshold),
-                            name_of(tests.summed_height_unit), threshold_text(tests.view, tests.view_threshold),
-                            tests.generation_limit, name_of(tried.point.triangulation), outcome.triangles,
-                            outcome.rms / unit.model_units, outcome.max / unit.model_units);
+        const BaseChoice& base = request.bases[tried.base];
+        const bool ranks = base.ranks && !request.goal.largest, bounds = base.ranks && request.goal.largest;
+        text += fmt::format(
+            "\"{}\",{},{},{},{},{},{},{},{},{},{},{:.6g},{:.6g}\n", base.name(),
+            name_of(base.ranks ? HeightTest::rank : request.job.hardware.height_test),
+            threshold_text(tests.normal, tests.normal_threshold),
+            threshold_text(tests.summed_height && !base.ranks, tests.summed_height_threshold),
+            name_of(tests.summed_height_unit), threshold_text(tests.view, tests.view_threshold), tests.generation_limit,
+            name_of(tried.point.triangulation), threshold_text(ranks, tests.rank_threshold),
+            threshold_text(bounds, tests.bound_threshold), outcome.triangles, outcome.rms / unit.model_units,
+            outcome.max / unit.model_units);
     }
     return text;
 }

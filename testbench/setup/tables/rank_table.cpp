@@ -1,6 +1,7 @@
 #include "testbench/setup/tables/rank_table.h"
 
 #include <algorithm>
+#include <cmath>
 #include <queue>
 #include <set>
 #include <tuple>
@@ -218,6 +219,10 @@ std::uint64_t count_whole_base_edges(const std::vector<TextureTriangle>& base, c
 
 std::uint32_t rank_threshold(double error_per_triangle, int bits) {
     return rank_scale(bits).entry_below(error_per_triangle * error_per_triangle);
+}
+
+double rank_error(std::uint32_t threshold, int bits) {
+    return std::sqrt(rank_scale(bits).value(threshold));
 }
 
 std::uint32_t bound_threshold(double largest_error, int bits) {

@@ -48,6 +48,9 @@ std::uint64_t count_whole_base_edges(const std::vector<std::array<datapath::TexC
 /// `error_per_triangle` (codes) per triangle it adds. Entry: 16 + log2 of codes^2, 6 bits in front of the point.
 std::uint32_t rank_threshold(double error_per_triangle, int bits);
 
+/// The least such error that a register stands for, codes.
+double rank_error(std::uint32_t threshold, int bits);
+
 /// The Bound Test's register for a largest vertical error, in codes, rounded down. Entry: 8 + log2 of codes, 5 bits in
 /// front of the point.
 std::uint32_t bound_threshold(double largest_error, int bits);

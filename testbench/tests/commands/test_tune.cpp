@@ -99,6 +99,34 @@ TEST_CASE("a bound on the error holds for the error that compare measures, to th
     }
 }
 
+TEST_CASE("tune finds a Rank Test's threshold, and a Bound Test's promise is kept") {
+    const TestFolder here;
+    const std::string job = (source_folder() / "testbench/examples/jobs/crater_lake_rank.toml").string();
+    succeed({"tune", job, "--triangles", "2400", "--set", "formats.rank_bits=10"}, here.path());
+    const Json ranks = read_json(here.path() / "tuned.json");
+    CHECK(ranks.at("triangles") <= 2400);
+    CHECK(ranks.at("error").at("rms") < 8.1);  // metres
+    check_by_run_and_compare(here.path(), "tuned");
+    succeed({"tune", job, "--error", "60", "--metric", "max", "--grid", "lattice64"}, here.path());
+    const Json bound = read_json(here.path() / "tuned.json");
+    CHECK(bound.at("error").at("max") <= 60);
+    CHECK(bound.at("triangles") < 2000);
+    CHECK_THAT(read_all(here.path() / "tuned.toml"), Contains("spacing = 64") && Contains("rank_bits = 0\n"));
+    check_by_run_and_compare(here.path(), "tuned");
+}
+
+TEST_CASE("tune chooses between the paper's tests and a Rank Test") {
+    const TestFolder here;
+    succeed(Arguments{"tune", "--triangles", "600", "--tests", "normal,summed_height,rank", "--grid", "auto", "--tried",
+                      "tried.csv", "--set", "tests.view=false"} +
+                small_map,
+            here.path());
+    const Json tuned = read_json(here.path() / "tuned.json");
+    CHECK(tuned.at("height_test") == "rank");
+    CHECK_THAT(read_all(here.path() / "tried.csv"), Contains(",summed_height,") && Contains(",rank,"));
+    check_by_run_and_compare(here.path(), "tuned");
+}
+
 TEST_CASE("tune works where the surface is no height field") {
     const TestFolder here;
     succeed(Arguments{"tune", "--triangles", "1200", "--set", "mesh.source=cylinder", "--set", "mesh.columns=12",
@@ -128,6 +156,7 @@ TEST_CASE("tune refuses wrong usage and goals out of reach, and leaves nothing")
     const auto tune = [&](const Arguments& more) { return refused(Arguments{"tune"} + more + small_map, here.path()); };
     CHECK_THAT(tune({}), Contains("--triangles") && Contains("--error") && Contains("tune --help"));
     CHECK_THAT(tune({"--triangles", "5", "--error", "1"}), Contains("either"));
+    CHECK_THAT(tune({"--triangles", "900", "--tests", "rank", "--grid", "4x4"}), Contains("ranks need a lattice"));
     CHECK_THAT(tune({"--triangles", "0"}), Contains("--triangles 0"));
     CHECK_THAT(tune({"--triangles", "-4"}), Contains("--triangles") && Contains("-4"));
     CHECK_THAT(tune({"--triangles", "17"}), Contains("18 triangles"));

@@ -8,9 +8,11 @@
 
 #include "testbench/check/surface_error/height_field.h"
 #include "testbench/common/error.h"
+#include "testbench/explore/thresholds/rank_search.h"
 #include "testbench/explore/thresholds/threshold_level.h"
 #include "testbench/explore/thresholds/tune.h"
 #include "testbench/explore/thresholds/tune_report.h"
+#include "testbench/explore/thresholds/tuned_figures.h"
 #include "testbench/input/mesh/obj_reader.h"
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/inputs.h"
@@ -284,6 +286,77 @@ TEST_CASE("a View Test that is searched is used, and alone too") {
     CHECK(alone.point.tests.view_threshold > 0);
     CHECK(alone.point.outcome.triangles <= 400);
     CHECK(alone.point.outcome.triangles > 300);
+}
+
+TEST_CASE("a Rank Test's threshold is the best of all that its register can hold") {
+    for (const bool largest : {false, true}) {
+        TuneRequest request = request_for(small_job());
+        request.bases = rank_lattices(request.job, 48, 40, 100);
+        REQUIRE(request.bases.size() == 5);  // 8 to 128 texels
+        request.bases = {request.bases[1]};
+        request.goal.largest = largest;
+        Job job = job_with_base(request.job, request.bases.front(), request.goal);
+        Ground ground(job);
+        RankSearch search(ground.setup, ground.job, ground.errors, request.goal);
+        std::vector<Outcome> all;
+        for (std::uint32_t threshold = 0; threshold <= search.highest(); ++threshold) {
+            (largest ? job.tests.bound_threshold : job.tests.rank_threshold) = search.threshold_of(threshold);
+            const MachineSetup setup = make_setup(job, ground.base, ground.map);
+            const datapath::TestParameters& tests = setup.registers.tests;
+            CHECK((largest ? tests.bound_threshold : tests.rank_threshold) == threshold);
+            EmittedMesh mesh;
+            BareRecursion(setup).run(mesh);
+            mesh.sort();
+            const TunedFigures figures = measure_tuned(job, ground.base, ground.map, setup, mesh);
+            all.push_back(search.outcome(threshold, 100000, true));
+            CHECK(all.back().triangles == figures.triangles);
+            // The search leaves out some of the points on the mesh's border.
+            CHECK(all.back().rms == Approx(figures.rms_model).epsilon(0.05));
+            CHECK(all.back().max <= Approx(figures.max_model).epsilon(1e-3));
+        }
+        for (const std::uint64_t budget : {20u, 60u, 200u, 700u}) {
+            request.goal.triangles = budget;
+            std::uint64_t most = 0;
+            for (const Outcome& outcome : all)
+                most = std::max(most, outcome.triangles <= budget ? outcome.triangles : 0);
+            INFO("at most " << budget << " triangles, largest " << largest);
+            CHECK(tuned(request).point.outcome.triangles == most);
+        }
+        request.goal.triangles = 0;
+        for (const double bound : {0.03, 0.015, 0.011}) {
+            request.goal.error = bound;
+            const TunedPoint point = tuned(request).point;
+            INFO("error of at most " << bound << ", largest " << largest);
+            CHECK(request.goal.error_of(point.outcome) <= bound);
+            if (largest) {  // what is promised, and less than an entry's step below
+                const double promised = point.tests.bound_threshold * request.job.displacement.scale;
+                CHECK(promised == Approx(bound).epsilon(0.1));
+                continue;
+            }
+            std::uint64_t fewest = 100000;
+            for (const Outcome& outcome : all)
+                fewest = std::min(fewest, outcome.rms <= bound ? outcome.triangles : fewest);
+            CHECK(point.outcome.triangles == fewest);
+        }
+    }
+}
+
+TEST_CASE("of the paper's tests and a Rank Test the better is taken") {
+    TuneRequest request = request_for(small_job());
+    for (const BaseChoice& base : rank_lattices(request.job, 48, 40, 200))
+        request.bases.push_back(base);
+    bool ranks_won = false;
+    for (const std::uint64_t budget : {18u, 60u, 300u}) {
+        request.goal.triangles = budget;
+        const TuneResult result = tuned(request);
+        const bool ranks = request.bases[result.base].ranks;
+        ranks_won = ranks_won || ranks;
+        CHECK((result.job.hardware.height_test == HeightTest::rank) == ranks);
+        CHECK((result.job.mesh.source == MeshSource::lattice) == ranks);
+        for (const TriedPoint& tried : result.tried)
+            CHECK_FALSE(better(tried.point, result.point, request.goal));
+    }
+    CHECK(ranks_won);
 }
 
 TEST_CASE("the result does not depend on the number of threads") {
