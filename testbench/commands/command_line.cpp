@@ -115,6 +115,18 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     tune_options.add_to(*tune);
     tune->add_option("--data", data, "folder of `data:` paths in the job; default: $TESSERA_DATA");
 
+    CLI::App* const rank =
+        app.add_subcommand("rank", "make a job's Rank Table, and measure the meshes of its thresholds");
+    CLI::Option* const rank_job =
+        rank->add_option("JOB", command.rank.job_file, "job file (TOML); default: the half donut");
+    rank->add_option("--output", command.rank.output,
+                     "folder of rank_table.bin (as the memory holds it), rank_table.json and thresholds.csv; default: "
+                     "runs/rank");
+    rank->add_option("--set", command.rank.settings, "set one key of the job first")
+        ->take_all()
+        ->allow_extra_args(false);
+    rank->add_option("--data", data, "folder of `data:` paths in the job; default: $TESSERA_DATA");
+
     CLI::App* const widths = app.add_subcommand(
         "widths", "sweep the widths of number formats: flipped decisions, error and triangles at each width");
     WidthsOptions widths_options;
@@ -136,8 +148,8 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     if (app.get_subcommands().empty())
         throw InputError(
             "no command given: use `tessera run`, `tessera compare`, `tessera render`, `tessera bake`, "
-            "`tessera tune`, `tessera widths` or `tessera keys`; see `tessera --help`");
-    if (job->count() > 0 && command.job_file.empty())
+            "`tessera tune`, `tessera rank`, `tessera widths` or `tessera keys`; see `tessera --help`");
+    if ((job->count() > 0 && command.job_file.empty()) || (rank_job->count() > 0 && command.rank.job_file.empty()))
         throw InputError("JOB is empty: name a job file, or leave it out for the default job");
     command.verb = keys->parsed()      ? Command::Verb::keys
                    : compare->parsed() ? Command::Verb::compare
@@ -155,6 +167,8 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
         command.verb = Command::Verb::tune;
         command.tune = tune_options.order();
     }
+    if (rank->parsed())
+        command.verb = Command::Verb::rank;
     if (widths->parsed()) {
         command.verb = Command::Verb::widths;
         command.widths = widths_options.order();

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "testbench/commands/bake_command.h"
+#include "testbench/commands/rank_command.h"
 #include "testbench/commands/render_command.h"
 #include "testbench/commands/tune_command.h"
 #include "testbench/commands/widths_command.h"
@@ -13,7 +14,7 @@ namespace tessera {
 
 /// The command line's contents.
 struct Command {
-    enum class Verb { run, compare, render, bake, tune, widths, keys } verb = Verb::run;
+    enum class Verb { run, compare, render, bake, tune, rank, widths, keys } verb = Verb::run;
     std::string job_file;               ///< empty: the default job
     std::string run_folder;             ///< compare: what a run left
     std::vector<std::string> settings;  ///< --set a.b=value, in order
@@ -23,6 +24,7 @@ struct Command {
     RenderRequest render;               ///< Verb::render
     BakeRequest bake;                   ///< Verb::bake
     TuneOrder tune;                     ///< Verb::tune
+    RankOrder rank;                     ///< Verb::rank
     WidthsOrder widths;                 ///< Verb::widths
     std::string trace_option;           ///< --trace or --trace-units, if given: it requires --vcd, --fst or --timeline
 };

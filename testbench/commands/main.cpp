@@ -12,6 +12,7 @@
 #include "testbench/commands/bake_command.h"
 #include "testbench/commands/command_line.h"
 #include "testbench/commands/compare_run.h"
+#include "testbench/commands/rank_command.h"
 #include "testbench/commands/render_command.h"
 #include "testbench/commands/run_job.h"
 #include "testbench/commands/tune_command.h"
@@ -41,6 +42,8 @@ tessera::ExitCode execute(const std::optional<tessera::Command>& command) {
         return tessera::compare_run(*command);
     if (command->verb == tessera::Command::Verb::tune)
         return tessera::tune_command(command->tune, command->data_folder);
+    if (command->verb == tessera::Command::Verb::rank)
+        return tessera::rank_command(command->rank, command->data_folder);
     if (command->verb == tessera::Command::Verb::widths)
         return tessera::widths_command(command->widths, command->data_folder);
     fmt::print("{}", tessera::document_keys());

@@ -83,7 +83,8 @@ void add_grid(const std::string& grid, const TuneRequest& request, const Searche
                                      [&](const BaseChoice& choice) { return choice.spacing != spacing; }),
                       choices.end());
         if (tests.ranks && choices.empty())
-            refuse("a lattice for ranks has a spacing of 2 to 128 texels, which divides the width of a map that repeats");
+            refuse(
+                "a lattice for ranks has a spacing of 2 to 128 texels, which divides the width of a map that repeats");
         if (tests.ranks)
             add(choices);
         return;

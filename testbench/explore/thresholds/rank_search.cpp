@@ -30,8 +30,7 @@ struct Meter {
     void finished(const datapath::Triangle& triangle, bool) {
         ++triangles;
         if (errors != nullptr)
-            sum.add(
-                errors->of({&triangle.vertices[0], &triangle.vertices[1], &triangle.vertices[2]}, triangle.base));
+            sum.add(errors->of({&triangle.vertices[0], &triangle.vertices[1], &triangle.vertices[2]}, triangle.base));
     }
 };
 

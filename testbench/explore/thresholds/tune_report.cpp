@@ -17,9 +17,11 @@ constexpr double well_used = 0.97;
 std::string goal_text(const TuneRequest& request, const ErrorUnit& unit) {
     const TuneGoal& goal = request.goal;
     if (goal.triangles > 0)
-        return fmt::format("the least {} error with at most {} triangles", goal.largest ? "largest" : "RMS", goal.triangles);
-    return fmt::format("the fewest triangles with {} error of at most {:.6g} {}s", goal.largest ? "a largest" : "an RMS",
-                       goal.error / unit.model_units, unit.map_units ? "map unit" : "model unit");
+        return fmt::format("the least {} error with at most {} triangles", goal.largest ? "largest" : "RMS",
+                           goal.triangles);
+    return fmt::format("the fewest triangles with {} error of at most {:.6g} {}s",
+                       goal.largest ? "a largest" : "an RMS", goal.error / unit.model_units,
+                       unit.map_units ? "map unit" : "model unit");
 }
 
 std::string figures_text(const TunedFigures& figures) {
@@ -132,15 +134,14 @@ std::string tried_csv(const TuneRequest& request, const TuneResult& result, cons
         const Outcome& outcome = tried.point.outcome;
         const BaseChoice& base = request.bases[tried.base];
         const bool ranks = base.ranks && !request.goal.largest, bounds = base.ranks && request.goal.largest;
-        text += fmt::format(
-            "\"{}\",{},{},{},{},{},{},{},{},{},{},{:.6g},{:.6g}\n", base.name(),
-            name_of(base.ranks ? HeightTest::rank : request.job.hardware.height_test),
-            threshold_text(tests.normal, tests.normal_threshold),
-            threshold_text(tests.summed_height && !base.ranks, tests.summed_height_threshold),
-            name_of(tests.summed_height_unit), threshold_text(tests.view, tests.view_threshold), tests.generation_limit,
-            name_of(tried.point.triangulation), threshold_text(ranks, tests.rank_threshold),
-            threshold_text(bounds, tests.bound_threshold), outcome.triangles, outcome.rms / unit.model_units,
-            outcome.max / unit.model_units);
+        text += fmt::format("\"{}\",{},{},{},{},{},{},{},{},{},{},{:.6g},{:.6g}\n", base.name(),
+                            name_of(base.ranks ? HeightTest::rank : request.job.hardware.height_test),
+                            threshold_text(tests.normal, tests.normal_threshold),
+                            threshold_text(tests.summed_height && !base.ranks, tests.summed_height_threshold),
+                            name_of(tests.summed_height_unit), threshold_text(tests.view, tests.view_threshold),
+                            tests.generation_limit, name_of(tried.point.triangulation),
+                            threshold_text(ranks, tests.rank_threshold), threshold_text(bounds, tests.bound_threshold),
+                            outcome.triangles, outcome.rms / unit.model_units, outcome.max / unit.model_units);
     }
     return text;
 }

@@ -8,7 +8,7 @@
 
 #include "testbench/check/surface_error/height_field.h"
 #include "testbench/common/error.h"
-#include "testbench/explore/thresholds/rank_search.h"
+#include "testbench/explore/thresholds/rank_curve.h"
 #include "testbench/explore/thresholds/threshold_level.h"
 #include "testbench/explore/thresholds/tune.h"
 #include "testbench/explore/thresholds/tune_report.h"
@@ -338,6 +338,22 @@ TEST_CASE("a Rank Test's threshold is the best of all that its register can hold
                 fewest = std::min(fewest, outcome.rms <= bound ? outcome.triangles : fewest);
             CHECK(point.outcome.triangles == fewest);
         }
+    }
+}
+
+TEST_CASE("a Rank Table's file has each texel's rank and bound, little endian") {
+    TuneRequest request = request_for(small_job());
+    request.bases = rank_lattices(request.job, 48, 40, 100);
+    Job job = job_with_base(request.job, request.bases.front(), request.goal);
+    job.formats.rank_bits = 10;
+    job.formats.bound_bits = 7;
+    Ground ground(job);
+    const std::string bytes = rank_table_bytes(ground.setup);
+    const RankTables& tables = ground.setup.rank_tables;
+    REQUIRE(bytes.size() == tables.rank.size() * 3);
+    for (std::size_t k = 0; k < tables.rank.size(); ++k) {
+        const auto byte = [&](std::size_t n) { return unsigned{static_cast<unsigned char>(bytes[3 * k + n])}; };
+        CHECK((byte(0) | byte(1) << 8 | byte(2) << 16) == (tables.rank[k] | unsigned{tables.bound[k]} << 10));
     }
 }
 
