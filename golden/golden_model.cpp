@@ -117,9 +117,9 @@ EdgeEvaluation evaluate_edge(const Vertex& i, const Vertex& j, const Map& map, c
     e.view_length = view_length(i, j);
     e.view_test = !enabled.view || e.view_length > parameters.view_threshold;
 
-    // Texel indices before addressing, so that both copies of a periodic seam get the same result.
-    const glm::dvec2 texel = glm::floor(m.texture);
-    const bool resolution_reached = texel == glm::floor(i.texture) || texel == glm::floor(j.texture);
+    // Before addressing, so that both copies of a periodic seam get the same result.
+    const auto part = [&](const Vertex& v) { return glm::floor(v.texture * parameters.texel_parts); };
+    const bool resolution_reached = part(m) == part(i) || part(m) == part(j);
     e.tex_coord_test = !enabled.tex_coord || !resolution_reached;
 
     e.generation_test = !enabled.generation || m.generation <= parameters.generation_limit;

@@ -48,6 +48,7 @@ struct Parameters {
     Diagonal diagonal = Diagonal::shorter;
 
     Filter filter = Filter::nearest;  ///< section 2
+    double texel_parts = 1;           ///< section 4.4: the Tex Coord Test compares parts of a texel, so many across it
 
     /// Inserted texture coordinates are rounded down to multiples of this, in texels; 0: not rounded. Nothing else is
     /// rounded. At a texel's border the least difference in t selects another texel, so t must match the hardware's.

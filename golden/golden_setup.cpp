@@ -78,6 +78,7 @@ Parameters make_parameters(const Scene& scene) {
     result.enabled = scene.enabled;
     result.diagonal = scene.diagonal;
     result.filter = scene.filter;
+    result.texel_parts = scene.texel_parts;
     result.row_x = view.row_x;
     result.row_y = view.row_y;
     result.row_w = view.row_w;

@@ -60,6 +60,7 @@ struct Scene {
     Parameters::Enabled enabled;
     Diagonal diagonal = Diagonal::shorter;
     Filter filter = Filter::nearest;
+    double texel_parts = 1;  ///< across a texel, that the Tex Coord Test compares
 
     glm::dvec3 light{0, 0, 1};  ///< direction towards the light, world, any length
 };

@@ -22,7 +22,7 @@ struct EdgeTestWidths : Intermediates {
     Width limit{"SHT: threshold, times the area", wider(summed_height_threshold_bits, area.bits + 17)};
     Width screen{"VT: abs(dx), abs(dy)", f.screen.bits};
     Width length{"VT: their sum", screen.bits + 1};
-    Width index{"TCT: integer parts", f.texture.bits - f.texture.fraction};
+    Width index{"TCT: parts that are compared", f.texture.bits - f.texture.fraction + f.tex_coord_fraction};
     Width product{"HT: N'.x * H.x", 2 * f.normal.bits};
     Width cosine{"HT: N' . H", product.bits + 1};
     constexpr auto all() const { return std::array{normal, sums, area, limit, screen, length, index, product, cosine}; }
@@ -105,13 +105,14 @@ constexpr bool view_test(const ScreenPosition& i, const ScreenPosition& j, const
     return i.in_front || j.in_front;
 }
 
-/// TCT (paper 2.5): false if t_ij lies in the same texel as t_i or t_j, so that the map's resolution is reached.
+/// TCT (paper 2.5): false if t_ij lies in the same texel as t_i or t_j, so that the map's resolution is reached; with
+/// tex_coord_fraction bits in the same half or quarter of a texel, on both axes. A bit slice.
 constexpr bool tex_coord_test(const TexCoord& i, const TexCoord& j, const TexCoord& ij, const Formats& formats) {
-    const std::uint32_t u = integer_part(ij.u, formats);
-    const std::uint32_t v = integer_part(ij.v, formats);
-    const bool same_as_i = u == integer_part(i.u, formats) && v == integer_part(i.v, formats);
-    const bool same_as_j = u == integer_part(j.u, formats) && v == integer_part(j.v, formats);
-    return !(same_as_i || same_as_j);
+    const int shift = formats.texture.fraction - formats.tex_coord_fraction;
+    const auto same = [shift](const TexCoord& a, const TexCoord& b) {
+        return a.u >> shift == b.u >> shift && a.v >> shift == b.v >> shift;
+    };
+    return !(same(ij, i) || same(ij, j));
 }
 
 /// Generation of a vertex inserted on (i, j): the greater of the ends' plus one, at most 255 (reached only with GT

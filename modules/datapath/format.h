@@ -52,6 +52,7 @@ struct Formats {
     int bound_bits = 0;     ///< likewise; the bound lies above the rank
     bool families = false;  ///< a queue entry says which edges split, and N, T, N' of their midpoints
     MapFilter filter = MapFilter::nearest;
+    int tex_coord_fraction = 0;  ///< fraction bits of t that the Tex Coord Test compares, at most the texture's
 };
 
 /// Bits of an entry of the height test's table.
@@ -74,6 +75,7 @@ struct FormatLimits {
     static constexpr Range position_bits{8, 32}, position_fraction{0, 31};
     static constexpr Range normal_bits{6, 18}, normal_fraction{0, 16};
     static constexpr Range texture_integer{1, 12}, texture_fraction{0, 12};
+    static constexpr Range tex_coord_fraction{0, 2};
     static constexpr Range displacement_bits{1, 16};
     static constexpr Range summed_height_bits{8, 48};
     static constexpr Range screen_bits{8, 31}, screen_fraction{0, 30};

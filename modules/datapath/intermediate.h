@@ -59,6 +59,7 @@ constexpr bool fits_every_format() {
         f.screen = Format::make_signed(Limits::screen_bits.most, fraction(3, Limits::screen_fraction));
         f.generation_bits = Limits::generation_bits.most;
         f.filter = MapFilter::bilinear;
+        f.tex_coord_fraction = Limits::tex_coord_fraction.most;
         if (first_too_wide(Widths{f}) != nullptr)
             return false;
     }

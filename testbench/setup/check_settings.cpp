@@ -110,6 +110,11 @@ void check_formats(const FormatSettings& formats, const TestSettings& tests, Fau
                   "integer, and 1.0 "
                   "needs 2: lower it, or raise normal_bits",
                   formats.normal_fraction, formats.normal_bits - formats.normal_fraction, formats.normal_bits);
+    faults.unless(
+        formats.tex_coord_fraction <= formats.texture_fraction,
+        "`formats.tex_coord_fraction` = {} must be at most `formats.texture_fraction` = {}: lower it, or raise "
+        "texture_fraction",
+        formats.tex_coord_fraction, formats.texture_fraction);
     const std::int64_t generations = std::int64_t{1} << formats.generation_bits;
     faults.unless(tests.generation_limit < generations,
                   "`tests.generation_limit` = {}, but `formats.generation_bits` = {} counts to {}: lower the limit, or "

@@ -32,6 +32,7 @@ datapath::Formats make_formats(const FormatSettings& settings) {
     formats.normal = Format::make_signed(bits(settings.normal_bits), bits(settings.normal_fraction));
     formats.texture = Format::make_unsigned(bits(settings.texture_integer + settings.texture_fraction) + 1,
                                             bits(settings.texture_fraction));
+    formats.tex_coord_fraction = bits(settings.tex_coord_fraction);
     formats.displacement = Format::make_unsigned(bits(settings.displacement_bits), bits(settings.displacement_bits));
     formats.summed_height =
         Format::make_unsigned(bits(settings.summed_height_bits == 0 ? 32 : settings.summed_height_bits), 0);

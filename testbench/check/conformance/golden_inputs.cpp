@@ -80,6 +80,7 @@ golden::Parameters golden_parameters(const datapath::Registers& registers) {
     result.diagonal = golden_diagonal(registers.triangulation);
     result.filter =
         formats.filter == datapath::MapFilter::bilinear ? golden::Filter::bilinear : golden::Filter::nearest;
+    result.texel_parts = std::ldexp(1.0, formats.tex_coord_fraction);
 
     const int matrix = datapath::TransformParameters::matrix_fraction;
     const auto row = [&](const std::array<std::int64_t, 4>& r, int exponent) {

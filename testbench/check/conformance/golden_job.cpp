@@ -64,6 +64,7 @@ golden::Scene make_scene(const Job& job, const HeightMap& map, const ModelScale&
                                                                                   : golden::Diagonal::shorter;
     scene.filter =
         job.hardware.displacement_filter == MapFilter::bilinear ? golden::Filter::bilinear : golden::Filter::nearest;
+    scene.texel_parts = std::ldexp(1.0, static_cast<int>(job.formats.tex_coord_fraction));
     scene.light = vector(job.hardware.light);
     return scene;
 }

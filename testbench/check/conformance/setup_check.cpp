@@ -219,6 +219,7 @@ class RegisterCheck {
         flag("tests.summed_height_test", number(tests.summed_height_test), number(golden.enabled.summed_height));
         flag("tests.view_test", number(tests.view_test), number(golden.enabled.view));
         flag("tests.tex_coord_test", number(tests.tex_coord_test), number(golden.enabled.tex_coord));
+        flag("tex_coord_fraction", std::ldexp(1.0, formats_.tex_coord_fraction), golden.texel_parts);
         flag("tests.generation_test", number(tests.generation_test), number(golden.enabled.generation));
         flag("tests.highlight_test", number(tests.highlight_test), number(golden.enabled.highlight));
         judge_.judge("tests.normal_threshold", tests.normal_threshold, golden.normal_threshold * normal, rounded_down);

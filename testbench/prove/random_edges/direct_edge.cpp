@@ -253,10 +253,12 @@ std::uint8_t DirectEdge::tests(const Vertex& i, const Vertex& j, const Vertex& i
     const int in_front = (i.screen.in_front ? 1 : 0) + (j.screen.in_front ? 1 : 0);
     set(!parameters.view_test || in_front == 1 || (in_front == 2 && measures.length > parameters.view_threshold),
         datapath::view_bit);
-    const auto same = [](const Texel& a, const Texel& b) { return a.x == b.x && a.y == b.y; };
-    const Texel middle = texel(inserted.texture);
-    set(!parameters.tex_coord_test || !(same(middle, texel(i.texture)) || same(middle, texel(j.texture))),
-        datapath::tex_coord_bit);
+    const datapath::Formats& formats = registers_.formats;
+    const std::int64_t part = (std::int64_t{1} << formats.texture.fraction) / (1 << formats.tex_coord_fraction);
+    const auto near = [&](const Vertex& end) {
+        return end.texture.u / part == inserted.texture.u / part && end.texture.v / part == inserted.texture.v / part;
+    };
+    set(!parameters.tex_coord_test || (!near(i) && !near(j)), datapath::tex_coord_bit);
     set(!parameters.generation_test || inserted.generation <= parameters.generation_limit, datapath::generation_bit);
     return static_cast<std::uint8_t>(bits);
 }

@@ -31,6 +31,7 @@ Formats any_formats(Random& random, FormatWidths widths) {
     formats.screen = Format::make_signed(screen, random.integer32(0, screen - 1));
     if (random.coin())
         formats.filter = datapath::MapFilter::bilinear;
+    formats.tex_coord_fraction = std::min(fraction, random.integer32(0, 2));
     return formats;
 }
 

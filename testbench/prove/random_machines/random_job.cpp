@@ -123,6 +123,8 @@ void make_random_job(Random& random, const JobContext& context, Job& job) {
 void choose_mesh_options(Random& random, Job& job) {
     if (random.coin())
         job.hardware.displacement_filter = MapFilter::bilinear;
+    job.formats.tex_coord_fraction =
+        std::min(job.formats.texture_fraction, random.one_of<std::int64_t>({0, 0, 0, 1, 2}));
     if (random.chance(75))
         return;
     job.hardware.height_test = HeightTest::rank;

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <iomanip>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "testbench/tests/support/program_runner.h"
 
@@ -109,6 +111,70 @@ TEST_CASE("where all edges split, a bilinear filter leaves a third of the error,
     const double nearest = rms("nearest", "paper"), bilinear = rms("bilinear", "paper");
     CHECK(3 * bilinear < nearest);
     CHECK(rms("bilinear", "modern") == bilinear);
+}
+
+namespace {
+
+/// A plane with vertices at the map's border and every 16 texels from `first` on, as OBJ.
+std::string plane_from(double first, int width, int height) {
+    const auto lines = [first](int texels) {
+        std::vector<double> at{0};
+        for (double line = first; line < texels; line += 16)
+            if (line > 0)
+                at.push_back(line);
+        at.push_back(texels);
+        return at;
+    };
+    const std::vector<double> u = lines(width), v = lines(height);
+    std::ostringstream text, textures;
+    for (const double y : v)
+        for (const double x : u) {
+            text << "v " << 10.05 * (x / width - 0.5) << ' ' << 13.74 * (y / height - 0.5) << " 0\n";
+            textures << std::setprecision(12) << "vt " << x / width << ' ' << y / height << '\n';
+        }
+    text << textures.str();
+    for (std::size_t j = 0; j + 1 < v.size(); ++j)
+        for (std::size_t i = 0; i + 1 < u.size(); ++i) {
+            const std::size_t a = j * u.size() + i + 1, b = a + 1, c = b + u.size(), d = a + u.size();
+            text << "f " << a << '/' << a << ' ' << b << '/' << b << ' ' << c << '/' << c << '\n';
+            text << "f " << a << '/' << a << ' ' << c << '/' << c << ' ' << d << '/' << d << '\n';
+        }
+    return text.str();
+}
+
+}  // namespace
+
+TEST_CASE("with half texels a bilinear filter's error is small wherever the base vertices lie") {
+    const TestFolder here;
+    const std::string job = (source_folder() / "testbench/examples/jobs/crater_lake_704.toml").string();
+    for (const double first : {0.0, 0.25}) {
+        write_all(here.path() / "base.obj", plane_from(first, 336, 459));
+        run_job(here.path(), {job,
+                              "--set",
+                              "mesh.source=file",
+                              "--set",
+                              "mesh.file=" + (here.path() / "base.obj").string(),
+                              "--set",
+                              "hardware.displacement_filter=bilinear",
+                              "--set",
+                              "formats.tex_coord_fraction=1",
+                              "--set",
+                              "tests.view=false",
+                              "--set",
+                              "tests.normal_threshold=0",
+                              "--set",
+                              "tests.summed_height_threshold=0",
+                              "--set",
+                              "check.invariants=false",
+                              "--set",
+                              "limits.triangles=2000000",
+                              "--set",
+                              "output.folder=run"});
+        succeed({"compare", "run"}, here.path());
+        const json error = json::parse(read_all(here.path() / "run/error.json"));
+        INFO("vertices from " << first << " texels on");
+        CHECK(error.at("vertical").at("rms").at("value").get<double>() < 0.0013);  // km
+    }
 }
 
 TEST_CASE("an undisplaced run of a constant map has the error its bias makes") {

@@ -145,10 +145,12 @@ TEST_CASE("View Test: one end behind the near plane counts as long, two as invis
     }
 }
 
-TEST_CASE("Tex Coord Test: false if the midpoint's texel is an end's; every edge of 3 + 2 bits") {
+TEST_CASE("Tex Coord Test: false if the midpoint's texel, or part of one, is an end's; every edge of 3 + 2 bits") {
     Formats formats;
     formats.texture = Format::make_unsigned(6, 2);
-    const auto texel = [](double coordinate) { return std::floor(coordinate / 4); };
+    formats.tex_coord_fraction = GENERATE(0, 1, 2);
+    const double size = 4 / std::pow(2, formats.tex_coord_fraction);
+    const auto texel = [size](double coordinate) { return std::floor(coordinate / size); };
     for (std::uint32_t iu = 0; iu <= 32; ++iu)
         for (std::uint32_t iv = 0; iv <= 32; ++iv)
             for (std::uint32_t ju = 0; ju <= 32; ++ju)
