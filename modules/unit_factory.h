@@ -57,10 +57,21 @@ class UnitFactory {
     virtual std::unique_ptr<TexCoordTest> tex_coord_test(Name name, const UnitContext& context) {
         return std::make_unique<TexCoordTest>(name, context);
     }
+    /// By the design's kind, which the functions below make.
+    std::unique_ptr<HeightTestUnit> height_test(const UnitContext& context) {
+        const datapath::HeightTest kind = context.registers.formats.height_test;
+        const char* const name = kind_of(kind).unit;
+        switch (kind) {
+            case datapath::HeightTest::rank:
+                return rank_test(name, context);
+            case datapath::HeightTest::summed_height:
+                break;
+        }
+        return summed_height_test(name, context);
+    }
     virtual std::unique_ptr<SummedHeightTest> summed_height_test(Name name, const UnitContext& context) {
         return std::make_unique<SummedHeightTest>(name, context);
     }
-    /// With datapath::HeightTest::rank, in its place.
     virtual std::unique_ptr<RankTest> rank_test(Name name, const UnitContext& context) {
         return std::make_unique<RankTest>(name, context);
     }

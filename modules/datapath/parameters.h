@@ -21,6 +21,12 @@ struct TableLayout {
     constexpr std::uint64_t bytes() const { return std::uint64_t{rows} * columns * entry_bytes; }
 };
 
+/// What a table covers, from texel (0, 0) on: the map, or more where it clamps and the base mesh reaches beyond it.
+struct CoveredTexels {
+    std::uint32_t columns = 0;
+    std::uint32_t rows = 0;
+};
+
 /// The map's size in texels and its addressing per axis.
 struct MapGeometry {
     std::uint32_t width = 1;
@@ -91,6 +97,7 @@ struct Registers {
     TableLayout displacement_map;
     TableLayout normal_map;
     TableLayout height_table;  ///< of the height test: the Summed Height Table, unless Formats say otherwise
+    CoveredTexels covered;     ///< by a height test's table that may reach beyond the map
     TestParameters tests;
     DisplacementParameters displacement;
     TransformParameters transform;

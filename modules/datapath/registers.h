@@ -93,8 +93,8 @@ constexpr void describe_registers(AnyRegisters& r, Visit&& visit) {
     field("light.ambient", number, 9, "of 256", r.light.ambient);
 
     if (f.height_test == HeightTest::rank) {  // last, so that the registers of other designs keep their addresses
-        field("rank_table.columns", number, map_side_bits, "of the Rank Table, entries", r.height_table.columns);
-        field("rank_table.rows", number, map_side_bits, "likewise", r.height_table.rows);
+        field("rank_table.columns", number, map_side_bits, "of the Rank Table, entries", r.covered.columns);
+        field("rank_table.rows", number, map_side_bits, "likewise", r.covered.rows);
         if (f.rank_bits > 0)
             field("tests.rank_threshold", number, f.rank_bits, "an entry's format", r.tests.rank_threshold);
         if (f.bound_bits > 0)

@@ -125,7 +125,4 @@ struct LargestMap {
 /// The offsets are the same in every design; widths follow from the formats.
 std::vector<DeviceRegister> register_map(const datapath::Registers& reset, const LargestMap& largest);
 
-/// Layouts of the tables for the map's size. Bases stay; entries follow from the formats.
-void lay_out_tables_of(datapath::Registers& registers);
-
 }  // namespace tessera

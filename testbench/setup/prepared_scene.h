@@ -45,7 +45,7 @@ struct PreparedScene {
 /// Takes bytes that belong at an address of the machine's memory.
 using TableSink = std::function<void(std::uint64_t address, const unsigned char* bytes, std::size_t count)>;
 
-/// The displacement map, the normal map and the Summed Height Table or the Rank Table, row by row, little endian, where the registers'
+/// The displacement map, the normal map and the height test's table, row by row, little endian, where the registers'
 /// layouts place them.
 void write_tables(const PreparedScene& scene, const TableSink& sink);
 

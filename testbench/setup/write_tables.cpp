@@ -82,10 +82,14 @@ void write_rank_table(const PreparedScene& scene, const TableSink& sink) {
 void write_tables(const PreparedScene& scene, const TableSink& sink) {
     write_displacement_map(scene, sink);
     write_normal_map(scene, sink);
-    if (scene.registers.formats.height_test == datapath::HeightTest::rank)
-        write_rank_table(scene, sink);
-    else
-        write_summed_height_table(scene, sink);
+    switch (scene.registers.formats.height_test) {
+        case datapath::HeightTest::summed_height:
+            write_summed_height_table(scene, sink);
+            break;
+        case datapath::HeightTest::rank:
+            write_rank_table(scene, sink);
+            break;
+    }
 }
 
 }  // namespace tessera
