@@ -10,6 +10,7 @@
 #include "modules/units/displace_vertex.h"
 #include "modules/units/edge_tests/calculate_new_u.h"
 #include "modules/units/edge_tests/collect_tests.h"
+#include "modules/units/edge_tests/curvature.h"
 #include "modules/units/edge_tests/normal.h"
 #include "modules/units/edge_tests/rank.h"
 #include "modules/units/edge_tests/sequence_tests.h"
@@ -64,6 +65,8 @@ class UnitFactory {
         switch (kind) {
             case datapath::HeightTest::rank:
                 return rank_test(name, context);
+            case datapath::HeightTest::curvature:
+                return curvature_test(name, context);
             case datapath::HeightTest::summed_height:
                 break;
         }
@@ -74,6 +77,9 @@ class UnitFactory {
     }
     virtual std::unique_ptr<RankTest> rank_test(Name name, const UnitContext& context) {
         return std::make_unique<RankTest>(name, context);
+    }
+    virtual std::unique_ptr<CurvatureTest> curvature_test(Name name, const UnitContext& context) {
+        return std::make_unique<CurvatureTest>(name, context);
     }
     virtual std::unique_ptr<NormalTest> normal_test(Name name, const UnitContext& context, Parts takes) {
         return std::make_unique<NormalTest>(name, context, takes);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "modules/datapath/curvature.h"
 #include "modules/datapath/edge_tests.h"
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/transform.h"
@@ -99,6 +100,13 @@ constexpr void describe_registers(AnyRegisters& r, Visit&& visit) {
             field("tests.rank_threshold", number, f.rank_bits, "an entry's format", r.tests.rank_threshold);
         if (f.bound_bits > 0)
             field("tests.bound_threshold", number, f.bound_bits, "an entry's format", r.tests.bound_threshold);
+    }
+    if (f.height_test == HeightTest::curvature) {
+        field("curvature_table.columns", number, map_side_bits, "that the Curvature Table covers, texels",
+              r.covered.columns);
+        field("curvature_table.rows", number, map_side_bits, "likewise", r.covered.rows);
+        field("tests.curvature_threshold", number, curvature_threshold_bits(f), "codes times texels, 3 fraction bits",
+              r.tests.curvature_threshold);
     }
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include "modules/datapath/curvature.h"
 #include "modules/datapath/map_entry.h"
 #include "modules/datapath/parameters.h"
 
@@ -18,6 +19,11 @@ constexpr void shape_tables(Registers& r) {
         case HeightTest::rank:
             table.columns = r.covered.columns;
             table.rows = r.covered.rows;
+            break;
+        case HeightTest::curvature:  // cells of all levels, in one row
+            table.columns =
+                r.covered.columns == 0 ? 0 : static_cast<std::uint32_t>(curvature_entries(covered_texels(r)));
+            table.rows = 1;
             break;
     }
 }

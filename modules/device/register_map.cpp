@@ -75,7 +75,7 @@ std::vector<DeviceRegister> control_registers(const Formats& f, const LargestMap
         {"largest_map", 0x09c, 32, 1, false, largest.width | std::uint64_t{largest.height} << 16, ro, false, "",
          "columns, and from bit 16 on rows, of the largest map"},
         {"entry_bytes", 0x0a0, 24, 1, false, entry_sizes(f), ro, false, "",
-         "of an entry of the displacement map, from bit 8 on of the normal map, from bit 16 on of the Summed Height Table or the Rank Table"},
+         "of an entry of the displacement map, from bit 8 on of the normal map, from bit 16 on of the Summed Height Table or the table in its place"},
         {"record_bytes", 0x0a4, 32, 1, false, base_triangle_bytes | std::uint64_t{finished_triangle_bytes} << 16, ro,
          false, "", "of a base triangle, and from bit 16 on of a finished one"},
     };

@@ -51,7 +51,7 @@ constexpr unsigned height_test_latency(const Design& design, const datapath::For
     const MemoryTiming& its = t.*kind_of(formats.height_test).table_timing;
     // where the table overlaps the reads of so many rectangles, with places for their edges
     const unsigned table = t.read_latency(its) + its.window / 3;
-    return formats.codes ? std::max(table, t.read_latency(t.displacement_map)) : table;
+    return height_test_reads_codes(formats) ? std::max(table, t.read_latency(t.displacement_map)) : table;
 }
 
 /// Of Displace Vertex's reads: of the displacement map and, of families, of the normal map.

@@ -17,15 +17,18 @@ struct HeightTestKind {
     const char* table;  ///< likewise
     UnitTiming Timing::*unit_timing;
     MemoryTiming Timing::*table_timing;
-    unsigned requests;  ///< to the table, at most
+    unsigned requests;  ///< to the table, unless codes tell
+    unsigned codes;     ///< entries of the displacement map that are read in its place, of a short edge; 0: none
     bool rectangles;    ///< a request is for the corners of a rectangle; else for one entry
     unsigned feature;   ///< its bit of the device's register `features`; 0: none
 };
 
-inline constexpr std::array<HeightTestKind, 2> height_test_kinds = {{
+inline constexpr std::array<HeightTestKind, 3> height_test_kinds = {{
     {"summed_height", "Summed Height Test", "summed_height_test", "summed_height_table", &Timing::summed_height_test,
-     &Timing::summed_height_table, 3, true, 0},
-    {"rank", "Rank Test", "rank_test", "rank_table", &Timing::rank_test, &Timing::rank_table, 1, false, 32},
+     &Timing::summed_height_table, 3, 1, true, 0},
+    {"rank", "Rank Test", "rank_test", "rank_table", &Timing::rank_test, &Timing::rank_table, 1, 0, false, 32},
+    {"curvature", "Curvature Test", "curvature_test", "curvature_table", &Timing::curvature_test,
+     &Timing::curvature_table, 1, 3, false, 64},
 }};
 
 constexpr const HeightTestKind& kind_of(datapath::HeightTest test) {

@@ -82,6 +82,9 @@ void make_height_table(PreparedScene& scene) {
         case datapath::HeightTest::rank:
             rank_lattice(scene, base);
             break;
+        case datapath::HeightTest::curvature:
+            scene.curvature_table = make_curvature_table(scene.map, base, registers.formats);
+            break;
     }
 }
 

@@ -10,6 +10,7 @@
 #include "modules/datapath/vertex.h"
 #include "testbench/setup/quantised_map.h"
 #include "testbench/setup/scene_settings.h"
+#include "testbench/setup/tables/curvature_table.h"
 #include "testbench/setup/tables/rank_table.h"
 
 namespace tessera {
@@ -26,7 +27,8 @@ struct PreparedScene {
     datapath::Registers registers;
     QuantisedMap map;
     std::vector<datapath::Triangle> base_triangles;
-    RankTables rank_tables;  ///< with a Rank Test
+    RankTables rank_tables;          ///< with a Rank Test
+    CurvatureTable curvature_table;  ///< with a Curvature Test
 
     /// The machine's world = scale * (model - centre); scale is a power of two.
     double scale = 1;

@@ -77,6 +77,14 @@ void write_rank_table(const PreparedScene& scene, const TableSink& sink) {
     }
 }
 
+template <class Entry>
+void write_in_one_row(const datapath::TableLayout& layout, const std::vector<Entry>& entries, const TableSink& sink) {
+    TableRow row(layout, sink);
+    for (std::uint32_t k = 0; k < layout.columns; ++k)
+        row.set(k, entries[k]);
+    row.write(0);
+}
+
 }  // namespace
 
 void write_tables(const PreparedScene& scene, const TableSink& sink) {
@@ -88,6 +96,9 @@ void write_tables(const PreparedScene& scene, const TableSink& sink) {
             break;
         case datapath::HeightTest::rank:
             write_rank_table(scene, sink);
+            break;
+        case datapath::HeightTest::curvature:
+            write_in_one_row(scene.registers.height_table, scene.curvature_table.entries, sink);
             break;
     }
 }

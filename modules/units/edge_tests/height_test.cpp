@@ -13,7 +13,7 @@ HeightTestUnit::HeightTestUnit(const sc_core::sc_module_name& name, const UnitCo
     takes_from(context, input);
     delivers_to(context, output);
     reads_through(table, kind_of(registers_.formats.height_test).requests);
-    if (registers_.formats.codes) {
+    if (height_test_reads_codes(registers_.formats)) {
         displacement_map.emplace("displacement_map", registers_.displacement_map.entry_bytes,
                                  context.design.direct_memory);
         reads_through(*displacement_map, 1);

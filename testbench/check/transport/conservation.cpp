@@ -93,15 +93,17 @@ struct Tested {
     std::uint64_t off_lattice;
 };
 
-/// each: entries from which a map is read for a vertex or an edge.
-void add_reads(Equations& list, const Pipeline& p, const Tested& tested, std::uint64_t each) {
+/// each: entries from which a map is read for a vertex or an edge. codes_an_edge: of one that its height test decides by
+/// codes.
+void add_reads(Equations& list, const Pipeline& p, const Tested& tested, std::uint64_t each,
+               std::uint64_t codes_an_edge) {
     const auto& [vertices, edges, midpoints, normal, summed_height, by_codes, off_lattice] = tested;
     const std::string times = each == 1 ? "" : std::to_string(each) + " times ";
     list.add("reads of displacement_map by displace_vertex = " + times + "vertices and midpoints",
              p.displace_vertex.displacement_map.reads(), each * (vertices + midpoints));
     list.add("reads of displacement_map = " + times +
                  (each == 1 ? "vertices, midpoints and texels" : "vertices and midpoints, and texels"),
-             p.displacement_map_reads(), each * (vertices + midpoints) + by_codes);
+             p.displacement_map_reads(), each * (vertices + midpoints) + codes_an_edge * by_codes);
     list.add("reads of normal_map = " + times + "vertices and edges of normal_test", p.normal_map_reads(),
              each * normal_map_requests(p, vertices, normal));
     list.add("positions of transform = vertices and midpoints", p.transform.positions(), vertices + midpoints);
@@ -234,7 +236,8 @@ void add_machine(Equations& list, const MachineSetup& setup, const HostedMachine
              : final_edges ? "edges tested = 3 a base triangle, 4 a split, and those tested again"
                            : "edges tested = 3 a pass",
              counts.edges_tested, edges);
-    add_reads(list, p, tested, datapath::map_entry_count(setup.registers.formats));
+    add_reads(list, p, tested, datapath::map_entry_count(setup.registers.formats),
+              kind_of(setup.registers.formats.height_test).codes);
     if (setup.design.transport == Transport::non_blocking)
         add_timed(list, setup, machine, tested);
 }

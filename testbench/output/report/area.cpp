@@ -110,6 +110,8 @@ class AreaCounter {
         switch (registers_.formats.height_test) {
             case datapath::HeightTest::summed_height:
                 return area ? Multiplications::summed_height_limit : 0;
+            case datapath::HeightTest::curvature:
+                return Multiplications::curvature_measure;
             case datapath::HeightTest::rank:
                 break;
         }
