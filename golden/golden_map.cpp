@@ -134,6 +134,23 @@ Map::Rank Map::rank(const glm::dvec2& t) const {
             rank_table_.bounds.empty() ? 0 : rank_table_.bounds[index]};
 }
 
+Curvature Map::curvature(const glm::dvec2& t, int level) const {
+    const CurvatureTable& table = curvature_table_;
+    std::int64_t first = 0;
+    for (int l = 2;; ++l) {
+        const std::int64_t spacing = std::int64_t{1} << (l - 1);
+        const auto nearest = [&](std::int64_t texel) { return (texel + spacing / 2) / spacing; };
+        const std::int64_t columns = nearest(table.columns - 1) + 1, rows = nearest(table.rows - 1) + 1;
+        const bool holds_all = std::max(table.columns, table.rows) <= 2 * spacing;
+        if (l == level || holds_all) {
+            const std::int64_t x = nearest(address(integer_part(t.x), table.columns, address_u_));
+            const std::int64_t y = nearest(address(integer_part(t.y), table.rows, address_v_));
+            return table.cells[static_cast<std::size_t>(first + y * columns + x)];
+        }
+        first += columns * rows;
+    }
+}
+
 Rectangle Map::rectangle_size(const glm::dvec2& t_i, const glm::dvec2& t_j) const {
     const auto whole = [](double texels, std::int64_t size) {
         return std::clamp<std::int64_t>(integer_part(texels), 1, size);

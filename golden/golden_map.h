@@ -21,6 +21,20 @@ struct RankTable {
     int highest_bound_threshold = 0;  ///< up to which the bounds hold
 };
 
+/// What the Curvature Table (4.8) says of a square of 2^l texels, in codes: by how much the midpoint of an edge (u, v) 2^l
+/// leaves its chord, | xx u^2 + xy u v + yy v^2 |, and what the map leaves of that on the average. All are multiples of
+/// `unit`.
+struct Curvature {
+    double xx = 0, xy = 0, yy = 0, rest = 0;
+    double unit = 0;
+};
+
+/// Of levels l = 2, 3, ... one after another, each row by row from the bottom: a cell every 2^(l - 1) texels.
+struct CurvatureTable {
+    std::int64_t columns = 0, rows = 0;  ///< texels that it covers
+    std::vector<Curvature> cells;
+};
+
 /// How the displacement map and the normal map are read: the texel that contains t, or between the four texels whose
 /// centres surround it.
 enum class Filter { nearest, bilinear };
@@ -73,6 +87,13 @@ class Map {
     /// By which the cut `greatest_rank` compares midpoints: the rank or, without ranks, the bound.
     int order(const Rank& rank) const { return rank_table_.ranks.empty() ? rank.bound : rank.rank; }
 
+    /// Uses a Curvature Table, in place of the Summed Height Test. It may cover more than the map.
+    void set_curvatures(CurvatureTable table) { curvature_table_ = std::move(table); }
+    const CurvatureTable& curvature_table() const { return curvature_table_; }
+    bool has_curvatures() const { return curvature_table_.columns > 0; }
+    /// Of the cell nearest to the texel that contains t; level >= 2, at most the table's highest.
+    Curvature curvature(const glm::dvec2& t, int level) const;
+
     /// Width and height in texels of the Summed Height Test's three rectangles on an edge (4.2):
     ///     n_w = min(width,  max(1, int(|du| / 2)))     n_h = min(height, max(1, int(|dv| / 4)))
     Rectangle rectangle_size(const glm::dvec2& t_i, const glm::dvec2& t_j) const;
@@ -101,6 +122,7 @@ class Map {
     std::vector<glm::dvec3> normals_;  // given by set_normals(), else empty
     SummedAreaTable sums_;
     RankTable rank_table_;
+    CurvatureTable curvature_table_;
 };
 
 }  // namespace tessera::golden

@@ -33,6 +33,28 @@ bool has_lattice_midpoint(const Vertex& i, const Vertex& j) {
     return std::fmod(texels.x, 2) == 0 && std::fmod(texels.y, 2) == 0 && texels != glm::dvec2(0);
 }
 
+// Section 4.8.
+void measure_curvature(const Vertex& i, const Vertex& j, const Vertex& m, const Map& map, EdgeEvaluation& e) {
+    const glm::dvec2 d = i.texture - j.texture;
+    const double longer = std::max(std::abs(d.x), std::abs(d.y));
+    int level = 1;
+    while (longer > std::exp2(level)) {
+        ++level;
+    }
+    const double length = std::exp2(level);
+    if (level == 1) {
+        const auto code = [&](const Vertex& v) { return map.code(map.texel(v.texture)); };
+        e.curvature = std::abs(code(m) - (code(i) + code(j)) / 2) * length;
+        return;
+    }
+    const Curvature c = map.curvature(m.texture, level);
+    const double u = std::floor(8 * std::abs(d.x) / length) / 8, v = std::floor(8 * std::abs(d.y) / length) / 8;
+    const double xy = d.x * d.y < 0 ? -c.xy : c.xy;
+    const auto whole_units = [&](double codes) { return std::floor(codes / c.unit) * c.unit; };
+    const double bend = whole_units(std::abs(c.xx * u * u + xy * u * v + c.yy * v * v));
+    e.curvature = (std::max(bend, c.rest) + whole_units(std::min(bend, c.rest) / 2)) * length;
+}
+
 // Section 4.3. The near-plane rule is expressed by an infinite length.
 double view_length(const Vertex& i, const Vertex& j) {
     if (i.in_front && j.in_front) {
@@ -112,6 +134,11 @@ EdgeEvaluation evaluate_edge(const Vertex& i, const Vertex& j, const Map& map, c
         const Map::Rank rank = on_lattice ? map.rank(m.texture) : Map::Rank{};
         e.order = map.order(rank);
         e.summed_height_test = rank.rank > parameters.rank_threshold || rank.bound > parameters.bound_threshold;
+    }
+
+    if (map.has_curvatures()) {
+        measure_curvature(i, j, m, map, e);
+        e.summed_height_test = enabled.summed_height && e.curvature > parameters.curvature_threshold;
     }
 
     e.view_length = view_length(i, j);

@@ -31,6 +31,7 @@ struct Parameters {
     bool area = false;                   ///< the area option of section 4.2
     int rank_threshold = 0;              ///< of the Rank Test, section 4.7
     int bound_threshold = 0;             ///< likewise
+    double curvature_threshold = 0;      ///< codes times texels, section 4.8
     double view_threshold = 0;           ///< pixels
     int generation_limit = 12;           ///< highest generation of an inserted vertex
 
@@ -41,7 +42,7 @@ struct Parameters {
     double highlight_normal_threshold = 0;
 
     struct Enabled {
-        /// summed_height: or, with a Rank Table, the Rank Test.
+        /// summed_height: or the test in its place.
         bool normal = true, summed_height = true, view = true, tex_coord = true, generation = true, highlight = false;
     } enabled;
 
@@ -109,13 +110,14 @@ struct EdgeEvaluation {
     int order = 0;                   ///< with a Rank Table: of the midpoint, 0 if it is no point of the lattice
     double summed_height = 0;        ///< |2 S(r_ij) - S(r_i) - S(r_j)|, exact
     double summed_height_limit = 0;  ///< SHT = summed_height > it: 4 * threshold, or threshold * area
+    double curvature = 0;            ///< with a Curvature Table: CT = it > the threshold; codes times texels
     double view_length = 0;          ///< VT = it > view_threshold; Manhattan, pixels; +infinity if one end is not in
                                      ///< front, -infinity if both are not
     /// Cosine between N' and the half vector: the greater of the two ends, and the midpoint's. HT = one of them >
     /// highlight_cosine and normal_difference > highlight_normal_threshold.
     double end_cosine = 0, midpoint_cosine = 0;
 
-    /// summed_height_test: or, with a Rank Table, the Rank Test.
+    /// summed_height_test: or the test in its place.
     bool normal_test = false, summed_height_test = false, view_test = false, tex_coord_test = false,
          generation_test = false, highlight_test = false;
     bool split = false;  ///< (NT or SHT or HT) and VT and TCT and GT

@@ -66,6 +66,7 @@ Parameters make_parameters(const Scene& scene) {
     result.normal_threshold = scene.normal_threshold;
     result.summed_height_threshold = scene.summed_height_threshold * scene.highest_code;
     result.area = scene.area;
+    result.curvature_threshold = scene.curvature_threshold * scene.highest_code;
     result.rank_threshold = static_cast<int>(std::floor(rank_threshold(scene)));
     result.bound_threshold = static_cast<int>(std::floor(bound_threshold(scene)));
     result.view_threshold = scene.view_threshold;

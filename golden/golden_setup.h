@@ -50,6 +50,7 @@ struct Scene {
     bool area = false;
     double rank_threshold = 0;          ///< full scale times the square root of a texel
     double bound_threshold = 0;         ///< full scale
+    double curvature_threshold = 0;     ///< full scale times texels
     int rank_bits = 0, bound_bits = 0;  ///< of a Rank Table's entry; 0: it has none
     /// A clamped axis does not clamp texture coordinates: the mesh reaches beyond the map.
     bool beyond_map = false;

@@ -72,16 +72,16 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
                        design.timing.stalls, &off_chip_memory.channel()),
       normal_map("normal_map", clock, registers.normal_map, design.timing.normal_map, design.timing.stalls,
                  &off_chip_memory.channel()),
-      height_table(table_name(registers.formats.height_test), clock, registers.height_table,
-                   height_table_timing(design.timing, registers.formats.height_test), design.timing.stalls,
+      height_table(kind_of(registers.formats.height_test).table, clock, registers.height_table,
+                   design.timing.*kind_of(registers.formats.height_test).table_timing, design.timing.stalls,
                    &off_chip_memory.channel()),
       displacement_map_cache(make_cache("displacement_map_cache", registers.displacement_map,
                                         design.timing.displacement_map, design.timing.stalls)),
       normal_map_cache(
           make_cache("normal_map_cache", registers.normal_map, design.timing.normal_map, design.timing.stalls)),
       height_table_cache(make_cache(
-          (std::string(table_name(registers.formats.height_test)) + "_cache").c_str(), registers.height_table,
-          height_table_timing(design.timing, registers.formats.height_test), design.timing.stalls)),
+          (std::string(kind_of(registers.formats.height_test).table) + "_cache").c_str(), registers.height_table,
+          design.timing.*kind_of(registers.formats.height_test).table_timing, design.timing.stalls)),
       registers_(registers),
       transport_(design.transport),
       random_stalls_(design.timing.stalls.per_mille > 0) {

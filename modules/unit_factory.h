@@ -10,6 +10,7 @@
 #include "modules/units/displace_vertex.h"
 #include "modules/units/edge_tests/calculate_new_u.h"
 #include "modules/units/edge_tests/collect_tests.h"
+#include "modules/units/edge_tests/curvature.h"
 #include "modules/units/edge_tests/normal.h"
 #include "modules/units/edge_tests/rank.h"
 #include "modules/units/edge_tests/sequence_tests.h"
@@ -57,12 +58,28 @@ class UnitFactory {
     virtual std::unique_ptr<TexCoordTest> tex_coord_test(Name name, const UnitContext& context) {
         return std::make_unique<TexCoordTest>(name, context);
     }
+    /// By the design's kind, which the functions below make.
+    std::unique_ptr<HeightTestUnit> height_test(const UnitContext& context) {
+        const datapath::HeightTest kind = context.registers.formats.height_test;
+        const char* const name = kind_of(kind).unit;
+        switch (kind) {
+            case datapath::HeightTest::rank:
+                return rank_test(name, context);
+            case datapath::HeightTest::curvature:
+                return curvature_test(name, context);
+            case datapath::HeightTest::summed_height:
+                break;
+        }
+        return summed_height_test(name, context);
+    }
     virtual std::unique_ptr<SummedHeightTest> summed_height_test(Name name, const UnitContext& context) {
         return std::make_unique<SummedHeightTest>(name, context);
     }
-    /// With datapath::HeightTest::rank, in its place.
     virtual std::unique_ptr<RankTest> rank_test(Name name, const UnitContext& context) {
         return std::make_unique<RankTest>(name, context);
+    }
+    virtual std::unique_ptr<CurvatureTest> curvature_test(Name name, const UnitContext& context) {
+        return std::make_unique<CurvatureTest>(name, context);
     }
     virtual std::unique_ptr<NormalTest> normal_test(Name name, const UnitContext& context, Parts takes) {
         return std::make_unique<NormalTest>(name, context, takes);

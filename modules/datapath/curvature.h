@@ -21,7 +21,6 @@ struct CurvatureEntry {
     std::uint32_t rest = 0;               ///< 8 bits: root of the mean squared error of the quadratic
 };
 
-inline constexpr int curvature_entry_bits = 36;
 /// Exponent 0 stands for 1/8 of a code, exponent 15 for 2^12 codes: 127 units are then more than any map can have.
 inline constexpr int curvature_fraction = 3;
 inline constexpr int largest_curvature_exponent = 15;
@@ -103,6 +102,12 @@ constexpr CurvatureCells curvature_cells(int level, const MapGeometry& covered) 
     }
 }
 
+/// Of all levels.
+constexpr std::uint64_t curvature_entries(const MapGeometry& covered) {
+    const CurvatureCells last = curvature_cells(highest_curvature_level(covered), covered);
+    return last.first_entry + std::uint64_t{last.columns} * last.rows;
+}
+
 /// Byte address of the entry for an edge with midpoint t_ij, level >= 2: of the cell nearest to the midpoint's texel.
 /// base: of the table. The cells of each level are constants of the table.
 constexpr std::uint64_t curvature_address(const TexCoord& ij, int level, std::uint64_t base, const MapGeometry& covered,
@@ -137,6 +142,39 @@ constexpr std::uint64_t curvature_measure(const CurvatureEntry& entry, const Tex
 /// The same at level 1, from the codes of the edge's three vertices: |2 d_ij - d_i - d_j| in 1/8 codes.
 constexpr std::uint64_t curvature_measure_of_codes(std::uint32_t i, std::uint32_t j, std::uint32_t ij) {
     return absolute_difference(2 * std::int64_t{ij}, std::int64_t{i} + j) << curvature_fraction;
+}
+
+/// Whether the test reads the three codes, and not the table.
+constexpr bool curvature_by_codes(const TexCoord& i, const TexCoord& j, const Formats& formats) {
+    return curvature_level(i, j, formats) < least_curvature_level;
+}
+
+/// Addresses of what is read for an edge: three codes, or one entry.
+template <class Visit>
+constexpr void curvature_reads(const TexCoord& i, const TexCoord& j, const TexCoord& ij, const Registers& r,
+                               Visit&& visit) {
+    const int level = curvature_level(i, j, r.formats);
+    if (level < least_curvature_level) {
+        for (const TexCoord& t : {i, j, ij})
+            visit(texel_address(t, r.displacement_map, r.map, r.formats));
+    } else {
+        visit(curvature_address(ij, level, r.height_table.base, covered_texels(r), r.formats));
+    }
+}
+
+/// The measure, of what was read.
+template <class Entries>
+constexpr std::uint64_t curvature_of_entries(const TexCoord& i, const TexCoord& j, const Entries& read,
+                                             const Formats& formats) {
+    const int level = curvature_level(i, j, formats);
+    const auto code = [&](std::size_t k) { return static_cast<std::uint32_t>(read[k]); };
+    return level < least_curvature_level ? curvature_measure_of_codes(code(0), code(1), code(2))
+                                         : curvature_measure(unpack_curvature(read[0]), i, j, level, formats);
+}
+
+/// CT: the measure is above the threshold.
+constexpr bool curvature_test(std::uint64_t measure, const TestParameters& parameters) {
+    return measure > parameters.curvature_threshold;
 }
 
 }  // namespace tessera::datapath

@@ -22,7 +22,7 @@ struct Format {
 };
 
 /// The test of heights a machine has, on a table of its own. The paper's is `summed_height`.
-enum class HeightTest : std::uint8_t { summed_height, rank };
+enum class HeightTest : std::uint8_t { summed_height, rank, curvature };
 
 /// How the displacement map and the normal map are read at t (bilinear.h).
 enum class MapFilter : std::uint8_t {
@@ -55,10 +55,29 @@ struct Formats {
     int tex_coord_fraction = 0;  ///< fraction bits of t that the Tex Coord Test compares, at most the texture's
 };
 
+inline constexpr int curvature_entry_bits = 36;
+
 /// Bits of an entry of the height test's table.
 constexpr int height_entry_bits(const Formats& formats) {
-    return formats.height_test == HeightTest::rank ? formats.rank_bits + formats.bound_bits
-                                                   : formats.summed_height.bits;
+    switch (formats.height_test) {
+        case HeightTest::rank:
+            return formats.rank_bits + formats.bound_bits;
+        case HeightTest::curvature:
+            return curvature_entry_bits;
+        case HeightTest::summed_height:
+            break;
+    }
+    return formats.summed_height.bits;
+}
+
+/// Whether short edges' heights are read of the displacement map, in place of the test's table.
+constexpr bool height_test_reads_codes(const Formats& formats) {
+    return formats.codes || formats.height_test == HeightTest::curvature;
+}
+
+/// Whether the test's table may cover more texels than the map (CoveredTexels).
+constexpr bool covers_more_than_the_map(const Formats& formats) {
+    return formats.height_test == HeightTest::rank || formats.height_test == HeightTest::curvature;
 }
 
 /// Bits of the number by which the cut `greatest_rank` compares edges: of the rank or, without ranks, of the bound.

@@ -21,6 +21,12 @@ struct TableLayout {
     constexpr std::uint64_t bytes() const { return std::uint64_t{rows} * columns * entry_bytes; }
 };
 
+/// What a table covers, from texel (0, 0) on: the map, or more where it clamps and the base mesh reaches beyond it.
+struct CoveredTexels {
+    std::uint32_t columns = 0;
+    std::uint32_t rows = 0;
+};
+
 /// The map's size in texels and its addressing per axis.
 struct MapGeometry {
     std::uint32_t width = 1;
@@ -42,9 +48,10 @@ struct TestParameters {
     /// sum: 4 * threshold in codes times texels; area: threshold in codes. Compared with |2 S_ij - S_i - S_j|.
     std::uint64_t summed_height_threshold = 0;
     SummedHeightUnit summed_height_unit = SummedHeightUnit::sum;
-    std::uint32_t rank_threshold = 0;   ///< Rank Test: of the entry's rank
-    std::uint32_t bound_threshold = 0;  ///< likewise of its bound
-    std::uint32_t view_threshold = 0;   ///< screen's format
+    std::uint32_t rank_threshold = 0;       ///< Rank Test: of the entry's rank
+    std::uint32_t bound_threshold = 0;      ///< likewise of its bound
+    std::uint64_t curvature_threshold = 0;  ///< Curvature Test: 1/8 codes times texels
+    std::uint32_t view_threshold = 0;       ///< screen's format
     std::uint32_t generation_limit = 12;
 
     bool highlight_test = false;  ///< HT: three more dot products and their compares, in designs that have it
@@ -91,6 +98,7 @@ struct Registers {
     TableLayout displacement_map;
     TableLayout normal_map;
     TableLayout height_table;  ///< of the height test: the Summed Height Table, unless Formats say otherwise
+    CoveredTexels covered;     ///< by a height test's table that may reach beyond the map
     TestParameters tests;
     DisplacementParameters displacement;
     TransformParameters transform;
@@ -98,5 +106,10 @@ struct Registers {
     bool back_face_culling = false;
     LightParameters light;
 };
+
+/// What the height test's table covers, read as the map is.
+constexpr MapGeometry covered_texels(const Registers& r) {
+    return {r.covered.columns, r.covered.rows, r.map.address_u, r.map.address_v};
+}
 
 }  // namespace tessera::datapath

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "modules/datapath/curvature.h"
 #include "modules/datapath/edge_tests.h"
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/transform.h"
@@ -93,12 +94,19 @@ constexpr void describe_registers(AnyRegisters& r, Visit&& visit) {
     field("light.ambient", number, 9, "of 256", r.light.ambient);
 
     if (f.height_test == HeightTest::rank) {  // last, so that the registers of other designs keep their addresses
-        field("rank_table.columns", number, map_side_bits, "of the Rank Table, entries", r.height_table.columns);
-        field("rank_table.rows", number, map_side_bits, "likewise", r.height_table.rows);
+        field("rank_table.columns", number, map_side_bits, "of the Rank Table, entries", r.covered.columns);
+        field("rank_table.rows", number, map_side_bits, "likewise", r.covered.rows);
         if (f.rank_bits > 0)
             field("tests.rank_threshold", number, f.rank_bits, "an entry's format", r.tests.rank_threshold);
         if (f.bound_bits > 0)
             field("tests.bound_threshold", number, f.bound_bits, "an entry's format", r.tests.bound_threshold);
+    }
+    if (f.height_test == HeightTest::curvature) {
+        field("curvature_table.columns", number, map_side_bits, "that the Curvature Table covers, texels",
+              r.covered.columns);
+        field("curvature_table.rows", number, map_side_bits, "likewise", r.covered.rows);
+        field("tests.curvature_threshold", number, curvature_threshold_bits(f), "codes times texels, 3 fraction bits",
+              r.tests.curvature_threshold);
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "modules/datapath/table_shapes.h"
 #include "modules/device/records.h"
 
 namespace tessera {
@@ -12,9 +13,8 @@ namespace {
 datapath::Registers for_largest_map(datapath::Registers registers, const LargestMap& largest) {
     registers.map.width = largest.width;
     registers.map.height = largest.height;
-    registers.height_table.columns = largest.width;  // of a Rank Table
-    registers.height_table.rows = largest.height;
-    lay_out_tables_of(registers);
+    registers.covered = {largest.width, largest.height};
+    datapath::shape_tables(registers);
     return registers;
 }
 

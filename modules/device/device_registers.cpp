@@ -159,10 +159,13 @@ Device::Failure Device::check(const datapath::Registers& machine) const {
     if (machine.map.height == 0 || machine.map.height > design_.largest_map.height)
         return at(DeviceError::bad_map_size, "map.height");
     const bool ranks = machine.formats.height_test == datapath::HeightTest::rank;
-    if (ranks && (machine.height_table.columns == 0 || machine.height_table.columns > design_.largest_map.width))
-        return at(DeviceError::bad_map_size, "rank_table.columns");
-    if (ranks && (machine.height_table.rows == 0 || machine.height_table.rows > design_.largest_map.height))
-        return at(DeviceError::bad_map_size, "rank_table.rows");
+    if (covers_more_than_the_map(machine.formats)) {
+        const std::string table = kind_of(machine.formats.height_test).table;
+        if (machine.covered.columns == 0 || machine.covered.columns > design_.largest_map.width)
+            return at(DeviceError::bad_map_size, (table + ".columns").c_str());
+        if (machine.covered.rows == 0 || machine.covered.rows > design_.largest_map.height)
+            return at(DeviceError::bad_map_size, (table + ".rows").c_str());
+    }
     if (machine.triangulation > (ranks ? datapath::Triangulation::greatest_rank : datapath::Triangulation::second))
         return at(DeviceError::bad_value, "triangulation");
     if (machine.tests.summed_height_threshold >

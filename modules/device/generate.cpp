@@ -1,10 +1,13 @@
 #include "modules/device/generate.h"
 
+#include <algorithm>
 #include <cctype>
 #include <iomanip>
 #include <sstream>
+#include <utility>
 
 #include "modules/device/records.h"
+#include "modules/timing/height_test_kind.h"
 
 namespace tessera {
 
@@ -74,9 +77,16 @@ std::string c_record(bool finished) {
 std::vector<DeviceRegister> documented_registers() {
     datapath::Registers registers;
     registers.formats.highlight_tag = true;
-    registers.formats.height_test = datapath::HeightTest::rank;
     registers.formats.rank_bits = registers.formats.bound_bits = 16;
-    return register_map(registers, {});
+    std::vector<DeviceRegister> all;
+    for (std::size_t kind = 1; kind < height_test_kinds.size(); ++kind) {  // each has the paper's registers
+        registers.formats.height_test = static_cast<datapath::HeightTest>(kind);
+        for (DeviceRegister& made : register_map(registers, {})) {
+            if (std::none_of(all.begin(), all.end(), [&](const DeviceRegister& r) { return r.name == made.name; }))
+                all.push_back(std::move(made));
+        }
+    }
+    return all;
 }
 
 std::string c_header(const std::vector<DeviceRegister>& registers) {

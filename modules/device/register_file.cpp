@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "modules/datapath/registers.h"
+#include "modules/datapath/table_shapes.h"
 
 namespace tessera {
 
@@ -57,7 +58,7 @@ datapath::Registers RegisterFile::machine() const {
         };
         (assign(members), ...);
     });
-    lay_out_tables_of(registers);
+    datapath::shape_tables(registers);
     return registers;
 }
 

@@ -3,6 +3,7 @@
 #include "modules/datapath/map_entry.h"
 #include "modules/datapath/registers.h"
 #include "modules/device/records.h"
+#include "modules/timing/height_test_kind.h"
 
 namespace tessera {
 
@@ -18,8 +19,7 @@ std::uint64_t packed(const Format& format) {
 
 std::uint64_t features(const Formats& f) {
     return (f.highlight_tag ? 1u : 0u) | (f.final_edges ? 2u : 0u) | (f.codes ? 4u : 0u) | (f.families ? 8u : 0u) |
-           (f.filter == datapath::MapFilter::bilinear ? 16u : 0u) |
-           (f.height_test == datapath::HeightTest::rank ? 32u : 0u) |
+           (f.filter == datapath::MapFilter::bilinear ? 16u : 0u) | kind_of(f.height_test).feature |
            static_cast<std::uint64_t>(f.generation_bits) << 8;
 }
 
@@ -75,7 +75,7 @@ std::vector<DeviceRegister> control_registers(const Formats& f, const LargestMap
         {"largest_map", 0x09c, 32, 1, false, largest.width | std::uint64_t{largest.height} << 16, ro, false, "",
          "columns, and from bit 16 on rows, of the largest map"},
         {"entry_bytes", 0x0a0, 24, 1, false, entry_sizes(f), ro, false, "",
-         "of an entry of the displacement map, from bit 8 on of the normal map, from bit 16 on of the Summed Height Table or the Rank Table"},
+         "of an entry of the displacement map, from bit 8 on of the normal map, from bit 16 on of the Summed Height Table or the table in its place"},
         {"record_bytes", 0x0a4, 32, 1, false, base_triangle_bytes | std::uint64_t{finished_triangle_bytes} << 16, ro,
          false, "", "of a base triangle, and from bit 16 on of a finished one"},
     };
@@ -88,56 +88,62 @@ datapath::Registers widest() {
     f.normal = Format::make_signed(FormatLimits::normal_bits.most, FormatLimits::normal_fraction.most);
     f.position = Format::make_signed(FormatLimits::position_bits.most, 0);
     f.screen = Format::make_signed(FormatLimits::screen_bits.most, 0);
-    f.highlight_tag = true;
-    f.height_test = datapath::HeightTest::rank;
     f.rank_bits = FormatLimits::rank_bits.most;
     f.bound_bits = FormatLimits::bound_bits.most;
     return registers;
 }
 
+/// Calls visit(register, values) for each in a design of this kind; with the widest formats, for all its fields.
+template <class Visit>
+void visit_widest(datapath::HeightTest kind, bool highlight, Visit&& visit) {
+    datapath::Registers registers = widest();
+    registers.formats.height_test = kind;
+    registers.formats.highlight_tag = highlight;
+    datapath::visit_registers(registers, visit);
+}
+
+bool has_register(datapath::HeightTest kind, bool highlight, const std::string& name) {
+    bool found = false;
+    visit_widest(kind, highlight,
+                 [&](const datapath::Register& field, const auto&) { found = found || name == field.name; });
+    return found;
+}
+
+/// The test that a register belongs to, if not every design has it; else empty. kind: of a design that has it.
+const char* test_of(const std::string& name, datapath::HeightTest kind) {
+    if (has_register(datapath::HeightTest::summed_height, false, name))
+        return "";
+    return has_register(kind, false, name) ? kind_of(kind).title : "Highlight Test";
+}
+
 struct Place {
-    std::string name;
+    std::string register_name;
+    std::string name;  ///< of one value of the register
     std::uint32_t offset;
     int words;
+    const char* only_with;
 };
 
 /// Of the machine's registers, in any design.
 std::vector<Place> machine_places() {
     std::vector<Place> places;
     std::uint32_t next = offset::machine;
-    datapath::visit_registers(widest(), [&](const datapath::Register& field, const auto& values) {
-        for (std::size_t k = 0; k < values.size(); ++k) {
-            const int words = field.bits > 32 ? 2 : 1;
-            const std::uint32_t at = words == 2 ? (next + 7) / 8 * 8 : next;
-            places.push_back(
-                {field.name + (values.size() == 1 ? std::string() : "[" + std::to_string(k) + "]"), at, words});
-            next = at + 4 * static_cast<std::uint32_t>(words);
-        }
-    });
+    for (std::size_t number = 0; number < height_test_kinds.size(); ++number) {
+        const auto kind = static_cast<datapath::HeightTest>(number);
+        visit_widest(kind, true, [&](const datapath::Register& field, const auto& values) {
+            const std::string name = field.name;
+            if (number > 0 && has_register(datapath::HeightTest::summed_height, true, name))
+                return;
+            for (std::size_t k = 0; k < values.size(); ++k) {
+                const int words = field.bits > 32 ? 2 : 1;
+                const std::uint32_t at = words == 2 ? (next + 7) / 8 * 8 : next;
+                places.push_back({name, name + (values.size() == 1 ? std::string() : "[" + std::to_string(k) + "]"), at,
+                                  words, test_of(name, kind)});
+                next = at + 4 * static_cast<std::uint32_t>(words);
+            }
+        });
+    }
     return places;
-}
-
-}  // namespace
-
-void lay_out_tables_of(datapath::Registers& r) {
-    r.displacement_map = {r.displacement_map.base, r.map.width, r.map.height,
-                          datapath::entry_bytes(r.formats.displacement.bits)};
-    r.normal_map = {r.normal_map.base, r.map.width, r.map.height, datapath::entry_bytes(3 * r.formats.normal.bits)};
-    r.height_table.entry_bytes = datapath::entry_bytes(datapath::height_entry_bits(r.formats));
-    if (r.formats.height_test != datapath::HeightTest::summed_height)
-        return;  // its columns and rows are registers
-    r.height_table.columns = r.map.width + 1;
-    r.height_table.rows = r.map.height + 1;
-}
-
-namespace {
-
-/// The test that a register belongs to, if not every design has it; else empty.
-const char* test_of(const std::string& name) {
-    const auto holds = [&](const char* part) { return name.find(part) != std::string::npos; };
-    if (holds("highlight") || name == "tests.half_vector")
-        return "Highlight Test";
-    return holds("rank_table.") || name == "tests.rank_threshold" || name == "tests.bound_threshold" ? "Rank Test" : "";
 }
 
 }  // namespace
@@ -149,16 +155,14 @@ std::vector<DeviceRegister> register_map(const datapath::Registers& reset, const
     datapath::visit_registers(reset, [&](const datapath::Register& field, const auto& values) {
         const std::string name = field.name;
         const bool base = name.size() > 5 && name.compare(name.size() - 5, 5, ".base") == 0;
-        const char* const only_with = test_of(name);
-        while (place->name.compare(0, name.size(), name) != 0 ||
-               (place->name.size() > name.size() && place->name[name.size()] != '['))
+        while (place->register_name != name)
             ++place;
         for (const std::int64_t value : values) {
             const std::uint64_t mask = field.bits == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << field.bits) - 1;
             map.push_back({place->name, place->offset, field.bits, place->words,
                            field.kind == datapath::RegisterKind::signed_number,
                            static_cast<std::uint64_t>(value) & mask,
-                           base ? RegisterAccess::read_only : RegisterAccess::read_write, false, only_with,
+                           base ? RegisterAccess::read_only : RegisterAccess::read_write, false, place->only_with,
                            base ? "of the table in the device's own table memory" : field.meaning});
             ++place;
         }

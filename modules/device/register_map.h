@@ -55,7 +55,7 @@ inline constexpr std::uint32_t control_start = 1, control_reset = 2;
 inline constexpr std::uint32_t status_busy = 1, status_done = 2, status_error = 4, status_resetting = 8;
 inline constexpr std::uint32_t interrupt_done = 1, interrupt_error = 2;
 
-inline constexpr std::array<RegisterBit, 17> register_bits{{
+inline constexpr std::array<RegisterBit, 18> register_bits{{
     {"control", "start", 0, "begins a frame"},
     {"control", "reset", 1, "stops a frame and gives all registers their reset values"},
     {"status", "busy", 0, "a frame is under way, or a reset waits for the machine to be empty"},
@@ -73,6 +73,7 @@ inline constexpr std::array<RegisterBit, 17> register_bits{{
     {"features", "families", 3, "a machine of families"},
     {"features", "bilinear", 4, "maps are read between four texels"},
     {"features", "rank_test", 5, "a Rank Test in the Summed Height Test's place"},
+    {"features", "curvature_test", 6, "a Curvature Test there"},
 }};
 
 /// Why a frame was refused or stopped: register `error`. What `error_address` then holds stands in the meaning.
@@ -124,8 +125,5 @@ struct LargestMap {
 /// (datapath::describe_registers), each choice in a word of its own. `reset`: the formats, and the machine's reset values.
 /// The offsets are the same in every design; widths follow from the formats.
 std::vector<DeviceRegister> register_map(const datapath::Registers& reset, const LargestMap& largest);
-
-/// Layouts of the tables for the map's size. Bases stay; entries follow from the formats.
-void lay_out_tables_of(datapath::Registers& registers);
 
 }  // namespace tessera

@@ -66,6 +66,11 @@ const std::vector<UnitNumbers::Entry>& UnitNumbers::all() {
         {53, "tessellation_tests_2.rank_test"},
         {54, "rank_table"},
         {55, "rank_table_cache"},
+        {56, "tessellation_tests_0.curvature_test"},
+        {57, "tessellation_tests_1.curvature_test"},
+        {58, "tessellation_tests_2.curvature_test"},
+        {59, "curvature_table"},
+        {60, "curvature_table_cache"},
     };
     return entries;
 }

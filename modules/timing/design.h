@@ -45,26 +45,13 @@ constexpr unsigned register_stages(const UnitTiming& timing, unsigned servers = 
     return servers * std::max(1u, (timing.latency + further_stages + timing.interval - 1) / timing.interval);
 }
 
-/// Of the test that stands in the Summed Height Test's place, and of its table: their modules' names and timing.
-constexpr const char* unit_name(datapath::HeightTest test) {
-    return test == datapath::HeightTest::rank ? "rank_test" : "summed_height_test";
-}
-constexpr const char* table_name(datapath::HeightTest test) {
-    return test == datapath::HeightTest::rank ? "rank_table" : "summed_height_table";
-}
-constexpr const UnitTiming& height_test_timing(const Timing& t, datapath::HeightTest test) {
-    return test == datapath::HeightTest::rank ? t.rank_test : t.summed_height_test;
-}
-constexpr const MemoryTiming& height_table_timing(const Timing& t, datapath::HeightTest test) {
-    return test == datapath::HeightTest::rank ? t.rank_table : t.summed_height_table;
-}
-
-/// Of the Summed Height Test's reads: of the table or, of codes, of the displacement map.
-constexpr unsigned summed_height_latency(const Design& design, const datapath::Formats& formats) {
+/// Of the height test's reads: of its table or, of codes, of the displacement map.
+constexpr unsigned height_test_latency(const Design& design, const datapath::Formats& formats) {
     const Timing& t = design.timing;
+    const MemoryTiming& its = t.*kind_of(formats.height_test).table_timing;
     // where the table overlaps the reads of so many rectangles, with places for their edges
-    const unsigned table = t.read_latency(t.summed_height_table) + t.summed_height_table.window / 3;
-    return formats.codes ? std::max(table, t.read_latency(t.displacement_map)) : table;
+    const unsigned table = t.read_latency(its) + its.window / 3;
+    return height_test_reads_codes(formats) ? std::max(table, t.read_latency(t.displacement_map)) : table;
 }
 
 /// Of Displace Vertex's reads: of the displacement map and, of families, of the normal map.

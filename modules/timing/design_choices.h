@@ -1,7 +1,7 @@
 #pragma once
 #include <string_view>
 
-#include "modules/datapath/format.h"
+#include "modules/timing/height_test_kind.h"
 #include "modules/timing/timing.h"
 #include "modules/timing/work.h"
 
@@ -83,16 +83,6 @@ constexpr std::string_view name_of(TestOrder value) {
             return "parallel";
         case TestOrder::cheap_first:
             return "cheap_first";
-    }
-    return {};
-}
-
-constexpr std::string_view name_of(datapath::HeightTest value) {
-    switch (value) {
-        case datapath::HeightTest::summed_height:
-            return "summed_height";
-        case datapath::HeightTest::rank:
-            return "rank";
     }
     return {};
 }

@@ -90,6 +90,9 @@ void declare_timing_keys(const Keys& key) {
     declare_unit_keys(
         key, "rank_test", "Rank Test", [](auto& t) -> auto& { return t.rank_test; }, ", table reads come on top");
     declare_unit_keys(
+        key, "curvature_test", "Curvature Test", [](auto& t) -> auto& { return t.curvature_test; },
+        ", table reads come on top");
+    declare_unit_keys(
         key, "normal_test", "Normal Test", [](auto& t) -> auto& { return t.normal_test; }, ", table reads come on top");
     key.add_number(
         "highlight_test_latency", [](auto& t) -> auto& { return t.highlight_test_latency; }, "cycles", {0, most_cycles},
@@ -127,6 +130,8 @@ void declare_timing_keys(const Keys& key) {
         "Summed Height Table: rectangles whose reads may overlap; 0: those that find each of their banks free");
     declare_memory_keys(
         key, "rank_table", "Rank Table", [](auto& t) -> auto& { return t.rank_table; });
+    declare_memory_keys(
+        key, "curvature_table", "Curvature Table", [](auto& t) -> auto& { return t.curvature_table; });
     key.add_number(
         "off_chip_latency", [](auto& t) -> auto& { return t.off_chip_memory.latency; }, "cycles", {0, most_places},
         "Off-chip memory: from a request's last byte to its answer");

@@ -20,9 +20,9 @@ double area(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
 }
 
 /// A triangle in texture space, in texels.
-class TextureTriangle {
+class TexelTriangle {
   public:
-    explicit TextureTriangle(const std::array<glm::dvec2, 3>& corners)
+    explicit TexelTriangle(const std::array<glm::dvec2, 3>& corners)
         : corners_(corners), area_(area(corners[0], corners[1], corners[2])) {}
 
     bool flat() const { return area_ == 0; }
@@ -63,7 +63,7 @@ class TrueNormals {
 
     glm::dvec3 at(std::uint32_t base, const glm::dvec2& t) const {
         const auto& v = setup_.base_triangles[base].vertices;
-        const TextureTriangle triangle(
+        const TexelTriangle triangle(
             {dequantise_.texture(v[0].texture), dequantise_.texture(v[1].texture), dequantise_.texture(v[2].texture)});
         const glm::dvec3 w = triangle.flat() ? glm::dvec3(1, 0, 0) : triangle.weights(t);
         glm::dvec3 normal(0), tangent(0);
@@ -103,7 +103,7 @@ GouraudError measure_gouraud(const EmittedMesh& mesh, const MachineSetup& setup,
                 power(cosine(dequantise.direction(triangle.corners[k].displaced_normal)), highlight.exponent);
         }
         std::uint64_t texels = 0, highlight_texels = 0;
-        TextureTriangle(corners).each_texel([&](const glm::dvec2& centre, const glm::dvec3& weights) {
+        TexelTriangle(corners).each_texel([&](const glm::dvec2& centre, const glm::dvec3& weights) {
             const double own = cosine(normals.at(triangle.base, centre));
             const double error = glm::dot(weights, lit) - power(own, highlight.exponent);
             ++texels;

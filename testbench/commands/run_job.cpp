@@ -197,7 +197,7 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
     checks.remarks = setup.remarks;
     std::optional<GoldenJob> golden_job;
     if (job.check.golden || job.check.end_to_end)
-        golden_job.emplace(job, inputs.mesh, inputs.map, setup.model_scale, setup.rank_tables);
+        golden_job.emplace(job, inputs.mesh, inputs.map, setup.model_scale, setup);
     std::optional<GoldenRun> golden_run;
     if (job.check.end_to_end)
         golden_run.emplace(setup, *golden_job, received_triangles(setup, *golden_job),

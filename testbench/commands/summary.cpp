@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "modules/datapath/widths.h"
@@ -94,7 +95,9 @@ std::string checks_rows(const Checks& checks) {
 }
 
 std::string height_test_text(const MachineSetup& setup) {
-    return setup.registers.formats.height_test == datapath::HeightTest::rank ? "rank" : "summed height";
+    std::string text(name_of(setup.registers.formats.height_test));
+    std::replace(text.begin(), text.end(), '_', ' ');
+    return text;
 }
 
 /// Repeated work, beside what the mesh needs.
@@ -174,7 +177,7 @@ std::string summary(const MachineSetup& setup, const Simulation& simulation, con
     const std::uint64_t edges = counts.edges_tested;
     const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
     const std::uint64_t table_reads = totals.height_table_reads;
-    const bool ranks = setup.registers.formats.height_test == datapath::HeightTest::rank;
+    const bool sums = setup.registers.formats.height_test == datapath::HeightTest::summed_height;
 
     std::string text;
     text += row("triangles",
@@ -199,7 +202,7 @@ std::string summary(const MachineSetup& setup, const Simulation& simulation, con
         (height_test_text(setup) + " table").c_str(),
         fmt::format("{} bytes, {} bit entries{}; {} reads, {:.1f} per edge",
                     count(setup.registers.height_table.bytes()), datapath::height_entry_bits(setup.registers.formats),
-                    setup.summed_height_bits_chosen && !ranks ? " (chosen)" : "", count(table_reads),
+                    setup.summed_height_bits_chosen && sums ? " (chosen)" : "", count(table_reads),
                     edges == 0 ? 0.0 : static_cast<double>(table_reads) / static_cast<double>(edges)));
     const std::vector<SaturationFigure> saturations = saturation_figures(setup, totals.saturations);
     text += row("saturations", saturations_text(saturations));

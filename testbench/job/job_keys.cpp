@@ -260,6 +260,7 @@ std::vector<KeyTable> declare_keys() {
         key.add("summed_height_unit", &Tests::summed_height_unit, "What the threshold compares: sums over rectangles, or the second difference of their mean heights (area)");
         key.add("rank_threshold", &Tests::rank_threshold, "full scale times the root of a texel", between(0, 1e9), "With hardware.height_test = \"rank\" and formats.rank_bits: an edge splits if its midpoint takes more off the squared error, per triangle that it costs: the root of it");
         key.add("bound_threshold", &Tests::bound_threshold, "full scale", between(0, 1), "With hardware.height_test = \"rank\" and formats.bound_bits: no point of the map lies farther from the mesh, along the normal; of a mesh that the rank's lattice fits");
+        key.add("curvature_threshold", &Tests::curvature_threshold, "full scale times texels", between(0, 1e9), "With hardware.height_test = \"curvature\": an edge splits if the map leaves its chord by more than this over the edge's length, in texels and rounded up to a power of two");
         key.add("view", &Tests::view, "View Test; off: allows every split");
         key.add("view_threshold", &Tests::view_threshold, "pixels", between(0, 1e6), "View Test: only a longer edge (Manhattan length on screen) is split");
         key.add("tex_coord", &Tests::tex_coord, "Tex Coord Test, ends at the map's resolution; off: allows every split");
@@ -292,7 +293,7 @@ std::vector<KeyTable> declare_keys() {
         using Hardware = Job::Hardware;
         key.add("design", &Hardware::design, "Sets a design's keys, which a job may then set alone: the paper's, or one that leaves out what the paper's does twice (modules/README.md, Designs); the mesh is the same");
         key.add("triangulation", &Hardware::triangulation, "Diagonal when two edges split: the shorter one, or always the first or second; greatest_rank: of the edges that ask to be split the one of greatest rank is cut, with hardware.height_test = \"rank\"");
-        key.add("height_test", &Hardware::height_test, "The Summed Height Test (the paper's), or in its place the Rank Test: the host ranks the points of the base mesh's lattice, and an edge splits if the rank of its midpoint is above the threshold");
+        key.add("height_test", &Hardware::height_test, "The Summed Height Test (the paper's), or in its place the Rank Test: the host ranks the points of the base mesh's lattice, and an edge splits if the rank of its midpoint is above the threshold; or the Curvature Test, for any base mesh: the host fits quadratics to the map, and an edge splits if they leave its chord");
         key.add("culling", &Hardware::culling, "Back-face culling of finished triangles");
         key.add("queue_order", &Hardware::queue_order, "Triangle Queue: which waiting triangle goes next, the oldest or the newest");
         key.add("queue_watermark", &Hardware::queue_watermark, "triangles", between(1, any_count), "Host triangles are taken while fewer than this many wait");

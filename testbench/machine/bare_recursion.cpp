@@ -2,6 +2,7 @@
 
 #include "modules/datapath/bilinear.h"
 #include "modules/datapath/bump.h"
+#include "modules/datapath/curvature.h"
 #include "modules/datapath/displace.h"
 #include "modules/datapath/edge_tests.h"
 #include "modules/datapath/map_entry.h"
@@ -79,6 +80,33 @@ bool BareRecursion::test_rank(const TexCoord& i, const TexCoord& j, EdgeTests& e
     return rank_test(entry, r.tests);
 }
 
+bool BareRecursion::test_curvature(const TexCoord& i, const TexCoord& j, const TexCoord& ij) const {
+    const Registers& r = setup_.registers;
+    const bool codes = curvature_by_codes(i, j, r.formats);
+    std::array<std::uint64_t, 3> read{};
+    std::size_t count = 0;
+    curvature_reads(i, j, ij, r, [&](std::uint64_t address) {
+        const TableLayout& table = codes ? r.displacement_map : r.height_table;
+        const std::size_t index = (address - table.base) / table.entry_bytes;
+        read[count++] = codes ? setup_.map.codes[index] : setup_.curvature_table.entries[index];
+    });
+    return curvature_test(curvature_of_entries(i, j, read, r.formats), r.tests);
+}
+
+bool BareRecursion::test_heights(const TexCoord& i, const TexCoord& j, EdgeTests& edge) const {
+    const Registers& r = setup_.registers;
+    switch (r.formats.height_test) {
+        case HeightTest::rank:
+            return test_rank(i, j, edge);
+        case HeightTest::curvature:
+            return test_curvature(i, j, edge.texture);
+        case HeightTest::summed_height:
+            break;
+    }
+    const RectangleSize size = rectangle_size(i, j, r.map, r.formats);
+    return summed_height_test(sum_around(i, size), sum_around(j, size), sum_around(edge.texture, size), size, r.tests);
+}
+
 Direction BareRecursion::map_normal_at(const TexCoord& t) const {
     const Registers& r = setup_.registers;
     return datapath::map_normal(t, entries_at(t, r.normal_map, normals_).data(), r.formats);
@@ -130,15 +158,8 @@ void BareRecursion::evaluate_edge(TrianglePass& pass, int k) {
     if (r.tests.normal_test && normal_test(i.displaced_normal, j.displaced_normal, edge.displaced_normal, r.tests))
         tests |= normal_bit;
     edge.rank = 0;
-    if (r.formats.height_test == HeightTest::rank) {
-        if (r.tests.summed_height_test && test_rank(i.texture, j.texture, edge))
-            tests |= summed_height_bit;
-    } else if (r.tests.summed_height_test) {
-        const RectangleSize size = rectangle_size(i.texture, j.texture, r.map, r.formats);
-        if (summed_height_test(sum_around(i.texture, size), sum_around(j.texture, size), sum_around(made.texture, size),
-                               size, r.tests))
-            tests |= summed_height_bit;
-    }
+    if (r.tests.summed_height_test && test_heights(i.texture, j.texture, edge))
+        tests |= summed_height_bit;
     if (!r.tests.view_test || view_test(i.screen, j.screen, r.tests))
         tests |= view_bit;
     if (!r.tests.tex_coord_test || tex_coord_test(i.texture, j.texture, made.texture, r.formats))

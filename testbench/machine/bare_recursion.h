@@ -42,13 +42,16 @@ class BareRecursion {
     void evaluate_edge(datapath::TrianglePass& pass, int k);
     /// All three edges with every test, pass.split, and the tests that kept edges whole (Triangle::stopped_by).
     void evaluate(datapath::TrianglePass& pass);
+    /// The design's height test, if it is on.
+    bool test_heights(const datapath::TexCoord& i, const datapath::TexCoord& j, datapath::EdgeTests& edge) const;
     /// The Summed Height Test's sum of the map's codes.
-    bool test_rank(const datapath::TexCoord& i, const datapath::TexCoord& j, datapath::EdgeTests& edge) const;
     std::uint64_t sum_around(const datapath::TexCoord& t, const datapath::RectangleSize& size) const;
 
   private:
     datapath::ChildIndices children_of(const datapath::TrianglePass& pass) const;
     void transform_normals(datapath::Triangle& triangle);
+    bool test_rank(const datapath::TexCoord& i, const datapath::TexCoord& j, datapath::EdgeTests& edge) const;
+    bool test_curvature(const datapath::TexCoord& i, const datapath::TexCoord& j, const datapath::TexCoord& ij) const;
     datapath::Direction map_normal_at(const datapath::TexCoord& t) const;
     std::uint32_t code_at(const datapath::TexCoord& t) const;
     /// Those of a map that it is read from at t (datapath::map_entries).

@@ -1,5 +1,6 @@
 #include "testbench/machine/decisions.h"
 
+#include "modules/datapath/curvature.h"
 #include "modules/datapath/edge_tests.h"
 #include "modules/datapath/rank.h"
 
@@ -49,8 +50,11 @@ bool Decisions::off_lattice(const datapath::TrianglePass& pass, int edge) const 
            !has_lattice_midpoint(pass.edge_begin(edge).texture, pass.edge_end(edge).texture, registers_.formats);
 }
 
-/// Rectangles of one texel, and vertices that have been displaced before this pass.
+/// Edges of at most two texels; or rectangles of one texel, and vertices that have been displaced before this pass.
 bool Decisions::by_codes(const datapath::TrianglePass& pass, int edge) const {
+    if (registers_.formats.height_test == datapath::HeightTest::curvature)
+        return registers_.tests.summed_height_test &&
+               curvature_by_codes(pass.edge_begin(edge).texture, pass.edge_end(edge).texture, registers_.formats);
     if (!registers_.formats.codes || !registers_.tests.summed_height_test ||
         (pass.new_vertices != 0 && !registers_.formats.families))
         return false;

@@ -35,8 +35,8 @@ class Decisions : public tlm::tlm_analysis_if<datapath::TrianglePass> {
     struct Evaluated {
         std::uint64_t normal = 0;
         std::uint64_t summed_height = 0;
-        std::uint64_t summed_height_by_codes = 0;  ///< of these: without the Summed Height Table (Formats::codes)
-        std::uint64_t off_lattice = 0;             ///< of these: with a Rank Test, without reading its table
+        std::uint64_t summed_height_by_codes = 0;  ///< of these: by codes of the displacement map
+        std::uint64_t off_lattice = 0;             ///< of these: with a Rank Test, without a read
     };
 
     /// `setup` must outlive it.

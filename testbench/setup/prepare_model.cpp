@@ -14,6 +14,7 @@
 #include "testbench/setup/light.h"
 #include "testbench/setup/model_scale.h"
 #include "testbench/setup/table_layout.h"
+#include "testbench/setup/tables/table_extent.h"
 #include "testbench/setup/thresholds.h"
 #include "testbench/setup/view.h"
 
@@ -50,13 +51,8 @@ void take_base_triangles(BaseTriangles&& made, PreparedScene& scene) {
     scene.remarks.insert(scene.remarks.end(), made.remarks.begin(), made.remarks.end());
 }
 
-void rank_lattice(PreparedScene& scene) {
+void rank_lattice(PreparedScene& scene, const std::vector<TextureTriangle>& base) {
     const datapath::Formats& formats = scene.registers.formats;
-    std::vector<std::array<datapath::TexCoord, 3>> base;
-    for (const datapath::Triangle& triangle : scene.base_triangles) {
-        const auto& v = triangle.vertices;
-        base.push_back({v[0].texture, v[1].texture, v[2].texture});
-    }
     scene.rank_tables = make_rank_tables(scene.map, base, formats, formats.rank_bits, formats.bound_bits);
     if (const std::uint64_t whole = count_whole_base_edges(base, formats); whole > 0)
         scene.remarks.push_back(fmt::format(
@@ -68,6 +64,28 @@ void rank_lattice(PreparedScene& scene) {
             "{} midpoints share a texel of the Rank Table with another, and take the greater rank: more triangles than are "
             "needed, and no bound on the error",
             scene.rank_tables.clashes));
+}
+
+/// The height test's table, unless it is written from the map alone.
+void make_height_table(PreparedScene& scene) {
+    datapath::Registers& registers = scene.registers;
+    std::vector<TextureTriangle> base;
+    for (const datapath::Triangle& triangle : scene.base_triangles) {
+        const auto& v = triangle.vertices;
+        base.push_back({v[0].texture, v[1].texture, v[2].texture});
+    }
+    const datapath::MapGeometry covered = table_extent(registers.map, base, registers.formats);
+    registers.covered = {covered.width, covered.height};
+    switch (registers.formats.height_test) {
+        case datapath::HeightTest::summed_height:
+            break;
+        case datapath::HeightTest::rank:
+            rank_lattice(scene, base);
+            break;
+        case datapath::HeightTest::curvature:
+            scene.curvature_table = make_curvature_table(scene.map, base, registers.formats);
+            break;
+    }
 }
 
 }  // namespace
@@ -99,9 +117,8 @@ PreparedScene prepare_model(const SceneSettings& settings, const BaseMesh& mesh,
     formats.summed_height = datapath::Format::make_unsigned(
         summed_height_bits(settings.formats.summed_height_bits, scene.largest_rectangle_sum), 0);
     formats.height_test = settings.height_test;
-    if (formats.height_test == datapath::HeightTest::rank)
-        rank_lattice(scene);
-    lay_out_tables(registers, scene.rank_tables);
+    make_height_table(scene);
+    lay_out_tables(registers);
 
     const ViewAxes view = view_axes(settings.camera);
     registers.tests = make_tests(settings.tests, formats);

@@ -10,6 +10,7 @@
 #include "modules/datapath/vertex.h"
 #include "testbench/setup/quantised_map.h"
 #include "testbench/setup/scene_settings.h"
+#include "testbench/setup/tables/curvature_table.h"
 #include "testbench/setup/tables/rank_table.h"
 
 namespace tessera {
@@ -26,7 +27,8 @@ struct PreparedScene {
     datapath::Registers registers;
     QuantisedMap map;
     std::vector<datapath::Triangle> base_triangles;
-    RankTables rank_tables;  ///< with a Rank Test
+    RankTables rank_tables;          ///< with a Rank Test
+    CurvatureTable curvature_table;  ///< with a Curvature Test
 
     /// The machine's world = scale * (model - centre); scale is a power of two.
     double scale = 1;
@@ -45,7 +47,7 @@ struct PreparedScene {
 /// Takes bytes that belong at an address of the machine's memory.
 using TableSink = std::function<void(std::uint64_t address, const unsigned char* bytes, std::size_t count)>;
 
-/// The displacement map, the normal map and the Summed Height Table or the Rank Table, row by row, little endian, where the registers'
+/// The displacement map, the normal map and the height test's table, row by row, little endian, where the registers'
 /// layouts place them.
 void write_tables(const PreparedScene& scene, const TableSink& sink);
 

@@ -44,8 +44,9 @@ struct TestSettings {
     bool summed_height = true;
     double summed_height_threshold = 0.03;  ///< full-scale texels (sum) or full scale (area)
     datapath::SummedHeightUnit summed_height_unit = datapath::SummedHeightUnit::sum;
-    double rank_threshold = 0.05;   ///< full scale times the square root of a texel
-    double bound_threshold = 0.01;  ///< full scale
+    double rank_threshold = 0.05;      ///< full scale times the square root of a texel
+    double bound_threshold = 0.01;     ///< full scale
+    double curvature_threshold = 0.1;  ///< full scale times texels
     bool view = true;
     double view_threshold = 5;  ///< pixels, Manhattan
     bool tex_coord = true;

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "modules/datapath/map_entry.h"
 #include "modules/datapath/reciprocal.h"
 #include "modules/datapath/rectangle.h"
+#include "modules/datapath/table_shapes.h"
 #include "testbench/common/error.h"
 
 namespace tessera {
@@ -41,20 +41,14 @@ int summed_height_bits(std::int64_t wanted, std::uint64_t largest_sum) {
     return bits;
 }
 
-void lay_out_tables(datapath::Registers& registers, const RankTables& rank_tables) {
+void lay_out_tables(datapath::Registers& registers) {
     constexpr std::uint64_t page = 4096;
-    const auto entry = [](int bits) { return datapath::entry_bytes(bits); };
-    const auto after = [](const datapath::TableLayout& table) {
-        return (table.base + table.bytes() + page - 1) / page * page;
-    };
-    registers.displacement_map = {page, registers.map.width, registers.map.height,
-                                  entry(registers.formats.displacement.bits)};
-    registers.normal_map = {after(registers.displacement_map), registers.map.width, registers.map.height,
-                            entry(3 * registers.formats.normal.bits)};
-    const bool ranks = registers.formats.height_test == datapath::HeightTest::rank;
-    registers.height_table = {after(registers.normal_map), ranks ? rank_tables.columns : registers.map.width + 1,
-                              ranks ? rank_tables.rows : registers.map.height + 1,
-                              entry(datapath::height_entry_bits(registers.formats))};
+    datapath::shape_tables(registers);
+    std::uint64_t next = page;
+    for (datapath::TableLayout* table : {&registers.displacement_map, &registers.normal_map, &registers.height_table}) {
+        table->base = next;
+        next = (next + table->bytes() + page - 1) / page * page;
+    }
 }
 
 }  // namespace tessera

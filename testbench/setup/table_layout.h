@@ -4,7 +4,6 @@
 
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/vertex.h"
-#include "testbench/setup/tables/rank_table.h"
 
 namespace tessera {
 
@@ -19,8 +18,8 @@ std::uint64_t bound_rectangle_sum(const std::vector<datapath::Triangle>& base_tr
 /// sum if 0 are. Throws InputError if it does not fit.
 int summed_height_bits(std::int64_t wanted, std::uint64_t largest_sum);
 
-/// Sets where the three tables lie, one after another from page 1 of 4 KiB on, each at a page's beginning. In: map and
-/// formats of the registers; with a Rank Test, the Rank Table.
-void lay_out_tables(datapath::Registers& registers, const RankTables& rank_tables);
+/// Sets where the three tables lie, one after another from page 1 of 4 KiB on, each at a page's beginning. In: map,
+/// covered texels and formats of the registers.
+void lay_out_tables(datapath::Registers& registers);
 
 }  // namespace tessera

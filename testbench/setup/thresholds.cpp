@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "modules/datapath/curvature.h"
 #include "testbench/common/error.h"
 #include "testbench/setup/rounding.h"
 #include "testbench/setup/tables/rank_table.h"
@@ -68,6 +69,11 @@ datapath::TestParameters make_tests(const TestSettings& tests, const datapath::F
         if (formats.bound_bits > 0)
             result.bound_threshold = bound_threshold(tests.bound_threshold * highest_code, formats.bound_bits);
     }
+    if (formats.height_test == datapath::HeightTest::curvature)
+        result.curvature_threshold = to_register(
+            {"tests.curvature_threshold", tests.curvature_threshold, tests.summed_height,
+             std::ldexp(highest_code, datapath::curvature_fraction),
+             std::ldexp(1.0, datapath::curvature_threshold_bits(formats)) - 1, "formats.displacement_bits"});
     result.view_threshold = static_cast<std::uint32_t>(
         to_register({"tests.view_threshold", tests.view_threshold, tests.view, std::ldexp(1.0, formats.screen.fraction),
                      std::ldexp(1.0, formats.screen.bits), "formats.screen_fraction"}));

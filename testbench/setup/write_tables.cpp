@@ -77,15 +77,30 @@ void write_rank_table(const PreparedScene& scene, const TableSink& sink) {
     }
 }
 
+template <class Entry>
+void write_in_one_row(const datapath::TableLayout& layout, const std::vector<Entry>& entries, const TableSink& sink) {
+    TableRow row(layout, sink);
+    for (std::uint32_t k = 0; k < layout.columns; ++k)
+        row.set(k, entries[k]);
+    row.write(0);
+}
+
 }  // namespace
 
 void write_tables(const PreparedScene& scene, const TableSink& sink) {
     write_displacement_map(scene, sink);
     write_normal_map(scene, sink);
-    if (scene.registers.formats.height_test == datapath::HeightTest::rank)
-        write_rank_table(scene, sink);
-    else
-        write_summed_height_table(scene, sink);
+    switch (scene.registers.formats.height_test) {
+        case datapath::HeightTest::summed_height:
+            write_summed_height_table(scene, sink);
+            break;
+        case datapath::HeightTest::rank:
+            write_rank_table(scene, sink);
+            break;
+        case datapath::HeightTest::curvature:
+            write_in_one_row(scene.registers.height_table, scene.curvature_table.entries, sink);
+            break;
+    }
 }
 
 }  // namespace tessera

@@ -96,6 +96,9 @@
 #define TESSERA_RANK_TABLE_ROWS 0x210u
 #define TESSERA_TESTS_RANK_THRESHOLD 0x214u
 #define TESSERA_TESTS_BOUND_THRESHOLD 0x218u
+#define TESSERA_CURVATURE_TABLE_COLUMNS 0x21cu
+#define TESSERA_CURVATURE_TABLE_ROWS 0x220u
+#define TESSERA_TESTS_CURVATURE_THRESHOLD 0x228u
 #define TESSERA_REGISTER_BYTES 0x400u
 
 /* Bits of control registers. */
@@ -116,6 +119,7 @@
 #define TESSERA_FEATURES_FAMILIES (1u << 3)  /* a machine of families */
 #define TESSERA_FEATURES_BILINEAR (1u << 4)  /* maps are read between four texels */
 #define TESSERA_FEATURES_RANK_TEST (1u << 5)  /* a Rank Test in the Summed Height Test's place */
+#define TESSERA_FEATURES_CURVATURE_TEST (1u << 6)  /* a Curvature Test there */
 
 /* Register `error`. */
 enum tessera_error {
@@ -265,7 +269,10 @@ struct tessera_finished_triangle {
     X(RANK_TABLE_COLUMNS, 0x20cu, 13, 1, 0, 1) \
     X(RANK_TABLE_ROWS, 0x210u, 13, 1, 0, 1) \
     X(TESTS_RANK_THRESHOLD, 0x214u, 16, 1, 0, 1) \
-    X(TESTS_BOUND_THRESHOLD, 0x218u, 16, 1, 0, 1)
+    X(TESTS_BOUND_THRESHOLD, 0x218u, 16, 1, 0, 1) \
+    X(CURVATURE_TABLE_COLUMNS, 0x21cu, 13, 1, 0, 1) \
+    X(CURVATURE_TABLE_ROWS, 0x220u, 13, 1, 0, 1) \
+    X(TESTS_CURVATURE_THRESHOLD, 0x228u, 37, 2, 0, 1)
 
 /* Every register's number: a place in that list. */
 enum tessera_register {

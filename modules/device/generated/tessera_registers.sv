@@ -269,6 +269,15 @@ package tessera_registers;
   localparam logic [11:0] TESTS_BOUND_THRESHOLD = 12'h218;
   localparam int unsigned TESTS_BOUND_THRESHOLD_BITS = 16;
   localparam logic [15:0] TESTS_BOUND_THRESHOLD_RESET = 16'h0;
+  localparam logic [11:0] CURVATURE_TABLE_COLUMNS = 12'h21c;
+  localparam int unsigned CURVATURE_TABLE_COLUMNS_BITS = 13;
+  localparam logic [12:0] CURVATURE_TABLE_COLUMNS_RESET = 13'h0;
+  localparam logic [11:0] CURVATURE_TABLE_ROWS = 12'h220;
+  localparam int unsigned CURVATURE_TABLE_ROWS_BITS = 13;
+  localparam logic [12:0] CURVATURE_TABLE_ROWS_RESET = 13'h0;
+  localparam logic [11:0] TESTS_CURVATURE_THRESHOLD = 12'h228;
+  localparam int unsigned TESTS_CURVATURE_THRESHOLD_BITS = 37;
+  localparam logic [36:0] TESTS_CURVATURE_THRESHOLD_RESET = 37'h0;
 
   // Bits of control registers.
   localparam int unsigned CONTROL_START_BIT = 0;  // begins a frame
@@ -288,6 +297,7 @@ package tessera_registers;
   localparam int unsigned FEATURES_FAMILIES_BIT = 3;  // a machine of families
   localparam int unsigned FEATURES_BILINEAR_BIT = 4;  // maps are read between four texels
   localparam int unsigned FEATURES_RANK_TEST_BIT = 5;  // a Rank Test in the Summed Height Test's place
+  localparam int unsigned FEATURES_CURVATURE_TEST_BIT = 6;  // a Curvature Test there
 
   // Register error.
   typedef enum logic [3:0] {

@@ -4,16 +4,20 @@
 
 namespace tessera {
 
-HeightTestUnit::HeightTestUnit(const sc_core::sc_module_name& name, const UnitContext& context, unsigned memory_latency,
-                               unsigned most_requests)
-    : Stage(name, context, height_test_timing(context.timing(), context.registers.formats.height_test), 1,
-            memory_latency),
-      table(table_name(context.registers.formats.height_test), context.registers.height_table.entry_bytes,
+HeightTestUnit::HeightTestUnit(const sc_core::sc_module_name& name, const UnitContext& context)
+    : Stage(name, context, context.timing().*kind_of(context.registers.formats.height_test).unit_timing, 1,
+            height_test_latency(context.design, context.registers.formats)),
+      table(kind_of(context.registers.formats.height_test).table, context.registers.height_table.entry_bytes,
             context.design.direct_memory),
       registers_(context.registers) {
     takes_from(context, input);
     delivers_to(context, output);
-    reads_through(table, most_requests);
+    reads_through(table, kind_of(registers_.formats.height_test).requests);
+    if (height_test_reads_codes(registers_.formats)) {
+        displacement_map.emplace("displacement_map", registers_.displacement_map.entry_bytes,
+                                 context.design.direct_memory);
+        reads_through(*displacement_map, 1);
+    }
 }
 
 }  // namespace tessera

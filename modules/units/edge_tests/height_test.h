@@ -19,11 +19,9 @@ class HeightTestUnit : public Stage<HeightOperands, HeightResult> {
     MemoryPort table;
     std::optional<MemoryPort> displacement_map;  ///< if it reads codes
 
-  protected:
-    /// memory_latency: of what it reads. most_requests: of one edge to the table.
-    HeightTestUnit(const sc_core::sc_module_name& name, const UnitContext& context, unsigned memory_latency,
-                   unsigned most_requests);
+    HeightTestUnit(const sc_core::sc_module_name& name, const UnitContext& context);
 
+  protected:
     const datapath::Registers& registers_;
 };
 

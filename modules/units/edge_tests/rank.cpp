@@ -4,9 +4,6 @@
 
 namespace tessera {
 
-RankTest::RankTest(const sc_core::sc_module_name& name, const UnitContext& context)
-    : HeightTestUnit(name, context, context.timing().read_latency(context.timing().rank_table), 1) {}
-
 bool RankTest::may_split(const HeightOperands& edge) const {
     return registers_.tests.summed_height_test && has_lattice_midpoint(edge.t_i, edge.t_j, registers_.formats);
 }

@@ -16,7 +16,7 @@ namespace tessera {
 /// Waits for Calculate New U and the Rank Table; held back by the collection of the tests.
 class RankTest : public HeightTestUnit {
   public:
-    RankTest(const sc_core::sc_module_name& name, const UnitContext& context);
+    using HeightTestUnit::HeightTestUnit;
 
     void trace_signals(Signals& signals) const override;
 

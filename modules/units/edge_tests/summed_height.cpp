@@ -5,15 +5,6 @@
 
 namespace tessera {
 
-SummedHeightTest::SummedHeightTest(const sc_core::sc_module_name& name, const UnitContext& context)
-    : HeightTestUnit(name, context, summed_height_latency(context.design, context.registers.formats), 3) {
-    if (registers_.formats.codes) {
-        displacement_map.emplace("displacement_map", registers_.displacement_map.entry_bytes,
-                                 context.design.direct_memory);
-        reads_through(*displacement_map, 1);
-    }
-}
-
 /// Of the edge's three rectangles.
 datapath::RectangleSize SummedHeightTest::size(const HeightOperands& edge) const {
     return rectangle_size(edge.t_i, edge.t_j, registers_.map, registers_.formats);

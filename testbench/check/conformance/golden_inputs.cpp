@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "modules/datapath/curvature.h"
+
 namespace tessera {
 namespace {
 
@@ -26,8 +28,20 @@ golden::Diagonal golden_diagonal(datapath::Triangulation choice) {
 
 }  // namespace
 
-golden::RankTable golden_ranks(const RankTables& tables) {
-    return {tables.columns, tables.rows, tables.rank, tables.bound, static_cast<int>(tables.highest_bound_threshold)};
+void set_height_table(golden::Map& map, const PreparedScene& prepared) {
+    const RankTables& ranks = prepared.rank_tables;
+    map.set_ranks(
+        {ranks.columns, ranks.rows, ranks.rank, ranks.bound, static_cast<int>(ranks.highest_bound_threshold)});
+    const CurvatureTable& table = prepared.curvature_table;
+    if (table.entries.empty())
+        return;
+    golden::CurvatureTable curvatures{table.covered.width, table.covered.height, {}};
+    for (const std::uint64_t packed : table.entries) {
+        const datapath::CurvatureEntry entry = datapath::unpack_curvature(packed);
+        const double unit = std::ldexp(1.0, entry.exponent - datapath::curvature_fraction);
+        curvatures.cells.push_back({entry.xx * unit, entry.xy * unit, entry.yy * unit, entry.rest * unit, unit});
+    }
+    map.set_curvatures(std::move(curvatures));
 }
 
 namespace {
@@ -45,7 +59,7 @@ golden::Map golden_map(const MachineSetup& setup) {
             normals.push_back(dequantise.direction(
                 map_normal(setup.map, x, y, setup.height_per_code, setup.texel_size, setup.registers.formats.normal)));
     map.set_normals(std::move(normals));
-    map.set_ranks(golden_ranks(setup.rank_tables));
+    set_height_table(map, setup);
     return map;
 }
 
@@ -68,6 +82,8 @@ golden::Parameters golden_parameters(const datapath::Registers& registers) {
     result.summed_height_threshold = real(tests.summed_height_threshold, result.area ? 0 : 2);
     result.rank_threshold = static_cast<int>(tests.rank_threshold);
     result.bound_threshold = static_cast<int>(tests.bound_threshold);
+    result.curvature_threshold =
+        real(static_cast<std::int64_t>(tests.curvature_threshold), datapath::curvature_fraction);
     result.view_threshold = real(tests.view_threshold, formats.screen.fraction);
     result.generation_limit = static_cast<int>(tests.generation_limit);
     const int normal = formats.normal.fraction;

@@ -49,6 +49,7 @@ golden::Scene make_scene(const Job& job, const HeightMap& map, const ModelScale&
     scene.area = tests.summed_height_unit == SummedHeightUnit::area;
     scene.rank_threshold = tests.rank_threshold;
     scene.bound_threshold = tests.bound_threshold;
+    scene.curvature_threshold = tests.curvature_threshold;
     if (job.hardware.height_test == HeightTest::rank) {
         scene.rank_bits = static_cast<int>(job.formats.rank_bits);
         scene.bound_bits = static_cast<int>(job.formats.bound_bits);
@@ -99,14 +100,14 @@ const Job& resolved(const Job& job) {
 }  // namespace
 
 GoldenJob::GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& height_map, const ModelScale& model_scale,
-                     const RankTables& ranks)
+                     const PreparedScene& tables)
     : job_(resolved(job)),
       mesh_(mesh),
       height_map_(height_map),
       scene_(make_scene(job_, height_map, model_scale)),
       parameters_(golden::make_parameters(scene_)),
       map_(make_map(job_, height_map, mesh, scene_, parameters_.scale)) {
-    map_.set_ranks(golden_ranks(ranks));
+    set_height_table(map_, tables);
     parameters_.bound_threshold = std::min(parameters_.bound_threshold, map_.rank_table().highest_bound_threshold);
 }
 

@@ -19,9 +19,9 @@ namespace tessera {
 class GoldenJob {
   public:
     /// `job` must be resolved (resolve_job.h), `mesh` and `height_map` must outlive this.
-    /// ranks: with a Rank Test its table, which is the author's, as the map is.
+    /// tables: with a Rank or Curvature Test whose table is the author's, as the map is.
     GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& height_map, const ModelScale& model_scale,
-              const RankTables& ranks = {});
+              const PreparedScene& tables = {});
 
     const Job& job() const { return job_; }
     const BaseMesh& mesh() const { return mesh_; }

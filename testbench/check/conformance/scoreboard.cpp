@@ -40,7 +40,7 @@ struct DecisionName {
 };
 constexpr DecisionName decision_names[] = {
     {"NT", "Normal Test"},
-    {"SHT", "Summed Height Test"},
+    {"SHT", "Summed Height Test, or the test in its place"},
     {"VT", "View Test"},
     {"TCT", "Tex Coord Test"},
     {"GT", "Generation Test"},

@@ -194,13 +194,22 @@ class RegisterCheck {
         };
         layout("displacement_map", registers_.displacement_map, map.width(), map.height(), formats_.displacement.bits);
         layout("normal_map", registers_.normal_map, map.width(), map.height(), 3 * formats_.normal.bits);
-        if (job_.hardware.height_test == HeightTest::rank)
-            layout("rank_table", registers_.height_table, static_cast<int>(map.rank_table().columns),
-                   static_cast<int>(map.rank_table().rows),
-                   static_cast<int>(job_.formats.rank_bits + job_.formats.bound_bits));
-        else
-            layout("summed_height_table", registers_.height_table, map.width() + 1, map.height() + 1,
-                   formats_.summed_height.bits);
+        const TableLayout& table = registers_.height_table;
+        switch (job_.hardware.height_test) {
+            case HeightTest::summed_height:
+                layout("summed_height_table", table, map.width() + 1, map.height() + 1, formats_.summed_height.bits);
+                break;
+            case HeightTest::rank:
+                layout("rank_table", table, static_cast<int>(map.rank_table().columns),
+                       static_cast<int>(map.rank_table().rows),
+                       static_cast<int>(job_.formats.rank_bits + job_.formats.bound_bits));
+                break;
+            case HeightTest::curvature:
+                layout("curvature_table", table, static_cast<int>(map.curvature_table().cells.size()), 1, 36);
+                flag("curvature_table.columns", registers_.covered.columns, number(map.curvature_table().columns));
+                flag("curvature_table.rows", registers_.covered.rows, number(map.curvature_table().rows));
+                break;
+        }
         std::array<const TableLayout*, 3> tables{&registers_.displacement_map, &registers_.normal_map,
                                                  &registers_.height_table};
         std::sort(tables.begin(), tables.end(),
@@ -233,6 +242,10 @@ class RegisterCheck {
                      std::min(golden::bound_threshold(golden_.scene()),
                               number(golden_.map().rank_table().highest_bound_threshold)),
                      rounded_down, double_rounding * std::ldexp(1.0, formats_.bound_bits));
+        // Without the test its register does not exist and reads as 0.
+        const bool curvature = golden_.map().has_curvatures();
+        judge_.judge("tests.curvature_threshold", number(tests.curvature_threshold),
+                     curvature ? golden.curvature_threshold * 8 : 0, rounded_down);
         judge_.judge("tests.view_threshold", tests.view_threshold,
                      golden.view_threshold * lsb_per_unit(formats_.screen), rounded_down);
         flag("tests.generation_limit", tests.generation_limit, golden.generation_limit);

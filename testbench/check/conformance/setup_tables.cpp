@@ -1,6 +1,7 @@
 #include <cmath>
 #include <vector>
 
+#include "modules/datapath/curvature.h"
 #include "modules/datapath/map_entry.h"
 #include "testbench/check/conformance/setup_judge.h"
 
@@ -52,6 +53,8 @@ class TableCheck {
         check_normal_map();
         if (golden_.map().has_ranks())
             check_rank_table();
+        else if (golden_.map().has_curvatures())
+            check_curvature_table();
         else
             check_summed_height_table();
     }
@@ -157,6 +160,25 @@ class TableCheck {
                        const std::uint64_t bound = table.bounds.empty() ? 0 : table.bounds[k];
                        judge.judge([&] { return fmt::format("({}, {})", x, y); }, number(entry),
                                    number(rank | bound << golden_.job().formats.rank_bits), exact);
+                   });
+    }
+
+    void check_curvature_table() {
+        Judge judge(result_, "curvature table", "every entry as the host fitted it");
+        const std::vector<golden::Curvature>& cells = golden_.map().curvature_table().cells;
+        each_entry(judge, host_.summed_height_table, registers_.height_table, static_cast<int>(cells.size()), 1,
+                   [&](std::uint32_t x, std::uint32_t, std::uint64_t entry) {
+                       const datapath::CurvatureEntry found = datapath::unpack_curvature(entry);
+                       const golden::Curvature& cell = cells[x];
+                       const double unit = std::ldexp(1.0, found.exponent - datapath::curvature_fraction);
+                       const auto field = [&](const char* name, double hardware, double golden) {
+                           judge.judge([&] { return fmt::format("{}.{}", x, name); }, hardware, golden, exact);
+                       };
+                       field("unit", unit, cell.unit);
+                       field("xx", found.xx * unit, cell.xx);
+                       field("xy", found.xy * unit, cell.xy);
+                       field("yy", found.yy * unit, cell.yy);
+                       field("rest", found.rest * unit, cell.rest);
                    });
     }
 

@@ -82,7 +82,7 @@ std::uint64_t normal_map_requests(const Pipeline& p, std::uint64_t vertices, std
 }
 
 /// Each edge's tests: `midpoints` of edges are displaced, `normal` and `summed_height` of `edges` edges are evaluated,
-/// `by_codes` of the latter without the Summed Height Table, `off_lattice` without the Rank Table.
+/// `by_codes` of the latter from the displacement map in place of the test's table, `off_lattice` without a read.
 struct Tested {
     std::uint64_t vertices;
     std::uint64_t edges;
@@ -93,15 +93,17 @@ struct Tested {
     std::uint64_t off_lattice;
 };
 
-/// each: entries from which a map is read for a vertex or an edge.
-void add_reads(Equations& list, const Pipeline& p, const Tested& tested, std::uint64_t each) {
+/// each: entries from which a map is read for a vertex or an edge. codes_an_edge: of one that its height test decides by
+/// codes.
+void add_reads(Equations& list, const Pipeline& p, const Tested& tested, std::uint64_t each,
+               std::uint64_t codes_an_edge) {
     const auto& [vertices, edges, midpoints, normal, summed_height, by_codes, off_lattice] = tested;
     const std::string times = each == 1 ? "" : std::to_string(each) + " times ";
     list.add("reads of displacement_map by displace_vertex = " + times + "vertices and midpoints",
              p.displace_vertex.displacement_map.reads(), each * (vertices + midpoints));
     list.add("reads of displacement_map = " + times +
                  (each == 1 ? "vertices, midpoints and texels" : "vertices and midpoints, and texels"),
-             p.displacement_map_reads(), each * (vertices + midpoints) + by_codes);
+             p.displacement_map_reads(), each * (vertices + midpoints) + codes_an_edge * by_codes);
     list.add("reads of normal_map = " + times + "vertices and edges of normal_test", p.normal_map_reads(),
              each * normal_map_requests(p, vertices, normal));
     list.add("positions of transform = vertices and midpoints", p.transform.positions(), vertices + midpoints);
@@ -171,7 +173,8 @@ void add_timed(Equations& list, const MachineSetup& setup, const HostedMachine& 
              bumps(p, vertices) + normal);
     list.add("edges in tex_coord_test = edges", lanes([](const auto& lane) { return items(lane.tex_coord_test); }),
              edges);
-    list.add("edges in summed_height_test or rank_test = its edges",
+    const HeightTestKind& height_test = kind_of(setup.registers.formats.height_test);
+    list.add("edges in " + std::string(height_test.unit) + " = its edges",
              tests([](const auto& t) { return items(t.height_test); }), summed_height);
     list.add("edges in view_test = edges", lanes([](const auto& lane) { return items(lane.view_test); }), edges);
     if (!families)
@@ -190,7 +193,7 @@ void add_timed(Equations& list, const MachineSetup& setup, const HostedMachine& 
     const Read height_table(p.height_table, p.height_table_cache);
     list.add("entries of displacement_map = read", displacement_map.entries(), p.displacement_map_reads());
     list.add("entries of normal_map = read", normal_map.entries(), p.normal_map_reads());
-    list.add("entries of summed_height_table or rank_table = read by its test", height_table.entries(),
+    list.add("entries of " + std::string(height_test.table) + " = read by its test", height_table.entries(),
              p.height_table_reads());
     for (const Read& read : {displacement_map, normal_map, height_table})
         read.add_fills(list);
@@ -198,10 +201,8 @@ void add_timed(Equations& list, const MachineSetup& setup, const HostedMachine& 
              vertices + midpoints + by_codes);
     list.add("requests to normal_map = vertices and edges of normal_test", normal_map.requests(),
              normal_map_requests(p, vertices, normal));
-    const bool rank = setup.registers.formats.height_test == datapath::HeightTest::rank;
-    const std::uint64_t asked = rank ? summed_height - off_lattice : 3 * (summed_height - by_codes);
-    list.add(rank ? "requests to rank_table = edges with a midpoint on the lattice, if it tests"
-                  : "requests to summed_height_table = three an edge, if it tests",
+    const std::uint64_t asked = height_test.requests * (summed_height - by_codes - off_lattice);
+    list.add("requests to " + std::string(height_test.table) + " = of each edge that it tests by its table",
              height_table.requests(), setup.registers.tests.summed_height_test ? asked : 0);
 
     list.add("triangles spilled = come back", p.triangle_queue.spilled(), p.triangle_queue.refilled());
@@ -235,7 +236,8 @@ void add_machine(Equations& list, const MachineSetup& setup, const HostedMachine
              : final_edges ? "edges tested = 3 a base triangle, 4 a split, and those tested again"
                            : "edges tested = 3 a pass",
              counts.edges_tested, edges);
-    add_reads(list, p, tested, datapath::map_entry_count(setup.registers.formats));
+    add_reads(list, p, tested, datapath::map_entry_count(setup.registers.formats),
+              kind_of(setup.registers.formats.height_test).codes);
     if (setup.design.transport == Transport::non_blocking)
         add_timed(list, setup, machine, tested);
 }

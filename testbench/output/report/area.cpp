@@ -46,9 +46,9 @@ class AreaCounter {
         const auto addresses = static_cast<std::uint64_t>(entries());
         table("displacement_map", registers_.displacement_map, f.displacement.bits, t.displacement_map, addresses);
         table("normal_map", registers_.normal_map, 3 * f.normal.bits, t.normal_map, addresses);
-        const bool rank = f.height_test == datapath::HeightTest::rank;
-        table(table_name(f.height_test), registers_.height_table, datapath::height_entry_bits(f),
-              height_table_timing(t, f.height_test), rank ? 1 : corners_of_a_rectangle());
+        const HeightTestKind& height = kind_of(f.height_test);
+        table(height.table, registers_.height_table, datapath::height_entry_bits(f), t.*height.table_timing,
+              height.rectangles ? corners_of_a_rectangle() : 1);
         return std::move(areas_);
     }
 
@@ -105,6 +105,19 @@ class AreaCounter {
                  design_.edge_lanes * bits<TestOperands>());
     }
 
+    unsigned height_test_multiplications() const {
+        const bool area = registers_.tests.summed_height_unit == datapath::SummedHeightUnit::area;
+        switch (registers_.formats.height_test) {
+            case datapath::HeightTest::summed_height:
+                return area ? Multiplications::summed_height_limit : 0;
+            case datapath::HeightTest::curvature:
+                return Multiplications::curvature_measure;
+            case datapath::HeightTest::rank:
+                break;
+        }
+        return 0;
+    }
+
     void edge_tests() {
         const Timing& t = design_.timing;
         const datapath::Formats& f = registers_.formats;
@@ -116,17 +129,14 @@ class AreaCounter {
         const std::uint64_t screens = 3 + 3 * (bits<ScreenCorner>() - bits<ViewResult>() + 1) + tag_;
         UnitTiming normal = t.normal_test;
         normal.latency += tests.highlight_test ? t.highlight_test_latency : 0;
-        const bool area = tests.summed_height_unit == datapath::SummedHeightUnit::area;
 
         stage<TestOperands, TestOperands>("calculate_new_u", t.calculate_new_u, 0, 1, {0, 2 * f.texture.bits}, lanes);
         stage<TexCoordOperands, TexCoordResult>("tex_coord_test", t.tex_coord_test, 0, 1, {}, lanes);
-        if (f.height_test == datapath::HeightTest::rank)
-            stage<HeightOperands, HeightResult>("rank_test", t.rank_test, 0, 1,
-                                                {t.read_latency(t.rank_table), datapath::height_entry_bits(f)}, copies);
-        else
-            stage<HeightOperands, HeightResult>("summed_height_test", t.summed_height_test,
-                                                area ? M::summed_height_limit : 0, 1,
-                                                {summed_height_latency(design_, f), 3 * f.summed_height.bits}, copies);
+        const HeightTestKind& height = kind_of(f.height_test);
+        stage<HeightOperands, HeightResult>(
+            height.unit, t.*height.unit_timing, height_test_multiplications(), 1,
+            {height_test_latency(design_, f), static_cast<int>(height.requests) * datapath::height_entry_bits(f)},
+            copies);
         stage<NormalOperands, NormalResult>(
             "normal_test", normal,
             2 * M::normalise + M::bump + 3 * interpolate() + (tests.highlight_test ? M::highlight_test : 0), 1,

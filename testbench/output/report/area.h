@@ -36,7 +36,7 @@ UnitArea total_area(const std::vector<UnitArea>& units);
 struct Multiplications {
     static constexpr unsigned normalise = 12, bump = 15 + normalise, displace = 4;
     static constexpr unsigned transform = 15, transform_normal = 9, light = 4, faces_away = 2;
-    static constexpr unsigned summed_height_limit = 2, highlight_test = 9, interpolate = 3;
+    static constexpr unsigned summed_height_limit = 2, curvature_measure = 6, highlight_test = 9, interpolate = 3;
 };
 
 }  // namespace tessera

@@ -322,7 +322,7 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     table("displacement_map", setup.registers.displacement_map, totals.displacement_map_reads,
           &Pipeline::displacement_map_cache);
     table("normal_map", setup.registers.normal_map, totals.normal_map_reads, &Pipeline::normal_map_cache);
-    table(table_name(setup.registers.formats.height_test), setup.registers.height_table, totals.height_table_reads,
+    table(kind_of(setup.registers.formats.height_test).table, setup.registers.height_table, totals.height_table_reads,
           &Pipeline::height_table_cache);
 
     Collector saturated("saturations");

@@ -75,8 +75,8 @@ CaseResult run_case(const RandomCase& random_case, Mode mode) {
     const InvariantResult invariants = check_invariants(mesh, setup);
     if (!invariants.passed())
         fail(fmt::format("{} violations of the invariants: {}", invariants.violations(), invariants.first_violation));
-    const SetupResult checked_setup = check_setup(
-        setup, GoldenJob(with_mode.job, base_mesh, height_map, setup.model_scale, setup.rank_tables), simulation);
+    const SetupResult checked_setup =
+        check_setup(setup, GoldenJob(with_mode.job, base_mesh, height_map, setup.model_scale, setup), simulation);
     if (!checked_setup.passed())
         fail(fmt::format("the set-up: {}", checked_setup.first_wrong));
     const ConformanceResult conformance = scoreboard.result();

@@ -127,6 +127,14 @@ void choose_mesh_options(Random& random, Job& job) {
         std::min(job.formats.texture_fraction, random.one_of<std::int64_t>({0, 0, 0, 1, 2}));
     if (random.chance(75))
         return;
+    if (random.chance(40)) {
+        job.hardware.height_test = HeightTest::curvature;
+        job.tests.curvature_threshold = random.one_of({0.0, 0.02, 0.3, 3.0});
+        job.timing.curvature_test = {random.natural(1, 9), random.natural(1, 3), random.natural(1, 5)};
+        job.timing.curvature_table = {random.natural(1, 4), random.natural(1, 4), random.natural(0, 20), 0,
+                                      random.natural(1, 4)};
+        return;
+    }
     job.hardware.height_test = HeightTest::rank;
     if (random.chance(70))
         job.hardware.triangulation = Triangulation::greatest_rank;
@@ -162,7 +170,8 @@ void choose_evaluations(Random& random, Job& job) {
         job.hardware.machines = random.integer(2, 4);
     if (random.chance(60))
         return;
-    for (MemoryTiming* memory : {&job.timing.displacement_map, &job.timing.normal_map, &table, &job.timing.rank_table})
+    for (MemoryTiming* memory : {&job.timing.displacement_map, &job.timing.normal_map, &table, &job.timing.rank_table,
+                                 &job.timing.curvature_table})
         memory->cache = {random.one_of({0U, 1U, 300U, 4096U}), random.one_of({1U, 16U, 64U, 100U}),
                          random.natural(1, 4), random.natural(1, 20)};
 }

@@ -142,10 +142,4 @@ CurvatureTable make_curvature_table(const QuantisedMap& map, const std::vector<T
     return table;
 }
 
-std::uint64_t curvature_threshold(double deviation_times_length, const datapath::Formats& formats) {
-    const double highest = std::ldexp(1.0, datapath::curvature_threshold_bits(formats)) - 1;
-    return static_cast<std::uint64_t>(
-        std::clamp(std::floor(std::ldexp(deviation_times_length, datapath::curvature_fraction)), 0.0, highest));
-}
-
 }  // namespace tessera

@@ -27,8 +27,4 @@ struct CurvatureTable {
 CurvatureTable make_curvature_table(const QuantisedMap& map, const std::vector<TextureTriangle>& base,
                                     const datapath::Formats& formats);
 
-/// The Curvature Test's register for a deviation in codes, times the texels of an edge rounded up to a power of two;
-/// rounded down.
-std::uint64_t curvature_threshold(double deviation_times_length, const datapath::Formats& formats);
-
 }  // namespace tessera

@@ -1,11 +1,9 @@
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
-#include "testbench/tests/support/program_runner.h"
-#include "testbench/tests/support/run_folder.h"
+#include "testbench/tests/commands/crater_lake.h"
 
 // Crater Lake through the machine with a Rank Test, as a user runs it, from 24 base triangles.
 
@@ -15,42 +13,17 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double crater_depth = 945;  // m, from the lake's bottom to the rim: full scale
-
-struct Quality {
-    std::uint64_t triangles;
-    double rms, largest;  // m, vertically at grid points
-};
-
-/// Of the mesh with these settings beside; both modes' checks have passed.
-Quality crater_lake(const TestFolder& here, const Arguments& settings) {
-    const std::string job = (source_folder() / "testbench/examples/jobs/crater_lake_24.toml").string();
-    succeed(Arguments{"run",   job,
-                      "--set", "mesh.source=lattice",
-                      "--set", "mesh.spacing=128",
-                      "--set", "map.range=data",
-                      "--set", "displacement.scale=0.945",
-                      "--set", "hardware.height_test=rank",
-                      "--set", "hardware.triangulation=greatest_rank",
-                      "--set", "tests.normal=false",
-                      "--set", "tests.view=false",
-                      "--set", "tests.generation_limit=15",
-                      "--set", "mode=functional",
-                      "--set", "output.picture=false",
-                      "--set", "output.folder=run"} +
-                settings,
-            here.path());
-    succeed({"compare", "run"}, here.path());
-    const auto error = read_json(here.path() / "run/error.json");
-    const auto vertical = [&](const char* name) { return error["vertical"][name]["value"].get<double>() * 1000; };
-    return {RunFolder(here.path() / "run").count("run", "triangles_finished"), vertical("rms"), vertical("max")};
+/// With a Rank Test.
+CraterLakeRun ranked(const TestFolder& here, const Arguments& settings) {
+    return {here, Arguments{"--set", "hardware.height_test=rank", "--set", "hardware.triangulation=greatest_rank"} +
+                      settings};
 }
 
 }  // namespace
 
 TEST_CASE("rank: Crater Lake's error at 4,800 triangles, with entries of 8 bits") {
     const TestFolder here;
-    const Quality found = crater_lake(here, {"--set", "tests.rank_threshold=0.038"});
+    const CraterLakeRun found = ranked(here, {"--set", "tests.rank_threshold=0.038"});
     CHECK(found.triangles < 4800);
     CHECK(found.rms < 5.5);
 }
@@ -58,12 +31,12 @@ TEST_CASE("rank: Crater Lake's error at 4,800 triangles, with entries of 8 bits"
 TEST_CASE("rank: no grid point is farther from the mesh than the bound says") {
     const TestFolder here;
     for (const char* const bits : {"6", "16"}) {
-        const Quality found =
-            crater_lake(here, {"--set", "formats.rank_bits=0", "--set", std::string("formats.bound_bits=") + bits,
-                               "--set", "tests.bound_threshold=0.04"});
+        const CraterLakeRun found =
+            ranked(here, {"--set", "formats.rank_bits=0", "--set", std::string("formats.bound_bits=") + bits, "--set",
+                          "tests.bound_threshold=0.04"});
         INFO(bits << " bits, " << found.triangles << " triangles");
-        CHECK(found.largest < 0.04 * crater_depth);
-        CHECK(found.largest > 0.02 * crater_depth);
+        CHECK(found.largest < 0.04 * CraterLakeRun::depth);
+        CHECK(found.largest > 0.02 * CraterLakeRun::depth);
     }
 }
 

@@ -1,4 +1,5 @@
 // The height map, its summed-area table and its normals, and the vertices it displaces.
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -132,6 +133,32 @@ TEST_CASE("map: rectangles of the Summed Height Test") {
     CHECK(same(repeated.rectangle_about({0.5, 0.5}, size), 30, 15, 4, 3));  // read periodically
     CHECK(same(repeated.rectangle_about({32, 16}, size), 30, 15, 4, 3));    // the seam's other copy
     CHECK(same(repeated.rectangle_about({-95.5, 16.5}, size), 30, 15, 4, 3));
+}
+
+TEST_CASE("map: the Curvature Table's nearest cell, of two the higher, at each level") {
+    Map map(21, 13, AddressMode::clamp, AddressMode::repeat, std::vector<double>(std::size_t{21} * 13, 0));
+    // Levels 2 to 5, cells every 2, 4, 8, 16 texels to the one nearest to texels 20 and 12; each holds its number.
+    const std::vector<std::array<int, 2>> cells = {{11, 7}, {6, 4}, {4, 3}, {2, 2}};
+    CurvatureTable table{21, 13, {}};
+    for (const auto& [columns, rows] : cells)
+        for (int k = 0; k < columns * rows; ++k)
+            table.cells.push_back({static_cast<double>(table.cells.size()), 0, 0, 0, 1});
+    map.set_curvatures(table);
+    int first = 0;
+    for (int level = 2; level <= 5; ++level) {
+        const auto [columns, rows] = cells[static_cast<std::size_t>(level - 2)];
+        const int spacing = 1 << (level - 1);
+        const auto nearest = [&](int texel) {
+            return static_cast<int>(std::floor(texel / static_cast<double>(spacing) + 0.5));
+        };
+        for (int y = 0; y < 26; ++y)
+            for (int x = 0; x < 30; ++x) {
+                const int cell = first + nearest(y % 13) * columns + nearest(std::min(x, 20));
+                CHECK(map.curvature({x + 0.9, y + 0.1}, level).xx == cell);
+            }
+        first += columns * rows;
+    }
+    CHECK(map.curvature({3, 3}, 9).xx == map.curvature({3, 3}, 5).xx);
 }
 
 TEST_CASE("normal map: central differences, borders, thin axes") {

@@ -32,7 +32,7 @@ struct CheckedRun {
           map(its_map),
           resolved(resolve_job(functional(job), mesh, map).job),
           setup(make_setup(resolved, mesh, map)),
-          golden(resolved, mesh, map, setup.model_scale),
+          golden(resolved, mesh, map, setup.model_scale, setup),
           simulation(setup, 1000000) {
         REQUIRE(simulation.run().empty());
     }
@@ -298,6 +298,40 @@ TEST_CASE("one wrong register, base vertex or table entry fails the default job"
     every("normal map", host.normal_map, registers.normal_map, ".y", 2);
     every("normal map", host.normal_map, registers.normal_map, ".z", 4);
     every("summed height table", host.summed_height_table, registers.height_table);
+    CHECK(run.check().passed());
+}
+
+TEST_CASE("one wrong register or table entry of a Curvature Test fails its job") {
+    Job job;
+    job.hardware.height_test = HeightTest::curvature;
+    job.map.width = job.map.height = 60;
+    CheckedRun run{job};
+    const SetupResult right = run.check();
+    INFO(right.first_wrong);
+    REQUIRE(right.passed());
+    REQUIRE(right.parts.size() == 5);
+    for (const Mistake& mistake : std::vector<Mistake>{
+             {"curvature_table.columns", [](MachineSetup& s) { ++s.registers.covered.columns; }},
+             {"curvature_table.rows", [](MachineSetup& s) { --s.registers.covered.rows; }},
+             {"curvature_table.columns", [](MachineSetup& s) { --s.registers.height_table.columns; }},
+             {"curvature_table.rows", [](MachineSetup& s) { ++s.registers.height_table.rows; }},
+             {"curvature_table.entry_bytes", [](MachineSetup& s) { ++s.registers.height_table.entry_bytes; }},
+             {"tests.curvature_threshold", [](MachineSetup& s) { ++s.registers.tests.curvature_threshold; }},
+             {"tests.curvature_threshold", [](MachineSetup& s) { --s.registers.tests.curvature_threshold; }}}) {
+        MachineSetup wrong = run.setup;
+        mistake.make(wrong);
+        run.require_noticed(wrong, mistake.name);
+    }
+    const datapath::TableLayout& table = run.setup.registers.height_table;
+    Socket& socket = run.simulation.host.summed_height_table;
+    for (const std::uint32_t x : {0U, table.columns / 2, table.columns - 1})
+        for (unsigned byte = 0; byte < table.entry_bytes; ++byte) {
+            add_to_entry(socket, table, x, 0, byte, 1);
+            const SetupResult result = run.check();
+            CHECK(result.wrong() >= 1);
+            CHECK_THAT(result.first_wrong, Contains(fmt::format("curvature table: {}.", x)));
+            add_to_entry(socket, table, x, 0, byte, -1);
+        }
     CHECK(run.check().passed());
 }
 

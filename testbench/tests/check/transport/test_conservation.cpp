@@ -84,17 +84,17 @@ Equations two_triangles_timed() {
         {"parts in calculate_new_u = vertices and edges", {36, 6 + 30}},
         {"parts in normal_test = vertices and its edges", {36, 6 + 30}},
         {"edges in tex_coord_test = edges", {30, 30}},
-        {"edges in summed_height_test or rank_test = its edges", {30, 30}},
+        {"edges in summed_height_test = its edges", {30, 30}},
         {"edges in view_test = edges", {30, 30}},
         {"vertices taken by view_test = vertices, once a unit", {6, 6}},
         {"edges taken from tessellation_tests = edges", {30, 30}},
         {"edges collected = edges", {30, 30}},
         {"entries of displacement_map = read", {36, 36}},
         {"entries of normal_map = read", {36, 36}},
-        {"entries of summed_height_table or rank_table = read by its test", {30 * 12, 30 * 12}},
+        {"entries of summed_height_table = read by its test", {30 * 12, 30 * 12}},
         {"requests to displacement_map = vertices, midpoints and texels", {36, 6 + 30}},
         {"requests to normal_map = vertices and edges of normal_test", {36, 6 + 30}},
-        {"requests to summed_height_table = three an edge, if it tests", {90, 90}},
+        {"requests to summed_height_table = of each edge that it tests by its table", {90, 90}},
         {"triangles spilled = come back", {0, 0}},
         {"requests to off_chip_memory = out and back", {0, 0}},
         {"bytes read from off_chip_memory = written", {0, 0}},
@@ -194,12 +194,12 @@ TEST_CASE("conservation: an item too many in a unit breaks its equation and no o
         {&tests.calculate_new_u, "parts in calculate_new_u = vertices and edges"},
         {&tests.normal_test, "parts in normal_test = vertices and its edges"},
         {&tests.tex_coord_test, "edges in tex_coord_test = edges"},
-        {&tests.height_test, "edges in summed_height_test or rank_test = its edges"},
+        {&tests.height_test, "edges in summed_height_test = its edges"},
         {&tests.view_test, "edges in view_test = edges"},
         {tests.collect_tests, "edges collected = edges"},
         {&p.displacement_map, "requests to displacement_map = vertices, midpoints and texels"},
         {&p.normal_map, "requests to normal_map = vertices and edges of normal_test"},
-        {&p.height_table, "requests to summed_height_table = three an edge, if it tests"},
+        {&p.height_table, "requests to summed_height_table = of each edge that it tests by its table"},
         {&p.off_chip_memory, "requests to off_chip_memory = out and back"},
     };
     for (const auto& [unit, equation] : units)
@@ -253,7 +253,7 @@ TEST_CASE("conservation: a read too many") {
                    {"entries of normal_map = read", {1, 1}}});
     expect_change("Summed Height Table", simulation,
                   [&] { p.tessellation_tests[0].height_test.table.read(r.height_table.base, delay); },
-                  {{"entries of summed_height_table or rank_table = read by its test", {1, 1}}});
+                  {{"entries of summed_height_table = read by its test", {1, 1}}});
     // the same past the units
     expect_change("displacement map, past its unit", simulation,
                   [&] { read_directly(p.displace_vertex.displacement_map, r.displacement_map.base); },
@@ -263,7 +263,7 @@ TEST_CASE("conservation: a read too many") {
                   {{"entries of normal_map = read", {1, 0}}});
     expect_change("Summed Height Table, past its unit", simulation,
                   [&] { read_directly(p.tessellation_tests[0].height_test.table, r.height_table.base); },
-                  {{"entries of summed_height_table or rank_table = read by its test", {1, 0}}});
+                  {{"entries of summed_height_table = read by its test", {1, 0}}});
 }
 
 // By blocking transport, which does the whole work at once.
@@ -340,13 +340,13 @@ TEST_CASE("conservation: a vertex transformed, and triangles decided, too many")
                    {"parts in calculate_new_u = vertices and edges", {0, 3}},
                    {"parts in normal_test = vertices and its edges", {0, 3}},
                    {"edges in tex_coord_test = edges", {0, 3}},
-                   {"edges in summed_height_test or rank_test = its edges", {0, 3}},
+                   {"edges in summed_height_test = its edges", {0, 3}},
                    {"edges in view_test = edges", {0, 3}},
                    {"edges taken from tessellation_tests = edges", {0, 3}},
                    {"edges collected = edges", {0, 3}},
                    {"requests to displacement_map = vertices, midpoints and texels", {0, 3}},
                    {"requests to normal_map = vertices and edges of normal_test", {0, 3}},
-                   {"requests to summed_height_table = three an edge, if it tests", {0, 9}}});
+                   {"requests to summed_height_table = of each edge that it tests by its table", {0, 9}}});
 
     DecidedTriangle untested;
     untested.pass.triangle.finished = true;

@@ -1,8 +1,11 @@
 #include "modules/datapath/curvature.h"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "modules/datapath/midpoint.h"
+#include "modules/datapath/table_shapes.h"
 #include "testbench/common/random.h"
 
 using namespace tessera;
@@ -113,4 +116,56 @@ TEST_CASE("curvature: cells lie every 2^(l - 1) texels, the nearest is read, and
         }
     }
     CHECK(curvature_address({0, 0}, 9, 0, covered, f) == curvature_address({0, 0}, 5, 0, covered, f));
+}
+
+TEST_CASE(
+    "CT: every edge of narrow formats reads the same from both ends and decides the same, whatever the tables hold") {
+    const int fraction = GENERATE(0, 1);
+    Registers r;
+    r.formats = narrow_formats(fraction);
+    r.formats.height_test = HeightTest::curvature;
+    r.map = {7, 6, AddressMode::repeat, AddressMode::clamp};
+    r.covered = {7, 9};
+    r.displacement_map.base = 0x1000;
+    r.height_table.base = 0x2000;
+    shape_tables(r);
+    CHECK(r.height_table.columns == curvature_entries(covered_texels(r)));
+    // Random bits, by address.
+    const auto memory = [&](std::uint64_t address) {
+        const std::uint64_t bits = (address + 1) * 0x9e3779b97f4a7c15u;
+        return bits >> (address >= r.height_table.base ? 64 - curvature_entry_bits : 64 - 16);
+    };
+    const auto measure = [&](const TexCoord& i, const TexCoord& j) {
+        std::array<std::uint64_t, 3> read{};
+        std::size_t count = 0;
+        bool inside = true;
+        curvature_reads(i, j, midpoint(i, j), r, [&](std::uint64_t address) {
+            const TableLayout& table = address >= r.height_table.base ? r.height_table : r.displacement_map;
+            inside = inside && address - table.base < table.bytes();
+            read[count++] = memory(address);
+        });
+        const bool counted = count == (curvature_by_codes(i, j, r.formats) ? 3u : 1u);
+        return inside && counted ? curvature_of_entries(i, j, read, r.formats) : ~std::uint64_t{0};
+    };
+    const std::uint32_t most = 8u << fraction;
+    int wrong = 0, splits = 0;
+    TestParameters parameters;
+    parameters.curvature_threshold = 1u << 16;
+    for (std::uint32_t iu = 0; iu <= most; ++iu)
+        for (std::uint32_t iv = 0; iv <= most; ++iv)
+            for (std::uint32_t ju = 0; ju <= most; ++ju)
+                for (std::uint32_t jv = 0; jv <= most; ++jv) {
+                    const std::uint64_t found = measure({iu, iv}, {ju, jv});
+                    wrong += found == ~std::uint64_t{0} || found != measure({ju, jv}, {iu, iv}) ? 1 : 0;
+                    splits += curvature_test(found, parameters) ? 1 : 0;
+                }
+    CHECK(wrong == 0);
+    CHECK(splits > 100);
+}
+
+TEST_CASE("CT: a measure equal to the threshold does not split") {
+    TestParameters parameters;
+    parameters.curvature_threshold = 10;
+    CHECK_FALSE(curvature_test(10, parameters));
+    CHECK(curvature_test(11, parameters));
 }

@@ -115,20 +115,27 @@ TEST_CASE("the README's intermediates are those of the code, with their widths i
 
 namespace {
 
-Registers with_every_register() {
-    Registers registers;
-    registers.formats.highlight_tag = true;
-    registers.formats.height_test = HeightTest::rank;
-    registers.formats.bound_bits = 8;
-    return registers;
+/// Those of every test, each once.
+template <class Visit>
+void visit_every_register(Visit visit) {
+    std::set<std::string> seen;
+    for (const HeightTest test : {HeightTest::rank, HeightTest::curvature}) {
+        Registers registers;
+        registers.formats.highlight_tag = true;
+        registers.formats.height_test = test;
+        registers.formats.bound_bits = 8;
+        visit_registers(registers, [&](const Register& field, const auto& values) {
+            if (seen.insert(field.name).second)
+                visit(field, values);
+        });
+    }
 }
 
 }  // namespace
 
 TEST_CASE("the README's registers are those of the code, with their widths in the default formats") {
-    const Registers registers = with_every_register();
     std::vector<std::vector<std::string>> expected;
-    visit_registers(registers, [&](const Register& field, const auto& values) {
+    visit_every_register([&](const Register& field, const auto& values) {
         expected.push_back({in_code(field.name),
                             (values.size() > 1 ? std::to_string(values.size()) + " x " : "") +
                                 (field.kind == RegisterKind::signed_number ? "signed " : "") +
@@ -142,9 +149,8 @@ TEST_CASE("the README's registers are those of the code, with their widths in th
 }
 
 TEST_CASE("registers: the table has every parameter") {
-    const Registers registers = with_every_register();
     std::map<std::string, std::size_t> found;  // by the group before the first dot
-    visit_registers(registers, [&](const Register& field, const auto&) {
+    visit_every_register([&](const Register& field, const auto&) {
         const std::string name = field.name;
         if (name.find(".offset") == std::string::npos && name != "transform.view_distance_shift")
             ++found[name.substr(0, name.find('.'))];
@@ -168,15 +174,22 @@ TEST_CASE("registers: only a design with a Highlight Test has those of the test"
     CHECK(names(true).size() == names(false).size() + 4);
 }
 
-TEST_CASE("registers: only a design with a Rank Test has those of the test, the last ones") {
-    Registers registers;
-    std::vector<std::string> without, with;
-    visit_registers(registers, [&](const Register& field, const auto&) { without.emplace_back(field.name); });
-    registers.formats.height_test = HeightTest::rank;
-    registers.formats.rank_bits = registers.formats.bound_bits = 6;
-    visit_registers(registers, [&](const Register& field, const auto&) { with.emplace_back(field.name); });
-    REQUIRE(with.size() == without.size() + 4);
-    CHECK(std::equal(without.begin(), without.end(), with.begin()));
+TEST_CASE(
+    "registers: only a design with a test in the Summed Height Test's place has those of the test, the last ones") {
+    const auto names = [](HeightTest test) {
+        Registers registers;
+        registers.formats.height_test = test;
+        registers.formats.rank_bits = registers.formats.bound_bits = 6;
+        std::vector<std::string> found;
+        visit_registers(registers, [&](const Register& field, const auto&) { found.emplace_back(field.name); });
+        return found;
+    };
+    const std::vector<std::string> without = names(HeightTest::summed_height);
+    for (const auto& [test, more] : {std::pair{HeightTest::rank, 4u}, {HeightTest::curvature, 3u}}) {
+        const std::vector<std::string> with = names(test);
+        REQUIRE(with.size() == without.size() + more);
+        CHECK(std::equal(without.begin(), without.end(), with.begin()));
+    }
 }
 
 TEST_CASE("registers: a register holds what its bits hold") {

@@ -215,10 +215,9 @@ inline datapath::Registers formats_of(const MachineSetup& setup) {
 inline DeviceDesign design_of(const MachineSetup& setup) {
     DeviceDesign design;
     design.machine = setup.design;
-    const datapath::TableLayout& height_table =
-        setup.registers.height_table;  // a Rank Table may be larger than the map
-    design.largest_map = {std::max({64u, setup.registers.map.width, height_table.columns}),
-                          std::max({64u, setup.registers.map.height, height_table.rows})};
+    const datapath::Registers& registers = setup.registers;
+    design.largest_map = {std::max({64u, registers.map.width, registers.covered.columns}),
+                          std::max({64u, registers.map.height, registers.covered.rows})};
     return design;
 }
 

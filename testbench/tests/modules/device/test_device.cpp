@@ -67,6 +67,13 @@ constexpr const char* rank_test_modern =
     "hardware.design=modern mesh.source=lattice mesh.spacing=16 hardware.height_test=rank "
     "hardware.triangulation=greatest_rank tests.normal=false tests.view=false tests.rank_threshold=0.01";
 
+constexpr const char* curvature_test =
+    "mesh.source=lattice mesh.spacing=16 hardware.height_test=curvature tests.normal=false tests.view=false "
+    "tests.curvature_threshold=0.02";
+constexpr const char* curvature_test_modern =
+    "hardware.design=modern hardware.height_test=curvature map.address_u=repeat map.address_v=repeat "
+    "tests.curvature_threshold=0.02";
+
 const CaseTable<Row> same{
     "the device writes the testbench's triangles: ",
     {
@@ -103,6 +110,9 @@ const CaseTable<Row> same{
          true},
         {"functional, a Rank Test on a lattice wider than the map", rank_test, false, 100, false, 0, 64, true},
         {"timed, a Rank Test, modern design", rank_test_modern, true},
+        {"functional, a Curvature Test on a lattice wider than the map", curvature_test, false, 100, false, 0, 64,
+         true},
+        {"timed, a Curvature Test, modern design, a repeated map", curvature_test_modern, true},
         {"functional, watermark 50", "hardware.queue_watermark=50", false, 3},
         {"timed, watermark 50", "hardware.queue_watermark=50", true, 3},
         {"functional, narrow formats", narrow_formats, false},

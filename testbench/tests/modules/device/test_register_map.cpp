@@ -128,7 +128,7 @@ TEST_CASE("registers that the device starts with give the machine's registers ba
     datapath::visit_registers(initial, collect(expected));
     datapath::visit_registers(back, collect(found));
     CHECK(expected == found);
-    CHECK(back.height_table.columns == initial.height_table.columns);  // a register, with a Rank Test
+    CHECK(back.height_table.columns == initial.covered.columns);  // a register, with a Rank Test
     datapath::Registers without = initial;
     without.formats.height_test = datapath::HeightTest::summed_height;
     CHECK(RegisterFile(without, {}).machine().height_table.columns == initial.map.width + 1);

@@ -179,11 +179,6 @@ TEST_CASE("Every value that a map can have fits an entry") {
     }
 }
 
-TEST_CASE("The Curvature Test's register counts eighths of a code, within its width") {
-    CHECK(curvature_threshold(2.3, formats) == 18);
-    CHECK(curvature_threshold(1e30, formats) == (std::uint64_t{1} << 37) - 1);
-}
-
 TEST_CASE("Crater Lake from 24 triangles by the Curvature Test, RMS in metres") {
     const CraterLake lake;
     const auto base = lattice_triangles(lattice_over(lake.map.geometry, 128), formats);

@@ -1,0 +1,120 @@
+#include <array>
+#include <catch2/catch.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "modules/datapath/curvature.h"
+#include "modules/datapath/midpoint.h"
+#include "modules/datapath/table_shapes.h"
+#include "testbench/check/conformance/scoreboard.h"
+#include "testbench/tests/check/conformance/scoreboard_cases.h"
+
+// The Curvature Test's decision is golden's, to the last step of its threshold.
+
+using namespace tessera;
+using namespace tessera::testing;
+
+namespace {
+
+/// A table of random bits; the Curvature Test alone.
+MachineSetup random_setup(Random& random, const datapath::Formats& formats) {
+    MachineSetup setup = Case::make_setup(random, formats, Manner::tame);
+    datapath::Registers& registers = setup.registers;
+    registers.formats.height_test = datapath::HeightTest::curvature;
+    registers.covered = {registers.map.width + random.natural(0, 9), registers.map.height};
+    setup.curvature_table.covered = covered_texels(registers);
+    for (std::uint64_t k = 0; k < curvature_entries(covered_texels(registers)); ++k)
+        setup.curvature_table.entries.push_back(std::uint64_t{random.natural(0, 262143)} << 18 |
+                                                random.natural(0, 262143));
+    datapath::TestParameters& tests = registers.tests;
+    tests.normal_test = tests.view_test = tests.tex_coord_test = tests.generation_test = false;
+    return setup;
+}
+
+std::uint64_t measure(const MachineSetup& setup, const datapath::TexCoord& i, const datapath::TexCoord& j,
+                      const datapath::TexCoord& ij) {
+    datapath::Registers r = setup.registers;
+    shape_tables(r);
+    r.displacement_map.base = r.height_table.base = 0;
+    std::array<std::uint64_t, 3> read{};
+    std::size_t count = 0;
+    curvature_reads(i, j, ij, r, [&](std::uint64_t address) {
+        const bool codes = curvature_by_codes(i, j, r.formats);
+        read[count++] = codes ? setup.map.codes[address / r.displacement_map.entry_bytes]
+                              : setup.curvature_table.entries[address / r.height_table.entry_bytes];
+    });
+    return curvature_of_entries(i, j, read, r.formats);
+}
+
+std::uint64_t measure(const MachineSetup& setup, const datapath::TrianglePass& pass, int k) {
+    return measure(setup, pass.edge_begin(k).texture, pass.edge_end(k).texture,
+                   pass.edges[static_cast<std::size_t>(k)].texture);
+}
+
+/// The pass as the hardware decides it by this setup; flipped: edges whose test of heights is the other way round.
+datapath::TrianglePass decided(const MachineSetup& setup, datapath::TrianglePass pass, unsigned flipped = 0) {
+    pass.split = 0;
+    for (unsigned k = 0; k < 3; ++k) {
+        std::uint8_t& tests = pass.edges[k].tests;
+        const bool above = curvature_test(measure(setup, pass, static_cast<int>(k)), setup.registers.tests);
+        const bool splits = above != ((flipped >> k & 1u) != 0);
+        tests = static_cast<std::uint8_t>(datapath::gating_tests | (splits ? datapath::summed_height_bit : 0));
+        pass.split = static_cast<std::uint8_t>(pass.split | (splits ? 1u << k : 0));
+    }
+    return pass;
+}
+
+}  // namespace
+
+TEST_CASE("the Curvature Test conforms in many formats, at thresholds that its own measures are") {
+    Random random(1);
+    std::uint64_t split = 0, compared = 0;
+    for (const datapath::Formats& formats : many_formats()) {
+        for (int design = 0; design < 40; ++design) {
+            MachineSetup setup = random_setup(random, formats);
+            datapath::TrianglePass pass = Case(setup, Manner::tame).pass(random);
+            const std::uint64_t found = measure(setup, pass, 0);
+            for (const std::uint64_t threshold : {found, found == 0 ? found : found - 1}) {
+                setup.registers.tests.curvature_threshold = threshold;
+                const Case c(setup, Manner::tame);
+                pass = decided(setup, pass);
+                const ConformanceResult result = check(c, pass);
+                INFO(result.first_mismatch);
+                REQUIRE(result.mismatches == 0);
+                CHECK(test(result, "SHT").allowed_flips == 0);
+                split += pass.split != 0 ? 1 : 0;
+                ++compared;
+            }
+        }
+    }
+    CHECK(split > compared / 4);
+    CHECK(split < compared);
+}
+
+TEST_CASE("a wrong decision of the Curvature Test is caught, one step from the threshold") {
+    Random random(2);
+    int by_codes = 0, by_table = 0;
+    for (int design = 0; design < 300; ++design) {
+        MachineSetup setup = random_setup(random, datapath::Formats{});
+        datapath::TrianglePass pass = Case(setup, Manner::tame).pass(random);
+        if (design % 2 == 0) {  // a short edge
+            const datapath::TexCoord begin = pass.edge_begin(0).texture;
+            pass.triangle.vertices[1].texture = {begin.u ^ 4096, begin.v};
+            for (const int k : {0, 1})
+                pass.edges[static_cast<std::size_t>(k)].texture = pass.new_vertex[static_cast<std::size_t>(k)].texture =
+                    midpoint(pass.edge_begin(k).texture, pass.edge_end(k).texture);
+        }
+        const bool codes =
+            curvature_by_codes(pass.edge_begin(0).texture, pass.edge_end(0).texture, setup.registers.formats);
+        (codes ? by_codes : by_table) += 1;
+        const std::uint64_t found = measure(setup, pass, 0);
+        for (const std::uint64_t threshold : {found, found == 0 ? found : found - 1}) {
+            setup.registers.tests.curvature_threshold = threshold;
+            const Case c(setup, Manner::tame);
+            CHECK(test(check(c, decided(setup, pass, 1)), "SHT").mismatches == 1);
+        }
+    }
+    CHECK(by_codes > 100);
+    CHECK(by_table > 100);
+}

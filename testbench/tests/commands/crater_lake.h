@@ -1,0 +1,42 @@
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "testbench/tests/support/program_runner.h"
+#include "testbench/tests/support/run_folder.h"
+
+namespace tessera {
+
+/// Crater Lake through the machine from 24 base triangles, as a user runs it.
+struct CraterLakeRun {
+    std::uint64_t triangles;
+    double rms, largest;  // m, vertically at grid points
+
+    static constexpr double depth = 945;  // m, from the lake's bottom to the rim: full scale
+
+    /// Of the mesh with these settings beside; both models' checks have passed.
+    CraterLakeRun(const TestFolder& here, const Arguments& settings) {
+        const std::string job = (source_folder() / "testbench/examples/jobs/crater_lake_24.toml").string();
+        succeed(Arguments{"run",   job,
+                          "--set", "mesh.source=lattice",
+                          "--set", "mesh.spacing=128",
+                          "--set", "map.range=data",
+                          "--set", "displacement.scale=0.945",
+                          "--set", "tests.normal=false",
+                          "--set", "tests.view=false",
+                          "--set", "tests.generation_limit=15",
+                          "--set", "mode=functional",
+                          "--set", "output.picture=false",
+                          "--set", "output.folder=run"} +
+                    settings,
+                here.path());
+        succeed({"compare", "run"}, here.path());
+        const auto error = read_json(here.path() / "run/error.json");
+        const auto vertical = [&](const char* name) { return error["vertical"][name]["value"].get<double>() * 1000; };
+        triangles = RunFolder(here.path() / "run").count("run", "triangles_finished");
+        rms = vertical("rms");
+        largest = vertical("max");
+    }
+};
+
+}  // namespace tessera

@@ -1,0 +1,120 @@
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <random>
+#include <string>
+
+#include "testbench/tests/support/case_table.h"
+#include "testbench/tests/support/checked_run.h"
+#include "testbench/tests/support/job_settings.h"
+
+// Designs with a Curvature Test in the Summed Height Test's place: closed, the bare recursion's mesh bit for bit, every
+// decision golden's within its bound, nothing lost; with the host's table and with a table of random bits.
+
+using namespace tessera;
+using namespace tessera::testing;
+
+namespace {
+
+const char* const alone =
+    "map.width=60 map.height=44 hardware.height_test=curvature tests.normal=false tests.view=false "
+    "tests.curvature_threshold=0.02";
+
+MachineSetup curved(const std::string& settings) {
+    return setup_of(with_settings(with_settings(timed_job(), alone), settings));
+}
+
+/// Any table is as good as the host's, as far as cracks go.
+MachineSetup with_random_table(MachineSetup setup) {
+    std::mt19937_64 random(7);
+    for (std::uint64_t& entry : setup.curvature_table.entries)
+        entry = random() >> (64 - datapath::curvature_entry_bits);
+    setup.registers.tests.curvature_threshold = 1u << 17;
+    return setup;
+}
+
+/// One entry an edge: CheckedRun compares them. Short edges read codes.
+void check_reads(const CheckedRun& run) {
+    const Totals totals(run.simulation);
+    CHECK(totals.height_table_reads > 0);
+    CHECK(totals.evaluated.summed_height_by_codes > 0);
+    for (const Conservation& equation : conservation(run.simulation)) {
+        INFO(equation.name);
+        CHECK(equation.left == equation.right);
+    }
+}
+
+struct Row {
+    std::string name;
+    std::string settings;
+};
+
+const CaseTable designs(
+    "with a Curvature Test, ",
+    {
+        Row{"the paper's design", ""},
+        {"functional", "mode=functional"},
+        {"a lattice that is wider than the map", "mesh.source=lattice mesh.spacing=16"},
+        {"a repeated map", "map.address_u=repeat map.address_v=repeat"},
+        {"heights between texels", "hardware.displacement_filter=bilinear"},
+        {"beside the other tests", "tests.normal=true tests.view=true tests.highlight=true hardware.culling=back"},
+        {"three tests units, random stalls",
+         "hardware.tests_units=3 timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=20"},
+        {"final edges", "hardware.final_edges=true"},
+        {"cheap tests first, final edges, beside the other tests, random stalls",
+         "hardware.test_order=cheap_first hardware.final_edges=true tests.normal=true tests.view=true "
+         "timing.stalls_seed=5 timing.stalls_per_mille=300 timing.stalls_longest=20"},
+        {"cheap tests first, functional", "hardware.test_order=cheap_first mode=functional"},
+        {"a slow table behind a cache",
+         "timing.curvature_table_cache_bytes=256 timing.curvature_table_latency=9 timing.curvature_test_latency=7 "
+         "timing.curvature_test_interval=2"},
+        {"a slow displacement map", "timing.displacement_map_latency=30"},
+        {"families", "hardware.work=family"},
+        {"the modern design", "hardware.design=modern"},
+        {"the modern design, functional", "hardware.design=modern mode=functional"},
+        {"the modern design, beside the other tests",
+         "hardware.design=modern tests.normal=true tests.view=true tests.highlight=true"},
+        {"the modern design, a queue of one place that spills, random stalls",
+         "hardware.design=modern hardware.queue_capacity=1 timing.stalls_seed=3 timing.stalls_per_mille=300 "
+         "timing.stalls_longest=20"},
+        {"three modern machines", "hardware.design=modern hardware.machines=3"},
+    },
+    [](const Row& row) {
+        const CheckedRun run(curved(row.settings));
+        REQUIRE(run.counts.edges_split > 100);
+        check_reads(run);
+        run.expect_closed_in_texture();
+    });
+
+const CaseTable random_tables("a Curvature Table of random bits: ",
+                              {
+                                  Row{"the paper's design", ""},
+                                  {"cheap tests first, final edges",
+                                   "hardware.test_order=cheap_first hardware.final_edges=true"},
+                                  {"the modern design", "hardware.design=modern"},
+                                  {"the modern design, functional, a repeated map",
+                                   "hardware.design=modern mode=functional map.address_u=repeat map.address_v=repeat"},
+                              },
+                              [](const Row& row) {
+                                  const CheckedRun run(with_random_table(curved(row.settings)));
+                                  REQUIRE(run.counts.edges_split > 500);
+                                  check_reads(run);
+                                  run.expect_closed_in_texture();
+                              });
+
+const CaseTable meshes("a Curvature Test on a base mesh: ",
+                       {
+                           Row{"sphere", "mesh.source=sphere map.address_u=repeat tests.generation_limit=4"},
+                           {"cylinder", "mesh.source=cylinder map.address_u=repeat tests.generation_limit=6"},
+                       },
+                       [](const Row& row) {
+                           const CheckedRun run(curved("hardware.design=modern map.source=noise " + row.settings));
+                           REQUIRE(run.counts.edges_split > 100);
+                       });
+
+}  // namespace
+
+TEST_CASE("a Curvature Test that is off reads nothing and splits nothing", "[curvature]") {
+    const CheckedRun run(curved("tests.summed_height=false"));
+    CHECK(run.counts.edges_split == 0);
+    CHECK(Totals(run.simulation).height_table_reads == 0);
+}
