@@ -48,16 +48,21 @@ struct Formats {
     bool final_edges = false;    ///< a queue entry says which of its edges are final
     bool codes = false;          ///< a vertex carries its displacement code
     HeightTest height_test = HeightTest::summed_height;
-    int rank_bits = 8;      ///< of an entry of the Rank Table; 0: none
-    int bound_bits = 0;     ///< likewise; the bound lies above the rank
-    bool families = false;  ///< a queue entry says which edges split, and N, T, N' of their midpoints
+    int rank_bits = 8;       ///< of an entry of the Rank Table; 0: none
+    int bound_bits = 0;      ///< likewise; the bound lies above the rank
+    bool distances = false;  ///< a Rank Test as the viewer sees it: a vertex carries its distance from the eye
+    bool families = false;   ///< a queue entry says which edges split, and N, T, N' of their midpoints
     MapFilter filter = MapFilter::nearest;
 };
 
+/// Bits of a midpoint's radius, beside a bound that depends on distance (rank_view.h).
+inline constexpr int radius_bits = 8;
+
 /// Bits of an entry of the height test's table.
 constexpr int height_entry_bits(const Formats& formats) {
-    return formats.height_test == HeightTest::rank ? formats.rank_bits + formats.bound_bits
-                                                   : formats.summed_height.bits;
+    if (formats.height_test != HeightTest::rank)
+        return formats.summed_height.bits;
+    return formats.rank_bits + formats.bound_bits + (formats.distances && formats.bound_bits > 0 ? radius_bits : 0);
 }
 
 /// Bits of the number by which the cut `greatest_rank` compares edges: of the rank or, without ranks, of the bound.

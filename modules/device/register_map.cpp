@@ -19,7 +19,7 @@ std::uint64_t packed(const Format& format) {
 std::uint64_t features(const Formats& f) {
     return (f.highlight_tag ? 1u : 0u) | (f.final_edges ? 2u : 0u) | (f.codes ? 4u : 0u) | (f.families ? 8u : 0u) |
            (f.filter == datapath::MapFilter::bilinear ? 16u : 0u) |
-           (f.height_test == datapath::HeightTest::rank ? 32u : 0u) |
+           (f.height_test == datapath::HeightTest::rank ? 32u : 0u) | (f.distances ? 64u : 0u) |
            static_cast<std::uint64_t>(f.generation_bits) << 8;
 }
 
@@ -92,6 +92,7 @@ datapath::Registers widest() {
     f.height_test = datapath::HeightTest::rank;
     f.rank_bits = FormatLimits::rank_bits.most;
     f.bound_bits = FormatLimits::bound_bits.most;
+    f.distances = true;
     return registers;
 }
 
@@ -137,6 +138,8 @@ const char* test_of(const std::string& name) {
     const auto holds = [&](const char* part) { return name.find(part) != std::string::npos; };
     if (holds("highlight") || name == "tests.half_vector")
         return "Highlight Test";
+    if (name == "tests.rank_per_pixel" || name == "transform.eye")
+        return "Rank Test as the viewer sees it";
     return holds("rank_table.") || name == "tests.rank_threshold" || name == "tests.bound_threshold" ? "Rank Test" : "";
 }
 

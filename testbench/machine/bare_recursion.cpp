@@ -6,7 +6,7 @@
 #include "modules/datapath/edge_tests.h"
 #include "modules/datapath/map_entry.h"
 #include "modules/datapath/midpoint.h"
-#include "modules/datapath/rank.h"
+#include "modules/datapath/rank_view.h"
 #include "modules/datapath/rectangle.h"
 #include "modules/datapath/transform.h"
 
@@ -67,16 +67,17 @@ std::uint64_t BareRecursion::sum_around(const TexCoord& t, const RectangleSize& 
     return rectangle_sum(rectangle, r.map, table, r.formats, [&](std::uint64_t index) { return wide_sums_[index]; });
 }
 
-bool BareRecursion::test_rank(const TexCoord& i, const TexCoord& j, EdgeTests& edge) const {
+bool BareRecursion::test_rank(const Vertex& i, const Vertex& j, EdgeTests& edge) const {
     const Registers& r = setup_.registers;
-    if (!has_lattice_midpoint(i, j, r.formats))
+    if (!has_lattice_midpoint(i.texture, j.texture, r.formats))
         return false;
     const std::size_t index = rank_address(edge.texture, as_indices(r.height_table), r.map, r.formats);
     const RankTables& tables = setup_.rank_tables;
     const RankEntry entry{tables.rank.empty() ? 0u : tables.rank[index],
-                          tables.bound.empty() ? 0u : tables.bound[index]};
+                          tables.bound.empty() ? 0u : tables.bound[index],
+                          tables.radius.empty() ? 0u : tables.radius[index]};
     edge.rank = ordering_rank(entry, r.formats);
-    return rank_test(entry, r.tests);
+    return asks_by_rank(entry, edge_in_view(i.screen, j.screen), r.tests, r.formats);
 }
 
 Direction BareRecursion::map_normal_at(const TexCoord& t) const {
@@ -131,7 +132,7 @@ void BareRecursion::evaluate_edge(TrianglePass& pass, int k) {
         tests |= normal_bit;
     edge.rank = 0;
     if (r.formats.height_test == HeightTest::rank) {
-        if (r.tests.summed_height_test && test_rank(i.texture, j.texture, edge))
+        if (r.tests.summed_height_test && test_rank(i, j, edge))
             tests |= summed_height_bit;
     } else if (r.tests.summed_height_test) {
         const RectangleSize size = rectangle_size(i.texture, j.texture, r.map, r.formats);

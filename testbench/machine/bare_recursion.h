@@ -43,7 +43,7 @@ class BareRecursion {
     /// All three edges with every test, pass.split, and the tests that kept edges whole (Triangle::stopped_by).
     void evaluate(datapath::TrianglePass& pass);
     /// The Summed Height Test's sum of the map's codes.
-    bool test_rank(const datapath::TexCoord& i, const datapath::TexCoord& j, datapath::EdgeTests& edge) const;
+    bool test_rank(const datapath::Vertex& i, const datapath::Vertex& j, datapath::EdgeTests& edge) const;
     std::uint64_t sum_around(const datapath::TexCoord& t, const datapath::RectangleSize& size) const;
 
   private:

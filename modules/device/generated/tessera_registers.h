@@ -116,6 +116,7 @@
 #define TESSERA_FEATURES_FAMILIES (1u << 3)  /* a machine of families */
 #define TESSERA_FEATURES_BILINEAR (1u << 4)  /* maps are read between four texels */
 #define TESSERA_FEATURES_RANK_TEST (1u << 5)  /* a Rank Test in the Summed Height Test's place */
+#define TESSERA_FEATURES_DISTANCES (1u << 6)  /* it judges errors as the viewer sees them */
 
 /* Register `error`. */
 enum tessera_error {

@@ -288,6 +288,7 @@ package tessera_registers;
   localparam int unsigned FEATURES_FAMILIES_BIT = 3;  // a machine of families
   localparam int unsigned FEATURES_BILINEAR_BIT = 4;  // maps are read between four texels
   localparam int unsigned FEATURES_RANK_TEST_BIT = 5;  // a Rank Test in the Summed Height Test's place
+  localparam int unsigned FEATURES_DISTANCES_BIT = 6;  // it judges errors as the viewer sees them
 
   // Register error.
   typedef enum logic [3:0] {

@@ -27,7 +27,8 @@ golden::Diagonal golden_diagonal(datapath::Triangulation choice) {
 }  // namespace
 
 golden::RankTable golden_ranks(const RankTables& tables) {
-    return {tables.columns, tables.rows, tables.rank, tables.bound, static_cast<int>(tables.highest_bound_threshold)};
+    return {tables.columns, tables.rows,   tables.rank,
+            tables.bound,   tables.radius, static_cast<int>(tables.highest_bound_threshold)};
 }
 
 namespace {
@@ -51,6 +52,25 @@ golden::Map golden_map(const MachineSetup& setup) {
 
 }  // namespace
 
+namespace {
+
+/// The registers' thresholds are those at D_i + D_j = 1 LSB, golden's those at a mean distance of 1: an octave and the
+/// binary point apart.
+void set_rank_view(const datapath::Registers& registers, golden::Parameters& result) {
+    const datapath::Formats& formats = registers.formats;
+    const int octaves = formats.view_distance.fraction + 1;
+    result.rank_view = registers.tests.rank_per_pixel ? golden::RankView::per_pixel : golden::RankView::per_point;
+    result.rank_bits = formats.rank_bits;
+    result.bound_bits = formats.bound_bits;
+    result.rank_threshold += octaves * (registers.tests.rank_per_pixel ? 4096 : 2048);
+    result.bound_threshold += octaves * 2048;
+    const auto& eye = registers.transform.eye;
+    result.eye = glm::dvec3(eye[0], eye[1], eye[2]) * std::ldexp(1.0, -formats.position.fraction);
+    result.distance_step = std::ldexp(1.0, -formats.view_distance.fraction);
+}
+
+}  // namespace
+
 golden::Parameters golden_parameters(const datapath::Registers& registers) {
     const datapath::Formats& formats = registers.formats;
     const datapath::TestParameters& tests = registers.tests;
@@ -68,6 +88,8 @@ golden::Parameters golden_parameters(const datapath::Registers& registers) {
     result.summed_height_threshold = real(tests.summed_height_threshold, result.area ? 0 : 2);
     result.rank_threshold = static_cast<int>(tests.rank_threshold);
     result.bound_threshold = static_cast<int>(tests.bound_threshold);
+    if (formats.distances)
+        set_rank_view(registers, result);
     result.view_threshold = real(tests.view_threshold, formats.screen.fraction);
     result.generation_limit = static_cast<int>(tests.generation_limit);
     const int normal = formats.normal.fraction;

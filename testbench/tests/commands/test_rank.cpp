@@ -16,7 +16,8 @@ constexpr double crater_depth = 945;  // m, from the lake's bottom to the rim: f
 
 struct Quality {
     std::uint64_t triangles;
-    double rms, largest;  // m, vertically at grid points
+    double rms, largest;                // m, vertically at grid points
+    double rms_pixels, largest_pixels;  // of those in the picture
 };
 
 /// Of the mesh with these settings beside; both modes' checks have passed.
@@ -40,8 +41,18 @@ Quality crater_lake(const TestFolder& here, const Arguments& settings) {
     succeed({"compare", "run"}, here.path());
     const auto error = read_json(here.path() / "run/error.json");
     const auto vertical = [&](const char* name) { return error["vertical"][name]["value"].get<double>() * 1000; };
-    return {RunFolder(here.path() / "run").count("run", "triangles_finished"), vertical("rms"), vertical("max")};
+    const auto pixels = [&](const char* name) { return error["vertical"][name]["value"].get<double>(); };
+    return {RunFolder(here.path() / "run").count("run", "triangles_finished"), vertical("rms"), vertical("max"),
+            pixels("rms_pixels"), pixels("max_pixels")};
 }
+
+/// From the crater's northern rim, 30 m above the ground, across the lake.
+const Arguments from_the_rim{"--set", "camera.eye=[4.262, 4.101, 0.93]",
+                             "--set", "camera.target=[1.42, -1.766, 0.42]",
+                             "--set", "camera.up=[0, 0, 1]",
+                             "--set", "camera.field_of_view=50",
+                             "--set", "camera.near_plane=0.02",
+                             "--set", "hardware.test_order=cheap_first"};
 
 }  // namespace
 
@@ -61,6 +72,28 @@ TEST_CASE("rank: no grid point is farther from the mesh than the bound says") {
         INFO(bits << " bits, " << found.triangles << " triangles");
         CHECK(found.largest < 0.04 * crater_depth);
         CHECK(found.largest > 0.02 * crater_depth);
+    }
+}
+
+TEST_CASE("rank: from the crater's rim 2,400 triangles suffice for 1.4 pixels") {
+    const TestFolder here;
+    const Quality found = crater_lake(
+        here, from_the_rim + Arguments{"--set", "tests.rank_view=per_point", "--set", "tests.rank_threshold=13",
+                                       "--set", "tests.view=true", "--set", "tests.view_threshold=0"});
+    CHECK(found.triangles < 2400);
+    CHECK(found.rms_pixels < 1.4);
+}
+
+TEST_CASE("rank: from the crater's rim no grid point appears farther from the mesh than the bound says") {
+    const TestFolder here;
+    for (const char* const bits : {"8", "16"}) {
+        const Quality found = crater_lake(
+            here,
+            from_the_rim + Arguments{"--set", "tests.rank_view=per_point", "--set", "formats.rank_bits=0", "--set",
+                                     std::string("formats.bound_bits=") + bits, "--set", "tests.bound_threshold=8"});
+        INFO(bits << " bits, " << found.triangles << " triangles");
+        CHECK(found.largest_pixels < 8);
+        CHECK(found.largest_pixels > 2);
     }
 }
 

@@ -120,6 +120,7 @@ Registers with_every_register() {
     registers.formats.highlight_tag = true;
     registers.formats.height_test = HeightTest::rank;
     registers.formats.bound_bits = 8;
+    registers.formats.distances = true;
     return registers;
 }
 
@@ -177,6 +178,11 @@ TEST_CASE("registers: only a design with a Rank Test has those of the test, the 
     visit_registers(registers, [&](const Register& field, const auto&) { with.emplace_back(field.name); });
     REQUIRE(with.size() == without.size() + 4);
     CHECK(std::equal(without.begin(), without.end(), with.begin()));
+    std::vector<std::string> in_view;
+    registers.formats.distances = true;
+    visit_registers(registers, [&](const Register& field, const auto&) { in_view.emplace_back(field.name); });
+    REQUIRE(in_view.size() == with.size() + 2);
+    CHECK(std::equal(with.begin(), with.end(), in_view.begin()));
 }
 
 TEST_CASE("registers: a register holds what its bits hold") {
