@@ -75,6 +75,7 @@ std::vector<DeviceRegister> documented_registers() {
     datapath::Registers registers;
     registers.formats.highlight_tag = true;
     registers.formats.height_test = datapath::HeightTest::rank;
+    registers.formats.distances = true;
     registers.formats.rank_bits = registers.formats.bound_bits = 16;
     return register_map(registers, {});
 }

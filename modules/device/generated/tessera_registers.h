@@ -96,6 +96,10 @@
 #define TESSERA_RANK_TABLE_ROWS 0x210u
 #define TESSERA_TESTS_RANK_THRESHOLD 0x214u
 #define TESSERA_TESTS_BOUND_THRESHOLD 0x218u
+#define TESSERA_TESTS_RANK_PER_PIXEL 0x21cu
+#define TESSERA_TRANSFORM_EYE_0 0x220u
+#define TESSERA_TRANSFORM_EYE_1 0x228u
+#define TESSERA_TRANSFORM_EYE_2 0x230u
 #define TESSERA_REGISTER_BYTES 0x400u
 
 /* Bits of control registers. */
@@ -265,8 +269,12 @@ struct tessera_finished_triangle {
     X(LIGHT_AMBIENT, 0x208u, 9, 1, 0, 1) \
     X(RANK_TABLE_COLUMNS, 0x20cu, 13, 1, 0, 1) \
     X(RANK_TABLE_ROWS, 0x210u, 13, 1, 0, 1) \
-    X(TESTS_RANK_THRESHOLD, 0x214u, 16, 1, 0, 1) \
-    X(TESTS_BOUND_THRESHOLD, 0x218u, 16, 1, 0, 1)
+    X(TESTS_RANK_THRESHOLD, 0x214u, 19, 1, 1, 1) \
+    X(TESTS_BOUND_THRESHOLD, 0x218u, 18, 1, 1, 1) \
+    X(TESTS_RANK_PER_PIXEL, 0x21cu, 1, 1, 0, 1) \
+    X(TRANSFORM_EYE_0, 0x220u, 40, 2, 1, 1) \
+    X(TRANSFORM_EYE_1, 0x228u, 40, 2, 1, 1) \
+    X(TRANSFORM_EYE_2, 0x230u, 40, 2, 1, 1)
 
 /* Every register's number: a place in that list. */
 enum tessera_register {
