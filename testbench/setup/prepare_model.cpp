@@ -68,6 +68,22 @@ std::optional<RadiusScale> radius_scale(const PreparedScene& scene) {
                        4 * (1 + 8 * root_of_three * position / step)};
 }
 
+/// What keeps a bound in the picture from holding.
+void remark_on_bound(const SceneSettings& settings, const BaseMesh& mesh, PreparedScene& scene) {
+    const datapath::Formats& formats = scene.registers.formats;
+    if (!formats.distances || formats.bound_bits == 0)
+        return;
+    const auto unless = [&](bool fine, const char* why) {
+        if (!fine)
+            scene.remarks.push_back(fmt::format("tests.bound_threshold promises nothing in the picture: {}", why));
+    };
+    constexpr double whole_map = 65536;  // codes
+    unless(mesh.beyond_map, "radii are those of a flat base mesh, mesh.source = \"lattice\"");
+    unless(!settings.tests.view, "the View Test may keep an edge whole that is needed; set tests.view = false");
+    unless(scene.rank_tables.highest_bound_threshold >= bound_threshold(whole_map, formats.bound_bits),
+           "formats.bound_bits leave no room for all that depends on one another; raise them");
+}
+
 void rank_lattice(PreparedScene& scene) {
     const datapath::Formats& formats = scene.registers.formats;
     std::vector<std::array<datapath::TexCoord, 3>> base;
@@ -121,8 +137,10 @@ PreparedScene prepare_model(const SceneSettings& settings, const BaseMesh& mesh,
     formats.distances = formats.height_test == datapath::HeightTest::rank && settings.tests.rank_view != RankView::none;
     registers.transform = make_transform(settings.camera, model_scale, formats, saturated);
     formats.view_distance = view_distance_format(registers.transform, formats.position);
-    if (formats.height_test == datapath::HeightTest::rank)
+    if (formats.height_test == datapath::HeightTest::rank) {
         rank_lattice(scene);
+        remark_on_bound(settings, mesh, scene);
+    }
     lay_out_tables(registers, scene.rank_tables);
 
     const ViewAxes view = view_axes(settings.camera);

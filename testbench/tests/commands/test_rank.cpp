@@ -75,13 +75,15 @@ TEST_CASE("rank: no grid point is farther from the mesh than the bound says") {
     }
 }
 
-TEST_CASE("rank: from the crater's rim 2,400 triangles suffice for 1.4 pixels") {
+/// The paper's tests have 3.37 pixels with 2,384 triangles, the least of a sweep over both thresholds and two base meshes
+/// (scripts/figures --only rank_test).
+TEST_CASE("rank: from the crater's rim 2,400 triangles show less than half the error of the paper's tests") {
     const TestFolder here;
     const Quality found = crater_lake(
-        here, from_the_rim + Arguments{"--set", "tests.rank_view=per_point", "--set", "tests.rank_threshold=13",
+        here, from_the_rim + Arguments{"--set", "tests.rank_view=per_point", "--set", "tests.rank_threshold=14",
                                        "--set", "tests.view=true", "--set", "tests.view_threshold=0"});
     CHECK(found.triangles < 2400);
-    CHECK(found.rms_pixels < 1.4);
+    CHECK(found.rms_pixels < 3.37 / 2);
 }
 
 TEST_CASE("rank: from the crater's rim no grid point appears farther from the mesh than the bound says") {
