@@ -131,7 +131,8 @@ Map::Rank Map::rank(const glm::dvec2& t) const {
     const std::int64_t y = address(integer_part(t.y), rank_table_.rows, address_v_);
     const auto index = static_cast<std::size_t>(y * rank_table_.columns + x);
     return {rank_table_.ranks.empty() ? 0 : rank_table_.ranks[index],
-            rank_table_.bounds.empty() ? 0 : rank_table_.bounds[index]};
+            rank_table_.bounds.empty() ? 0 : rank_table_.bounds[index],
+            rank_table_.radii.empty() ? 0 : rank_table_.radii[index]};
 }
 
 Curvature Map::curvature(const glm::dvec2& t, int level) const {

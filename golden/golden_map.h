@@ -18,6 +18,7 @@ enum class AddressMode { clamp, repeat };
 struct RankTable {
     std::int64_t columns = 0, rows = 0;
     std::vector<std::uint16_t> ranks, bounds;
+    std::vector<std::uint8_t> radii;  ///< codes; beside bounds that depend on distance
     int highest_bound_threshold = 0;  ///< up to which the bounds hold
 };
 
@@ -81,7 +82,7 @@ class Map {
     bool has_ranks() const { return rank_table_.columns > 0; }
     /// Rank and bound at the texel that contains t; 0 for what the table lacks.
     struct Rank {
-        int rank = 0, bound = 0;
+        int rank = 0, bound = 0, radius = 0;
     };
     Rank rank(const glm::dvec2& t) const;
     /// By which the cut `greatest_rank` compares midpoints: the rank or, without ranks, the bound.

@@ -21,6 +21,7 @@ double displace_and_transform(Vertex& v, const Map& map, const Parameters& param
 
     const glm::dvec4 p(v.displaced_position, 1);
     v.w = glm::dot(parameters.row_w, p);
+    v.distance = parameters.rank_view == RankView::none ? 0 : eye_distance(v.displaced_position - parameters.eye);
     v.in_front = v.w > parameters.near_plane;
     v.screen =
         v.in_front ? glm::dvec2(glm::dot(parameters.row_x, p), glm::dot(parameters.row_y, p)) / v.w : glm::dvec2(0);
@@ -55,6 +56,25 @@ void measure_curvature(const Vertex& i, const Vertex& j, const Vertex& m, const 
     e.curvature = (std::max(bend, c.rest) + whole_units(std::min(bend, c.rest) / 2)) * length;
 }
 
+// Section 4.7. A rank and a bound, of r and s bits, have 6 and 5 bits in front of the point.
+bool asks_by_rank(const Map::Rank& rank, const Vertex& i, const Vertex& j, const Parameters& parameters) {
+    if (parameters.rank_view == RankView::none) {
+        return rank.rank > parameters.rank_threshold || rank.bound > parameters.bound_threshold;
+    }
+    const double distance = (i.distance + j.distance) / 2, half_step = parameters.distance_step / 2;
+    const double octaves = parameters.rank_view == RankView::per_pixel ? 1 : 0.5;
+    const double seen_from = level(std::max(distance, half_step));
+    const bool ranked = rank.rank > 0 && std::ldexp(rank.rank, 16 - parameters.rank_bits) >
+                                             parameters.rank_threshold + std::floor(octaves * seen_from);
+    const double radius = std::ldexp(8 + rank.radius % 8, rank.radius / 8) * half_step;
+    if (ranked || rank.bound == 0 || (i.w + j.w) / 2 + radius < 0) {
+        return ranked;
+    }
+    const double nearest = distance - radius;
+    return nearest <= 0 || std::ldexp(rank.bound, 16 - parameters.bound_bits) >
+                               parameters.bound_threshold + std::floor(level(nearest) / 2);
+}
+
 // Section 4.3. The near-plane rule is expressed by an infinite length.
 double view_length(const Vertex& i, const Vertex& j) {
     if (i.in_front && j.in_front) {
@@ -68,6 +88,17 @@ double view_length(const Vertex& i, const Vertex& j) {
 
 double manhattan(const glm::dvec3& v) {
     return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
+}
+
+double eye_distance(const glm::dvec3& v) {
+    const glm::dvec3 a = glm::abs(v);
+    return std::max({a.x, a.y, a.z, std::max({a.x + a.y, a.y + a.z, a.z + a.x}) * 11 / 16, (a.x + a.y + a.z) * 9 / 16});
+}
+
+double level(double distance) {
+    int octave = 0;
+    const double mantissa = std::frexp(distance, &octave);  // 1/2 to 1
+    return std::floor(4096 * (octave - 2 + 2 * mantissa));
 }
 
 Normalised normalise(const glm::dvec3& v) {
@@ -133,7 +164,7 @@ EdgeEvaluation evaluate_edge(const Vertex& i, const Vertex& j, const Map& map, c
         const bool on_lattice = enabled.summed_height && has_lattice_midpoint(i, j);
         const Map::Rank rank = on_lattice ? map.rank(m.texture) : Map::Rank{};
         e.order = map.order(rank);
-        e.summed_height_test = rank.rank > parameters.rank_threshold || rank.bound > parameters.bound_threshold;
+        e.summed_height_test = asks_by_rank(rank, i, j, parameters);
     }
 
     if (map.has_curvatures()) {

@@ -16,6 +16,9 @@ namespace tessera::golden {
 /// time.
 enum class Diagonal { shorter, first, second, greatest_rank };
 
+/// Section 4.7: whether errors are those of the surface, or as seen from the eye.
+enum class RankView { none, per_point, per_pixel };
+
 /// The second diagonal is chosen only if it is shorter by more than this fraction of the first. Of two diagonals of
 /// equal length the first is therefore chosen, whatever the rounding.
 inline constexpr double diagonal_margin = 1.0 / 64;
@@ -32,8 +35,13 @@ struct Parameters {
     int rank_threshold = 0;              ///< of the Rank Test, section 4.7
     int bound_threshold = 0;             ///< likewise
     double curvature_threshold = 0;      ///< codes times texels, section 4.8
-    double view_threshold = 0;           ///< pixels
-    int generation_limit = 12;           ///< highest generation of an inserted vertex
+    RankView rank_view = RankView::none;
+    int rank_bits = 0, bound_bits = 0;  ///< of the table's entries, for errors as seen
+    glm::dvec3 eye{0};                  ///< world
+    /// Distances of vertices are multiples of this, world units; radii are sums of two. 0: of nothing, and no radii.
+    double distance_step = 0;
+    double view_threshold = 0;  ///< pixels
+    int generation_limit = 12;  ///< highest generation of an inserted vertex
 
     /// Section 4.6, the highlight test: the half vector between the directions to the light and to the viewer, both
     /// infinitely far; the cosine of the highlight's angle; the threshold on one component's difference of two normals.
@@ -74,6 +82,7 @@ struct Vertex {
     glm::dvec3 displaced_normal{0};    ///< N', world, unit
     glm::dvec2 screen{0};              ///< pixels; zero if not in front
     double w = 0;                      ///< the transform's w
+    double distance = 0;               ///< D, from the eye
     bool in_front = false;
     int generation = 0;  ///< 0: base vertex
 };
@@ -168,5 +177,10 @@ Tessellation tessellate(const std::vector<std::array<Vertex, 3>>& base, const Ma
 
 /// Manhattan length of a world-space vector.
 double manhattan(const glm::dvec3& v);
+
+/// Section 4.7: the distance that stands for the Euclidean length.
+double eye_distance(const glm::dvec3& v);
+/// Section 4.7: 4096 log2 of a distance, straight between powers of two, rounded down.
+double level(double distance);
 
 }  // namespace tessera::golden

@@ -49,12 +49,42 @@ View make_view(const Camera& camera, const Placement& placement) {
     return view;
 }
 
+namespace {
+
+// Pixels that what is 1 high at distance 1 measures in the picture's centre.
+double focal_length(const Camera& camera) {
+    return camera.viewport.y / 2 / std::tan(camera.field_of_view / 2 * degree);
+}
+
+double world_per_code(const Scene& scene) {
+    return std::abs(scene.placement.scale * (scene.highest - scene.lowest) / scene.highest_code);
+}
+
+// 16 bits of an entry, without limits: a distance may bring the threshold back into them.
+double seen_threshold(double octaves, int integer_bits) {
+    return std::isnan(octaves) ? -HUGE_VAL : std::ldexp(octaves, 16 - integer_bits);
+}
+
+}  // namespace
+
 double rank_threshold(const Scene& scene) {
+    if (scene.rank_view != RankView::none) {
+        const double pixels = focal_length(scene.camera);
+        const double side = scene.rank_view == RankView::per_pixel ? std::sqrt(scene.texel_area) * pixels : 1;
+        const double codes = scene.rank_threshold / (world_per_code(scene) * pixels * side);
+        return scene.rank_bits == 0 ? 0 : seen_threshold(16 + std::log2(codes * codes), 6);
+    }
     const double error = scene.rank_threshold * scene.highest_code;
     return on_log_scale(error * error, 16, 6, scene.rank_bits);
 }
 
 double bound_threshold(const Scene& scene) {
+    if (scene.rank_view != RankView::none) {
+        const double focal = focal_length(scene.camera),
+                     secant = std::hypot(1, glm::length(scene.camera.viewport) / 2 / focal);
+        const double pixels = world_per_code(scene) * secant * (focal * secant + scene.bound_threshold);
+        return scene.bound_bits == 0 ? 0 : seen_threshold(8 + std::log2(scene.bound_threshold / pixels), 5);
+    }
     return on_log_scale(scene.bound_threshold * scene.highest_code, 8, 5, scene.bound_bits);
 }
 
@@ -67,8 +97,16 @@ Parameters make_parameters(const Scene& scene) {
     result.summed_height_threshold = scene.summed_height_threshold * scene.highest_code;
     result.area = scene.area;
     result.curvature_threshold = scene.curvature_threshold * scene.highest_code;
-    result.rank_threshold = static_cast<int>(std::floor(rank_threshold(scene)));
-    result.bound_threshold = static_cast<int>(std::floor(bound_threshold(scene)));
+    // Beyond 2^20 a threshold never comes back into an entry's 16 bits.
+    const auto rounded_down = [](double threshold) {
+        return static_cast<int>(std::floor(std::clamp(threshold, -0x1p20, 0x1p20)));
+    };
+    result.rank_threshold = rounded_down(rank_threshold(scene));
+    result.bound_threshold = rounded_down(bound_threshold(scene));
+    result.rank_view = scene.rank_view;
+    result.rank_bits = scene.rank_bits;
+    result.bound_bits = scene.bound_bits;
+    result.eye = view.eye;
     result.view_threshold = scene.view_threshold;
     result.generation_limit = scene.generation_limit;
     // Light opposite to the viewer: there is no half vector, and no normal lies in the highlight.

@@ -48,10 +48,12 @@ struct Scene {
     double normal_threshold = 0;         ///< difference of one component of two unit normals
     double summed_height_threshold = 0;  ///< full-scale texels; with the area option: full scale
     bool area = false;
-    double rank_threshold = 0;          ///< full scale times the square root of a texel
-    double bound_threshold = 0;         ///< full scale
-    double curvature_threshold = 0;     ///< full scale times texels
+    double rank_threshold = 0;          ///< full scale times the square root of a texel; as seen: pixels in its place
+    double bound_threshold = 0;         ///< full scale; as seen: pixels
+    double curvature_threshold = 0;      ///< full scale times texels
     int rank_bits = 0, bound_bits = 0;  ///< of a Rank Table's entry; 0: it has none
+    RankView rank_view = RankView::none;
+    double texel_area = 1;  ///< world units
     /// A clamped axis does not clamp texture coordinates: the mesh reaches beyond the map.
     bool beyond_map = false;
     double view_threshold = 0;  ///< pixels

@@ -10,6 +10,7 @@
 #include "modules/datapath/mipmap.h"
 #include "modules/datapath/normalise.h"
 #include "modules/datapath/rank.h"
+#include "modules/datapath/rank_view.h"
 #include "modules/datapath/reciprocal.h"
 #include "modules/datapath/rectangle.h"
 #include "modules/datapath/transform.h"
@@ -34,6 +35,7 @@ constexpr void visit_intermediates(const Formats& f, Visit&& visit) {
     visit("curvature_measure", CurvatureWidths{f});
     visit("mipmap_test", MipmapWidths{f});
     visit("rank_test", RankWidths{f});
+    visit("rank_test_in_view", RankViewWidths{f});
     visit("choose_second_diagonal", DiagonalWidths{f});
     visit("faces_away", CullWidths{f});
     visit("light", LightWidths{f});

@@ -52,8 +52,16 @@ class Fields {
         pass(named(name, "u", formats_.texture.bits, most, false, meaning), t.u);
         pass(named(name, "v", formats_.texture.bits, most, false, meaning), t.v);
     }
+    /// P's; with a Rank Test as the viewer sees it also D.
     template <class S>
     constexpr void screen(const char* name, S& s, const char* meaning) {
+        pixel(name, s, meaning);
+        if (formats_.distances)
+            pass(named(name, "distance", formats_.view_distance.bits, FormatLimits::position_bits.most, false, meaning),
+                 s.distance);
+    }
+    template <class S>
+    constexpr void pixel(const char* name, S& s, const char* meaning) {
         pass(named(name, "x", formats_.screen.bits, FormatLimits::screen_bits.most, true, meaning), s.x);
         pass(named(name, "y", formats_.screen.bits, FormatLimits::screen_bits.most, true, meaning), s.y);
         pass(named(name, "w", formats_.view_distance.bits, FormatLimits::position_bits.most, true, meaning), s.w);
@@ -100,6 +108,15 @@ class Fields {
     constexpr void rank(const char* name, N& value, const char* meaning) {
         if (formats_.height_test == HeightTest::rank)
             pass(named(name, "", ordering_bits(formats_), 16, false, meaning), value);
+    }
+    /// Only with a Rank Test as the viewer sees it.
+    template <class N>
+    constexpr void edge_in_view(const char* name, N& ends, const char* meaning) {
+        if (!formats_.distances)
+            return;
+        const int bits = formats_.view_distance.bits + 1, most = FormatLimits::position_bits.most + 1;
+        pass(named(name, "distance", bits, most, false, meaning), ends.distance);
+        pass(named(name, "depth", bits, most, true, meaning), ends.depth);
     }
     template <class D>
     constexpr void midpoint_direction(const char* name, D& n, const char* meaning) {

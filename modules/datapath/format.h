@@ -48,20 +48,24 @@ struct Formats {
     bool final_edges = false;    ///< a queue entry says which of its edges are final
     bool codes = false;          ///< a vertex carries its displacement code
     HeightTest height_test = HeightTest::summed_height;
-    int rank_bits = 8;      ///< of an entry of the Rank Table; 0: none
-    int bound_bits = 0;     ///< likewise; the bound lies above the rank
-    bool families = false;  ///< a queue entry says which edges split, and N, T, N' of their midpoints
+    int rank_bits = 8;       ///< of an entry of the Rank Table; 0: none
+    int bound_bits = 0;      ///< likewise; the bound lies above the rank
+    bool distances = false;  ///< a Rank Test as the viewer sees it: a vertex carries its distance from the eye
+    bool families = false;   ///< a queue entry says which edges split, and N, T, N' of their midpoints
     MapFilter filter = MapFilter::nearest;
     int tex_coord_fraction = 0;  ///< fraction bits of t that the Tex Coord Test compares, at most the texture's
 };
 
+/// Bits of a midpoint's radius, beside a bound that depends on distance (rank_view.h).
+inline constexpr int radius_bits = 8;
 inline constexpr int curvature_entry_bits = 36;
 
 /// Bits of an entry of the height test's table.
 constexpr int height_entry_bits(const Formats& formats) {
     switch (formats.height_test) {
         case HeightTest::rank:
-            return formats.rank_bits + formats.bound_bits;
+            return formats.rank_bits + formats.bound_bits +
+                   (formats.distances && formats.bound_bits > 0 ? radius_bits : 0);
         case HeightTest::curvature:
             return curvature_entry_bits;
         case HeightTest::summed_height:

@@ -48,10 +48,11 @@ struct TestParameters {
     /// sum: 4 * threshold in codes times texels; area: threshold in codes. Compared with |2 S_ij - S_i - S_j|.
     std::uint64_t summed_height_threshold = 0;
     SummedHeightUnit summed_height_unit = SummedHeightUnit::sum;
-    std::uint32_t rank_threshold = 0;       ///< Rank Test: of the entry's rank
-    std::uint32_t bound_threshold = 0;      ///< likewise of its bound
+    /// Rank Test: of the entry's rank, and of its bound; with Formats::distances that at distance 1 (rank_view.h).
+    std::int32_t rank_threshold = 0, bound_threshold = 0;
+    bool rank_per_pixel = false;       ///< with Formats::distances: errors count per pixel, not per point
     std::uint64_t curvature_threshold = 0;  ///< Curvature Test: 1/8 codes times texels
-    std::uint32_t view_threshold = 0;       ///< screen's format
+    std::uint32_t view_threshold = 0;  ///< screen's format
     std::uint32_t generation_limit = 12;
 
     bool highlight_test = false;  ///< HT: three more dot products and their compares, in designs that have it
@@ -77,7 +78,8 @@ struct TransformParameters {
     std::array<std::int64_t, 4> row_y{};
     std::array<std::int64_t, 4> row_w{};
     int exponent = 0;
-    std::int64_t near_plane = 0;  ///< w in the products' format: position + matrix fraction bits
+    std::int64_t near_plane = 0;        ///< w in the products' format: position + matrix fraction bits
+    std::array<std::int64_t, 3> eye{};  ///< the viewer, in the position's format, with Formats::distances
     std::array<std::array<std::int32_t, 3>, 3> normal_rows{};  ///< world to view rotation, normal's format
 };
 

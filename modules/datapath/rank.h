@@ -13,7 +13,8 @@ struct RankWidths : Intermediates {
     using Intermediates::Intermediates;
     Width difference{"RT: abs(du), abs(dv)", f.texture.bits};
     Width length{"RT: their sum", f.texture.bits + 1};
-    Width entry{"RT: rank and bound", FormatLimits::rank_bits.most + FormatLimits::bound_bits.most};
+    Width entry{"RT: rank, bound and radius",
+                FormatLimits::rank_bits.most + FormatLimits::bound_bits.most + radius_bits};
     constexpr auto all() const { return std::array{difference, length, entry}; }
 };
 static_assert(fits_every_format<RankWidths>());
@@ -39,19 +40,25 @@ constexpr std::uint64_t rank_address(const TexCoord& t_ij, const TableLayout& ta
 
 /// What leaving a midpoint out costs, on logarithmic scales that the host chooses.
 struct RankEntry {
-    std::uint32_t rank = 0;   ///< squared error
-    std::uint32_t bound = 0;  ///< largest error
+    std::uint32_t rank = 0;    ///< squared error
+    std::uint32_t bound = 0;   ///< largest error
+    std::uint32_t radius = 0;  ///< of the sphere that holds the surface which the error concerns (rank_view.h)
 };
 
-/// An entry's fields: the rank in its lowest bits, the bound above.
+/// An entry's fields: the rank in its lowest bits, the bound above, then the radius.
 constexpr RankEntry rank_entry(std::uint64_t bits, const Formats& formats) {
-    const std::uint64_t rank_mask = (std::uint64_t{1} << formats.rank_bits) - 1;
-    return {static_cast<std::uint32_t>(bits & rank_mask), static_cast<std::uint32_t>(bits >> formats.rank_bits)};
+    const auto field = [&](int from, int width) {
+        return static_cast<std::uint32_t>(bits >> from & ((std::uint64_t{1} << width) - 1));
+    };
+    const int above = formats.rank_bits + formats.bound_bits;
+    return {field(0, formats.rank_bits), field(formats.rank_bits, formats.bound_bits),
+            field(above, height_entry_bits(formats) - above)};
 }
 
 /// RT: the rank is above its threshold, or the bound above its own. What a design's entries lack is 0 and never is.
 constexpr bool rank_test(const RankEntry& entry, const TestParameters& parameters) {
-    return entry.rank > parameters.rank_threshold || entry.bound > parameters.bound_threshold;
+    const std::int64_t rank = entry.rank, bound = entry.bound;
+    return rank > parameters.rank_threshold || bound > parameters.bound_threshold;
 }
 
 /// By which edges of a triangle are compared.

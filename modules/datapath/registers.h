@@ -96,10 +96,19 @@ constexpr void describe_registers(AnyRegisters& r, Visit&& visit) {
     if (f.height_test == HeightTest::rank) {  // last, so that the registers of other designs keep their addresses
         field("rank_table.columns", number, map_side_bits, "of the Rank Table, entries", r.covered.columns);
         field("rank_table.rows", number, map_side_bits, "likewise", r.covered.rows);
-        if (f.rank_bits > 0)
-            field("tests.rank_threshold", number, f.rank_bits, "an entry's format", r.tests.rank_threshold);
-        if (f.bound_bits > 0)
-            field("tests.bound_threshold", number, f.bound_bits, "an entry's format", r.tests.bound_threshold);
+        const auto threshold = [&](const char* name, int entry_bits, int limit_bits, auto& value) {
+            if (entry_bits > 0 && f.distances)
+                field(name, with_sign, limit_bits, "at distance 1, as an entry of 16 bits", value);
+            else if (entry_bits > 0)
+                field(name, number, entry_bits, "an entry's format", value);
+        };
+        threshold("tests.rank_threshold", f.rank_bits, rank_limit_bits, r.tests.rank_threshold);
+        threshold("tests.bound_threshold", f.bound_bits, bound_limit_bits, r.tests.bound_threshold);
+        if (f.distances) {
+            field("tests.rank_per_pixel", choice, 1, "errors count per point, per pixel", r.tests.rank_per_pixel);
+            auto& eye = r.transform.eye;
+            field("transform.eye", with_sign, eye_bits, "position's format", eye[0], eye[1], eye[2]);
+        }
     }
     if (f.height_test == HeightTest::curvature) {
         field("curvature_table.columns", number, map_side_bits, "that the Curvature Table covers, texels",

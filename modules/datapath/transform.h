@@ -5,6 +5,7 @@
 #include "modules/datapath/format.h"
 #include "modules/datapath/intermediate.h"
 #include "modules/datapath/parameters.h"
+#include "modules/datapath/rank_view.h"
 #include "modules/datapath/reciprocal.h"
 #include "modules/datapath/vertex.h"
 
@@ -76,6 +77,8 @@ constexpr ScreenPosition transform(const Position& p, const TransformParameters&
                                    Saturations& saturations) {
     const std::int64_t w = transform_row(parameters.row_w, p);
     ScreenPosition result;
+    if (formats.distances)
+        result.distance = eye_distance(p, parameters, formats);
     result.w = static_cast<std::int32_t>(
         saturate(round_shift(w, view_distance_down(formats)), formats.view_distance, saturations.view_distance));
     if (w <= parameters.near_plane)

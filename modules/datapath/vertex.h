@@ -31,8 +31,9 @@ struct TexCoord {
 struct ScreenPosition {
     std::int32_t x = 0, y = 0, w = 0;
     bool in_front = false;
+    std::uint32_t distance = 0;  ///< D, from the eye, whichever way it looks; 0 unless Formats::distances
     friend constexpr bool operator==(const ScreenPosition& a, const ScreenPosition& b) {
-        return a.x == b.x && a.y == b.y && a.w == b.w && a.in_front == b.in_front;
+        return a.x == b.x && a.y == b.y && a.w == b.w && a.in_front == b.in_front && a.distance == b.distance;
     }
 };
 

@@ -20,12 +20,13 @@ constexpr Widths stream_widths(const Formats& f) {
     const std::uint32_t direction = bits(3 * f.normal.bits);
     const std::uint32_t texture = bits(2 * f.texture.bits);
     const std::uint32_t screen = bits(2 * f.screen.bits + f.view_distance.bits + 1);
+    const std::uint32_t distance = bits(f.distances ? f.view_distance.bits : 0);
     constexpr std::uint32_t handedness = 1;
     constexpr std::uint32_t known = 2;  // P', P's, N' known; N's known
     Widths widths;
     widths.base_vertex = position + 2 * direction + handedness + texture;
     widths.vertex = widths.base_vertex + bits(f.generation_bits) + known + position + 2 * direction + screen +
-                    bits(f.codes ? f.displacement.bits : 0);
+                    distance + bits(f.codes ? f.displacement.bits : 0);
     widths.triangle = 3 * widths.vertex + (f.highlight_tag ? 3 : 2) + 3 + 1 + (f.final_edges ? 3 : 0) +
                       (f.families ? 3 + 9 * direction : 0) + (f.families && f.height_test == HeightTest::rank ? 3 : 0);
     widths.emitted_vertex = screen + direction + texture;

@@ -77,6 +77,7 @@ std::string c_record(bool finished) {
 std::vector<DeviceRegister> documented_registers() {
     datapath::Registers registers;
     registers.formats.highlight_tag = true;
+    registers.formats.distances = true;
     registers.formats.rank_bits = registers.formats.bound_bits = 16;
     std::vector<DeviceRegister> all;
     for (std::size_t kind = 1; kind < height_test_kinds.size(); ++kind) {  // each has the paper's registers

@@ -20,6 +20,7 @@ std::uint64_t packed(const Format& format) {
 std::uint64_t features(const Formats& f) {
     return (f.highlight_tag ? 1u : 0u) | (f.final_edges ? 2u : 0u) | (f.codes ? 4u : 0u) | (f.families ? 8u : 0u) |
            (f.filter == datapath::MapFilter::bilinear ? 16u : 0u) | kind_of(f.height_test).feature |
+           (f.distances ? 128u : 0u) |
            static_cast<std::uint64_t>(f.generation_bits) << 8;
 }
 
@@ -95,25 +96,28 @@ datapath::Registers widest() {
 
 /// Calls visit(register, values) for each in a design of this kind; with the widest formats, for all its fields.
 template <class Visit>
-void visit_widest(datapath::HeightTest kind, bool highlight, Visit&& visit) {
+void visit_widest(datapath::HeightTest kind, bool highlight, bool distances, Visit&& visit) {
     datapath::Registers registers = widest();
+    registers.formats.distances = distances;
     registers.formats.height_test = kind;
     registers.formats.highlight_tag = highlight;
     datapath::visit_registers(registers, visit);
 }
 
-bool has_register(datapath::HeightTest kind, bool highlight, const std::string& name) {
+bool has_register(datapath::HeightTest kind, bool highlight, bool distances, const std::string& name) {
     bool found = false;
-    visit_widest(kind, highlight,
+    visit_widest(kind, highlight, distances,
                  [&](const datapath::Register& field, const auto&) { found = found || name == field.name; });
     return found;
 }
 
 /// The test that a register belongs to, if not every design has it; else empty. kind: of a design that has it.
 const char* test_of(const std::string& name, datapath::HeightTest kind) {
-    if (has_register(datapath::HeightTest::summed_height, false, name))
+    if (has_register(datapath::HeightTest::summed_height, false, false, name))
         return "";
-    return has_register(kind, false, name) ? kind_of(kind).title : "Highlight Test";
+    if (!has_register(kind, false, true, name))
+        return "Highlight Test";
+    return has_register(kind, false, false, name) ? kind_of(kind).title : "Rank Test as the viewer sees it";
 }
 
 struct Place {
@@ -130,9 +134,9 @@ std::vector<Place> machine_places() {
     std::uint32_t next = offset::machine;
     for (std::size_t number = 0; number < height_test_kinds.size(); ++number) {
         const auto kind = static_cast<datapath::HeightTest>(number);
-        visit_widest(kind, true, [&](const datapath::Register& field, const auto& values) {
+        visit_widest(kind, true, true, [&](const datapath::Register& field, const auto& values) {
             const std::string name = field.name;
-            if (number > 0 && has_register(datapath::HeightTest::summed_height, true, name))
+            if (number > 0 && has_register(datapath::HeightTest::summed_height, true, false, name))
                 return;
             for (std::size_t k = 0; k < values.size(); ++k) {
                 const int words = field.bits > 32 ? 2 : 1;

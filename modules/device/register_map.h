@@ -74,6 +74,7 @@ inline constexpr std::array<RegisterBit, 18> register_bits{{
     {"features", "bilinear", 4, "maps are read between four texels"},
     {"features", "rank_test", 5, "a Rank Test in the Summed Height Test's place"},
     {"features", "curvature_test", 6, "a Curvature Test there"},
+    {"features", "distances", 7, "it judges errors as the viewer sees them"},
 }};
 
 /// Why a frame was refused or stopped: register `error`. What `error_address` then holds stands in the meaning.

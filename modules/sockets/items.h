@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "modules/datapath/fields.h"
+#include "modules/datapath/rank_view.h"
 #include "modules/datapath/triangle_pass.h"
 #include "modules/sockets/parts.h"
 
@@ -167,6 +168,7 @@ struct HeightOperands {
     datapath::TexCoord t_i, t_j, t_ij;
     bool codes_known = false;
     std::uint16_t code_i = 0, code_j = 0;
+    datapath::EdgeInView ends{};
 
     template <class Codec, class Any>
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
@@ -177,6 +179,7 @@ struct HeightOperands {
         fields.code_flag("codes_known", item.codes_known, "in a design whose vertices carry d: it is known of both");
         fields.code("code_i", item.code_i, "d of the first end");
         fields.code("code_j", item.code_j, "d of the second end");
+        fields.edge_in_view("ends", item.ends, "D_i + D_j and w_i + w_j, to a Rank Test as the viewer sees it");
     }
 };
 
@@ -259,11 +262,13 @@ struct ViewResult {
     static constexpr const char* name = "view result";
     PartTag tag;
     bool view = false;
+    datapath::EdgeInView ends{};
 
     template <class Codec, class Any>
     static constexpr void describe(datapath::Fields<Codec>& fields, Any& item) {
         describe_tag(fields, item.tag);
         fields.flag("view", item.view, "VT");
+        fields.edge_in_view("ends", item.ends, "D_i + D_j and w_i + w_j, for a Rank Test as the viewer sees it");
     }
 };
 
@@ -414,7 +419,7 @@ struct TriangleToLight {
         for (int k = 0; k < 3; ++k) {
             fields.of(k);
             auto& corner = item.corners[static_cast<std::size_t>(k)];
-            fields.screen("screen", corner.screen, "P's");
+            fields.pixel("screen", corner.screen, "P's");
             fields.direction("screen_n", corner.screen_n, "N's");
             fields.texture("t", corner.t, "t");
         }
@@ -439,7 +444,7 @@ struct LitTriangle {
         for (int k = 0; k < 3; ++k) {
             fields.of(k);
             auto& corner = item.corners[static_cast<std::size_t>(k)];
-            fields.screen("screen", corner.screen, "P's");
+            fields.pixel("screen", corner.screen, "P's");
             fields.texture("t", corner.texture, "t");
             fields.number("intensity", corner.intensity, 8, "light, 255 the brightest");
         }

@@ -20,6 +20,8 @@ ExitCode compare_run(const Command& command) {
     const HeightMap map = load_map(run.job);
     MeasureLimits limits;
     limits.progress = [&](double part) { progress.show("measuring distances", 0.1 + 0.9 * part); };
+    const ErrorView view(run.job.camera);
+    limits.view = &view;
     const MeshError error = measure_error(base, map, DisplacementOf::from(run.job, map), run.mesh, limits);
     progress.clear();
 

@@ -17,6 +17,7 @@ namespace fs = std::filesystem;
 
 ExitCode rank_command(const RankOrder& order, const fs::path& data_folder) {
     Job job = load_job(order.job_file, order.settings, data_folder);
+    RankSearch::refuse_view(job);
     job.hardware.height_test = HeightTest::rank;
     job.hardware.triangulation = Triangulation::greatest_rank;
     job.tests.summed_height = true;

@@ -13,6 +13,7 @@
 #include "testbench/commands/run_files.h"
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/atomic_set.h"
+#include "testbench/explore/thresholds/rank_search.h"
 #include "testbench/explore/thresholds/tune.h"
 #include "testbench/explore/thresholds/tune_report.h"
 #include "testbench/job/dump_job.h"
@@ -148,6 +149,8 @@ Searched choose_tests(const TuneOrder& order, TuneRequest& request) {
         throw InputError(
             "hardware.culling = \"back\": culled triangles cannot be measured; tune with --set "
             "hardware.culling=none and set it in the tuned job");
+    if (searched.ranks)
+        RankSearch::refuse_view(request.job);
     return searched;
 }
 

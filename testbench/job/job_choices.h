@@ -102,6 +102,18 @@ constexpr std::string_view name_of(Culling value) {
     return {};
 }
 
+constexpr std::string_view name_of(RankView value) {
+    switch (value) {
+        case RankView::none:
+            return "none";
+        case RankView::per_point:
+            return "per_point";
+        case RankView::per_pixel:
+            return "per_pixel";
+    }
+    return {};
+}
+
 constexpr std::string_view name_of(SummedHeightUnit value) {
     switch (value) {
         case SummedHeightUnit::sum:

@@ -104,6 +104,18 @@ void check_light(const Job::Hardware& hardware, Faults& faults) {
                   "`hardware.light` = {} has no direction: give it one, such as [0, 0, 1]", toml_value(hardware.light));
 }
 
+void check_rank_view(const Job& job, Faults& faults) {
+    if (job.tests.rank_view == RankView::none)
+        return;
+    faults.unless(job.hardware.height_test == HeightTest::rank,
+                  "`tests.rank_view` = \"{}\", but `hardware.height_test` = \"{}\" has no ranks: set it to \"rank\"",
+                  name_of(job.tests.rank_view), name_of(job.hardware.height_test));
+    faults.unless(job.hardware.test_order == TestOrder::cheap_first,
+                  "`tests.rank_view` = \"{}\" needs `hardware.test_order` = \"cheap_first\": the View Test finds the "
+                  "distances that the Rank Test asks for",
+                  name_of(job.tests.rank_view));
+}
+
 void check_hardware(const Job::Hardware& hardware, Faults& faults) {
     faults.unless(
         hardware.triangulation != Triangulation::greatest_rank || hardware.height_test == HeightTest::rank,
@@ -159,6 +171,7 @@ void validate(const Job& job) {
         faults.unless(false, "{}", fault);
     check_light(job.hardware, faults);
     check_hardware(job.hardware, faults);
+    check_rank_view(job, faults);
     check_timing(job.timing, faults);
     check_traces(job, faults);
     faults.raise();

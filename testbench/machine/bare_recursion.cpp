@@ -7,7 +7,7 @@
 #include "modules/datapath/edge_tests.h"
 #include "modules/datapath/map_entry.h"
 #include "modules/datapath/midpoint.h"
-#include "modules/datapath/rank.h"
+#include "modules/datapath/rank_view.h"
 #include "modules/datapath/rectangle.h"
 #include "modules/datapath/transform.h"
 
@@ -68,16 +68,17 @@ std::uint64_t BareRecursion::sum_around(const TexCoord& t, const RectangleSize& 
     return rectangle_sum(rectangle, r.map, table, r.formats, [&](std::uint64_t index) { return wide_sums_[index]; });
 }
 
-bool BareRecursion::test_rank(const TexCoord& i, const TexCoord& j, EdgeTests& edge) const {
+bool BareRecursion::test_rank(const Vertex& i, const Vertex& j, EdgeTests& edge) const {
     const Registers& r = setup_.registers;
-    if (!has_lattice_midpoint(i, j, r.formats))
+    if (!has_lattice_midpoint(i.texture, j.texture, r.formats))
         return false;
     const std::size_t index = rank_address(edge.texture, as_indices(r.height_table), r.map, r.formats);
     const RankTables& tables = setup_.rank_tables;
     const RankEntry entry{tables.rank.empty() ? 0u : tables.rank[index],
-                          tables.bound.empty() ? 0u : tables.bound[index]};
+                          tables.bound.empty() ? 0u : tables.bound[index],
+                          tables.radius.empty() ? 0u : tables.radius[index]};
     edge.rank = ordering_rank(entry, r.formats);
-    return rank_test(entry, r.tests);
+    return asks_by_rank(entry, edge_in_view(i.screen, j.screen), r.tests, r.formats);
 }
 
 bool BareRecursion::test_curvature(const TexCoord& i, const TexCoord& j, const TexCoord& ij) const {
@@ -93,18 +94,19 @@ bool BareRecursion::test_curvature(const TexCoord& i, const TexCoord& j, const T
     return curvature_test(curvature_of_entries(i, j, read, r.formats), r.tests);
 }
 
-bool BareRecursion::test_heights(const TexCoord& i, const TexCoord& j, EdgeTests& edge) const {
+bool BareRecursion::test_heights(const Vertex& i, const Vertex& j, EdgeTests& edge) const {
     const Registers& r = setup_.registers;
     switch (r.formats.height_test) {
         case HeightTest::rank:
             return test_rank(i, j, edge);
         case HeightTest::curvature:
-            return test_curvature(i, j, edge.texture);
+            return test_curvature(i.texture, j.texture, edge.texture);
         case HeightTest::summed_height:
             break;
     }
-    const RectangleSize size = rectangle_size(i, j, r.map, r.formats);
-    return summed_height_test(sum_around(i, size), sum_around(j, size), sum_around(edge.texture, size), size, r.tests);
+    const RectangleSize size = rectangle_size(i.texture, j.texture, r.map, r.formats);
+    return summed_height_test(sum_around(i.texture, size), sum_around(j.texture, size), sum_around(edge.texture, size),
+                              size, r.tests);
 }
 
 Direction BareRecursion::map_normal_at(const TexCoord& t) const {
@@ -158,7 +160,7 @@ void BareRecursion::evaluate_edge(TrianglePass& pass, int k) {
     if (r.tests.normal_test && normal_test(i.displaced_normal, j.displaced_normal, edge.displaced_normal, r.tests))
         tests |= normal_bit;
     edge.rank = 0;
-    if (r.tests.summed_height_test && test_heights(i.texture, j.texture, edge))
+    if (r.tests.summed_height_test && test_heights(i, j, edge))
         tests |= summed_height_bit;
     if (!r.tests.view_test || view_test(i.screen, j.screen, r.tests))
         tests |= view_bit;

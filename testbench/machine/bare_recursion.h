@@ -43,14 +43,14 @@ class BareRecursion {
     /// All three edges with every test, pass.split, and the tests that kept edges whole (Triangle::stopped_by).
     void evaluate(datapath::TrianglePass& pass);
     /// The design's height test, if it is on.
-    bool test_heights(const datapath::TexCoord& i, const datapath::TexCoord& j, datapath::EdgeTests& edge) const;
+    bool test_heights(const datapath::Vertex& i, const datapath::Vertex& j, datapath::EdgeTests& edge) const;
     /// The Summed Height Test's sum of the map's codes.
     std::uint64_t sum_around(const datapath::TexCoord& t, const datapath::RectangleSize& size) const;
 
   private:
     datapath::ChildIndices children_of(const datapath::TrianglePass& pass) const;
     void transform_normals(datapath::Triangle& triangle);
-    bool test_rank(const datapath::TexCoord& i, const datapath::TexCoord& j, datapath::EdgeTests& edge) const;
+    bool test_rank(const datapath::Vertex& i, const datapath::Vertex& j, datapath::EdgeTests& edge) const;
     bool test_curvature(const datapath::TexCoord& i, const datapath::TexCoord& j, const datapath::TexCoord& ij) const;
     datapath::Direction map_normal_at(const datapath::TexCoord& t) const;
     std::uint32_t code_at(const datapath::TexCoord& t) const;

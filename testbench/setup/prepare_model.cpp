@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -51,9 +52,43 @@ void take_base_triangles(BaseTriangles&& made, PreparedScene& scene) {
     scene.remarks.insert(scene.remarks.end(), made.remarks.begin(), made.remarks.end());
 }
 
+/// World units of a distance's LSB.
+double distance_step(const datapath::Formats& formats) {
+    return std::ldexp(1.0, -formats.view_distance.fraction);
+}
+
+/// For radii, which only a bound as the viewer sees it has. A vertex's position is off by less than 8 LSB, half a one for
+/// each of up to 15 generations and for P', its distance's last place by 1; of four of them.
+std::optional<RadiusScale> radius_scale(const PreparedScene& scene) {
+    const datapath::Formats& formats = scene.registers.formats;
+    if (!formats.distances || formats.bound_bits == 0)
+        return {};
+    const double step = distance_step(formats), position = std::ldexp(1.0, -formats.position.fraction);
+    constexpr double root_of_three = 1.7320508075688772;
+    return RadiusScale{{scene.texel_size[0] / step, scene.texel_size[1] / step, std::abs(scene.height_per_code) / step},
+                       4 * (1 + 8 * root_of_three * position / step)};
+}
+
+/// What keeps a bound in the picture from holding.
+void remark_on_bound(const SceneSettings& settings, const BaseMesh& mesh, PreparedScene& scene) {
+    const datapath::Formats& formats = scene.registers.formats;
+    if (!formats.distances || formats.bound_bits == 0)
+        return;
+    const auto unless = [&](bool fine, const char* why) {
+        if (!fine)
+            scene.remarks.push_back(fmt::format("tests.bound_threshold promises nothing in the picture: {}", why));
+    };
+    constexpr double whole_map = 65536;  // codes
+    unless(mesh.beyond_map, "radii are those of a flat base mesh, mesh.source = \"lattice\"");
+    unless(!settings.tests.view, "the View Test may keep an edge whole that is needed; set tests.view = false");
+    unless(scene.rank_tables.highest_bound_threshold >= bound_threshold(whole_map, formats.bound_bits),
+           "formats.bound_bits leave no room for all that depends on one another; raise them");
+}
+
 void rank_lattice(PreparedScene& scene, const std::vector<TextureTriangle>& base) {
     const datapath::Formats& formats = scene.registers.formats;
-    scene.rank_tables = make_rank_tables(scene.map, base, formats, formats.rank_bits, formats.bound_bits);
+    scene.rank_tables =
+        make_rank_tables(scene.map, base, formats, formats.rank_bits, formats.bound_bits, radius_scale(scene));
     if (const std::uint64_t whole = count_whole_base_edges(base, formats); whole > 0)
         scene.remarks.push_back(fmt::format(
             "{} edges of the base mesh have a length of an odd number of texels, or none that is whole, and the Rank Test "
@@ -117,13 +152,21 @@ PreparedScene prepare_model(const SceneSettings& settings, const BaseMesh& mesh,
     formats.summed_height = datapath::Format::make_unsigned(
         summed_height_bits(settings.formats.summed_height_bits, scene.largest_rectangle_sum), 0);
     formats.height_test = settings.height_test;
+    formats.distances = formats.height_test == datapath::HeightTest::rank && settings.tests.rank_view != RankView::none;
+    registers.transform = make_transform(settings.camera, model_scale, formats, saturated);
+    formats.view_distance = view_distance_format(registers.transform, formats.position);
     make_height_table(scene);
+    remark_on_bound(settings, mesh, scene);
     lay_out_tables(registers);
 
     const ViewAxes view = view_axes(settings.camera);
-    registers.tests = make_tests(settings.tests, formats);
-    registers.tests.bound_threshold =
-        std::min(registers.tests.bound_threshold, scene.rank_tables.highest_bound_threshold);
+    const double height_per_code = displacement.range * model_scale.scale / scene.map.highest_code();
+    registers.tests = make_tests(settings.tests, formats,
+                                 {focal_length(settings.camera), corner_secant(settings.camera), distance_step(formats),
+                                  std::abs(height_per_code), std::sqrt(scene.texel_size[0] * scene.texel_size[1])});
+    if (!formats.distances)
+        registers.tests.bound_threshold = std::min(
+            registers.tests.bound_threshold, static_cast<std::int32_t>(scene.rank_tables.highest_bound_threshold));
     formats.highlight_tag = settings.tests.highlight;
     formats.families = settings.families;
     formats.final_edges = settings.final_edges && !formats.families;
@@ -134,8 +177,6 @@ PreparedScene prepare_model(const SceneSettings& settings, const BaseMesh& mesh,
         scene.remarks.emplace_back(
             "hardware.light shines straight towards the viewer: there is no highlight, and the Highlight "
             "Test never asks for a split");
-    registers.transform = make_transform(settings.camera, model_scale, formats, saturated);
-    formats.view_distance = view_distance_format(registers.transform, formats.position);
     registers.light = make_light(settings.light, view, formats.normal, saturated);
     registers.triangulation = settings.triangulation;
     registers.back_face_culling = settings.back_face_culling;

@@ -36,6 +36,13 @@ struct CameraSettings {
     std::int64_t viewport_height = 768;
 };
 
+/// What the Rank Test's thresholds measure.
+enum class RankView : std::uint8_t {
+    none,       ///< errors of the surface, from wherever it is seen
+    per_point,  ///< as seen: at every point of the map alike
+    per_pixel,  ///< as seen: of every pixel that a point covers
+};
+
 /// The edge tests: split = (normal or summed_height or highlight) and view and tex_coord and generation. summed_height: or
 /// the test in its place (SceneSettings::height_test).
 struct TestSettings {
@@ -44,8 +51,9 @@ struct TestSettings {
     bool summed_height = true;
     double summed_height_threshold = 0.03;  ///< full-scale texels (sum) or full scale (area)
     datapath::SummedHeightUnit summed_height_unit = datapath::SummedHeightUnit::sum;
-    double rank_threshold = 0.05;      ///< full scale times the square root of a texel
-    double bound_threshold = 0.01;     ///< full scale
+    RankView rank_view = RankView::none;
+    double rank_threshold = 0.05;   ///< full scale times the square root of a texel; as seen: seen_rank_threshold
+    double bound_threshold = 0.01;  ///< full scale; as seen: pixels
     double curvature_threshold = 0.1;  ///< full scale times texels
     bool view = true;
     double view_threshold = 5;  ///< pixels, Manhattan

@@ -7,7 +7,6 @@
 #include "modules/datapath/curvature.h"
 #include "testbench/common/error.h"
 #include "testbench/setup/rounding.h"
-#include "testbench/setup/tables/rank_table.h"
 
 namespace tessera {
 
@@ -38,6 +37,22 @@ std::uint64_t to_register(const Threshold& threshold) {
     return static_cast<std::uint64_t>(fixed);
 }
 
+void set_rank_thresholds(const TestSettings& tests, const datapath::Formats& formats, const ViewedScale& view,
+                         datapath::TestParameters& registers) {
+    const double highest_code = static_cast<double>(formats.displacement.highest);
+    registers.rank_per_pixel = formats.distances && tests.rank_view == RankView::per_pixel;
+    if (formats.rank_bits > 0)
+        registers.rank_threshold =
+            formats.distances
+                ? seen_rank_threshold(tests.rank_threshold, registers.rank_per_pixel, view)
+                : static_cast<std::int32_t>(rank_threshold(tests.rank_threshold * highest_code, formats.rank_bits));
+    if (formats.bound_bits > 0)
+        registers.bound_threshold =
+            formats.distances
+                ? seen_bound_threshold(tests.bound_threshold, view)
+                : static_cast<std::int32_t>(bound_threshold(tests.bound_threshold * highest_code, formats.bound_bits));
+}
+
 /// A threshold on the difference of one component of two normals.
 std::uint32_t to_normal_register(const char* key, double value, bool used, const datapath::Formats& formats) {
     return static_cast<std::uint32_t>(
@@ -47,7 +62,8 @@ std::uint32_t to_normal_register(const char* key, double value, bool used, const
 
 }  // namespace
 
-datapath::TestParameters make_tests(const TestSettings& tests, const datapath::Formats& formats) {
+datapath::TestParameters make_tests(const TestSettings& tests, const datapath::Formats& formats,
+                                    const ViewedScale& view) {
     datapath::TestParameters result;
     result.normal_test = tests.normal;
     result.summed_height_test = tests.summed_height;
@@ -63,12 +79,8 @@ datapath::TestParameters make_tests(const TestSettings& tests, const datapath::F
     result.summed_height_threshold = to_register(
         {"tests.summed_height_threshold", tests.summed_height_threshold, tests.summed_height,
          highest_code * (area ? 1 : 4), area ? std::ldexp(1.0, 18) : std::ldexp(1.0, 50), "formats.displacement_bits"});
-    if (formats.height_test == datapath::HeightTest::rank) {
-        if (formats.rank_bits > 0)
-            result.rank_threshold = rank_threshold(tests.rank_threshold * highest_code, formats.rank_bits);
-        if (formats.bound_bits > 0)
-            result.bound_threshold = bound_threshold(tests.bound_threshold * highest_code, formats.bound_bits);
-    }
+    if (formats.height_test == datapath::HeightTest::rank)
+        set_rank_thresholds(tests, formats, view, result);
     if (formats.height_test == datapath::HeightTest::curvature)
         result.curvature_threshold = to_register(
             {"tests.curvature_threshold", tests.curvature_threshold, tests.summed_height,

@@ -23,14 +23,24 @@ ViewAxes view_axes(const CameraSettings& camera) {
     return view;
 }
 
+double focal_length(const CameraSettings& camera) {
+    constexpr double pi = 3.14159265358979323846;
+    return static_cast<double>(camera.viewport_height) / 2 / std::tan(camera.field_of_view * pi / 360);
+}
+
+double corner_secant(const CameraSettings& camera) {
+    const double half_diagonal =
+        std::hypot(static_cast<double>(camera.viewport_width), static_cast<double>(camera.viewport_height)) / 2;
+    return std::hypot(1.0, half_diagonal / focal_length(camera));
+}
+
 datapath::TransformParameters make_transform(const CameraSettings& camera, const ModelScale& model_scale,
                                              const datapath::Formats& formats, std::uint64_t& saturated) {
-    constexpr double pi = 3.14159265358979323846;
     const ViewAxes view = view_axes(camera);
     const glm::dvec3 eye = model_scale.to_world(glm::dvec3(camera.eye[0], camera.eye[1], camera.eye[2]));
     const double width = static_cast<double>(camera.viewport_width);
     const double height = static_cast<double>(camera.viewport_height);
-    const double focal = height / 2 / std::tan(camera.field_of_view * pi / 360);  // pixels
+    const double focal = focal_length(camera);
     const glm::dvec3 forward = -view.backward;
     const glm::dvec3 x = focal * view.right + width / 2 * forward;
     const glm::dvec3 y = focal * view.up + height / 2 * forward;
@@ -59,6 +69,8 @@ datapath::TransformParameters make_transform(const CameraSettings& camera, const
     // No w reaches 2^62: a near plane there has everything behind it, as one further away would.
     result.near_plane = static_cast<std::int64_t>(
         std::min(std::ldexp(camera.near_plane * model_scale.scale, fraction + position_fraction), std::ldexp(1.0, 62)));
+    for (std::size_t k = 0; formats.distances && k < 3; ++k)
+        result.eye[k] = to_fixed(eye[static_cast<glm::length_t>(k)], position_fraction);
     const auto rotation = [&](const glm::dvec3& axis) {
         const datapath::Direction d = to_direction(axis, formats.normal, saturated);
         return std::array<std::int32_t, 3>{d.x, d.y, d.z};

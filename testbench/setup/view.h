@@ -15,6 +15,11 @@ struct ViewAxes {
 
 ViewAxes view_axes(const CameraSettings& camera);
 
+/// Pixels that what is 1 high at distance 1 measures, in the picture's centre.
+double focal_length(const CameraSettings& camera);
+/// 1 / cosine of the angle between the view's axis and a corner of the picture.
+double corner_secant(const CameraSettings& camera);
+
 /// In: a camera in model units, resolved. Out: Transform's registers: world to pixels (x right, y up, (0, 0) the
 /// viewport's lower left corner), the near plane, and the rotation of normals to view space; saturated entries of the
 /// rotation are counted. Throws InputError if the eye is too far from the mesh's centre for Transform's sums.

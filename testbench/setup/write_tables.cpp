@@ -71,7 +71,9 @@ void write_rank_table(const PreparedScene& scene, const TableSink& sink) {
             const std::size_t k = std::size_t{y} * layout.columns + x;
             const std::uint64_t rank = tables.rank.empty() ? 0 : tables.rank[k];
             const std::uint64_t bound = tables.bound.empty() ? 0 : tables.bound[k];
-            row.set(x, rank | bound << scene.registers.formats.rank_bits);
+            const std::uint64_t radius = tables.radius.empty() ? 0 : tables.radius[k];
+            const datapath::Formats& formats = scene.registers.formats;
+            row.set(x, rank | (bound | radius << formats.bound_bits) << formats.rank_bits);
         }
         row.write(y);
     }

@@ -16,18 +16,27 @@ void RankTest::reads(const HeightOperands& edge, Reads& reads) const {
 
 HeightResult RankTest::process(const HeightOperands& edge, const Entries& entries) {
     entry_ = may_split(edge) ? datapath::rank_entry(entries[0], registers_.formats) : datapath::RankEntry{};
-    return {edge.tag, rank_test(entry_, registers_.tests), ordering_rank(entry_, registers_.formats)};
+    return {edge.tag, asks_by_rank(entry_, edge.ends, registers_.tests, registers_.formats),
+            ordering_rank(entry_, registers_.formats)};
 }
 
 void RankTest::trace_signals(Signals& signals) const {
     Stage::trace_signals(signals);
-    signals.value("rank_threshold", 16, registers_.tests.rank_threshold);
-    signals.value("bound_threshold", 16, registers_.tests.bound_threshold);
+    const auto threshold = [&](const char* threshold_name, int bits, std::int32_t value) {
+        signals.value(threshold_name, static_cast<unsigned>(bits),
+                      static_cast<std::uint32_t>(value) & ((1u << bits) - 1));
+    };
+    threshold("rank_threshold", datapath::rank_limit_bits, registers_.tests.rank_threshold);
+    threshold("bound_threshold", datapath::bound_limit_bits, registers_.tests.bound_threshold);
 }
 
-void RankTest::trace_processed(Signals& signals, const HeightOperands&, const HeightResult&) const {
+void RankTest::trace_processed(Signals& signals, const HeightOperands& edge, const HeightResult&) const {
     signals.value("rank", 16, entry_.rank);
     signals.value("bound", 16, entry_.bound);
+    if (!registers_.formats.distances)
+        return;
+    signals.value("radius", datapath::radius_bits, entry_.radius);
+    signals.value("level", 18, datapath::distance_level(edge.ends.distance));
 }
 
 }  // namespace tessera

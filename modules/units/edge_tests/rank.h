@@ -1,7 +1,7 @@
 #pragma once
 #include <systemc>
 
-#include "modules/datapath/rank.h"
+#include "modules/datapath/rank_view.h"
 #include "modules/units/edge_tests/height_test.h"
 
 namespace tessera {
@@ -10,8 +10,10 @@ namespace tessera {
 /// of the base mesh's lattice beforehand.
 ///
 /// In:   HeightOperands. Out: HeightResult, with the rank, by which the cut `greatest_rank` chooses.
-/// Memory: one entry an edge of even length, of the Rank Table: a rank, a bound, or both.
-/// Arithmetic: two subtractions, an OR of their lowest bits, two compares.
+/// Memory: one entry an edge of even length, of the Rank Table: a rank, a bound, or both. As the viewer sees it
+///       (Formats::distances) a bound has a radius beside it.
+/// Arithmetic: two subtractions, an OR of their lowest bits, two compares. As the viewer sees it also one subtraction, two
+///       leading-zero counts, three shifts and two adds.
 /// Timing: latency 1 after the entry; interval 1 by default.
 /// Waits for Calculate New U and the Rank Table; held back by the collection of the tests.
 class RankTest : public HeightTestUnit {

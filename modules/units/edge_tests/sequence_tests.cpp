@@ -52,6 +52,7 @@ bool SequenceTests::take_edge(std::uint64_t cycle) {
     Edge& edge = edges_.push();
     edge.normal = normal_operands.front();
     edge.height = height_operands.front();
+    edge.height.ends = from_view_test.front().ends;
     edge.tested = {};
     edge.tested.tag = edge.normal.tag;
     add_result(edge.tested, from_tex_coord_test.front());

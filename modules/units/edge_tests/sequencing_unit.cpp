@@ -86,11 +86,14 @@ void SequencingUnit::b_transport(Item& item, sc_core::sc_time& delay) {
             arriving.edge.height = item;
         else
             add_result(arriving.edge.tested, item);
+        if constexpr (std::is_same_v<Item, ViewResult>)
+            arriving.ends = item.ends;
         arriving.latest = std::max(arriving.latest, delay);
         if (++arriving.come < 4)
             return;
         delay = arriving.latest;
         Edge edge = arriving.edge;
+        edge.height.ends = arriving.ends;
         arriving_.close(item.tag.triangle);
         run_tests(edge, delay);
     }

@@ -56,6 +56,7 @@ class SequencingUnit : public Unit {
     /// Functional mode: an edge whose operands and cheap results have not all come.
     struct Arriving {
         Edge edge;
+        datapath::EdgeInView ends;  // of the View Test's result
         unsigned come = 0;
         sc_core::sc_time latest;
     };

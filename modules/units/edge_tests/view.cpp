@@ -65,7 +65,8 @@ ViewResult ViewTest::process(const ViewOperands& edge, const Entries&) {
         if (edge.tag.bit() == last_edge_)
             corners_.close(edge.tag.triangle);
     }
-    return {edge.tag, !registers_.tests.view_test || view_test(ends_.i, ends_.j, registers_.tests)};
+    return {edge.tag, !registers_.tests.view_test || view_test(ends_.i, ends_.j, registers_.tests),
+            datapath::edge_in_view(ends_.i, ends_.j)};
 }
 
 void ViewTest::trace_signals(Signals& signals) const {

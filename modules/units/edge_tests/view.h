@@ -13,7 +13,8 @@ namespace tessera {
 ///
 /// In:   ViewOperands; for a base triangle also its three ScreenCorners. Out: ViewResult. An edge with one end on or
 ///       behind the near plane counts as long, with both as invisible.
-/// Arithmetic: two subtractions, absolute values, add, compare.
+/// Arithmetic: two subtractions, absolute values, add, compare; two adds, of the ends' distances and depths, for a
+///       Rank Test as the viewer sees it.
 /// Timing: one edge per interval; latency 1, interval 1 by default.
 /// State: for each base triangle between Transform and Pass or Tessellate its tag and the corners that have arrived:
 ///        as many places as Pass or Tessellate has, and two for what waits at its input.

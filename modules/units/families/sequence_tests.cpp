@@ -63,6 +63,7 @@ bool FamilySequenceTests::take_edge(std::size_t lane, std::uint64_t cycle) {
     Edge edge;
     edge.normal = normal_operands[lane].front();
     edge.height = height_operands[lane].front();
+    edge.height.ends = from_view_test[lane].front().ends;
     edge.tested.tag = edge.normal.tag;
     add_result(edge.tested, from_tex_coord_test[lane].front());
     add_result(edge.tested, from_view_test[lane].front());

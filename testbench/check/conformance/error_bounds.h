@@ -131,6 +131,13 @@ class ErrorBounds {
         return result;
     }
 
+    /// D of P' with error up to `p_error`; golden's. A norm differs by no more than the norm of the difference. rank_view.h:
+    /// rounded down.
+    Interval distance(const glm::dvec3& p_error, double distance) const {
+        const double before = golden::eye_distance(p_error) + double_rounding * distance;
+        return {-before - view_distance_lsb_, before};
+    }
+
     /// N' . H, H the same on both sides; `n_error` bounds the errors of N'. edge_tests.h is exact:
     ///     (N' + e) . H - N' . H = e . H, at most sum |e_c| |H_c|.
     double cosine(const glm::dvec3& n, const glm::dvec3& n_error, const glm::dvec3& half_vector) const {

@@ -31,7 +31,7 @@ golden::Diagonal golden_diagonal(datapath::Triangulation choice) {
 void set_height_table(golden::Map& map, const PreparedScene& prepared) {
     const RankTables& ranks = prepared.rank_tables;
     map.set_ranks(
-        {ranks.columns, ranks.rows, ranks.rank, ranks.bound, static_cast<int>(ranks.highest_bound_threshold)});
+        {ranks.columns, ranks.rows, ranks.rank, ranks.bound, ranks.radius, static_cast<int>(ranks.highest_bound_threshold)});
     const CurvatureTable& table = prepared.curvature_table;
     if (table.entries.empty())
         return;
@@ -65,6 +65,25 @@ golden::Map golden_map(const MachineSetup& setup) {
 
 }  // namespace
 
+namespace {
+
+/// The registers' thresholds are those at D_i + D_j = 1 LSB, golden's those at a mean distance of 1: an octave and the
+/// binary point apart.
+void set_rank_view(const datapath::Registers& registers, golden::Parameters& result) {
+    const datapath::Formats& formats = registers.formats;
+    const int octaves = formats.view_distance.fraction + 1;
+    result.rank_view = registers.tests.rank_per_pixel ? golden::RankView::per_pixel : golden::RankView::per_point;
+    result.rank_bits = formats.rank_bits;
+    result.bound_bits = formats.bound_bits;
+    result.rank_threshold += octaves * (registers.tests.rank_per_pixel ? 4096 : 2048);
+    result.bound_threshold += octaves * 2048;
+    const auto& eye = registers.transform.eye;
+    result.eye = glm::dvec3(eye[0], eye[1], eye[2]) * std::ldexp(1.0, -formats.position.fraction);
+    result.distance_step = std::ldexp(1.0, -formats.view_distance.fraction);
+}
+
+}  // namespace
+
 golden::Parameters golden_parameters(const datapath::Registers& registers) {
     const datapath::Formats& formats = registers.formats;
     const datapath::TestParameters& tests = registers.tests;
@@ -84,6 +103,8 @@ golden::Parameters golden_parameters(const datapath::Registers& registers) {
     result.bound_threshold = static_cast<int>(tests.bound_threshold);
     result.curvature_threshold =
         real(static_cast<std::int64_t>(tests.curvature_threshold), datapath::curvature_fraction);
+    if (formats.distances)
+        set_rank_view(registers, result);
     result.view_threshold = real(tests.view_threshold, formats.screen.fraction);
     result.generation_limit = static_cast<int>(tests.generation_limit);
     const int normal = formats.normal.fraction;

@@ -38,6 +38,7 @@ class Dequantise {
         g.displaced_normal = direction(v.displaced_normal);
         g.screen = glm::dvec2(v.screen.x, v.screen.y) * screen_lsb_;
         g.w = v.screen.w * view_distance_lsb_;
+        g.distance = v.screen.distance * view_distance_lsb_;
         g.in_front = v.screen.in_front;
         g.generation = v.generation;
         return g;

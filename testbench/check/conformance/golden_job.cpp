@@ -33,12 +33,24 @@ double displacement_of(double value, const Job& job, const HeightMap& map) {
     return job.displacement.bias + job.displacement.scale * part;
 }
 
-golden::Scene make_scene(const Job& job, const HeightMap& map, const ModelScale& model_scale) {
+golden::RankView golden_rank_view(RankView view) {
+    return view == RankView::per_point   ? golden::RankView::per_point
+           : view == RankView::per_pixel ? golden::RankView::per_pixel
+                                         : golden::RankView::none;
+}
+
+glm::dvec2 texel_size(const BaseMesh& mesh, const HeightMap& map, double scale) {
+    return scale * glm::dvec2(mesh.texture_scale.mean_u, mesh.texture_scale.mean_v) / glm::dvec2(map.width, map.height);
+}
+
+golden::Scene make_scene(const Job& job, const BaseMesh& mesh, const HeightMap& map, const ModelScale& model_scale) {
     golden::Scene scene;
     const Job::Camera& camera = job.camera;
     scene.camera = {vector(camera.eye),   vector(camera.target), vector(camera.up),
                     camera.field_of_view, camera.near_plane,     {camera.viewport_width, camera.viewport_height}};
     scene.placement = {model_scale.centre, model_scale.scale};
+    const glm::dvec2 texel = texel_size(mesh, map, model_scale.scale);
+    scene.texel_area = texel.x * texel.y;
     scene.lowest = displacement_of(map.range_low, job, map);
     scene.highest = displacement_of(map.range_high, job, map);
     scene.highest_code = std::ldexp(1.0, static_cast<int>(job.formats.displacement_bits)) - 1;
@@ -51,6 +63,7 @@ golden::Scene make_scene(const Job& job, const HeightMap& map, const ModelScale&
     scene.bound_threshold = tests.bound_threshold;
     scene.curvature_threshold = tests.curvature_threshold;
     if (job.hardware.height_test == HeightTest::rank) {
+        scene.rank_view = golden_rank_view(job.tests.rank_view);
         scene.rank_bits = static_cast<int>(job.formats.rank_bits);
         scene.bound_bits = static_cast<int>(job.formats.bound_bits);
     }
@@ -86,9 +99,7 @@ golden::Map make_map(const Job& job, const HeightMap& height_map, const BaseMesh
         codes.push_back(std::floor(code_at(texel, height_map, scene) + 0.5));
     golden::Map map(height_map.width, height_map.height, address_mode(job.map.address_u),
                     address_mode(job.map.address_v), codes);
-    const glm::dvec2 map_size(mesh.texture_scale.mean_u, mesh.texture_scale.mean_v);
-    map.derive_normals(scale_per_code,
-                       scene.placement.scale * map_size / glm::dvec2(height_map.width, height_map.height));
+    map.derive_normals(scale_per_code, texel_size(mesh, height_map, scene.placement.scale));
     return map;
 }
 
@@ -104,11 +115,12 @@ GoldenJob::GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& heig
     : job_(resolved(job)),
       mesh_(mesh),
       height_map_(height_map),
-      scene_(make_scene(job_, height_map, model_scale)),
+      scene_(make_scene(job_, mesh, height_map, model_scale)),
       parameters_(golden::make_parameters(scene_)),
       map_(make_map(job_, height_map, mesh, scene_, parameters_.scale)) {
     set_height_table(map_, tables);
-    parameters_.bound_threshold = std::min(parameters_.bound_threshold, map_.rank_table().highest_bound_threshold);
+    if (scene_.rank_view == golden::RankView::none)
+        parameters_.bound_threshold = std::min(parameters_.bound_threshold, map_.rank_table().highest_bound_threshold);
 }
 
 golden::Vertex GoldenJob::vertex(std::uint32_t index) const {

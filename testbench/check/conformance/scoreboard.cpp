@@ -32,6 +32,8 @@ constexpr ValueName value_names[] = {
     {"N'", "normal LSB", "displaced surface's normal at a base vertex"},
     {"P's", "screen LSB", "base vertex on the screen, x and y"},
     {"w", "view distance LSB", "base vertex's distance along the view direction"},
+    {"D_ij", "view distance LSB", "displaced midpoint's distance from the eye"},
+    {"D", "view distance LSB", "base vertex's distance from the eye"},
 };
 
 struct DecisionName {
@@ -107,7 +109,8 @@ void Scoreboard::compare_base_vertex(const datapath::TrianglePass& pass, int k, 
 
     const glm::dvec3 bound =
         displaced_bound(given.position, given.texture, given.normal, exact, golden.displaced_position);
-    compare_displaced(base_displaced, base_screen, base_w, hardware.displaced, hardware.screen, golden, bound, context);
+    compare_displaced(base_displaced, base_screen, base_w, base_distance, hardware.displaced, hardware.screen, golden,
+                      bound, context);
 }
 
 void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const golden::Vertex& i,
@@ -180,10 +183,10 @@ void Scoreboard::compare_edge(const datapath::TrianglePass& pass, int k, const g
         compare_vector(inserted_displaced_normal, tested.displaced_normal, m.displaced_normal, bumped_bound, context);
     }
 
-    bool flipped =
-        midpoint_told &&
-        compare_displaced(inserted_displaced, inserted_screen, inserted_w, made.displaced, made.screen, m,
-                          displaced_bound(m.position, m.texture, m.normal, n_bound, m.displaced_position), context);
+    bool flipped = midpoint_told &&
+                   compare_displaced(
+                       inserted_displaced, inserted_screen, inserted_w, inserted_distance, made.displaced, made.screen,
+                       m, displaced_bound(m.position, m.texture, m.normal, n_bound, m.displaced_position), context);
     if (!tests_told) {
         flipped_edges_ += flipped ? 1 : 0;
         return;
@@ -287,9 +290,10 @@ void Scoreboard::compare_diagonal(const datapath::TrianglePass& pass, const std:
     decide(diagonal_decision, second, same ? second : !second, false, Context{&pass, -1, -1, nullptr, nullptr});
 }
 
-bool Scoreboard::compare_displaced(Value position, Value screen, Value w, const datapath::Position& displaced,
-                                   const datapath::ScreenPosition& on_screen, const golden::Vertex& golden,
-                                   const glm::dvec3& position_bound, const Context& context) {
+bool Scoreboard::compare_displaced(Value position, Value screen, Value w, Value distance,
+                                   const datapath::Position& displaced, const datapath::ScreenPosition& on_screen,
+                                   const golden::Vertex& golden, const glm::dvec3& position_bound,
+                                   const Context& context) {
     const datapath::Formats& formats = registers_.formats;
     const auto compare_position = [&](std::int64_t hardware, double value, double bound, char component) {
         compare(position, hardware, value, Interval::within(bound), formats.position, per_position_, component,
@@ -315,6 +319,10 @@ bool Scoreboard::compare_displaced(Value position, Value screen, Value w, const 
         bounds_.screen(inputs_.parameters, seen->displaced_position, position_bound, seen->w, seen->screen);
     compare(w, on_screen.w, seen->w, Interval::within(bound.w), formats.view_distance, per_view_distance_, 'w',
             context);
+    if (formats.distances)
+        compare(distance, on_screen.distance, seen->distance, bounds_.distance(position_bound, seen->distance),
+                datapath::Format::make_unsigned(formats.view_distance.bits, formats.view_distance.fraction),
+                per_view_distance_, 'D', context);
     const bool near_plane_in_reach = std::abs(seen->w - inputs_.parameters.near_plane) <= bound.near_plane;
     const bool flipped = decide(in_front_decision, on_screen.in_front, seen->in_front, near_plane_in_reach, context);
     if (!on_screen.in_front) {
@@ -398,6 +406,8 @@ void Scoreboard::mismatch(const std::string& what, const Context& context) {
 ConformanceResult Scoreboard::result() const {
     ConformanceResult result;
     for (std::size_t k = 0; k < value_count; ++k) {
+        if ((k == inserted_distance || k == base_distance) && !registers_.formats.distances)
+            continue;
         const ValueStatistics& s = values_[k];
         const double rms = s.count == 0 ? 0 : std::sqrt(s.squares / static_cast<double>(s.count));
         result.quantities.push_back({value_names[k].name, value_names[k].unit, value_names[k].description, s.count,

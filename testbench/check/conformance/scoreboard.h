@@ -61,6 +61,8 @@ class Scoreboard : public tlm::tlm_analysis_if<datapath::TrianglePass> {
         base_displaced_normal,
         base_screen,
         base_w,
+        inserted_distance,
+        base_distance,
         value_count
     };
     enum Decision {
@@ -113,7 +115,7 @@ class Scoreboard : public tlm::tlm_analysis_if<datapath::TrianglePass> {
     void compare_cut(const datapath::TrianglePass& pass, const std::array<golden::Vertex, 3>& given);
     void compare_diagonal(const datapath::TrianglePass& pass, const std::array<golden::Vertex, 3>& given);
     /// Returns whether in_front flipped as allowed.
-    bool compare_displaced(Value position, Value screen, Value w, const datapath::Position& displaced,
+    bool compare_displaced(Value position, Value screen, Value w, Value distance, const datapath::Position& displaced,
                            const datapath::ScreenPosition& on_screen, const golden::Vertex& golden,
                            const glm::dvec3& position_bound, const Context& context);
     void compare_vector(Value value, const datapath::Direction& hardware, const glm::dvec3& golden,

@@ -87,6 +87,7 @@ class RegisterCheck {
         format("screen", formats_.screen, Format::make_signed(bits(job.screen_bits), bits(job.screen_fraction)));
         flag("formats.generation_bits", formats_.generation_bits, number(job.generation_bits));
         flag("formats.highlight_tag", number(formats_.highlight_tag), number(job_.tests.highlight));
+        flag("formats.distances", number(formats_.distances), number(job_.tests.rank_view != RankView::none));
         check_view_distance();
         check_summed_height();
     }
@@ -202,7 +203,8 @@ class RegisterCheck {
             case HeightTest::rank:
                 layout("rank_table", table, static_cast<int>(map.rank_table().columns),
                        static_cast<int>(map.rank_table().rows),
-                       static_cast<int>(job_.formats.rank_bits + job_.formats.bound_bits));
+                       static_cast<int>(job_.formats.rank_bits + job_.formats.bound_bits) +
+                           (formats_.distances && job_.formats.bound_bits > 0 ? datapath::radius_bits : 0));
                 break;
             case HeightTest::curvature:
                 layout("curvature_table", table, static_cast<int>(map.curvature_table().cells.size()), 1, 36);
@@ -236,12 +238,7 @@ class RegisterCheck {
              number(golden.area));
         judge_.judge("tests.summed_height_threshold", number(tests.summed_height_threshold),
                      golden.summed_height_threshold * (golden.area ? 1 : 4), rounded_down);
-        judge_.judge("tests.rank_threshold", tests.rank_threshold, golden::rank_threshold(golden_.scene()),
-                     rounded_down, double_rounding * std::ldexp(1.0, formats_.rank_bits));
-        judge_.judge("tests.bound_threshold", tests.bound_threshold,
-                     std::min(golden::bound_threshold(golden_.scene()),
-                              number(golden_.map().rank_table().highest_bound_threshold)),
-                     rounded_down, double_rounding * std::ldexp(1.0, formats_.bound_bits));
+        check_rank_thresholds();
         // Without the test its register does not exist and reads as 0.
         const bool curvature = golden_.map().has_curvatures();
         judge_.judge("tests.curvature_threshold", number(tests.curvature_threshold),
@@ -257,6 +254,36 @@ class RegisterCheck {
                      double_rounding * normal * normal);
         judge_.judge("tests.highlight_normal_threshold", tests.highlight_normal_threshold,
                      on * golden.highlight_normal_threshold * normal, rounded_down);
+    }
+
+    void check_rank_thresholds() {
+        const datapath::TestParameters& tests = registers_.tests;
+        const golden::Scene& scene = golden_.scene();
+        if (scene.rank_view == golden::RankView::none) {
+            judge_.judge("tests.rank_threshold", tests.rank_threshold, golden::rank_threshold(scene), rounded_down,
+                         double_rounding * std::ldexp(1.0, formats_.rank_bits));
+            judge_.judge(
+                "tests.bound_threshold", tests.bound_threshold,
+                std::min(golden::bound_threshold(scene), number(golden_.map().rank_table().highest_bound_threshold)),
+                rounded_down, double_rounding * std::ldexp(1.0, formats_.bound_bits));
+            return;
+        }
+        // Golden's thresholds are those at a mean distance of 1.
+        const bool per_pixel = scene.rank_view == golden::RankView::per_pixel;
+        const double octaves = formats_.view_distance.fraction + 1;
+        const auto threshold = [&](const char* name, std::int64_t hardware, double golden, double per_octave,
+                                   int bits) {
+            const double most = std::ldexp(1.0, bits - 1);
+            judge_.judge(name, number(hardware), std::clamp(golden - octaves * per_octave, -most, most - 1),
+                         rounded_down, double_rounding * most);
+        };
+        if (formats_.rank_bits > 0)
+            threshold("tests.rank_threshold", tests.rank_threshold, golden::rank_threshold(scene),
+                      per_pixel ? 4096 : 2048, datapath::rank_limit_bits);
+        if (formats_.bound_bits > 0)
+            threshold("tests.bound_threshold", tests.bound_threshold, golden::bound_threshold(scene), 2048,
+                      datapath::bound_limit_bits);
+        flag("tests.rank_per_pixel", number(tests.rank_per_pixel), number(per_pixel));
     }
 
     /// Rounding error of the half vector's components: the axes' error over the length of the two directions' sum.
@@ -304,6 +331,10 @@ class RegisterCheck {
         // Beyond every w, all the same.
         judge_.judge("transform.near_plane", number(transform.near_plane),
                      std::min(view_.near_plane * matrix * position, 0x1p62), rounded_down);
+        const std::array<double, 3> eye{view_.eye.x, view_.eye.y, view_.eye.z};
+        for (std::size_t k = 0; formats_.distances && k < 3; ++k)
+            judge_.judge([&] { return indexed("transform.eye", k); }, number(transform.eye[k]), eye[k] * position,
+                         to_nearest, double_rounding * std::abs(eye[k]) * position);
         direction("transform.normal_rows[0]", transform.normal_rows[0], view_.right, view_.rounding);
         direction("transform.normal_rows[1]", transform.normal_rows[1], view_.up, view_.rounding);
         direction("transform.normal_rows[2]", transform.normal_rows[2], view_.backward, view_.rounding);

@@ -158,8 +158,10 @@ class TableCheck {
                        const std::size_t k = std::size_t{y} * static_cast<std::size_t>(table.columns) + x;
                        const std::uint64_t rank = table.ranks.empty() ? 0 : table.ranks[k];
                        const std::uint64_t bound = table.bounds.empty() ? 0 : table.bounds[k];
+                       const std::uint64_t radius = table.radii.empty() ? 0 : table.radii[k];
+                       const Job::Formats& formats = golden_.job().formats;
                        judge.judge([&] { return fmt::format("({}, {})", x, y); }, number(entry),
-                                   number(rank | bound << golden_.job().formats.rank_bits), exact);
+                                   number(rank | (bound | radius << formats.bound_bits) << formats.rank_bits), exact);
                    });
     }
 

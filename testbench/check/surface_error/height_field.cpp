@@ -123,7 +123,8 @@ std::optional<HeightField> find_height_field(const BaseMesh& base, const HeightM
 }
 
 VerticalError measure_vertical_error(const HeightField& field, const BaseMesh& base, const HeightMap& map,
-                                     const DisplacementOf& displacement, const RecordedMesh& mesh) {
+                                     const DisplacementOf& displacement, const RecordedMesh& mesh,
+                                     const ErrorView* view) {
     VerticalError result;
     result.map_unit = std::abs(displacement.scale) / map.source_units;
     glm::dvec2 low(std::numeric_limits<double>::infinity()), high(-low);
@@ -148,11 +149,20 @@ VerticalError measure_vertical_error(const HeightField& field, const BaseMesh& b
             "run with fewer repetitions");
     const std::int64_t band_rows = std::max<std::int64_t>(1, most_cells / width);
     constexpr float outside = -2, uncovered = -1;  // other values are errors
-    std::vector<float> errors;
-    double squares = 0;
+    std::vector<float> errors, pixels;             // per grid point
+    double squares = 0, squared_pixels = 0;
+    // inverse of field.texel() on the plane
+    const glm::dvec3 across = glm::cross(field.u, field.v);
+    const double area = glm::dot(across, across);
+    const glm::dvec3 along_u = glm::cross(field.v, across) / area, along_v = glm::cross(across, field.u) / area;
+    const auto on_plane = [&](std::int64_t x, std::int64_t y) {
+        const glm::dvec2 away = glm::dvec2(x, y) + 0.5 - field.texel_origin;
+        return field.origin + away.x * along_u + away.y * along_v;
+    };
     for (std::int64_t first = rows.first; first <= rows.last; first += band_rows) {
         const Band band{columns, {first, std::min(rows.last, first + band_rows - 1)}};
         errors.assign(static_cast<std::size_t>(width * (band.rows.last - band.rows.first + 1)), outside);
+        pixels.assign(view != nullptr ? errors.size() : 0, outside);
         for (const auto& t : base.triangles)
             cover(facet_of(field,
                            {base.vertices[t[0]].position, base.vertices[t[1]].position, base.vertices[t[2]].position}),
@@ -172,14 +182,14 @@ VerticalError measure_vertical_error(const HeightField& field, const BaseMesh& b
                           result.max = off;
                           result.worst_texel = glm::dvec2(x, y) + 0.5;
                           result.worst_triangle = k;
-                          // inverse of field.texel() on the plane
-                          const glm::dvec2 away = result.worst_texel - field.texel_origin;
-                          const glm::dvec3 across = glm::cross(field.u, field.v);
-                          const double area = glm::dot(across, across);
-                          result.worst_position =
-                              field.origin +
-                              (away.x * glm::cross(field.v, across) + away.y * glm::cross(across, field.u)) / area +
-                              wanted * field.normal;
+                          result.worst_position = on_plane(x, y) + wanted * field.normal;
+                      }
+                      if (view == nullptr)
+                          return;
+                      const glm::dvec3 below = on_plane(x, y);
+                      if (const auto apart = view->apart(below + wanted * field.normal, below + at * field.normal)) {
+                          float& seen = pixels[band.index(x, y)];
+                          seen = std::max(seen, static_cast<float>(*apart));
                       }
                   });
         }
@@ -190,7 +200,16 @@ VerticalError measure_vertical_error(const HeightField& field, const BaseMesh& b
             ++result.covered;
             squares += static_cast<double>(error) * static_cast<double>(error);
         }
+        for (const float apart : pixels) {
+            if (apart < 0)
+                continue;
+            ++result.seen;
+            squared_pixels += static_cast<double>(apart) * static_cast<double>(apart);
+            result.max_pixels = std::max(result.max_pixels, static_cast<double>(apart));
+        }
     }
+    if (result.seen > 0)
+        result.rms_pixels = std::sqrt(squared_pixels / static_cast<double>(result.seen));
     if (result.covered > 0)
         result.rms = std::sqrt(squares / static_cast<double>(result.covered));
     return result;

@@ -277,7 +277,7 @@ MeshError measure_error(const BaseMesh& base, const HeightMap& map, const Displa
     error.interpolated = measurement.measure(Sampling::interpolated);
     error.nearest_texel = measurement.measure(Sampling::nearest_texel);
     if (const auto field = find_height_field(base, map, displacement, error.no_vertical))
-        error.vertical = measure_vertical_error(*field, base, map, displacement, mesh);
+        error.vertical = measure_vertical_error(*field, base, map, displacement, mesh, limits.view);
     return error;
 }
 

@@ -35,6 +35,7 @@ struct MeasureLimits {
     std::uint64_t reference_samples = std::uint64_t{1} << 23;
     std::uint64_t mesh_samples = std::uint64_t{1} << 21;  ///< beyond, parts are larger than a texel
     std::function<void(double)> progress;                 ///< called with the fraction done, 0..1
+    const ErrorView* view = nullptr;                      ///< for vertical errors in the picture
 };
 
 /// The place of a maximum and the hardware's decisions there.

@@ -22,8 +22,8 @@ double model_units_per_code(const MachineSetup& setup) {
     return std::abs(setup.height_per_code) / setup.scale;
 }
 
-std::uint32_t highest_entry(int bits) {
-    return (std::uint32_t{1} << bits) - 1;
+std::int32_t highest_entry(int bits) {
+    return (std::int32_t{1} << bits) - 1;
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <string>
 
+#include "testbench/common/error.h"
+#include "testbench/job/job_choices.h"
 #include "testbench/setup/tables/rank_table.h"
 
 namespace tessera {
@@ -39,6 +41,13 @@ double six_digits(double value) {
 }
 
 }  // namespace
+
+void RankSearch::refuse_view(const Job& job) {
+    if (job.tests.rank_view != RankView::none)
+        throw InputError(fmt::format(
+            "tests.rank_view = \"{}\": thresholds in pixels are not searched; use --set tests.rank_view=none",
+            name_of(job.tests.rank_view)));
+}
 
 Job RankSearch::job_for(const Job& job, const TuneGoal& goal) {
     Job result = job;
@@ -78,7 +87,7 @@ double RankSearch::threshold_of(std::uint32_t threshold) const {
 
 Outcome RankSearch::outcome(std::uint32_t threshold, std::uint64_t limit, bool measured) {
     datapath::TestParameters& tests = setup_.registers.tests;
-    (goal_.largest ? tests.bound_threshold : tests.rank_threshold) = threshold;
+    (goal_.largest ? tests.bound_threshold : tests.rank_threshold) = static_cast<std::int32_t>(threshold);
     Meter meter{measured ? &errors_ : nullptr, 0, {}};
     const std::uint64_t most_edges = 6 * limit + 1;  // each triangle is tested once, and cut into two or finished
     Outcome result;

@@ -15,6 +15,9 @@ namespace tessera {
 /// edges that it asks for; then bisection finds a lower one.
 class RankSearch {
   public:
+    /// Throws InputError on errors as the viewer sees them, which are not searched.
+    static void refuse_view(const Job& job);
+
     /// The job that is searched: a Rank Table with the entries that the goal needs, and the cut that goes with it.
     static Job job_for(const Job& job, const TuneGoal& goal);
 

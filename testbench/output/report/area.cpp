@@ -126,7 +126,8 @@ class AreaCounter {
         const unsigned copies = design_.tests_units;
         const unsigned lanes = copies * design_.edge_lanes, normal_tests = copies * design_.normal_tests;
         const std::uint64_t corners = 3 * (1 + 3 * static_cast<std::uint64_t>(f.normal.bits)) + tag_;
-        const std::uint64_t screens = 3 + 3 * (bits<ScreenCorner>() - bits<ViewResult>() + 1) + tag_;
+        const int screen = 2 * f.screen.bits + (f.distances ? 2 : 1) * f.view_distance.bits + 1;
+        const std::uint64_t screens = 3 + 3 * static_cast<std::uint64_t>(screen) + tag_;
         UnitTiming normal = t.normal_test;
         normal.latency += tests.highlight_test ? t.highlight_test_latency : 0;
 

@@ -109,6 +109,13 @@ void add_vertical(Figures& figures, const RecordedMesh& mesh, const MeshError& e
                     "the largest, in the units of the map's file (PGM, PNG: its integers)");
         figures.add("rms_map", vertical.rms / vertical.map_unit, "map unit", "the root mean square likewise");
     }
+    if (vertical.seen > 0) {
+        figures.add("seen", vertical.seen, "texel", "those covered that the camera has in its picture, hidden or not");
+        figures.add("max_pixels", vertical.max_pixels, "pixel",
+                    "largest distance in the picture between a grid point and the mesh above or below it");
+        figures.add("rms_pixels", vertical.rms_pixels, "pixel",
+                    "its root mean square, every grid point weighing the same");
+    }
     if (vertical.covered == 0)
         return;
     figures.group("worst_vertical");
@@ -207,6 +214,9 @@ std::string error_text(const Job& job, const RecordedMesh& mesh, const MeshError
         text += figures_heading("map units");
         text += figures_row("vertical, at grid points", vertical.max, vertical.rms, vertical.map_unit);
         text += row("", fmt::format("{} grid points, {} covered by the mesh", vertical.grid_points, vertical.covered));
+        if (vertical.seen > 0)
+            text += row("", fmt::format("{} in the picture: {:.3g} pixels at most, {:.3g} RMS", vertical.seen,
+                                        vertical.max_pixels, vertical.rms_pixels));
         if (vertical.covered > 0) {
             text += row("worst, vertical", fmt::format("at {}, texel ({}, {})", place_text(vertical.worst_position),
                                                        vertical.worst_texel.x, vertical.worst_texel.y));

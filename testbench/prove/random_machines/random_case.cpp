@@ -72,7 +72,7 @@ void coarsen(Random& random, Job::Tests& tests) {
     tests.highlight_normal_threshold = std::min(2.0, 2 * tests.highlight_normal_threshold + 0.005);
     tests.rank_threshold = 2 * tests.rank_threshold + 0.005;
     tests.curvature_threshold = 2 * tests.curvature_threshold + 0.05;
-    tests.bound_threshold = std::min(1.0, 2 * tests.bound_threshold + 0.005);
+    tests.bound_threshold = std::min(1e6, 2 * tests.bound_threshold + 0.005);
     const bool area = tests.summed_height_unit == SummedHeightUnit::area;
     tests.summed_height_threshold =
         std::min(area ? 2.0 : 4096.0, 2 * tests.summed_height_threshold + (area ? 0.001 : 0.05));

@@ -142,13 +142,20 @@ void choose_mesh_options(Random& random, Job& job) {
     job.formats.bound_bits = job.formats.rank_bits == 0 ? 8 : random.one_of<std::int64_t>({0, 0, 6, 13});
     job.tests.rank_threshold = random.one_of({0.002, 0.02, 0.2});
     job.tests.bound_threshold = random.one_of({0.002, 0.02, 0.2});
+    job.tests.rank_view = random.one_of({RankView::none, RankView::per_point, RankView::per_pixel});
+    if (job.tests.rank_view != RankView::none) {
+        job.hardware.test_order = TestOrder::cheap_first;
+        job.tests.rank_threshold = random.one_of({0.5, 10.0, 1000.0});
+        job.tests.bound_threshold = random.one_of({0.5, 4.0, 30.0});
+    }
     job.timing.rank_test = {random.natural(1, 9), random.natural(1, 3), random.natural(1, 5)};
     job.timing.rank_table = {random.natural(1, 4), random.natural(1, 4), random.natural(0, 20), 0,
                              random.natural(1, 4)};
 }
 
 void choose_evaluations(Random& random, Job& job) {
-    job.hardware.test_order = random.coin() ? TestOrder::parallel : TestOrder::cheap_first;
+    job.hardware.test_order =
+        random.coin() && job.tests.rank_view == RankView::none ? TestOrder::parallel : TestOrder::cheap_first;
     job.hardware.final_edges = random.coin();
     job.hardware.work = random.coin() ? Work::triangle : Work::family;
     if (job.hardware.work == Work::family) {

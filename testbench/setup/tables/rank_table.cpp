@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "modules/datapath/rank.h"
+#include "modules/datapath/rank_view.h"
 #include "testbench/setup/tables/log_scale.h"
 #include "testbench/setup/tables/split_hierarchy.h"
 #include "testbench/setup/tables/table_extent.h"
@@ -16,6 +17,7 @@ namespace tessera {
 
 namespace {
 
+using datapath::FormatLimits;
 using datapath::TexCoord;
 
 // log2 of codes^2 from -16, so that ranks have room to grow along dependencies where the map is flat, to 48: a triangle
@@ -167,6 +169,45 @@ std::vector<std::uint32_t> wanted_bounds(const SplitHierarchy& hierarchy, const 
     return wanted;
 }
 
+/// The least code of a radius that is no smaller; the greatest if there is none.
+std::uint8_t radius_above(double radius) {
+    constexpr std::uint32_t greatest = (1u << datapath::radius_bits) - 1;
+    const auto least = static_cast<std::uint64_t>(std::ceil(std::min(radius, 0x1p62)));
+    std::uint32_t code = 0;
+    while (code < greatest && datapath::midpoint_radius(code) < least)
+        ++code;
+    return static_cast<std::uint8_t>(code);
+}
+
+/// Each split's radius covers its own triangles, and those of the splits that need it from where their ends are.
+std::vector<std::uint8_t> nested_radii(const SplitHierarchy& hierarchy, double rounding, std::uint32_t columns,
+                                       std::uint32_t rows) {
+    std::vector<double> radii(hierarchy.splits.size());
+    for (std::size_t k = 0; k < radii.size(); ++k)
+        radii[k] = hierarchy.splits[k].reach + rounding;
+    const auto as_stored = [&](std::size_t split) {
+        return static_cast<double>(datapath::midpoint_radius(radius_above(radii[split])));
+    };
+    for (std::size_t k = hierarchy.dependencies.size(); k-- > 0;) {
+        const SplitDependency& dependency = hierarchy.dependencies[k];
+        double& maker = radii[dependency.maker];
+        maker = std::max(maker, as_stored(dependency.split) + dependency.apart + rounding);
+    }
+    std::vector<std::uint8_t> table(std::size_t{columns} * rows, 0);
+    for (std::size_t k = 0; k < radii.size(); ++k) {
+        const EdgeSplit& split = hierarchy.splits[k];
+        std::uint8_t& entry = table[std::size_t{split.row} * columns + split.column];
+        entry = std::max(entry, radius_above(radii[k]));
+    }
+    return table;
+}
+
+/// A threshold in octaves, with so many fraction bits, rounded down into a register's range.
+std::int32_t seen_threshold(double octaves, int fraction, int bits) {
+    const double most = std::ldexp(1.0, bits - 1), fixed = std::floor(std::ldexp(octaves, fraction));
+    return static_cast<std::int32_t>(fixed > -most ? std::min(fixed, most - 1) : -most);  // no number: nothing to see
+}
+
 std::uint64_t count_clashes(const SplitHierarchy& hierarchy) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> texels;
     for (const EdgeSplit& split : hierarchy.splits)
@@ -179,12 +220,13 @@ std::uint64_t count_clashes(const SplitHierarchy& hierarchy) {
 }  // namespace
 
 RankTables make_rank_tables(const QuantisedMap& map, const std::vector<TextureTriangle>& base,
-                            const datapath::Formats& formats, int rank_bits, int bound_bits) {
+                            const datapath::Formats& formats, int rank_bits, int bound_bits,
+                            const std::optional<RadiusScale>& radii) {
     RankTables tables;
     const datapath::MapGeometry extent = table_extent(map.geometry, base, formats);
     tables.columns = extent.width;
     tables.rows = extent.height;
-    const SplitHierarchy hierarchy = make_split_hierarchy(map, base, formats);
+    const SplitHierarchy hierarchy = make_split_hierarchy(map, base, formats, radii ? radii->steps : SurfaceSteps{});
     tables.least_error = hierarchy.least_error;
     tables.clashes = count_clashes(hierarchy);
     if (rank_bits != 0) {
@@ -198,6 +240,8 @@ RankTables make_rank_tables(const QuantisedMap& map, const std::vector<TextureTr
         EntryTable table(hierarchy, tables.columns, tables.rows);
         tables.highest_bound_threshold = table.fill(wanted_bounds(hierarchy, scale), scale.highest());
         tables.bound = table.entries();
+        if (radii)
+            tables.radius = nested_radii(hierarchy, radii->rounding, tables.columns, tables.rows);
     }
     return tables;
 }
@@ -231,6 +275,26 @@ std::uint32_t bound_threshold(double largest_error, int bits) {
 
 double bound_error(std::uint32_t threshold, int bits) {
     return bound_scale(bits).value(threshold);
+}
+
+// An error of e codes at distance d is e * code * focal / d pixels high, and a texel there texel * focal / d wide. The sum of
+// two ends' distances is 2 d / step.
+std::int32_t seen_rank_threshold(double error, bool per_pixel, const ViewedScale& view) {
+    const LogScale scale = rank_scale(FormatLimits::rank_bits.most);
+    const double per_code = view.code * view.focal * 2 / view.step;
+    const double per_texel = per_pixel ? view.texel * view.focal * 2 / view.step : 1;
+    return seen_threshold(scale.offset + 2 * std::log2(error / (per_code * per_texel)), scale.bits - scale.integer_bits,
+                          datapath::rank_limit_bits);
+}
+
+// A point of the surface at distance d or more in the picture is d / secant deep or more. The mesh e above it is as deep
+// but for e, and e * focal * secant / its depth pixels away.
+std::int32_t seen_bound_threshold(double pixels, const ViewedScale& view) {
+    const LogScale scale = bound_scale(FormatLimits::bound_bits.most);
+    const double secant = view.corner_secant;
+    const double per_code = view.code * (view.focal * secant * secant + pixels * secant) * 2 / view.step;
+    return seen_threshold(scale.offset + std::log2(pixels / per_code), scale.bits - scale.integer_bits,
+                          datapath::bound_limit_bits);
 }
 
 }  // namespace tessera

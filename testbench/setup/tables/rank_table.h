@@ -1,11 +1,13 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "modules/datapath/format.h"
 #include "modules/datapath/vertex.h"
 #include "testbench/setup/quantised_map.h"
+#include "testbench/setup/tables/split_hierarchy.h"
 
 namespace tessera {
 
@@ -25,20 +27,30 @@ struct RankTables {
     std::uint32_t rows = 0;
     std::vector<std::uint16_t> rank;   ///< empty if not asked for
     std::vector<std::uint16_t> bound;  ///< empty if not asked for
+    /// Beside bounds, if asked for. What is nearest to the eye of all that a midpoint concerns, and of all that needs it,
+    /// is nearer than its edge's ends by no more: a midpoint that is needed is never left out, wherever the eye is.
+    std::vector<std::uint8_t> radius;
 
     /// The largest error when every edge splits that can, codes. 0 on a lattice (lattice.h).
     double least_error = 0;
     /// No grid point's vertical error exceeds bound_error(threshold) and least_error, for thresholds up to this one, if
-    /// there are no clashes.
+    /// there are no clashes. With radii a threshold may differ from midpoint to midpoint (modules/datapath/rank_view.h).
     std::uint32_t highest_bound_threshold = 0;
     /// Midpoints that share their texel with another, whose entry is the greater one: none on a lattice.
     std::uint64_t clashes = 0;
 };
 
+/// What radii are made of: all in LSB of the distance that a vertex carries.
+struct RadiusScale {
+    SurfaceSteps steps;
+    double rounding = 0;  ///< by how much the sum of two distances, and that of two others, may be off together
+};
+
 /// base: texture coordinates of the base triangles, in the texture's format. bits of an entry: 0 for no such table, or
-/// 6 to 16.
+/// 6 to 16. radii: with them, beside bounds; over a flat base mesh.
 RankTables make_rank_tables(const QuantisedMap& map, const std::vector<std::array<datapath::TexCoord, 3>>& base,
-                            const datapath::Formats& formats, int rank_bits, int bound_bits);
+                            const datapath::Formats& formats, int rank_bits, int bound_bits,
+                            const std::optional<RadiusScale>& radii = {});
 
 /// Edges of the base mesh, each counted once, that can never split.
 std::uint64_t count_whole_base_edges(const std::vector<std::array<datapath::TexCoord, 3>>& base,
@@ -57,5 +69,21 @@ std::uint32_t bound_threshold(double largest_error, int bits);
 
 /// The largest error that a threshold promises, in codes.
 double bound_error(std::uint32_t threshold, int bits);
+
+/// The view from which errors are judged (modules/datapath/rank_view.h).
+struct ViewedScale {
+    double focal = 1;          ///< pixels: what is 1 high at distance 1 measures so many in the picture's centre
+    double corner_secant = 1;  ///< of the angle between the view's axis and a corner of the picture
+    double step = 1;           ///< of a vertex's distance, world units an LSB
+    double code = 1;           ///< height of a code, world units
+    double texel = 1;          ///< side of a texel, world units: the root of its area
+};
+
+/// The Rank Test's register for errors seen, whatever an entry's bits: pixels times the root of a texel; per pixel:
+/// pixels times the root of the pixels that the triangles cover.
+std::int32_t seen_rank_threshold(double error, bool per_pixel, const ViewedScale& view);
+
+/// The Bound Test's register for a largest vertical error of so many pixels anywhere in the picture.
+std::int32_t seen_bound_threshold(double pixels, const ViewedScale& view);
 
 }  // namespace tessera

@@ -1,6 +1,7 @@
 #include "testbench/setup/tables/split_hierarchy.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <queue>
 #include <set>
@@ -56,12 +57,17 @@ bool has_area(const TextureTriangle& triangle) {
 /// A triangle of the mesh as refined so far. A side, 3 * triangle + k, is a triangle's edge k; the sides of one edge
 /// form a list.
 struct MeshTriangle {
+    struct End {
+        TexCoord at;
+        std::uint32_t code = 0;
+    };
     TextureTriangle corner{};
     std::array<std::uint16_t, 3> code{};
     std::array<std::uint32_t, 3> edge{};
     std::array<std::uint32_t, 3> next_side{};
     std::array<bool, 3> reversed{};  ///< the edge runs from corner k + 1 to corner k
     std::uint32_t maker = nothing;   ///< the split it came of
+    std::array<End, 2> made_of{};    ///< of the edge that was bisected then
     double longest = 0;              ///< square of its longest edge, in LSB of t
     TriangleFit fit;
 };
@@ -84,8 +90,8 @@ double squared_length(const TexCoord& a, const TexCoord& b) {
 
 class Refinement {
   public:
-    Refinement(const QuantisedMap& map, const datapath::Formats& formats)
-        : map_(map), formats_(formats), period_(map.geometry, formats) {}
+    Refinement(const QuantisedMap& map, const datapath::Formats& formats, const SurfaceSteps& steps)
+        : map_(map), formats_(formats), steps_(steps), period_(map.geometry, formats) {}
 
     void set_base(const std::vector<TextureTriangle>& base) {
         std::set<std::array<std::array<std::int64_t, 2>, 3>> known;
@@ -219,8 +225,11 @@ class Refinement {
         unlink(first, k1);
         triangles_.push_back(triangles_[first]);
         MeshTriangle &a = triangles_[first], &b = triangles_[second];
+        const std::array<MeshTriangle::End, 2> ends{{{a.corner[k], a.code[k]}, {a.corner[k1], a.code[k1]}}};
         if (a.maker != nothing)
-            hierarchy_.dependencies.push_back({number, a.maker});
+            hierarchy_.dependencies.push_back({number, a.maker, apart(ends, a.made_of)});
+        split.reach = std::max(split.reach, reach(ends, a));
+        a.made_of = b.made_of = ends;
         const TexCoord middle = datapath::midpoint(a.corner[k], a.corner[k1]);
         const TriangleFit before = a.fit;
         a.maker = b.maker = number;
@@ -238,6 +247,29 @@ class Refinement {
         record(before, a.fit.squared + b.fit.squared, middle, split);
     }
 
+    double distance(const MeshTriangle::End& a, const MeshTriangle::End& b) const {
+        const auto [du, dv] = step(a.at, b.at);
+        const double texels = std::ldexp(1.0, -formats_.texture.fraction);
+        return std::hypot(static_cast<double>(du) * texels * steps_.u, static_cast<double>(dv) * texels * steps_.v,
+                          (static_cast<double>(a.code) - b.code) * steps_.code);
+    }
+
+    double apart(const std::array<MeshTriangle::End, 2>& a, const std::array<MeshTriangle::End, 2>& b) const {
+        return std::min(distance(a[0], b[0]) + distance(a[1], b[1]), distance(a[0], b[1]) + distance(a[1], b[0]));
+    }
+
+    /// A sum of distances is greatest in a corner of the prism that holds the surface.
+    double reach(const std::array<MeshTriangle::End, 2>& ends, const MeshTriangle& triangle) const {
+        double farthest = 0;
+        for (const TexCoord& corner : triangle.corner) {
+            for (const std::uint32_t code : {triangle.fit.lowest, triangle.fit.highest}) {
+                const MeshTriangle::End point{corner, code};
+                farthest = std::max(farthest, distance(ends[0], point) + distance(ends[1], point));
+            }
+        }
+        return farthest;
+    }
+
     void record(const TriangleFit& before, double squared_after, const TexCoord& middle, EdgeSplit& split) const {
         const auto texel = period_.within(middle);
         split.column = static_cast<std::uint32_t>(texel[0] >> formats_.texture.fraction);
@@ -249,6 +281,7 @@ class Refinement {
 
     const QuantisedMap& map_;
     const datapath::Formats& formats_;
+    const SurfaceSteps steps_;
     Period period_;
     std::map<std::array<std::array<std::int64_t, 2>, 2>, std::uint32_t> base_edges_;
     std::vector<MeshTriangle> triangles_;
@@ -261,8 +294,8 @@ class Refinement {
 }  // namespace
 
 SplitHierarchy make_split_hierarchy(const QuantisedMap& map, const std::vector<TextureTriangle>& base,
-                                    const datapath::Formats& formats) {
-    Refinement refinement(map, formats);
+                                    const datapath::Formats& formats, const SurfaceSteps& steps) {
+    Refinement refinement(map, formats, steps);
     refinement.set_base(base);
     return refinement.refine();
 }

@@ -7,17 +7,24 @@
 
 namespace tessera {
 
+/// What a texel along each axis and a code measure in space, over a flat base mesh: all in one unit.
+struct SurfaceSteps {
+    double u = 0, v = 0, code = 0;
+};
+
 /// The bisection of an edge and of all triangles that share it.
 struct EdgeSplit {
     std::uint32_t column = 0, row = 0;  ///< texel of the midpoint; on a repeated axis within the map
     std::uint32_t triangles = 0;        ///< that it replaces by twice as many
     double squared_fall = 0;            ///< of the sum of their squared errors, codes^2; negative if that rises
     double largest = 0;                 ///< the largest error in the triangles it replaces, codes
+    double reach = 0;  ///< from both ends, added, to a point over these triangles: at most, in the unit of SurfaceSteps
 };
 
 /// `split` bisects a triangle that `maker` made, so that it needs it; maker < split.
 struct SplitDependency {
     std::uint32_t split = 0, maker = 0;
+    double apart = 0;  ///< from the ends of one's edge to those of the other's, added
 };
 
 /// Which edges to bisect, one after another, until the mesh meets the map at every grid point that midpoints reach. Any
@@ -36,6 +43,6 @@ struct SplitHierarchy {
 /// periods apart on a repeated axis. Triangles without area in the map are left out. Takes about 4 us and 500 bytes of
 /// memory a texel.
 SplitHierarchy make_split_hierarchy(const QuantisedMap& map, const std::vector<TextureTriangle>& base,
-                                    const datapath::Formats& formats);
+                                    const datapath::Formats& formats, const SurfaceSteps& steps = {});
 
 }  // namespace tessera

@@ -14,14 +14,20 @@ std::uint16_t code_under(const QuantisedMap& map, const datapath::TexCoord& t, c
 TriangleFit fit_triangle(const QuantisedMap& map, const TextureTriangle& triangle,
                          const std::array<std::uint16_t, 3>& codes, const datapath::Formats& formats) {
     TriangleFit fit;
+    for (const std::uint32_t code : codes) {
+        fit.lowest = std::min(fit.lowest, code);
+        fit.highest = std::max(fit.highest, code);
+    }
     const GridPoints points(triangle, map.geometry, formats);
     const double scale = 1 / static_cast<double>(points.whole());
     points.for_each([&](const GridPoint& point) {
         std::array<double, 3> at{};
         for (std::size_t k = 0; k < 3; ++k)
             at[k] = static_cast<double>(point.part[k]) * scale;
-        const double error =
-            map.code(point.column, point.row) - (at[0] * codes[0] + at[1] * codes[1] + at[2] * codes[2]);
+        const std::uint32_t code = map.code(point.column, point.row);
+        fit.lowest = std::min(fit.lowest, code);
+        fit.highest = std::max(fit.highest, code);
+        const double error = code - (at[0] * codes[0] + at[1] * codes[1] + at[2] * codes[2]);
         const double share = point.is_on_an_edge() ? 0.5 : 1;
         fit.squared += share * error * error;
         fit.largest = std::max(fit.largest, std::abs(error));

@@ -15,8 +15,9 @@ std::uint16_t code_under(const QuantisedMap& map, const datapath::TexCoord& t, c
 /// A grid point on an edge counts half: the other half is the neighbour's. If edge k is bisected and its midpoint lies
 /// z above the edge, the squared error is squared - 2 z lean[k] + z^2 weight[k].
 struct TriangleFit {
-    double squared = 0;  ///< sum of squared errors
-    double largest = 0;  ///< largest error
+    double squared = 0;                          ///< sum of squared errors
+    double largest = 0;                          ///< largest error
+    std::uint32_t lowest = 0xffff, highest = 0;  ///< codes at corners and grid points
     std::array<double, 3> lean{}, weight{};
 };
 

@@ -10,7 +10,8 @@ namespace tessera {
 /// Crater Lake through the machine from 24 base triangles, as a user runs it.
 struct CraterLakeRun {
     std::uint64_t triangles;
-    double rms, largest;  // m, vertically at grid points
+    double rms, largest;                // m, vertically at grid points
+    double rms_pixels, largest_pixels;  // of those in the picture
 
     static constexpr double depth = 945;  // m, from the lake's bottom to the rim: full scale
 
@@ -32,10 +33,12 @@ struct CraterLakeRun {
                 here.path());
         succeed({"compare", "run"}, here.path());
         const auto error = read_json(here.path() / "run/error.json");
-        const auto vertical = [&](const char* name) { return error["vertical"][name]["value"].get<double>() * 1000; };
+        const auto vertical = [&](const char* name) { return error["vertical"][name]["value"].get<double>(); };
         triangles = RunFolder(here.path() / "run").count("run", "triangles_finished");
-        rms = vertical("rms");
-        largest = vertical("max");
+        rms = 1000 * vertical("rms");
+        largest = 1000 * vertical("max");
+        rms_pixels = vertical("rms_pixels");
+        largest_pixels = vertical("max_pixels");
     }
 };
 

@@ -157,6 +157,9 @@ TEST_CASE("tune refuses wrong usage and goals out of reach, and leaves nothing")
     CHECK_THAT(tune({}), Contains("--triangles") && Contains("--error") && Contains("tune --help"));
     CHECK_THAT(tune({"--triangles", "5", "--error", "1"}), Contains("either"));
     CHECK_THAT(tune({"--triangles", "900", "--tests", "rank", "--grid", "4x4"}), Contains("ranks need a lattice"));
+    CHECK_THAT(tune({"--triangles", "900", "--set", "hardware.height_test=rank", "--set", "hardware.test_order=cheap_first",
+                     "--set", "tests.rank_view=per_point"}),
+               Contains("tests.rank_view = \"per_point\"") && Contains("=none"));
     CHECK_THAT(tune({"--triangles", "0"}), Contains("--triangles 0"));
     CHECK_THAT(tune({"--triangles", "-4"}), Contains("--triangles") && Contains("-4"));
     CHECK_THAT(tune({"--triangles", "17"}), Contains("18 triangles"));

@@ -284,3 +284,50 @@ TEST_CASE("repeat: an edge any number of periods away decides alike") {
         REQUIRE(same_bits(here, there));
     }
 }
+
+TEST_CASE("edge: as the viewer sees it, thresholds worked out by hand") {
+    CHECK(eye_distance({3, -4, 0}) == Approx(7 * 11.0 / 16));
+    CHECK(eye_distance({-5, 1, 1}) == 5);
+    CHECK(eye_distance({2, 2, -2}) == Approx(6 * 9.0 / 16));
+    CHECK(level(1) == 0);
+    CHECK(level(3) == 4096 + 2048);
+    CHECK(level(0.25) == -2 * 4096);
+
+    Map map(8, 8, AddressMode::clamp, AddressMode::clamp, std::vector<double>(64, 0));
+    Parameters parameters;
+    parameters.rank_view = RankView::per_point;
+    parameters.rank_bits = parameters.bound_bits = 16;
+    parameters.distance_step = 0.25;
+    parameters.eye = {0, 0, -8};
+    parameters.enabled = {false, true, false, false, false, false};
+    Vertex i, j;
+    i.normal = j.normal = {0, 0, 1};
+    i.tangent = j.tangent = {1, 0, 0};
+    i.texture = {0.5, 0.5};
+    j.texture = {2.5, 0.5};
+    const auto asks = [&](std::uint16_t rank, std::uint16_t bound, std::uint8_t radius) {
+        map.set_ranks({8, 8, std::vector<std::uint16_t>(64, rank), std::vector<std::uint16_t>(64, bound),
+                       std::vector<std::uint8_t>(64, radius), 0});
+        return evaluate_edge(complete_base_vertex(i, map, parameters), complete_base_vertex(j, map, parameters), map,
+                             parameters)
+            .summed_height_test;
+    };
+    // Both ends are 8 away: three octaves, of 2 x 1024 for a rank, 2048 for a bound.
+    parameters.rank_threshold = 1000;
+    parameters.bound_threshold = 60000;
+    CHECK_FALSE(asks(1000 + 3 * 2048, 0, 0));
+    CHECK(asks(1001 + 3 * 2048, 0, 0));
+    parameters.rank_view = RankView::per_pixel;
+    CHECK_FALSE(asks(1000 + 3 * 4096, 0, 0));
+    CHECK(asks(1001 + 3 * 4096, 0, 0));
+    // A radius of 8 x 4 half steps: 4 of the 8.
+    parameters.bound_threshold = 500;
+    CHECK_FALSE(asks(0, 500 + 2 * 2048, 16));
+    CHECK(asks(0, 501 + 2 * 2048, 16));
+    CHECK(asks(0, 1, 24));  // of 8: the eye lies in the sphere
+    CHECK_FALSE(asks(0, 0, 24));
+    parameters.row_w = {0, 0, 0, -8};  // the camera looks the other way
+    CHECK(asks(0, 1, 24));
+    parameters.row_w = {0, 0, 0, -8.5};
+    CHECK_FALSE(asks(0, 1, 24));
+}

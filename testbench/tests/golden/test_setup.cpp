@@ -110,6 +110,31 @@ TEST_CASE("parameters: displacement in world units, thresholds in codes and cosi
     CHECK(p.texture_step == 0);
 }
 
+TEST_CASE("parameters: the Rank Test's thresholds in pixels, at distance 1") {
+    Scene scene;
+    scene.camera = straight_down();  // 50 pixels are 1 high at distance 1; a corner's tangent is the root of 5
+    scene.placement.scale = 8;
+    scene.lowest = 0;
+    scene.highest = 2;
+    scene.highest_code = 4;  // a code is 4 high
+    scene.rank_bits = scene.bound_bits = 8;
+    scene.rank_view = RankView::per_point;
+    scene.rank_threshold = 400;  // 2 codes
+    CHECK(rank_threshold(scene) == Approx(18 * 1024));
+    scene.rank_view = RankView::per_pixel;
+    scene.texel_area = 0.25;  // a texel is 25 pixels wide
+    scene.rank_threshold = 10000;
+    CHECK(rank_threshold(scene) == Approx(18 * 1024));
+    scene.bound_threshold = 50 * std::sqrt(6.0);
+    CHECK(bound_threshold(scene) == Approx((8 + std::log2(1 / (8 * std::sqrt(6.0)))) * 2048));
+    const Parameters p = make_parameters(scene);
+    CHECK(p.rank_view == RankView::per_pixel);
+    CHECK(p.eye == glm::dvec3(0, 0, 40));
+    CHECK(p.rank_threshold == 18 * 1024);
+    scene.rank_threshold = 0;
+    CHECK(make_parameters(scene).rank_threshold == -(1 << 20));
+}
+
 TEST_CASE("half vector and light as the viewer has them") {
     Scene scene;
     scene.camera = straight_down();

@@ -221,6 +221,10 @@ TEST_CASE("keys that contradict each other") {
             {"hardware.triangulation=greatest_rank",
              {"`hardware.triangulation` = \"greatest_rank\", but `hardware.height_test` = \"summed_height\" has no ranks"}},
             {"hardware.triangulation=greatest_rank; hardware.height_test=rank", {}},
+            {"tests.rank_view=per_point",
+             {"`tests.rank_view` = \"per_point\", but `hardware.height_test` = \"summed_height\" has no ranks",
+              "needs `hardware.test_order` = \"cheap_first\""}},
+            {"tests.rank_view=per_pixel; hardware.height_test=rank; hardware.test_order=cheap_first", {}},
             {"formats.rank_bits=0", {"`formats.rank_bits` = 0 and `formats.bound_bits` = 0"}},
             {"formats.rank_bits=0; formats.bound_bits=6", {}},
 

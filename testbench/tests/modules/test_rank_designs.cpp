@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "modules/datapath/rank_view.h"
 #include "testbench/setup/tables/rank_table.h"
 #include "testbench/tests/support/case_table.h"
 #include "testbench/tests/support/checked_run.h"
@@ -35,8 +36,16 @@ MachineSetup with_random_ranks(MachineSetup setup, unsigned seed) {
         entry = static_cast<std::uint16_t>(random() % (1u << formats.rank_bits));
     for (std::uint16_t& entry : setup.rank_tables.bound)
         entry = static_cast<std::uint16_t>(random() % (1u << formats.bound_bits));
-    setup.registers.tests.rank_threshold = (1u << formats.rank_bits) / 3;
-    setup.registers.tests.bound_threshold = (1u << formats.bound_bits) / 2;
+    for (std::uint8_t& entry : setup.rank_tables.radius)
+        entry = static_cast<std::uint8_t>(random() % 200);
+    setup.registers.tests.rank_threshold = (1 << formats.rank_bits) / 3;
+    setup.registers.tests.bound_threshold = (1 << formats.bound_bits) / 2;
+    if (formats.distances) {  // so that at the mesh's centre the same entries ask
+        const auto level = static_cast<std::int32_t>(datapath::distance_level(
+            2 * std::uint64_t{datapath::eye_distance({}, setup.registers.transform, formats)}));
+        setup.registers.tests.rank_threshold = 65536 / 3 - level;
+        setup.registers.tests.bound_threshold = 65536 / 2 - level / 2;
+    }
     return setup;
 }
 
@@ -91,6 +100,26 @@ const CaseTable designs(
          "hardware.design=modern hardware.queue_capacity=1 timing.stalls_seed=3 timing.stalls_per_mille=300 "
          "timing.stalls_longest=20"},
         {"three modern machines", "hardware.design=modern hardware.machines=3"},
+        {"as the viewer sees it", "hardware.test_order=cheap_first tests.rank_view=per_point tests.rank_threshold=2"},
+        {"as the viewer sees it, functional, entries of 6 bits",
+         "hardware.test_order=cheap_first mode=functional tests.rank_view=per_point tests.rank_threshold=2 "
+         "formats.rank_bits=6"},
+        {"as the viewer sees it per pixel, final edges, beside the other tests, random stalls",
+         "hardware.test_order=cheap_first hardware.final_edges=true tests.normal=true tests.view=true "
+         "tests.rank_view=per_pixel tests.rank_threshold=6 timing.stalls_seed=5 timing.stalls_per_mille=300 "
+         "timing.stalls_longest=20"},
+        {"bounds as the viewer sees them",
+         "hardware.test_order=cheap_first tests.rank_view=per_point tests.bound_threshold=1 formats.rank_bits=0 "
+         "formats.bound_bits=12"},
+        {"ranks and bounds as the viewer sees them, three tests units, from within",
+         "hardware.test_order=cheap_first hardware.tests_units=3 tests.rank_view=per_pixel tests.rank_threshold=50 "
+         "tests.bound_threshold=20 formats.bound_bits=8 camera.eye=[0.1,0.2,0.15] camera.target=[0.5,0.4,0]"},
+        {"the modern design, ranks and bounds as the viewer sees them",
+         "hardware.design=modern tests.rank_view=per_point tests.rank_threshold=2 tests.bound_threshold=1 "
+         "formats.bound_bits=16"},
+        {"the modern design as the viewer sees it, functional, narrow positions",
+         "hardware.design=modern mode=functional tests.rank_view=per_point tests.rank_threshold=2 "
+         "tests.bound_threshold=2 formats.bound_bits=8 formats.position_bits=20 formats.position_fraction=6"},
     },
     [](const Row& row) {
         const CheckedRun run(ranked(row.settings));
@@ -107,6 +136,10 @@ const CaseTable random_tables(
         {"cheap tests first, final edges", "hardware.test_order=cheap_first hardware.final_edges=true"},
         {"the modern design", "hardware.design=modern formats.rank_bits=12 formats.bound_bits=12"},
         {"the modern design, functional", "hardware.design=modern mode=functional"},
+        {"as the viewer sees it",
+         "hardware.test_order=cheap_first tests.rank_view=per_pixel formats.rank_bits=9 formats.bound_bits=7"},
+        {"the modern design as the viewer sees it",
+         "hardware.design=modern tests.rank_view=per_point formats.rank_bits=0 formats.bound_bits=12"},
     },
     [](const Row& row) {
         const CheckedRun run(with_random_ranks(ranked(row.settings), 7));

@@ -312,6 +312,38 @@ void check_filtered_tests(const Formats& f, bool tight) {
     check("mipmap_test", MipmapWidths{f}.heights, heights, tight);
 }
 
+/// Of the Rank Test as the viewer sees it; the eye in a corner of its range, the position in the opposite one.
+void check_rank_view(const Formats& f, bool tight) {
+    const RankViewWidths widths{f};
+    Reach away, pair, three, times_11, times_9, ends, radius, deepest, level, rank, limit;
+    const Wide farthest = (Wide{1} << (eye_bits - 1)) + f.position.highest;
+    away.see(farthest);
+    pair.see(2 * farthest);
+    three.see(3 * farthest);
+    times_11.see(11 * 2 * farthest);
+    times_9.see(9 * 3 * farthest);
+    const std::uint64_t longest = 2 * ((std::uint64_t{1} << f.view_distance.bits) - 1);
+    ends.see(static_cast<Wide>(longest));
+    radius.see(static_cast<Wide>(midpoint_radius((1u << radius_bits) - 1)));
+    deepest.see(2 * Wide{f.view_distance.lowest});
+    deepest.see(2 * Wide{f.view_distance.highest} + radius.high);
+    level.see(distance_level(longest));
+    rank.see((Wide{1} << FormatLimits::rank_bits.most) - 1);
+    limit.see(-(Wide{1} << (rank_limit_bits - 1)));
+    limit.see((Wide{1} << (rank_limit_bits - 1)) - 1 + level.high);
+    check("rank_test_in_view", widths.away, away, tight);
+    check("rank_test_in_view", widths.pair, pair, tight);
+    check("rank_test_in_view", widths.three, three, tight);
+    check("rank_test_in_view", widths.times_11, times_11, tight);
+    check("rank_test_in_view", widths.times_9, times_9, tight);
+    check("rank_test_in_view", widths.ends, ends, tight);
+    check("rank_test_in_view", widths.radius, radius, tight);
+    check("rank_test_in_view", widths.deepest, deepest, tight);
+    check("rank_test_in_view", widths.level, level, tight);
+    check("rank_test_in_view", widths.rank, rank, tight);
+    check("rank_test_in_view", widths.limit, limit, tight);
+}
+
 }  // namespace
 
 TEST_CASE("intermediates: operands at their limits need no more bits than declared, nor much less") {
@@ -325,6 +357,7 @@ TEST_CASE("intermediates: operands at their limits need no more bits than declar
         check_edge_tests(formats, tight);
         check_the_rest(formats, tight);
         check_filtered_tests(formats, tight);
+        check_rank_view(formats, tight);
         tight = false;
     }
 }

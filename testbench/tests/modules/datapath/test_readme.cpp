@@ -124,6 +124,7 @@ void visit_every_register(Visit visit) {
         registers.formats.highlight_tag = true;
         registers.formats.height_test = test;
         registers.formats.bound_bits = 8;
+        registers.formats.distances = true;
         visit_registers(registers, [&](const Register& field, const auto& values) {
             if (seen.insert(field.name).second)
                 visit(field, values);
@@ -190,6 +191,18 @@ TEST_CASE(
         REQUIRE(with.size() == without.size() + more);
         CHECK(std::equal(without.begin(), without.end(), with.begin()));
     }
+    const auto rank_registers = [](bool distances) {
+        Registers registers;
+        registers.formats.height_test = HeightTest::rank;
+        registers.formats.rank_bits = registers.formats.bound_bits = 6;
+        registers.formats.distances = distances;
+        std::vector<std::string> found;
+        visit_registers(registers, [&](const Register& field, const auto&) { found.emplace_back(field.name); });
+        return found;
+    };
+    const std::vector<std::string> rank = rank_registers(false), in_view = rank_registers(true);
+    REQUIRE(in_view.size() == rank.size() + 2);
+    CHECK(std::equal(rank.begin(), rank.end(), in_view.begin()));
 }
 
 TEST_CASE("registers: a register holds what its bits hold") {

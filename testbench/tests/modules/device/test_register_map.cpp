@@ -32,6 +32,7 @@ datapath::Registers wide() {
     registers.formats.normal = Format::make_signed(18, 16);
     registers.formats.highlight_tag = true;
     registers.formats.height_test = datapath::HeightTest::rank;
+    registers.formats.distances = true;
     registers.formats.bound_bits = 16;
     return registers;
 }

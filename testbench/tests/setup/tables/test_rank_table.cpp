@@ -1,10 +1,13 @@
 #include "testbench/setup/tables/rank_table.h"
 
+#include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstdlib>
 #include <set>
 #include <string>
 
+#include "modules/datapath/rank_view.h"
 #include "testbench/setup/tables/lattice.h"
 #include "testbench/setup/tables/split_hierarchy.h"
 #include "testbench/tests/setup/tables/refined_mesh.h"
@@ -139,6 +142,166 @@ TEST_CASE("No grid point lies beyond the Bound Test's threshold") {
         REQUIRE(error_figures(vertical_errors(at.map, mesh, formats.texture.fraction)).largest <=
                 bound_error(threshold, bits) + 1e-6);
     }
+}
+
+namespace {
+
+/// A view of a clamped map whose texels and codes measure `steps`, in LSB of positions and distances.
+struct View {
+    SurfaceSteps steps;
+    datapath::TransformParameters transform;
+    std::array<double, 3> eye{};
+    std::array<std::array<double, 3>, 3> axes{};  // right, up, forward
+    double focal = 0;
+    double half_width = 0, half_height = 0;  // pixels
+
+    View(Random& random, const QuantisedMap& map) {
+        steps.u = std::exp2(random.real(8, 14));
+        steps.v = steps.u * random.real(0.5, 2);
+        steps.code = std::exp2(random.real(-2, 9));
+        const auto somewhere = [&] {
+            const std::uint32_t column = random.natural(0, map.geometry.width - 1);
+            const std::uint32_t row = random.natural(0, map.geometry.height - 1);
+            std::array<double, 3> p = place(column + 0.5, row + 0.5, map.code(column, row));
+            p[2] += random.real(-0.5, 2) * steps.u;
+            return p;
+        };
+        const std::array<double, 3> at = somewhere(), target = somewhere();
+        for (std::size_t k = 0; k < 3; ++k) {
+            transform.eye[k] = std::lround(at[k]);
+            eye[k] = static_cast<double>(transform.eye[k]);
+        }
+        axes[2] = unit({target[0] - eye[0] + 1, target[1] - eye[1], target[2] - eye[2]});
+        axes[0] = unit(cross(axes[2], {random.real(-0.2, 0.2), 0.1, 1}));
+        axes[1] = cross(axes[0], axes[2]);
+        focal = std::exp2(random.real(8, 11));
+        half_width = random.real(100, 800);
+        half_height = random.real(100, 800);
+    }
+
+    std::array<double, 3> place(double column, double row, double code) const {
+        return {column * steps.u, row * steps.v, code * steps.code};
+    }
+    std::array<double, 3> seen(const std::array<double, 3>& p) const {
+        std::array<double, 3> result{};
+        for (std::size_t k = 0; k < 3; ++k)
+            for (std::size_t c = 0; c < 3; ++c)
+                result[k] += axes[k][c] * (p[c] - eye[c]);
+        return result;
+    }
+    double secant() const { return std::hypot(1, std::hypot(half_width, half_height) / focal); }
+
+    datapath::ScreenPosition vertex(const QuantisedMap& map, const TexCoord& t, const datapath::Formats& with) const {
+        const double texels = std::ldexp(1.0, -with.texture.fraction);
+        const auto p = place(t.u * texels, t.v * texels, code_at(map, t, with.texture.fraction));
+        const auto rounded = [](double value) { return static_cast<std::int32_t>(std::lround(value)); };
+        datapath::ScreenPosition result;
+        result.w = rounded(seen(p)[2]);
+        result.distance = eye_distance({rounded(p[0]), rounded(p[1]), rounded(p[2])}, transform, with);
+        return result;
+    }
+
+    /// The largest number of pixels between a grid point in the picture and one so many codes above or below it.
+    double largest_error(const QuantisedMap& map, const std::vector<double>& errors) const {
+        double largest = 0;
+        for (std::uint32_t row = 0; row < map.geometry.height; ++row) {
+            for (std::uint32_t column = 0; column < map.geometry.width; ++column) {
+                const double code = map.code(column, row);
+                const auto p = seen(place(column + 0.5, row + 0.5, code));
+                if (p[2] < 16 || std::abs(p[0]) * focal > half_width * p[2] ||
+                    std::abs(p[1]) * focal > half_height * p[2])
+                    continue;
+                for (const double sign : {-1.0, 1.0}) {
+                    const double off = sign * errors[std::size_t{row} * map.geometry.width + column];
+                    const auto q = seen(place(column + 0.5, row + 0.5, code + off));
+                    const double pixels = focal * std::hypot(q[0] / q[2] - p[0] / p[2], q[1] / q[2] - p[1] / p[2]);
+                    largest = std::max(largest, q[2] > 0 ? pixels : 1e9);
+                }
+            }
+        }
+        return largest;
+    }
+
+  private:
+    static std::array<double, 3> cross(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+        return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    }
+    static std::array<double, 3> unit(const std::array<double, 3>& v) {
+        const double length = std::hypot(v[0], v[1], v[2]);
+        return {v[0] / length, v[1] / length, v[2] / length};
+    }
+};
+
+}  // namespace
+
+TEST_CASE("No grid point in the picture appears farther from the mesh than the bound, and without radii some do") {
+    Random random(8);
+    datapath::Formats seen = formats;
+    seen.height_test = datapath::HeightTest::rank;
+    seen.distances = true;
+    seen.rank_bits = 0;
+    int views = 0, broken_without = 0;
+    double nearest = 0;  // to the bound, as a part of it
+    for (int trial = 0; trial < random_cases(1200); ++trial) {
+        const RandomCase at(random);
+        if (at.map.geometry.address_u == AddressMode::repeat || at.map.geometry.address_v == AddressMode::repeat)
+            continue;
+        const View view(random, at.map);
+        seen.bound_bits = random.integer32(8, 16);
+        const double rounding = 4 * (1 + 8 * std::sqrt(3.0));
+        RankTables tables =
+            make_rank_tables(at.map, at.base, seen, 0, seen.bound_bits, RadiusScale{view.steps, rounding});
+        const double pixels = std::exp2(random.real(-3, 7));
+        datapath::TestParameters parameters;
+        parameters.bound_threshold =
+            seen_bound_threshold(pixels, {view.focal, view.secant(), 1, view.steps.code, view.steps.u});
+        const auto mesh = [&] {
+            const TexelTable bound = table_of(tables.bound, tables);
+            return refine_all(
+                at.base,
+                [&](const TexCoord& a, const TexCoord& b) {
+                    if (!differs_by_even_texels(a, b, seen))
+                        return false;
+                    const std::size_t texel = std::size_t{middle_of(a, b).v >> bound.fraction} * tables.columns +
+                                              (middle_of(a, b).u >> bound.fraction);
+                    return asks_by_rank({0, tables.bound[texel], tables.radius[texel]},
+                                        edge_in_view(view.vertex(at.map, a, seen), view.vertex(at.map, b, seen)),
+                                        parameters, seen);
+                },
+                [&](const TexCoord& a, const TexCoord& b) { return bound.of_edge(a, b); });
+        };
+        const auto with = mesh();
+        INFO("trial " << trial << ", " << seen.bound_bits << " bits, " << pixels << " pixels");
+        REQUIRE(count_cracks(with, at.map.geometry, seen) == 0);
+        const double largest = view.largest_error(at.map, vertical_errors(at.map, with, seen.texture.fraction));
+        REQUIRE(largest <= pixels);
+        nearest = std::max(nearest, largest / pixels);
+        views += largest > 0 ? 1 : 0;
+        std::fill(tables.radius.begin(), tables.radius.end(), std::uint8_t{0});
+        const auto without = mesh();
+        REQUIRE(count_cracks(without, at.map.geometry, seen) == 0);
+        broken_without +=
+            view.largest_error(at.map, vertical_errors(at.map, without, seen.texture.fraction)) > pixels ? 1 : 0;
+    }
+    CHECK(views > 30);
+    CHECK(nearest > 0.5);
+    CHECK(broken_without > 0);
+}
+
+TEST_CASE("Thresholds as seen: twice the distance, or half the picture, is worth an octave") {
+    const ViewedScale view{512, 1, 1, 1, 2};
+    const auto rank = [&](double error, bool per_pixel) { return seen_rank_threshold(error, per_pixel, view); };
+    // An error of 1 code at distance 1, the sum of two distances 2, is 512 pixels high and its texel 1024 pixels wide.
+    CHECK(rank(512, false) == (16 - 2) << 10);
+    CHECK(rank(1024, false) == 16 << 10);
+    CHECK(rank(512 * 1024, true) == (16 - 4) << 10);
+    CHECK(seen_rank_threshold(512, false, {1024, 1, 1, 1, 2}) == (16 - 4) << 10);
+    CHECK(rank(0, false) == -(1 << (datapath::rank_limit_bits - 1)));
+    CHECK(seen_rank_threshold(1, true, {512, 1, 1, 0, 2}) == (1 << (datapath::rank_limit_bits - 1)) - 1);
+    CHECK(seen_rank_threshold(0, true, {512, 1, 1, 0, 2}) == -(1 << (datapath::rank_limit_bits - 1)));
+    CHECK(seen_bound_threshold(512, view) == (8 - 2) << 11);  // 512 of 512 + 512 pixels, and the sum of two distances
+    CHECK(seen_bound_threshold(0, view) == -(1 << (datapath::bound_limit_bits - 1)));
+    CHECK(seen_bound_threshold(1, {512, 1, 1, 0, 2}) == (1 << (datapath::bound_limit_bits - 1)) - 1);
 }
 
 TEST_CASE("Where entries of few bits do not reach, they keep the order and say up to which threshold the bound holds") {
