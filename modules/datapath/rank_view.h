@@ -26,7 +26,7 @@ struct RankViewWidths : Intermediates {
     Width ends{"D_i + D_j", f.view_distance.bits + 1};
     Width radius{"radius of a midpoint's sphere", 4 + 31};
     Width deepest{"w_i + w_j, and the radius added", wider(ends.bits, radius.bits + 1) + 1};
-    Width level{"its logarithm", 6 + level_fraction};
+    Width level{"logarithm of a distance", 6 + level_fraction};
     Width rank{"rank, on its scale of 16 bits", FormatLimits::rank_bits.most};
     Width limit{"threshold, with the logarithm", rank_limit_bits + 1};
     constexpr auto all() const {

@@ -288,6 +288,31 @@ TEST_CASE("No grid point in the picture appears farther from the mesh than the b
     CHECK(broken_without > 0);
 }
 
+TEST_CASE("Radii nest: a midpoint's covers those of all that need it, from where its edge's ends are") {
+    Random random(9);
+    std::size_t raised = 0;
+    for (int trial = 0; trial < 60; ++trial) {
+        const RandomCase at(random);
+        const SurfaceSteps steps{random.real(100, 1000), random.real(100, 1000), std::exp2(random.real(-4, 8))};
+        const double rounding = random.real(0, 50);
+        const RankTables tables = make_rank_tables(at.map, at.base, formats, 0, 12, RadiusScale{steps, rounding});
+        const SplitHierarchy hierarchy = make_split_hierarchy(at.map, at.base, formats, steps);
+        REQUIRE(tables.clashes == 0);
+        const auto radius = [&](std::size_t split) {
+            const EdgeSplit& its = hierarchy.splits[split];
+            return static_cast<double>(
+                datapath::midpoint_radius(tables.radius[std::size_t{its.row} * tables.columns + its.column]));
+        };
+        for (std::size_t k = 0; k < hierarchy.splits.size(); ++k)
+            REQUIRE(radius(k) >= hierarchy.splits[k].reach + rounding);
+        for (const SplitDependency& dependency : hierarchy.dependencies) {
+            REQUIRE(radius(dependency.maker) >= radius(dependency.split) + dependency.apart + rounding);
+            raised += radius(dependency.maker) > 1.2 * (hierarchy.splits[dependency.maker].reach + rounding) ? 1u : 0u;
+        }
+    }
+    CHECK(raised > 0);
+}
+
 TEST_CASE("Thresholds as seen: twice the distance, or half the picture, is worth an octave") {
     const ViewedScale view{512, 1, 1, 1, 2};
     const auto rank = [&](double error, bool per_pixel) { return seen_rank_threshold(error, per_pixel, view); };
