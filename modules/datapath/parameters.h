@@ -50,9 +50,9 @@ struct TestParameters {
     SummedHeightUnit summed_height_unit = SummedHeightUnit::sum;
     /// Rank Test: of the entry's rank, and of its bound; with Formats::distances that at distance 1 (rank_view.h).
     std::int32_t rank_threshold = 0, bound_threshold = 0;
-    bool rank_per_pixel = false;       ///< with Formats::distances: errors count per pixel, not per point
+    bool rank_per_pixel = false;            ///< with Formats::distances: errors count per pixel, not per point
     std::uint64_t curvature_threshold = 0;  ///< Curvature Test: 1/8 codes times texels
-    std::uint32_t view_threshold = 0;  ///< screen's format
+    std::uint32_t view_threshold = 0;       ///< screen's format
     std::uint32_t generation_limit = 12;
 
     bool highlight_test = false;  ///< HT: three more dot products and their compares, in designs that have it

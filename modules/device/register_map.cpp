@@ -20,8 +20,7 @@ std::uint64_t packed(const Format& format) {
 std::uint64_t features(const Formats& f) {
     return (f.highlight_tag ? 1u : 0u) | (f.final_edges ? 2u : 0u) | (f.codes ? 4u : 0u) | (f.families ? 8u : 0u) |
            (f.filter == datapath::MapFilter::bilinear ? 16u : 0u) | kind_of(f.height_test).feature |
-           (f.distances ? 128u : 0u) |
-           static_cast<std::uint64_t>(f.generation_bits) << 8;
+           (f.distances ? 128u : 0u) | static_cast<std::uint64_t>(f.generation_bits) << 8;
 }
 
 std::uint64_t entry_sizes(const Formats& f) {

@@ -113,14 +113,22 @@ Searched choose_tests(const TuneOrder& order, TuneRequest& request) {
     const bool by_job = order.tests.empty();
     Searched searched;
     searched.ranks = by_job ? hardware.height_test == HeightTest::rank : listed("rank");
-    searched.paper = by_job ? !searched.ranks : listed("normal") || listed("summed_height") || listed("view");
+    const bool curvature = listed("curvature");
+    searched.paper =
+        by_job ? !searched.ranks : listed("normal") || listed("summed_height") || curvature || listed("view");
+    if (curvature && listed("summed_height"))
+        throw InputError("--tests: summed_height and curvature stand in one place; tune with one of them");
     if (hardware.height_test == HeightTest::rank) {
         hardware.height_test = HeightTest::summed_height;
         hardware.triangulation = Job::Hardware{}.triangulation;
     }
+    if (curvature)
+        hardware.height_test = HeightTest::curvature;
+    else if (listed("summed_height"))
+        hardware.height_test = HeightTest::summed_height;
     request.space = order.vary;
     request.space.normal = by_job ? tests.normal : listed("normal");
-    request.space.summed_height = by_job ? tests.summed_height : listed("summed_height");
+    request.space.summed_height = by_job ? tests.summed_height : listed("summed_height") || curvature;
     request.space.view = by_job ? tests.view : listed("view");
     // searching a test's threshold switches the test on
     tests.normal = tests.normal || request.space.normal;

@@ -39,9 +39,10 @@ void TuneOptions::add_to(CLI::App& tune) {
                                    "find the fewest triangles with at most this error: units of the map's file on "
                                    "a height field, else model units");
     tune.add_option("--metric", metric_, "error to use: rms or max");
-    tune.add_option("--tests", order_.tests,
-                    "thresholds to search: normal, summed_height, view; rank: of a Rank Test, with --metric max of a "
-                    "Bound Test; with both, the better is taken; default: of the tests the job enables")
+    tune.add_option(
+            "--tests", order_.tests,
+            "thresholds to search: normal, summed_height or curvature, view; rank: of a Rank Test, with --metric max of a "
+            "Bound Test; with both, the better is taken; default: of the tests the job enables")
         ->delimiter(',')
         ->allow_extra_args(false);
     vary_given_ = tune.add_option("--vary", vary_,
@@ -74,8 +75,8 @@ TuneOrder TuneOptions::order() const {
         refuse(fmt::format("--metric {}: must be rms or max", metric_));
     order.largest = metric_ == "max";
     for (const std::string& test : order.tests)
-        if (test != "normal" && test != "summed_height" && test != "view" && test != "rank")
-            refuse(fmt::format("--tests {}: must be normal, summed_height, view or rank", test));
+        if (test != "normal" && test != "summed_height" && test != "curvature" && test != "view" && test != "rank")
+            refuse(fmt::format("--tests {}: must be normal, summed_height, curvature, view or rank", test));
     if (vary_given_->count() > 0) {
         order.vary.summed_height_unit = order.vary.generation_limit = order.vary.triangulation = false;
         for (const std::string& choice : vary_) {

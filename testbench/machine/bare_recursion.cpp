@@ -81,7 +81,7 @@ bool BareRecursion::test_rank(const Vertex& i, const Vertex& j, EdgeTests& edge)
     return asks_by_rank(entry, edge_in_view(i.screen, j.screen), r.tests, r.formats);
 }
 
-bool BareRecursion::test_curvature(const TexCoord& i, const TexCoord& j, const TexCoord& ij) const {
+std::uint64_t BareRecursion::curvature_of(const TexCoord& i, const TexCoord& j, const TexCoord& ij) const {
     const Registers& r = setup_.registers;
     const bool codes = curvature_by_codes(i, j, r.formats);
     std::array<std::uint64_t, 3> read{};
@@ -91,7 +91,7 @@ bool BareRecursion::test_curvature(const TexCoord& i, const TexCoord& j, const T
         const std::size_t index = (address - table.base) / table.entry_bytes;
         read[count++] = codes ? setup_.map.codes[index] : setup_.curvature_table.entries[index];
     });
-    return curvature_test(curvature_of_entries(i, j, read, r.formats), r.tests);
+    return curvature_of_entries(i, j, read, r.formats);
 }
 
 bool BareRecursion::test_heights(const Vertex& i, const Vertex& j, EdgeTests& edge) const {
@@ -100,7 +100,7 @@ bool BareRecursion::test_heights(const Vertex& i, const Vertex& j, EdgeTests& ed
         case HeightTest::rank:
             return test_rank(i, j, edge);
         case HeightTest::curvature:
-            return test_curvature(i.texture, j.texture, edge.texture);
+            return curvature_test(curvature_of(i.texture, j.texture, edge.texture), r.tests);
         case HeightTest::summed_height:
             break;
     }

@@ -46,12 +46,14 @@ class BareRecursion {
     bool test_heights(const datapath::Vertex& i, const datapath::Vertex& j, datapath::EdgeTests& edge) const;
     /// The Summed Height Test's sum of the map's codes.
     std::uint64_t sum_around(const datapath::TexCoord& t, const datapath::RectangleSize& size) const;
+    /// What the Curvature Test compares, of an edge.
+    std::uint64_t curvature_of(const datapath::TexCoord& i, const datapath::TexCoord& j,
+                               const datapath::TexCoord& ij) const;
 
   private:
     datapath::ChildIndices children_of(const datapath::TrianglePass& pass) const;
     void transform_normals(datapath::Triangle& triangle);
     bool test_rank(const datapath::Vertex& i, const datapath::Vertex& j, datapath::EdgeTests& edge) const;
-    bool test_curvature(const datapath::TexCoord& i, const datapath::TexCoord& j, const datapath::TexCoord& ij) const;
     datapath::Direction map_normal_at(const datapath::TexCoord& t) const;
     std::uint32_t code_at(const datapath::TexCoord& t) const;
     /// Those of a map that it is read from at t (datapath::map_entries).

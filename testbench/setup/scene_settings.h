@@ -52,8 +52,8 @@ struct TestSettings {
     double summed_height_threshold = 0.03;  ///< full-scale texels (sum) or full scale (area)
     datapath::SummedHeightUnit summed_height_unit = datapath::SummedHeightUnit::sum;
     RankView rank_view = RankView::none;
-    double rank_threshold = 0.05;   ///< full scale times the square root of a texel; as seen: seen_rank_threshold
-    double bound_threshold = 0.01;  ///< full scale; as seen: pixels
+    double rank_threshold = 0.05;      ///< full scale times the square root of a texel; as seen: seen_rank_threshold
+    double bound_threshold = 0.01;     ///< full scale; as seen: pixels
     double curvature_threshold = 0.1;  ///< full scale times texels
     bool view = true;
     double view_threshold = 5;  ///< pixels, Manhattan

@@ -96,9 +96,13 @@
 #define TESSERA_RANK_TABLE_ROWS 0x210u
 #define TESSERA_TESTS_RANK_THRESHOLD 0x214u
 #define TESSERA_TESTS_BOUND_THRESHOLD 0x218u
-#define TESSERA_CURVATURE_TABLE_COLUMNS 0x21cu
-#define TESSERA_CURVATURE_TABLE_ROWS 0x220u
-#define TESSERA_TESTS_CURVATURE_THRESHOLD 0x228u
+#define TESSERA_TESTS_RANK_PER_PIXEL 0x21cu
+#define TESSERA_TRANSFORM_EYE_0 0x220u
+#define TESSERA_TRANSFORM_EYE_1 0x228u
+#define TESSERA_TRANSFORM_EYE_2 0x230u
+#define TESSERA_CURVATURE_TABLE_COLUMNS 0x238u
+#define TESSERA_CURVATURE_TABLE_ROWS 0x23cu
+#define TESSERA_TESTS_CURVATURE_THRESHOLD 0x240u
 #define TESSERA_REGISTER_BYTES 0x400u
 
 /* Bits of control registers. */
@@ -120,6 +124,7 @@
 #define TESSERA_FEATURES_BILINEAR (1u << 4)  /* maps are read between four texels */
 #define TESSERA_FEATURES_RANK_TEST (1u << 5)  /* a Rank Test in the Summed Height Test's place */
 #define TESSERA_FEATURES_CURVATURE_TEST (1u << 6)  /* a Curvature Test there */
+#define TESSERA_FEATURES_DISTANCES (1u << 7)  /* it judges errors as the viewer sees them */
 
 /* Register `error`. */
 enum tessera_error {
@@ -268,11 +273,15 @@ struct tessera_finished_triangle {
     X(LIGHT_AMBIENT, 0x208u, 9, 1, 0, 1) \
     X(RANK_TABLE_COLUMNS, 0x20cu, 13, 1, 0, 1) \
     X(RANK_TABLE_ROWS, 0x210u, 13, 1, 0, 1) \
-    X(TESTS_RANK_THRESHOLD, 0x214u, 16, 1, 0, 1) \
-    X(TESTS_BOUND_THRESHOLD, 0x218u, 16, 1, 0, 1) \
-    X(CURVATURE_TABLE_COLUMNS, 0x21cu, 13, 1, 0, 1) \
-    X(CURVATURE_TABLE_ROWS, 0x220u, 13, 1, 0, 1) \
-    X(TESTS_CURVATURE_THRESHOLD, 0x228u, 37, 2, 0, 1)
+    X(TESTS_RANK_THRESHOLD, 0x214u, 19, 1, 1, 1) \
+    X(TESTS_BOUND_THRESHOLD, 0x218u, 18, 1, 1, 1) \
+    X(TESTS_RANK_PER_PIXEL, 0x21cu, 1, 1, 0, 1) \
+    X(TRANSFORM_EYE_0, 0x220u, 40, 2, 1, 1) \
+    X(TRANSFORM_EYE_1, 0x228u, 40, 2, 1, 1) \
+    X(TRANSFORM_EYE_2, 0x230u, 40, 2, 1, 1) \
+    X(CURVATURE_TABLE_COLUMNS, 0x238u, 13, 1, 0, 1) \
+    X(CURVATURE_TABLE_ROWS, 0x23cu, 13, 1, 0, 1) \
+    X(TESTS_CURVATURE_THRESHOLD, 0x240u, 37, 2, 0, 1)
 
 /* Every register's number: a place in that list. */
 enum tessera_register {

@@ -82,13 +82,13 @@ package tessera_registers;
   localparam logic [15:0] FORMAT_SCREEN_RESET = 16'h818;
   localparam logic [11:0] FEATURES = 12'h098;
   localparam int unsigned FEATURES_BITS = 16;
-  localparam logic [15:0] FEATURES_RESET = 16'h421;
+  localparam logic [15:0] FEATURES_RESET = 16'h4a1;
   localparam logic [11:0] LARGEST_MAP = 12'h09c;
   localparam int unsigned LARGEST_MAP_BITS = 32;
   localparam logic [31:0] LARGEST_MAP_RESET = 32'h4000400;
   localparam logic [11:0] ENTRY_BYTES = 12'h0a0;
   localparam int unsigned ENTRY_BYTES_BITS = 24;
-  localparam logic [23:0] ENTRY_BYTES_RESET = 24'h40602;
+  localparam logic [23:0] ENTRY_BYTES_RESET = 24'h50602;
   localparam logic [11:0] RECORD_BYTES = 12'h0a4;
   localparam int unsigned RECORD_BYTES_BITS = 32;
   localparam logic [31:0] RECORD_BYTES_RESET = 32'h480090;
@@ -264,18 +264,30 @@ package tessera_registers;
   localparam int unsigned RANK_TABLE_ROWS_BITS = 13;
   localparam logic [12:0] RANK_TABLE_ROWS_RESET = 13'h0;
   localparam logic [11:0] TESTS_RANK_THRESHOLD = 12'h214;
-  localparam int unsigned TESTS_RANK_THRESHOLD_BITS = 16;
-  localparam logic [15:0] TESTS_RANK_THRESHOLD_RESET = 16'h0;
+  localparam int unsigned TESTS_RANK_THRESHOLD_BITS = 19;
+  localparam logic [18:0] TESTS_RANK_THRESHOLD_RESET = 19'h0;
   localparam logic [11:0] TESTS_BOUND_THRESHOLD = 12'h218;
-  localparam int unsigned TESTS_BOUND_THRESHOLD_BITS = 16;
-  localparam logic [15:0] TESTS_BOUND_THRESHOLD_RESET = 16'h0;
-  localparam logic [11:0] CURVATURE_TABLE_COLUMNS = 12'h21c;
+  localparam int unsigned TESTS_BOUND_THRESHOLD_BITS = 18;
+  localparam logic [17:0] TESTS_BOUND_THRESHOLD_RESET = 18'h0;
+  localparam logic [11:0] TESTS_RANK_PER_PIXEL = 12'h21c;
+  localparam int unsigned TESTS_RANK_PER_PIXEL_BITS = 1;
+  localparam logic [0:0] TESTS_RANK_PER_PIXEL_RESET = 1'h0;
+  localparam logic [11:0] TRANSFORM_EYE_0 = 12'h220;
+  localparam int unsigned TRANSFORM_EYE_0_BITS = 40;
+  localparam logic [39:0] TRANSFORM_EYE_0_RESET = 40'h0;
+  localparam logic [11:0] TRANSFORM_EYE_1 = 12'h228;
+  localparam int unsigned TRANSFORM_EYE_1_BITS = 40;
+  localparam logic [39:0] TRANSFORM_EYE_1_RESET = 40'h0;
+  localparam logic [11:0] TRANSFORM_EYE_2 = 12'h230;
+  localparam int unsigned TRANSFORM_EYE_2_BITS = 40;
+  localparam logic [39:0] TRANSFORM_EYE_2_RESET = 40'h0;
+  localparam logic [11:0] CURVATURE_TABLE_COLUMNS = 12'h238;
   localparam int unsigned CURVATURE_TABLE_COLUMNS_BITS = 13;
   localparam logic [12:0] CURVATURE_TABLE_COLUMNS_RESET = 13'h0;
-  localparam logic [11:0] CURVATURE_TABLE_ROWS = 12'h220;
+  localparam logic [11:0] CURVATURE_TABLE_ROWS = 12'h23c;
   localparam int unsigned CURVATURE_TABLE_ROWS_BITS = 13;
   localparam logic [12:0] CURVATURE_TABLE_ROWS_RESET = 13'h0;
-  localparam logic [11:0] TESTS_CURVATURE_THRESHOLD = 12'h228;
+  localparam logic [11:0] TESTS_CURVATURE_THRESHOLD = 12'h240;
   localparam int unsigned TESTS_CURVATURE_THRESHOLD_BITS = 37;
   localparam logic [36:0] TESTS_CURVATURE_THRESHOLD_RESET = 37'h0;
 
@@ -298,6 +310,7 @@ package tessera_registers;
   localparam int unsigned FEATURES_BILINEAR_BIT = 4;  // maps are read between four texels
   localparam int unsigned FEATURES_RANK_TEST_BIT = 5;  // a Rank Test in the Summed Height Test's place
   localparam int unsigned FEATURES_CURVATURE_TEST_BIT = 6;  // a Curvature Test there
+  localparam int unsigned FEATURES_DISTANCES_BIT = 7;  // it judges errors as the viewer sees them
 
   // Register error.
   typedef enum logic [3:0] {

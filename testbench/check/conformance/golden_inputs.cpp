@@ -30,8 +30,8 @@ golden::Diagonal golden_diagonal(datapath::Triangulation choice) {
 
 void set_height_table(golden::Map& map, const PreparedScene& prepared) {
     const RankTables& ranks = prepared.rank_tables;
-    map.set_ranks(
-        {ranks.columns, ranks.rows, ranks.rank, ranks.bound, ranks.radius, static_cast<int>(ranks.highest_bound_threshold)});
+    map.set_ranks({ranks.columns, ranks.rows, ranks.rank, ranks.bound, ranks.radius,
+                   static_cast<int>(ranks.highest_bound_threshold)});
     const CurvatureTable& table = prepared.curvature_table;
     if (table.entries.empty())
         return;

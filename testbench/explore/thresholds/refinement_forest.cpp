@@ -80,9 +80,12 @@ RefinementForest::Edge RefinementForest::make_edge(const Vertex& i, const Vertex
                            largest_difference(tests.displaced_normal, j.displaced_normal));
     const datapath::TexCoord& middle = pass.new_vertex[0].texture;
     const datapath::RectangleSize size = datapath::rectangle_size(i.texture, j.texture, r.map, r.formats);
-    edge.summed = datapath::absolute_difference(
-        static_cast<std::int64_t>(2 * datapath_.sum_around(middle, size)),
-        static_cast<std::int64_t>(datapath_.sum_around(i.texture, size) + datapath_.sum_around(j.texture, size)));
+    if (r.formats.height_test == datapath::HeightTest::curvature)
+        edge.height = datapath_.curvature_of(i.texture, j.texture, middle);
+    else
+        edge.height = datapath::absolute_difference(
+            static_cast<std::int64_t>(2 * datapath_.sum_around(middle, size)),
+            static_cast<std::int64_t>(datapath_.sum_around(i.texture, size) + datapath_.sum_around(j.texture, size)));
     edge.area = size.width * size.height;
     edge.view = pixels(i.screen, j.screen);
     edge.open = datapath::tex_coord_test(i.texture, j.texture, middle, r.formats);
@@ -142,8 +145,12 @@ bool RefinementForest::splits(const Edge& edge, const datapath::TestParameters& 
         return false;
     if (tests.normal_test && edge.normal > tests.normal_threshold)
         return true;
+    if (!tests.summed_height_test)
+        return false;
+    if (setup_.registers.formats.height_test == datapath::HeightTest::curvature)
+        return edge.height > tests.curvature_threshold;
     const std::uint64_t area = tests.summed_height_unit == datapath::SummedHeightUnit::area ? edge.area : 1;
-    return tests.summed_height_test && edge.summed > tests.summed_height_threshold * area;
+    return edge.height > tests.summed_height_threshold * area;
 }
 
 template <class Leaf>

@@ -44,7 +44,7 @@ class RefinementForest {
 
   private:
     struct Edge {
-        std::uint64_t summed = 0;     ///< |2 S_ij - S_i - S_j|
+        std::uint64_t height = 0;     ///< |2 S_ij - S_i - S_j|, or the curvature
         std::uint32_t normal = 0;     ///< the largest of the six differences
         std::uint32_t area = 1;       ///< of the rectangle
         std::uint32_t view = 0;       ///< Manhattan length; both ends behind the near plane: 0, one: the largest number

@@ -36,7 +36,14 @@ bool better(const TunedPoint& a, const TunedPoint& b, const TuneGoal& goal) {
 
 ThresholdSearch::ThresholdSearch(RefinementForest& forest, const MachineSetup& setup, const Job& job,
                                  const TuneGoal& goal, const TuneSpace& space, std::function<void(double)> on_progress)
-    : forest_(forest), setup_(setup), job_(job), goal_(goal), space_(space), on_progress_(std::move(on_progress)) {}
+    : forest_(forest),
+      setup_(setup),
+      job_(job),
+      goal_(goal),
+      space_(space),
+      on_progress_(std::move(on_progress)),
+      curvature_(job.hardware.height_test == HeightTest::curvature),
+      height_threshold_(curvature_ ? &Job::Tests::curvature_threshold : &Job::Tests::summed_height_threshold) {}
 
 // A threshold below its register's first step is 0; one above all that can be compared with it lets nothing pass.
 
@@ -46,6 +53,9 @@ ThresholdSearch::Levels ThresholdSearch::normal_levels() const {
 
 ThresholdSearch::Levels ThresholdSearch::summed_height_levels(SummedHeightUnit unit) const {
     const auto highest_code = static_cast<double>(setup_.map.highest_code());
+    if (curvature_)
+        return {level_of(1 / highest_code / 8) - 1,
+                level_of(2.0 * std::max(setup_.registers.covered.columns, setup_.registers.covered.rows))};
     if (unit == SummedHeightUnit::area)
         return {level_of(1 / highest_code) - 1, octave};
     const double largest = static_cast<double>(setup_.largest_rectangle_sum) / highest_code / 2;
@@ -79,7 +89,7 @@ Job::Tests ThresholdSearch::tests_at(const Shape& shape, const Place& place) con
     if (shape.ratio == normal_alone)
         tests.summed_height = false;
     else if (space_.summed_height)
-        tests.summed_height_threshold = threshold(place.summed_height, summed_height_levels(shape.unit));
+        tests.*height_threshold_ = threshold(place.summed_height, summed_height_levels(shape.unit));
     if (shape.ratio == summed_height_alone)
         tests.normal = false;
     else if (space_.normal)
@@ -98,7 +108,7 @@ datapath::TestParameters ThresholdSearch::finest() const {
     if (space_.normal)
         tests.normal_threshold = 0;
     if (space_.summed_height)
-        tests.summed_height_threshold = 0;
+        tests.*height_threshold_ = 0;
     if (space_.view)
         tests.view_threshold = 0;
     return registers_of(tests);
@@ -242,7 +252,7 @@ void ThresholdSearch::step_done() {
 /// To be searched, the job's own first.
 std::vector<SummedHeightUnit> ThresholdSearch::units() const {
     const SummedHeightUnit own = job_.tests.summed_height_unit;
-    if (!space_.summed_height || !space_.summed_height_unit)
+    if (!space_.summed_height || !space_.summed_height_unit || curvature_)
         return {own};
     return {own, own == SummedHeightUnit::sum ? SummedHeightUnit::area : SummedHeightUnit::sum};
 }

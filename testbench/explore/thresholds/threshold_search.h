@@ -27,7 +27,8 @@ struct TuneGoal {
 
 /// What the search may change. The rest stays as in the job.
 struct TuneSpace {
-    bool normal = true, summed_height = true, view = false;  ///< thresholds
+    /// Thresholds. summed_height: or of a Curvature Test, if the job has one.
+    bool normal = true, summed_height = true, view = false;
     bool summed_height_unit = true, triangulation = true, generation_limit = true;
 };
 
@@ -143,6 +144,8 @@ class ThresholdSearch {
     const TuneGoal& goal_;
     const TuneSpace& space_;
     std::function<void(double)> on_progress_;
+    bool curvature_;  ///< a Curvature Test in the Summed Height Test's place
+    double Job::Tests::*height_threshold_;
     Found found_;
     std::set<Key> done_;
     std::map<Key, std::optional<int>> alone_;

@@ -65,6 +65,8 @@ std::string tune_text(const TuneRequest& request, const TuneResult& result, cons
     if (request.bases[result.base].ranks)
         row(request.goal.largest ? "Bound Test" : "Rank Test",
             toml_number(request.goal.largest ? tests.bound_threshold : tests.rank_threshold));
+    else if (result.job.hardware.height_test == HeightTest::curvature)
+        row("Curvature Test", threshold_text(tests.summed_height, tests.curvature_threshold));
     else
         row("Summed Height Test",
             threshold_text(tests.summed_height, tests.summed_height_threshold) +
@@ -103,6 +105,7 @@ std::string tune_json(const TuneRequest& request, const TuneResult& result, cons
                      {"summed_height", tests.summed_height},
                      {"summed_height_threshold", tests.summed_height_threshold},
                      {"summed_height_unit", name_of(tests.summed_height_unit)},
+                     {"curvature_threshold", tests.curvature_threshold},
                      {"rank_threshold", tests.rank_threshold},
                      {"bound_threshold", tests.bound_threshold},
                      {"view", tests.view},
@@ -127,21 +130,23 @@ std::string tune_json(const TuneRequest& request, const TuneResult& result, cons
 std::string tried_csv(const TuneRequest& request, const TuneResult& result, const ErrorUnit& unit) {
     std::string text = fmt::format(
         "base,height_test,normal_threshold,summed_height_threshold,summed_height_unit,view_threshold,generation_limit,"
-        "triangulation,rank_threshold,bound_threshold,triangles,rms [{0}],max [{0}]\n",
+        "triangulation,curvature_threshold,rank_threshold,bound_threshold,triangles,rms [{0}],max [{0}]\n",
         unit.map_units ? "map unit" : "model unit");
     for (const TriedPoint& tried : result.tried) {
         const Job::Tests& tests = tried.point.tests;
         const Outcome& outcome = tried.point.outcome;
         const BaseChoice& base = request.bases[tried.base];
+        const bool curvature = request.job.hardware.height_test == HeightTest::curvature;
         const bool ranks = base.ranks && !request.goal.largest, bounds = base.ranks && request.goal.largest;
-        text += fmt::format("\"{}\",{},{},{},{},{},{},{},{},{},{},{:.6g},{:.6g}\n", base.name(),
-                            name_of(base.ranks ? HeightTest::rank : request.job.hardware.height_test),
-                            threshold_text(tests.normal, tests.normal_threshold),
-                            threshold_text(tests.summed_height && !base.ranks, tests.summed_height_threshold),
-                            name_of(tests.summed_height_unit), threshold_text(tests.view, tests.view_threshold),
-                            tests.generation_limit, name_of(tried.point.triangulation),
-                            threshold_text(ranks, tests.rank_threshold), threshold_text(bounds, tests.bound_threshold),
-                            outcome.triangles, outcome.rms / unit.model_units, outcome.max / unit.model_units);
+        text +=
+            fmt::format("\"{}\",{},{},{},{},{},{},{},{},{},{},{},{:.6g},{:.6g}\n", base.name(),
+                        name_of(base.ranks ? HeightTest::rank : request.job.hardware.height_test),
+                        threshold_text(tests.normal, tests.normal_threshold),
+                        threshold_text(tests.summed_height && !base.ranks && !curvature, tests.summed_height_threshold),
+                        name_of(tests.summed_height_unit), threshold_text(tests.view, tests.view_threshold),
+                        tests.generation_limit, name_of(tried.point.triangulation),
+                        threshold_text(ranks, tests.rank_threshold), threshold_text(bounds, tests.bound_threshold),
+                        outcome.triangles, outcome.rms / unit.model_units, outcome.max / unit.model_units);
     }
     return text;
 }

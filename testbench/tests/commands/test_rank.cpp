@@ -90,9 +90,9 @@ TEST_CASE("tessera rank: a row has the figures of a run with its threshold, and 
 /// (scripts/figures --only rank_test).
 TEST_CASE("rank: from the crater's rim 2,400 triangles show less than half the error of the paper's tests") {
     const TestFolder here;
-    const CraterLakeRun found = ranked(
-        here, from_the_rim + Arguments{"--set", "tests.rank_view=per_point", "--set", "tests.rank_threshold=14",
-                                       "--set", "tests.view=true", "--set", "tests.view_threshold=0"});
+    const CraterLakeRun found =
+        ranked(here, from_the_rim + Arguments{"--set", "tests.rank_view=per_point", "--set", "tests.rank_threshold=14",
+                                              "--set", "tests.view=true", "--set", "tests.view_threshold=0"});
     CHECK(found.triangles < 2400);
     CHECK(found.rms_pixels < 3.37 / 2);
 }
@@ -100,10 +100,10 @@ TEST_CASE("rank: from the crater's rim 2,400 triangles show less than half the e
 TEST_CASE("rank: from the crater's rim no grid point appears farther from the mesh than the bound says") {
     const TestFolder here;
     for (const char* const bits : {"8", "16"}) {
-        const CraterLakeRun found = ranked(
-            here,
-            from_the_rim + Arguments{"--set", "tests.rank_view=per_point", "--set", "formats.rank_bits=0", "--set",
-                                     std::string("formats.bound_bits=") + bits, "--set", "tests.bound_threshold=8"});
+        const CraterLakeRun found =
+            ranked(here, from_the_rim + Arguments{"--set", "tests.rank_view=per_point", "--set", "formats.rank_bits=0",
+                                                  "--set", std::string("formats.bound_bits=") + bits, "--set",
+                                                  "tests.bound_threshold=8"});
         INFO(bits << " bits, " << found.triangles << " triangles");
         CHECK(found.largest_pixels < 8);
         CHECK(found.largest_pixels > 2);

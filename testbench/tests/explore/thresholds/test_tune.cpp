@@ -303,7 +303,7 @@ TEST_CASE("a Rank Test's threshold is the best of all that its register can hold
             (largest ? job.tests.bound_threshold : job.tests.rank_threshold) = search.threshold_of(threshold);
             const MachineSetup setup = make_setup(job, ground.base, ground.map);
             const datapath::TestParameters& tests = setup.registers.tests;
-            CHECK((largest ? tests.bound_threshold : tests.rank_threshold) == threshold);
+            CHECK((largest ? tests.bound_threshold : tests.rank_threshold) == static_cast<std::int32_t>(threshold));
             EmittedMesh mesh;
             BareRecursion(setup).run(mesh);
             mesh.sort();
@@ -337,6 +337,33 @@ TEST_CASE("a Rank Test's threshold is the best of all that its register can hold
             for (const Outcome& outcome : all)
                 fewest = std::min(fewest, outcome.rms <= bound ? outcome.triangles : fewest);
             CHECK(point.outcome.triangles == fewest);
+        }
+    }
+}
+
+TEST_CASE("a Curvature Test's threshold is tuned, alone and beside the Normal Test") {
+    TuneRequest request = request_for(small_job());
+    request.job.hardware.height_test = HeightTest::curvature;
+    for (const bool normal : {false, true}) {
+        request.job.tests.normal = request.space.normal = normal;
+        request.goal.triangles = 300;
+        const TuneResult result = tuned(request);
+        CHECK(result.point.outcome.triangles <= 300);
+        CHECK(result.point.outcome.triangles >= 200);
+        CHECK(result.point.tests.summed_height_threshold == request.job.tests.summed_height_threshold);
+        Ground ground(result.job);
+        EmittedMesh mesh;
+        BareRecursion(ground.setup).run(mesh);
+        CHECK(mesh.triangles.size() == result.point.outcome.triangles);
+        if (normal)
+            continue;
+        // No threshold of a dense grid does better.
+        for (int level = -14 * levels_per_octave; level <= 2 * levels_per_octave; level += levels_per_octave / 16) {
+            Job job = result.job;
+            job.tests.curvature_threshold = threshold_at(level);
+            const Outcome outcome = ground.measure(job);
+            if (outcome.triangles <= 300)
+                CHECK(outcome.rms >= 0.999 * result.point.outcome.rms);
         }
     }
 }
