@@ -136,17 +136,19 @@ std::string tried_csv(const TuneRequest& request, const TuneResult& result, cons
         const Job::Tests& tests = tried.point.tests;
         const Outcome& outcome = tried.point.outcome;
         const BaseChoice& base = request.bases[tried.base];
-        const bool curvature = request.job.hardware.height_test == HeightTest::curvature;
-        const bool ranks = base.ranks && !request.goal.largest, bounds = base.ranks && request.goal.largest;
+        const HeightTest kind = base.ranks ? HeightTest::rank : request.job.hardware.height_test;
+        const auto of = [&](HeightTest test, double threshold, bool used = true) {
+            return threshold_text(tests.summed_height && kind == test && used, threshold);
+        };
         text +=
-            fmt::format("\"{}\",{},{},{},{},{},{},{},{},{},{},{},{:.6g},{:.6g}\n", base.name(),
-                        name_of(base.ranks ? HeightTest::rank : request.job.hardware.height_test),
+            fmt::format("\"{}\",{},{},{},{},{},{},{},{},{},{},{},{:.6g},{:.6g}\n", base.name(), name_of(kind),
                         threshold_text(tests.normal, tests.normal_threshold),
-                        threshold_text(tests.summed_height && !base.ranks && !curvature, tests.summed_height_threshold),
-                        name_of(tests.summed_height_unit), threshold_text(tests.view, tests.view_threshold),
-                        tests.generation_limit, name_of(tried.point.triangulation),
-                        threshold_text(ranks, tests.rank_threshold), threshold_text(bounds, tests.bound_threshold),
-                        outcome.triangles, outcome.rms / unit.model_units, outcome.max / unit.model_units);
+                        of(HeightTest::summed_height, tests.summed_height_threshold), name_of(tests.summed_height_unit),
+                        threshold_text(tests.view, tests.view_threshold), tests.generation_limit,
+                        name_of(tried.point.triangulation), of(HeightTest::curvature, tests.curvature_threshold),
+                        of(HeightTest::rank, tests.rank_threshold, !request.goal.largest),
+                        of(HeightTest::rank, tests.bound_threshold, request.goal.largest), outcome.triangles,
+                        outcome.rms / unit.model_units, outcome.max / unit.model_units);
     }
     return text;
 }
