@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "testbench/input/mesh/built_in.h"
 #include "testbench/job/toml_text.h"
 
 namespace tessera {
@@ -53,15 +54,12 @@ std::vector<BaseChoice> rank_lattices(const Job& job, std::int64_t map_width, st
     for (std::int64_t spacing = 2; spacing <= largest_spacing; spacing *= 2) {
         if ((repeats_u && map_width % spacing != 0) || (repeats_v && map_height % spacing != 0))
             continue;
-        const auto quads = [&](std::int64_t texels, bool repeats) {
-            return std::max<std::int64_t>(1, (texels - (repeats ? 0 : 1) + spacing - 1) / spacing);
-        };
         BaseChoice choice;
         choice.kind = BaseChoice::Kind::lattice;
         choice.ranks = true;
         choice.spacing = spacing;
-        choice.columns = quads(map_width, repeats_u);
-        choice.rows = quads(map_height, repeats_v);
+        choice.columns = lattice_quads(map_width, repeats_u, spacing);
+        choice.rows = lattice_quads(map_height, repeats_v, spacing);
         if (choice.triangles() <= most_triangles)
             choices.push_back(choice);
     }

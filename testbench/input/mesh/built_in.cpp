@@ -112,15 +112,17 @@ BaseMesh make_plane(std::int64_t columns, std::int64_t rows, double width, doubl
     return finished(std::move(mesh));
 }
 
+std::int64_t lattice_quads(std::int64_t texels, bool repeats, std::int64_t spacing) {
+    const std::int64_t across = repeats ? texels : texels - 1;
+    return std::max<std::int64_t>(1, (across + spacing - 1) / spacing);
+}
+
 BaseMesh make_lattice(const std::array<std::int64_t, 2>& texels, const std::array<bool, 2>& repeats,
                       std::int64_t spacing, double width, double depth) {
     check_size("mesh.width", width);
     check_size("mesh.depth", depth);
-    const auto quads = [&](std::size_t axis) {
-        const std::int64_t across = repeats[axis] ? texels[axis] : texels[axis] - 1;
-        return std::max<std::int64_t>(1, (across + spacing - 1) / spacing);
-    };
-    const std::int64_t columns = quads(0), rows = quads(1);
+    const std::int64_t columns = lattice_quads(texels[0], repeats[0], spacing),
+                       rows = lattice_quads(texels[1], repeats[1], spacing);
     check_triangles(columns, rows);
     BaseMesh mesh;
     mesh.beyond_map = true;
