@@ -12,6 +12,7 @@ struct MachineSetup : PreparedScene {
     ModelScale model_scale;  ///< scale and centre
     Design design;
     unsigned machines = 1;  ///< of that design, side by side; base triangle b goes to machine b mod so many
+    bool scheduled = false;  ///< timed mode by the schedule (modules/conductor.h), not by the clock
     bool summed_height_bits_chosen = false;  ///< by `auto`
 };
 
