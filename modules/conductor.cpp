@@ -40,27 +40,26 @@ schedule::TablePlan table_plan(const schedule::InputPlan& input, const MemoryTim
 
 }  // namespace
 
-const char* Conductor::without_schedule(const Design& design, const datapath::Formats& formats) {
-    const Timing& t = design.timing;
+std::string Conductor::key_without_schedule(const Design& design, const datapath::Formats& formats) {
+    const HeightTestKind& kind = kind_of(formats.height_test);
     if (design.work == Work::family)
-        return "hardware.work = \"family\"";
+        return "hardware.work";
     if (design.test_order == TestOrder::cheap_first)
-        return "hardware.test_order = \"cheap_first\"";
+        return "hardware.test_order";
     if (design.queue.capacity > 0)
         return "hardware.queue_capacity";
     if (design.tests_units != 1)
-        return "hardware.tests_units = 3";
+        return "hardware.tests_units";
     if (formats.codes)
-        return "hardware.one_texel_from_map = true";
-    if (formats.height_test == datapath::HeightTest::curvature)
-        return "hardware.height_test = \"curvature\"";
-    if (t.displacement_map.cache.bytes > 0)
+        return "hardware.one_texel_from_map";
+    if (kind.codes > 0 && formats.height_test != datapath::HeightTest::summed_height)
+        return "hardware.height_test";
+    const auto cached = [&](const MemoryTiming& table) { return table.cache.bytes > 0; };
+    if (cached(design.timing.displacement_map))
         return "timing.displacement_map_cache_bytes";
-    if (t.normal_map.cache.bytes > 0)
+    if (cached(design.timing.normal_map))
         return "timing.normal_map_cache_bytes";
-    if ((t.*kind_of(formats.height_test).table_timing).cache.bytes > 0)
-        return "the cache of the height test's table";
-    return nullptr;
+    return cached(design.timing.*kind.table_timing) ? "timing." + std::string(kind.table) + "_cache_bytes" : "";
 }
 
 schedule::Plan Conductor::plan_of(Pipeline& machine, const Rasteriser& rasteriser, const Design& timed) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <string>
 #include <systemc>
 #include <vector>
 
@@ -17,8 +18,8 @@ namespace tessera {
 /// them.
 class Conductor : public sc_core::sc_module {
   public:
-    /// Null: the design has a schedule; else the design's key for which it has none, and its value.
-    static const char* without_schedule(const Design& design, const datapath::Formats& formats);
+    /// The key of a job file whose value has no schedule; empty: the design has one.
+    static std::string key_without_schedule(const Design& design, const datapath::Formats& formats);
 
     /// machine: of a conducted design, in functional mode; `timed`: the same design as timed mode has it.
     Conductor(const sc_core::sc_module_name& name, Pipeline& machine, Host& host, const Rasteriser& rasteriser,
