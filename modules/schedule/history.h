@@ -16,14 +16,16 @@ class History {
         while (size < depth)
             size *= 2;
         cycles_.resize(size);
+        mask_ = size - 1;
     }
 
-    void add(Cycle cycle) { cycles_[count_++ & (cycles_.size() - 1)] = cycle; }
-    Cycle operator[](std::uint64_t item) const { return cycles_[item & (cycles_.size() - 1)]; }
+    void add(Cycle cycle) { cycles_[count_++ & mask_] = cycle; }
+    Cycle operator[](std::uint64_t item) const { return cycles_[item & mask_]; }
     std::uint64_t count() const { return count_; }
 
   private:
     std::vector<Cycle> cycles_;
+    std::uint64_t mask_ = 0;
     std::uint64_t count_ = 0;
 };
 

@@ -50,20 +50,13 @@ void TriangleQueue::b_transport(datapath::Triangle& triangle, sc_core::sc_time& 
 }
 
 void TriangleQueue::keep(const datapath::Triangle& triangle) {
-    if (unused_.empty()) {
-        unused_.push_back(static_cast<std::uint32_t>(kept_.size()));
-        kept_.emplace_back();
-    }
-    const std::uint32_t place = unused_.back();
-    unused_.pop_back();
-    kept_[place] = triangle;
-    arrived_.place[arrived_.count++] = place;
+    arrived_.place[arrived_.count++] = kept_.put(triangle);
     ++taken_;
 }
 
 void TriangleQueue::send(std::uint32_t place, sc_core::sc_time& delay) {
-    to_get_triangle.transport(kept_[place], delay);
-    unused_.push_back(place);
+    to_get_triangle.transport(kept_.at(place), delay);
+    kept_.release(place);
 }
 
 void TriangleQueue::assign(const Levels& levels) {

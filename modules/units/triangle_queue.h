@@ -2,10 +2,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <systemc>
 #include <utility>
-#include <vector>
 
 #include "modules/sockets/items.h"
 #include "modules/sockets/memory_port.h"
@@ -14,6 +12,7 @@
 #include "modules/stage/unit.h"
 #include "modules/timing/elastic_pipeline.h"
 #include "modules/timing/level_history.h"
+#include "modules/units/triangle_places.h"
 #include "modules/units/triangle_store.h"
 
 namespace tessera {
@@ -39,7 +38,7 @@ class TriangleQueue : public Unit {
 
     bool below_watermark() const { return waiting() < design_.watermark; }
 
-    bool drained() const { return waiting() == 0 && !sending_ && kept_.size() == unused_.size(); }
+    bool drained() const { return waiting() == 0 && !sending_ && kept_.empty(); }
     /// Functional mode: notified when the last triangle that waited has gone through the machine.
     const sc_core::sc_event& emptied() const { return emptied_; }
     /// Triangles on chip, off chip, and on their way.
@@ -65,7 +64,7 @@ class TriangleQueue : public Unit {
         unsigned count = 0;
     };
     Arrived take_arrived() { return std::exchange(arrived_, {}); }
-    const datapath::Triangle& kept(std::uint32_t place) const { return kept_[place]; }
+    const datapath::Triangle& kept(std::uint32_t place) { return kept_.at(place); }
     /// Conducted: sends the triangle that is kept there.
     void send(std::uint32_t place, sc_core::sc_time& delay);
     struct Levels {
@@ -113,8 +112,7 @@ class TriangleQueue : public Unit {
     LevelHistory history_;
 
     const bool conducted_;
-    std::deque<datapath::Triangle> kept_;  // by place
-    std::vector<std::uint32_t> unused_;    // of these
+    TrianglePlaces kept_;
     Arrived arrived_;
 
     sc_core::sc_event arrival_{"arrival"};
