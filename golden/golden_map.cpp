@@ -126,6 +126,13 @@ void Map::set_normals(std::vector<glm::dvec3> normals) {
     normals_ = std::move(normals);
 }
 
+void Map::set_heights(std::vector<double> heights) {
+    if (heights.size() != codes_.size()) {
+        throw std::invalid_argument("golden map: heights and codes differ in number");
+    }
+    heights_ = std::move(heights);
+}
+
 Map::Rank Map::rank(const glm::dvec2& t) const {
     const std::int64_t x = address(integer_part(t.x), rank_table_.columns, address_u_);
     const std::int64_t y = address(integer_part(t.y), rank_table_.rows, address_v_);
@@ -150,6 +157,39 @@ Curvature Map::curvature(const glm::dvec2& t, int level) const {
         }
         first += columns * rows;
     }
+}
+
+void Map::make_mipmap(MipmapFilter filter) {
+    mipmap_.clear();
+    for (std::int64_t side = 1;; side *= 2) {
+        const std::int64_t columns = (width_ + side - 1) / side, rows = (height_ + side - 1) / side;
+        std::vector<double>& level = mipmap_.emplace_back();
+        for (std::int64_t k = 0; k < columns * rows; ++k) {
+            const std::int64_t left = k % columns * side, bottom = k / columns * side;
+            const std::int64_t right = std::min<std::int64_t>(left + side, width_);
+            const std::int64_t top = std::min<std::int64_t>(bottom + side, height_);
+            double sum = 0, highest = 0;
+            for (std::int64_t y = bottom; y < top; ++y) {
+                for (std::int64_t x = left; x < right; ++x) {
+                    const double code = codes_[static_cast<std::size_t>(y * width_ + x)];
+                    sum += code;
+                    highest = std::max(highest, code);
+                }
+            }
+            const double texels = static_cast<double>((right - left) * (top - bottom));
+            level.push_back(filter == MipmapFilter::maximum ? highest : std::floor(sum / texels + 0.5));
+        }
+        if (columns == 1 && rows == 1) {
+            return;
+        }
+    }
+}
+
+double Map::mipmap_height(const glm::dvec2& t, int level) const {
+    const std::int64_t side = std::int64_t{1} << level, columns = (width_ + side - 1) / side;
+    const std::int64_t x = address(integer_part(t.x), width_, address_u_) / side;
+    const std::int64_t y = address(integer_part(t.y), height_, address_v_) / side;
+    return mipmap_[static_cast<std::size_t>(level)][static_cast<std::size_t>(y * columns + x)];
 }
 
 Rectangle Map::rectangle_size(const glm::dvec2& t_i, const glm::dvec2& t_j) const {

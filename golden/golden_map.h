@@ -36,6 +36,9 @@ struct CurvatureTable {
     std::vector<Curvature> cells;
 };
 
+/// What a block of a mipmap (4.9) has for its height: its texels' mean, rounded to nearest, or their maximum.
+enum class MipmapFilter { mean, maximum };
+
 /// How the displacement map and the normal map are read: the texel that contains t, or between the four texels whose
 /// centres surround it.
 enum class Filter { nearest, bilinear };
@@ -53,7 +56,8 @@ class Map {
     AddressMode address_u() const { return address_u_; }
     AddressMode address_v() const { return address_v_; }
 
-    double code(std::size_t texel) const { return codes_[texel]; }
+    /// What the displacement map holds.
+    double code(std::size_t texel) const { return heights_.empty() ? codes_[texel] : heights_[texel]; }
     /// N_d; flat, (0, 0, 1), until derive_normals() or set_normals() is called.
     glm::dvec3 normal(std::size_t texel) const;
     /// dh/du and dh/dv by central differences; h is the displacement in world units (see derive_normals()). A clamped
@@ -76,6 +80,9 @@ class Map {
     /// Uses the given normal map, e.g. the hardware's, dequantised.
     void set_normals(std::vector<glm::dvec3> normals);
 
+    /// Other heights for the displacement map to hold, the author's as its codes are. All else still follows from these.
+    void set_heights(std::vector<double> heights);
+
     /// Uses a Rank Table, in place of the Summed Height Test. It may be larger than the map.
     void set_ranks(RankTable table) { rank_table_ = std::move(table); }
     const RankTable& rank_table() const { return rank_table_; }
@@ -94,6 +101,13 @@ class Map {
     bool has_curvatures() const { return curvature_table_.columns > 0; }
     /// Of the cell nearest to the texel that contains t; level >= 2, at most the table's highest.
     Curvature curvature(const glm::dvec2& t, int level) const;
+
+    /// Filters the map down, for a Mipmap Test in place of the Summed Height Test.
+    void make_mipmap(MipmapFilter filter);
+    /// Heights of the blocks of 2^l x 2^l texels of each level l, row by row from the bottom; empty: none were made.
+    const std::vector<std::vector<double>>& mipmap() const { return mipmap_; }
+    /// Of the block that holds the texel that contains t; level: at most the last.
+    double mipmap_height(const glm::dvec2& t, int level) const;
 
     /// Width and height in texels of the Summed Height Test's three rectangles on an edge (4.2):
     ///     n_w = min(width,  max(1, int(|du| / 2)))     n_h = min(height, max(1, int(|dv| / 4)))
@@ -121,9 +135,11 @@ class Map {
     double scale_per_code_ = 0;
     glm::dvec2 texel_size_{1, 1};
     std::vector<glm::dvec3> normals_;  // given by set_normals(), else empty
+    std::vector<double> heights_;      // given by set_heights(), else empty
     SummedAreaTable sums_;
     RankTable rank_table_;
     CurvatureTable curvature_table_;
+    std::vector<std::vector<double>> mipmap_;
 };
 
 }  // namespace tessera::golden

@@ -57,6 +57,19 @@ void measure_curvature(const Vertex& i, const Vertex& j, const Vertex& m, const 
 }
 
 // Section 4.7. A rank and a bound, of r and s bits, have 6 and 5 bits in front of the point.
+// Section 4.9.
+double mipmap_deviation(const Vertex& i, const Vertex& j, const Vertex& m, const Map& map) {
+    const glm::dvec2 d = glm::abs(i.texture - j.texture);
+    const double half = std::max(d.x, d.y) / 2;
+    const int highest = static_cast<int>(map.mipmap().size()) - 1;
+    int level = 0;
+    while (level < highest && std::exp2(level + 1) <= half) {
+        ++level;
+    }
+    const auto height = [&](const Vertex& v) { return map.mipmap_height(v.texture, level); };
+    return std::abs(height(m) - (height(i) + height(j)) / 2);
+}
+
 bool asks_by_rank(const Map::Rank& rank, const Vertex& i, const Vertex& j, const Parameters& parameters) {
     if (parameters.rank_view == RankView::none) {
         return rank.rank > parameters.rank_threshold || rank.bound > parameters.bound_threshold;
@@ -170,6 +183,11 @@ EdgeEvaluation evaluate_edge(const Vertex& i, const Vertex& j, const Map& map, c
     if (map.has_curvatures()) {
         measure_curvature(i, j, m, map, e);
         e.summed_height_test = enabled.summed_height && e.curvature > parameters.curvature_threshold;
+    }
+
+    if (!map.mipmap().empty()) {
+        e.mipmap_deviation = mipmap_deviation(i, j, m, map);
+        e.summed_height_test = enabled.summed_height && e.mipmap_deviation > parameters.mipmap_threshold;
     }
 
     e.view_length = view_length(i, j);

@@ -35,6 +35,7 @@ struct Parameters {
     int rank_threshold = 0;              ///< of the Rank Test, section 4.7
     int bound_threshold = 0;             ///< likewise
     double curvature_threshold = 0;      ///< codes times texels, section 4.8
+    double mipmap_threshold = 0;         ///< codes, section 4.9
     RankView rank_view = RankView::none;
     int rank_bits = 0, bound_bits = 0;  ///< of the table's entries, for errors as seen
     glm::dvec3 eye{0};                  ///< world
@@ -120,6 +121,7 @@ struct EdgeEvaluation {
     double summed_height = 0;        ///< |2 S(r_ij) - S(r_i) - S(r_j)|, exact
     double summed_height_limit = 0;  ///< SHT = summed_height > it: 4 * threshold, or threshold * area
     double curvature = 0;            ///< with a Curvature Table: CT = it > the threshold; codes times texels
+    double mipmap_deviation = 0;     ///< with a mipmap: MT = it > the threshold; codes
     double view_length = 0;          ///< VT = it > view_threshold; Manhattan, pixels; +infinity if one end is not in
                                      ///< front, -infinity if both are not
     /// Cosine between N' and the half vector: the greater of the two ends, and the midpoint's. HT = one of them >

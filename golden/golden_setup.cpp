@@ -97,6 +97,7 @@ Parameters make_parameters(const Scene& scene) {
     result.summed_height_threshold = scene.summed_height_threshold * scene.highest_code;
     result.area = scene.area;
     result.curvature_threshold = scene.curvature_threshold * scene.highest_code;
+    result.mipmap_threshold = scene.mipmap_threshold * scene.highest_code;
     // Beyond 2^20 a threshold never comes back into an entry's 16 bits.
     const auto rounded_down = [](double threshold) {
         return static_cast<int>(std::floor(std::clamp(threshold, -0x1p20, 0x1p20)));

@@ -51,6 +51,7 @@ struct Scene {
     double rank_threshold = 0;          ///< full scale times the square root of a texel; as seen: pixels in its place
     double bound_threshold = 0;         ///< full scale; as seen: pixels
     double curvature_threshold = 0;     ///< full scale times texels
+    double mipmap_threshold = 0;        ///< full scale
     int rank_bits = 0, bound_bits = 0;  ///< of a Rank Table's entry; 0: it has none
     RankView rank_view = RankView::none;
     double texel_area = 1;  ///< world units

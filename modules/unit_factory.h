@@ -11,6 +11,7 @@
 #include "modules/units/edge_tests/calculate_new_u.h"
 #include "modules/units/edge_tests/collect_tests.h"
 #include "modules/units/edge_tests/curvature.h"
+#include "modules/units/edge_tests/mipmap.h"
 #include "modules/units/edge_tests/normal.h"
 #include "modules/units/edge_tests/rank.h"
 #include "modules/units/edge_tests/sequence_tests.h"
@@ -67,6 +68,8 @@ class UnitFactory {
                 return rank_test(name, context);
             case datapath::HeightTest::curvature:
                 return curvature_test(name, context);
+            case datapath::HeightTest::mipmap:
+                return mipmap_test(name, context);
             case datapath::HeightTest::summed_height:
                 break;
         }
@@ -80,6 +83,9 @@ class UnitFactory {
     }
     virtual std::unique_ptr<CurvatureTest> curvature_test(Name name, const UnitContext& context) {
         return std::make_unique<CurvatureTest>(name, context);
+    }
+    virtual std::unique_ptr<MipmapTest> mipmap_test(Name name, const UnitContext& context) {
+        return std::make_unique<MipmapTest>(name, context);
     }
     virtual std::unique_ptr<NormalTest> normal_test(Name name, const UnitContext& context, Parts takes) {
         return std::make_unique<NormalTest>(name, context, takes);

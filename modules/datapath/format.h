@@ -22,7 +22,7 @@ struct Format {
 };
 
 /// The test of heights a machine has, on a table of its own. The paper's is `summed_height`.
-enum class HeightTest : std::uint8_t { summed_height, rank, curvature };
+enum class HeightTest : std::uint8_t { summed_height, rank, curvature, mipmap };
 
 /// How the displacement map and the normal map are read at t (bilinear.h).
 enum class MapFilter : std::uint8_t {
@@ -68,6 +68,8 @@ constexpr int height_entry_bits(const Formats& formats) {
                    (formats.distances && formats.bound_bits > 0 ? radius_bits : 0);
         case HeightTest::curvature:
             return curvature_entry_bits;
+        case HeightTest::mipmap:
+            return formats.displacement.bits;
         case HeightTest::summed_height:
             break;
     }

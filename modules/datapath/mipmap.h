@@ -39,12 +39,17 @@ constexpr MipmapBlocks mipmap_blocks(int level, const MapGeometry& map) {
     }
 }
 
-/// The level of a single block.
+/// The level of a single block, the table's last.
 constexpr int highest_mipmap_level(const MapGeometry& map) {
     int level = 0;
     while ((std::max(map.width, map.height) - 1) >> level != 0)
         ++level;
     return level;
+}
+
+/// Of all levels.
+constexpr std::uint64_t mipmap_entries(const MapGeometry& map) {
+    return mipmap_blocks(highest_mipmap_level(map), map).first_entry + 1;
 }
 
 /// Level for an edge: the highest whose blocks are at most half as long as the longer of |du| and |dv|, as the Summed
@@ -68,9 +73,29 @@ constexpr std::uint64_t mipmap_address(const TexCoord& t, int level, std::uint64
     return base + entry * entry_bytes(formats.displacement.bits);
 }
 
-/// The Mipmap Test: |2 M_ij - M_i - M_j| > threshold, codes; twice the height by which the midpoint leaves the chord.
-constexpr bool mipmap_test(std::uint32_t i, std::uint32_t j, std::uint32_t ij, std::uint32_t threshold) {
-    return absolute_difference(2 * std::int64_t{ij}, std::int64_t{i} + j) > threshold;
+/// Addresses of the three entries that are read for an edge: of its ends, then of its midpoint.
+template <class Visit>
+constexpr void mipmap_reads(const TexCoord& i, const TexCoord& j, const TexCoord& ij, const Registers& r,
+                            Visit&& visit) {
+    const int level = mipmap_level(i, j, r.map, r.formats);
+    for (const TexCoord& t : {i, j, ij})
+        visit(mipmap_address(t, level, r.height_table.base, r.map, r.formats));
+}
+
+/// |2 M_ij - M_i - M_j|, of these entries: twice the height by which the midpoint leaves the chord.
+template <class Entries>
+constexpr std::uint64_t mipmap_difference(const Entries& read) {
+    return absolute_difference(static_cast<std::int64_t>(2 * read[2]), static_cast<std::int64_t>(read[0] + read[1]));
+}
+
+/// Bits of the Mipmap Test's threshold: those of the difference it is compared with.
+constexpr int mipmap_threshold_bits(const Formats& formats) {
+    return MipmapWidths{formats}.heights.bits;
+}
+
+/// MT: the difference is above the threshold.
+constexpr bool mipmap_test(std::uint64_t difference, const TestParameters& parameters) {
+    return difference > parameters.mipmap_threshold;
 }
 
 }  // namespace tessera::datapath

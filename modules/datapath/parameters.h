@@ -52,6 +52,7 @@ struct TestParameters {
     std::int32_t rank_threshold = 0, bound_threshold = 0;
     bool rank_per_pixel = false;            ///< with Formats::distances: errors count per pixel, not per point
     std::uint64_t curvature_threshold = 0;  ///< Curvature Test: 1/8 codes times texels
+    std::uint32_t mipmap_threshold = 0;     ///< Mipmap Test: 1/2 codes
     std::uint32_t view_threshold = 0;       ///< screen's format
     std::uint32_t generation_limit = 12;
 

@@ -5,6 +5,7 @@
 
 #include "modules/datapath/curvature.h"
 #include "modules/datapath/edge_tests.h"
+#include "modules/datapath/mipmap.h"
 #include "modules/datapath/parameters.h"
 #include "modules/datapath/transform.h"
 
@@ -117,6 +118,9 @@ constexpr void describe_registers(AnyRegisters& r, Visit&& visit) {
         field("tests.curvature_threshold", number, curvature_threshold_bits(f), "codes times texels, 3 fraction bits",
               r.tests.curvature_threshold);
     }
+    if (f.height_test == HeightTest::mipmap)
+        field("tests.mipmap_threshold", number, mipmap_threshold_bits(f), "codes, 1 fraction bit",
+              r.tests.mipmap_threshold);
 }
 
 /// The same with the values of a group as a std::array of std::int64_t.

@@ -1,6 +1,7 @@
 #pragma once
 #include "modules/datapath/curvature.h"
 #include "modules/datapath/map_entry.h"
+#include "modules/datapath/mipmap.h"
 #include "modules/datapath/parameters.h"
 
 namespace tessera::datapath {
@@ -23,6 +24,10 @@ constexpr void shape_tables(Registers& r) {
         case HeightTest::curvature:  // cells of all levels, in one row
             table.columns =
                 r.covered.columns == 0 ? 0 : static_cast<std::uint32_t>(curvature_entries(covered_texels(r)));
+            table.rows = 1;
+            break;
+        case HeightTest::mipmap:  // blocks of all levels, likewise
+            table.columns = static_cast<std::uint32_t>(mipmap_entries(r.map));
             table.rows = 1;
             break;
     }

@@ -71,7 +71,7 @@ std::vector<DeviceRegister> control_registers(const Formats& f, const LargestMap
         {"format.summed_height", 0x090, 16, 1, false, packed(f.summed_height), ro, false, "", format},
         {"format.screen", 0x094, 16, 1, false, packed(f.screen), ro, false, "", format},
         {"features", 0x098, 16, 1, false, features(f), ro, false, "",
-         "what the design has; from bit 8 on, bits of a generation"},
+         "what the design has; from bit 8 to 11, bits of a generation"},
         {"largest_map", 0x09c, 32, 1, false, largest.width | std::uint64_t{largest.height} << 16, ro, false, "",
          "columns, and from bit 16 on rows, of the largest map"},
         {"entry_bytes", 0x0a0, 24, 1, false, entry_sizes(f), ro, false, "",

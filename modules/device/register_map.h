@@ -55,7 +55,7 @@ inline constexpr std::uint32_t control_start = 1, control_reset = 2;
 inline constexpr std::uint32_t status_busy = 1, status_done = 2, status_error = 4, status_resetting = 8;
 inline constexpr std::uint32_t interrupt_done = 1, interrupt_error = 2;
 
-inline constexpr std::array<RegisterBit, 19> register_bits{{
+inline constexpr std::array<RegisterBit, 20> register_bits{{
     {"control", "start", 0, "begins a frame"},
     {"control", "reset", 1, "stops a frame and gives all registers their reset values"},
     {"status", "busy", 0, "a frame is under way, or a reset waits for the machine to be empty"},
@@ -74,7 +74,8 @@ inline constexpr std::array<RegisterBit, 19> register_bits{{
     {"features", "bilinear", 4, "maps are read between four texels"},
     {"features", "rank_test", 5, "a Rank Test in the Summed Height Test's place"},
     {"features", "curvature_test", 6, "a Curvature Test there"},
-    {"features", "distances", 7, "it judges errors as the viewer sees them"},
+    {"features", "distances", 7, "the Rank Test judges errors as the viewer sees them"},
+    {"features", "mipmap_test", 12, "a Mipmap Test there"},
 }};
 
 /// Why a frame was refused or stopped: register `error`. What `error_address` then holds stands in the meaning.

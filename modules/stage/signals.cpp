@@ -71,6 +71,11 @@ const std::vector<UnitNumbers::Entry>& UnitNumbers::all() {
         {58, "tessellation_tests_2.curvature_test"},
         {59, "curvature_table"},
         {60, "curvature_table_cache"},
+        {61, "tessellation_tests_0.mipmap_test"},
+        {62, "tessellation_tests_1.mipmap_test"},
+        {63, "tessellation_tests_2.mipmap_test"},
+        {64, "mipmap_table"},
+        {65, "mipmap_table_cache"},
     };
     return entries;
 }

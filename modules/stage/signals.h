@@ -20,9 +20,9 @@ class UnitNumbers {
         const char* name;  ///< SystemC name without the top module's
     };
     static const std::vector<Entry>& all();
-    static constexpr unsigned bits = 6;
+    static constexpr unsigned bits = 7;
     static constexpr unsigned nobody = 0;
-    static constexpr unsigned other = 63;  ///< not in all()
+    static constexpr unsigned other = 127;  ///< not in all()
 
     /// By its name, which is looked up once per object.
     unsigned of(const sc_core::sc_object* object);

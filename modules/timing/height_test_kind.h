@@ -23,12 +23,14 @@ struct HeightTestKind {
     unsigned feature;   ///< its bit of the device's register `features`; 0: none
 };
 
-inline constexpr std::array<HeightTestKind, 3> height_test_kinds = {{
+inline constexpr std::array<HeightTestKind, 4> height_test_kinds = {{
     {"summed_height", "Summed Height Test", "summed_height_test", "summed_height_table", &Timing::summed_height_test,
      &Timing::summed_height_table, 3, 1, true, 0},
     {"rank", "Rank Test", "rank_test", "rank_table", &Timing::rank_test, &Timing::rank_table, 1, 0, false, 32},
     {"curvature", "Curvature Test", "curvature_test", "curvature_table", &Timing::curvature_test,
      &Timing::curvature_table, 1, 3, false, 64},
+    {"mipmap", "Mipmap Test", "mipmap_test", "mipmap_table", &Timing::mipmap_test, &Timing::mipmap_table, 3, 0, false,
+     4096},
 }};
 
 constexpr const HeightTestKind& kind_of(datapath::HeightTest test) {

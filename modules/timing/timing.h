@@ -62,6 +62,7 @@ struct Timing {
     UnitTiming summed_height_test{3, 1, 1};  ///< differences, addresses, compare; the table reads come on top
     UnitTiming rank_test{1, 1, 1};           ///< compare; the table read comes on top
     UnitTiming curvature_test{4, 1, 1};      ///< products, sum, shift, compare; the table read comes on top
+    UnitTiming mipmap_test{2, 1, 1};         ///< level and addresses, compare; the table reads come on top
     UnitTiming normal_test{9, 1, 1};         ///< normalise, bump, normalise, compare; the map read comes on top
     unsigned highlight_test_latency = 1;     ///< N'.H: on top of the Normal Test's, in a design with a Highlight Test
     UnitTiming view_test{1, 1, 1};
@@ -76,6 +77,7 @@ struct Timing {
     MemoryTiming summed_height_table;
     MemoryTiming rank_table;
     MemoryTiming curvature_table;
+    MemoryTiming mipmap_table;
     OffChipTiming off_chip_memory;
     StallParameters stalls;
 

@@ -93,6 +93,8 @@ void declare_timing_keys(const Keys& key) {
         key, "curvature_test", "Curvature Test", [](auto& t) -> auto& { return t.curvature_test; },
         ", table reads come on top");
     declare_unit_keys(
+        key, "mipmap_test", "Mipmap Test", [](auto& t) -> auto& { return t.mipmap_test; }, ", table reads come on top");
+    declare_unit_keys(
         key, "normal_test", "Normal Test", [](auto& t) -> auto& { return t.normal_test; }, ", table reads come on top");
     key.add_number(
         "highlight_test_latency", [](auto& t) -> auto& { return t.highlight_test_latency; }, "cycles", {0, most_cycles},
@@ -132,6 +134,8 @@ void declare_timing_keys(const Keys& key) {
         key, "rank_table", "Rank Table", [](auto& t) -> auto& { return t.rank_table; });
     declare_memory_keys(
         key, "curvature_table", "Curvature Table", [](auto& t) -> auto& { return t.curvature_table; });
+    declare_memory_keys(
+        key, "mipmap_table", "Mipmap Table", [](auto& t) -> auto& { return t.mipmap_table; });
     key.add_number(
         "off_chip_latency", [](auto& t) -> auto& { return t.off_chip_memory.latency; }, "cycles", {0, most_places},
         "Off-chip memory: from a request's last byte to its answer");

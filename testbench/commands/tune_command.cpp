@@ -6,6 +6,8 @@
 #include <cctype>
 #include <fstream>
 #include <limits>
+#include <optional>
+#include <string_view>
 
 #include "testbench/commands/load_job.h"
 #include "testbench/commands/output_folder.h"
@@ -107,28 +109,30 @@ void add_grid(const std::string& grid, const TuneRequest& request, const Searche
 Searched choose_tests(const TuneOrder& order, TuneRequest& request) {
     Job::Tests& tests = request.job.tests;
     Job::Hardware& hardware = request.job.hardware;
-    const auto listed = [&](const char* name) {
+    const auto listed = [&](std::string_view name) {
         return std::find(order.tests.begin(), order.tests.end(), name) != order.tests.end();
     };
     const bool by_job = order.tests.empty();
     Searched searched;
     searched.ranks = by_job ? hardware.height_test == HeightTest::rank : listed("rank");
-    const bool curvature = listed("curvature");
-    searched.paper =
-        by_job ? !searched.ranks : listed("normal") || listed("summed_height") || curvature || listed("view");
-    if (curvature && listed("summed_height"))
-        throw InputError("--tests: summed_height and curvature stand in one place; tune with one of them");
+    std::optional<HeightTest> of_heights;
+    for (const HeightTest test : {HeightTest::summed_height, HeightTest::curvature, HeightTest::mipmap}) {
+        if (!listed(name_of(test)))
+            continue;
+        if (of_heights)
+            throw InputError(fmt::format("--tests: {} and {} stand in one place; tune with one of them",
+                                         name_of(*of_heights), name_of(test)));
+        of_heights = test;
+    }
+    searched.paper = by_job ? !searched.ranks : listed("normal") || of_heights || listed("view");
     if (hardware.height_test == HeightTest::rank) {
         hardware.height_test = HeightTest::summed_height;
         hardware.triangulation = Job::Hardware{}.triangulation;
     }
-    if (curvature)
-        hardware.height_test = HeightTest::curvature;
-    else if (listed("summed_height"))
-        hardware.height_test = HeightTest::summed_height;
+    hardware.height_test = of_heights.value_or(hardware.height_test);
     request.space = order.vary;
     request.space.normal = by_job ? tests.normal : listed("normal");
-    request.space.summed_height = by_job ? tests.summed_height : listed("summed_height") || curvature;
+    request.space.summed_height = by_job ? tests.summed_height : of_heights.has_value();
     request.space.view = by_job ? tests.view : listed("view");
     // searching a test's threshold switches the test on
     tests.normal = tests.normal || request.space.normal;
@@ -153,6 +157,9 @@ Searched choose_tests(const TuneOrder& order, TuneRequest& request) {
         throw InputError(
             "tests.highlight = true: the search does not consider highlights; tune with --set "
             "tests.highlight=false and set it in the tuned job, which then has more triangles");
+    if (request.job.map.heights == MapHeights::fitted)
+        throw InputError(
+            "map.heights = \"fitted\" suits one mesh: tune with --set map.heights=given and set it in the tuned job");
     if (request.job.hardware.culling != Culling::none)
         throw InputError(
             "hardware.culling = \"back\": culled triangles cannot be measured; tune with --set "

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>
+
+#include "testbench/job/job_choices.h"
 
 namespace tessera {
 
@@ -41,7 +44,7 @@ void TuneOptions::add_to(CLI::App& tune) {
     tune.add_option("--metric", metric_, "error to use: rms or max");
     tune.add_option(
             "--tests", order_.tests,
-            "thresholds to search: normal, summed_height or curvature, view; rank: of a Rank Test, with --metric max of a "
+            "thresholds to search: normal, summed_height or curvature or mipmap, view; rank: of a Rank Test, with --metric max of a "
             "Bound Test; with both, the better is taken; default: of the tests the job enables")
         ->delimiter(',')
         ->allow_extra_args(false);
@@ -74,9 +77,11 @@ TuneOrder TuneOptions::order() const {
     if (metric_ != "rms" && metric_ != "max")
         refuse(fmt::format("--metric {}: must be rms or max", metric_));
     order.largest = metric_ == "max";
+    const std::vector<std::string_view> height_tests = names_of<HeightTest>();
     for (const std::string& test : order.tests)
-        if (test != "normal" && test != "summed_height" && test != "curvature" && test != "view" && test != "rank")
-            refuse(fmt::format("--tests {}: must be normal, summed_height, curvature, view or rank", test));
+        if (test != "normal" && test != "view" &&
+            std::find(height_tests.begin(), height_tests.end(), test) == height_tests.end())
+            refuse(fmt::format("--tests {}: must be normal, summed_height, curvature, mipmap, view or rank", test));
     if (vary_given_->count() > 0) {
         order.vary.summed_height_unit = order.vary.generation_limit = order.vary.triangulation = false;
         for (const std::string& choice : vary_) {

@@ -12,6 +12,8 @@ namespace tessera {
 
 enum class MeshSource { plane, cylinder, sphere, file, patches, run, lattice };
 enum class MapSource { half_donut, text, noise, constant, ramp, file };
+/// What the displacement map holds: the map's heights, or those that suit the job's own mesh best.
+enum class MapHeights { given, fitted };
 using Addressing = datapath::AddressMode;
 using datapath::HeightTest;
 using datapath::MapFilter;
@@ -67,6 +69,7 @@ struct Job {
         std::int64_t seed = 1;         // noise map
         std::string text = "tessera";  // text map
         MapRange range;
+        MapHeights heights = MapHeights::given;
         Addressing address_u = Addressing::clamp;
         Addressing address_v = Addressing::clamp;
 

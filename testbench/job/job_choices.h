@@ -48,6 +48,16 @@ constexpr std::string_view name_of(MapSource value) {
     return {};
 }
 
+constexpr std::string_view name_of(MapHeights value) {
+    switch (value) {
+        case MapHeights::given:
+            return "given";
+        case MapHeights::fitted:
+            return "fitted";
+    }
+    return {};
+}
+
 constexpr std::string_view name_of(Addressing value) {
     switch (value) {
         case Addressing::clamp:
@@ -110,6 +120,16 @@ constexpr std::string_view name_of(RankView value) {
             return "per_point";
         case RankView::per_pixel:
             return "per_pixel";
+    }
+    return {};
+}
+
+constexpr std::string_view name_of(MipmapFilter value) {
+    switch (value) {
+        case MipmapFilter::mean:
+            return "mean";
+        case MipmapFilter::maximum:
+            return "maximum";
     }
     return {};
 }

@@ -228,6 +228,7 @@ std::vector<KeyTable> declare_keys() {
         key.add("seed", &Map::seed, "-", between(0, 4294967295.0), "Seed of the noise map");
         key.add("text", &Map::text, KeyKind::text, "Text of the text map");
         key.add("range", &Map::range, "the map's own units", coordinate_range, "Which map values displacement.scale spans: full, what the source can hold (0 to the maximum value of a PGM, to 255 or 65535 of a PNG; 0 to 1 of an EXR and of built-in maps); data, the lowest to the highest that occurs; or [low, high]. Values outside it extrapolate linearly. With data or [low, high] the displacement codes span the values that occur, and so does the full scale of tests.summed_height_threshold");
+        key.add("heights", &Map::heights, "What the displacement map holds: the map's heights, or heights fitted to it: the host finds the mesh of the job's own thresholds and gives its vertices those with which its squared error at the texels' centres is least. The tests' tables stay those of the map, and errors are measured against it");
         key.add("address_u", &Map::address_u, "Beyond the map's left and right border; repeat closes a cylinder's seam");
         key.add("address_v", &Map::address_v, "Beyond the map's lower and upper border");
     });
@@ -262,6 +263,8 @@ std::vector<KeyTable> declare_keys() {
         key.add("rank_threshold", &Tests::rank_threshold, "full scale times the root of a texel; pixels times the root of a texel (per_point), of a pixel (per_pixel)", between(0, 1e9), "With hardware.height_test = \"rank\" and formats.rank_bits: an edge splits if its midpoint takes more off the squared error, per triangle that it costs: the root of it");
         key.add("bound_threshold", &Tests::bound_threshold, "full scale; pixels (per_point, per_pixel)", between(0, 1e6), "With hardware.height_test = \"rank\" and formats.bound_bits: no point of the map lies farther from the mesh, along the normal, or appears farther from it in the picture; of a mesh that the rank's lattice fits");
         key.add("curvature_threshold", &Tests::curvature_threshold, "full scale times texels", between(0, 1e9), "With hardware.height_test = \"curvature\": an edge splits if the map leaves its chord by more than this over the edge's length, in texels and rounded up to a power of two");
+        key.add("mipmap_filter", &Tests::mipmap_filter, "With hardware.height_test = \"mipmap\": what a block of texels has for its height, the mean or the maximum");
+        key.add("mipmap_threshold", &Tests::mipmap_threshold, "full scale", between(0, 1), "With hardware.height_test = \"mipmap\": an edge splits if the filtered map at its midpoint leaves the chord between those at its ends by more");
         key.add("view", &Tests::view, "View Test; off: allows every split");
         key.add("view_threshold", &Tests::view_threshold, "pixels", between(0, 1e6), "View Test: only a longer edge (Manhattan length on screen) is split");
         key.add("tex_coord", &Tests::tex_coord, "Tex Coord Test, ends at the map's resolution; off: allows every split");
@@ -294,7 +297,7 @@ std::vector<KeyTable> declare_keys() {
         using Hardware = Job::Hardware;
         key.add("design", &Hardware::design, "Sets a design's keys, which a job may then set alone: the paper's, or one that leaves out what the paper's does twice (modules/README.md, Designs); the mesh is the same");
         key.add("triangulation", &Hardware::triangulation, "Diagonal when two edges split: the shorter one, or always the first or second; greatest_rank: of the edges that ask to be split the one of greatest rank is cut, with hardware.height_test = \"rank\"");
-        key.add("height_test", &Hardware::height_test, "The Summed Height Test (the paper's), or in its place the Rank Test: the host ranks the points of the base mesh's lattice, and an edge splits if the rank of its midpoint is above the threshold; or the Curvature Test, for any base mesh: the host fits quadratics to the map, and an edge splits if they leave its chord");
+        key.add("height_test", &Hardware::height_test, "The Summed Height Test (the paper's), or in its place the Rank Test: the host ranks the points of the base mesh's lattice, and an edge splits if the rank of its midpoint is above the threshold; or the Curvature Test, for any base mesh: the host fits quadratics to the map, and an edge splits if they leave its chord; or the Mipmap Test, which the paper weighs its own against: the map filtered down to an edge's length in place of sums");
         key.add("culling", &Hardware::culling, "Back-face culling of finished triangles");
         key.add("queue_order", &Hardware::queue_order, "Triangle Queue: which waiting triangle goes next, the oldest or the newest");
         key.add("queue_watermark", &Hardware::queue_watermark, "triangles", between(1, any_count), "Host triangles are taken while fewer than this many wait");

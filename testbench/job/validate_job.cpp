@@ -99,6 +99,21 @@ void check_map(const Job& job, Faults& faults) {
     }
 }
 
+/// Fitted heights are those of whole texels under vertices, and no sums.
+void check_heights(const Job& job, Faults& faults) {
+    if (job.map.heights == MapHeights::given)
+        return;
+    faults.unless(
+        job.hardware.displacement_filter == MapFilter::nearest,
+        "`map.heights` = \"fitted\", but `hardware.displacement_filter` = \"{}\" mixes the heights of texels: set "
+        "it to \"nearest\"",
+        name_of(job.hardware.displacement_filter));
+    faults.unless(
+        !job.hardware.one_texel_from_map || job.hardware.height_test != HeightTest::summed_height,
+        "`map.heights` = \"fitted\", but with `hardware.one_texel_from_map` = true the Summed Height Test takes a "
+        "fitted height for the map's: set it to false");
+}
+
 void check_light(const Job::Hardware& hardware, Faults& faults) {
     faults.unless(hardware.light != std::array<double, 3>{},
                   "`hardware.light` = {} has no direction: give it one, such as [0, 0, 1]", toml_value(hardware.light));
@@ -167,6 +182,7 @@ void validate(const Job& job) {
     Faults faults;
     check_mesh(job.mesh, faults);
     check_map(job, faults);
+    check_heights(job, faults);
     for (const std::string& fault : setting_faults(job.camera, job.formats, job.tests))
         faults.unless(false, "{}", fault);
     check_light(job.hardware, faults);

@@ -7,6 +7,7 @@
 #include "modules/datapath/edge_tests.h"
 #include "modules/datapath/map_entry.h"
 #include "modules/datapath/midpoint.h"
+#include "modules/datapath/mipmap.h"
 #include "modules/datapath/rank_view.h"
 #include "modules/datapath/rectangle.h"
 #include "modules/datapath/transform.h"
@@ -89,9 +90,19 @@ std::uint64_t BareRecursion::curvature_of(const TexCoord& i, const TexCoord& j, 
     curvature_reads(i, j, ij, r, [&](std::uint64_t address) {
         const TableLayout& table = codes ? r.displacement_map : r.height_table;
         const std::size_t index = (address - table.base) / table.entry_bytes;
-        read[count++] = codes ? setup_.map.codes[index] : setup_.curvature_table.entries[index];
+        read[count++] = codes ? setup_.heights()[index] : setup_.curvature_table.entries[index];
     });
     return curvature_of_entries(i, j, read, r.formats);
+}
+
+std::uint64_t BareRecursion::mipmap_difference_of(const TexCoord& i, const TexCoord& j, const TexCoord& ij) const {
+    const TableLayout& table = setup_.registers.height_table;
+    std::array<std::uint64_t, 3> read{};
+    std::size_t count = 0;
+    mipmap_reads(i, j, ij, setup_.registers, [&](std::uint64_t address) {
+        read[count++] = setup_.mipmap_table.entries[(address - table.base) / table.entry_bytes];
+    });
+    return datapath::mipmap_difference(read);
 }
 
 bool BareRecursion::test_heights(const Vertex& i, const Vertex& j, EdgeTests& edge) const {
@@ -101,6 +112,8 @@ bool BareRecursion::test_heights(const Vertex& i, const Vertex& j, EdgeTests& ed
             return test_rank(i, j, edge);
         case HeightTest::curvature:
             return curvature_test(curvature_of(i.texture, j.texture, edge.texture), r.tests);
+        case HeightTest::mipmap:
+            return mipmap_test(mipmap_difference_of(i.texture, j.texture, edge.texture), r.tests);
         case HeightTest::summed_height:
             break;
     }
@@ -116,7 +129,7 @@ Direction BareRecursion::map_normal_at(const TexCoord& t) const {
 
 std::uint32_t BareRecursion::code_at(const TexCoord& t) const {
     const Registers& r = setup_.registers;
-    return map_code(t, entries_at(t, r.displacement_map, setup_.map.codes).data(), r.formats);
+    return map_code(t, entries_at(t, r.displacement_map, setup_.heights()).data(), r.formats);
 }
 
 template <class Entry>

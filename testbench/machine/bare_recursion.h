@@ -49,6 +49,9 @@ class BareRecursion {
     /// What the Curvature Test compares, of an edge.
     std::uint64_t curvature_of(const datapath::TexCoord& i, const datapath::TexCoord& j,
                                const datapath::TexCoord& ij) const;
+    /// Likewise the Mipmap Test.
+    std::uint64_t mipmap_difference_of(const datapath::TexCoord& i, const datapath::TexCoord& j,
+                                       const datapath::TexCoord& ij) const;
 
   private:
     datapath::ChildIndices children_of(const datapath::TrianglePass& pass) const;

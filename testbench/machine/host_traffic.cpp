@@ -38,8 +38,9 @@ HostTraffic first_frame_traffic(const MachineSetup& setup) {
 
 HostTraffic next_frame_traffic(const MachineSetup& before, const MachineSetup& now) {
     HostTraffic traffic = first_frame_traffic(now);
-    if (before.map.codes == now.map.codes) {
+    if (before.heights() == now.heights())
         traffic.displacement_map = 0;
+    if (before.map.codes == now.map.codes) {
         traffic.summed_height_table = 0;
         // the normals follow from heights and texels' sizes, of which only the quotients matter
         if (before.height_per_code / before.texel_size[0] == now.height_per_code / now.texel_size[0] &&

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/resolve_job.h"
 #include "testbench/setup/prepare_model.h"
+#include "testbench/setup/tables/fitted_heights.h"
 
 namespace tessera {
 
@@ -50,6 +52,21 @@ SceneSettings scene_settings(const Job& job) {
     return settings;
 }
 
+/// Heights for the mesh that the map itself gives. A mesh beyond the job's limit gets none: its run ends there.
+void fit_heights_to_own_mesh(std::int64_t most_triangles, MachineSetup& setup) {
+    EmittedMesh mesh;
+    const std::uint64_t most_edges = 6 * static_cast<std::uint64_t>(most_triangles);  // 3 a pass, at most 2 passes each
+    if (BareRecursion(setup).run(mesh, most_edges) >= most_edges)
+        return;
+    std::vector<TextureTriangle> triangles;
+    triangles.reserve(mesh.triangles.size());
+    for (const EmittedTriangle& triangle : mesh.triangles) {
+        const auto& corners = triangle.corners;
+        triangles.push_back({corners[0].texture, corners[1].texture, corners[2].texture});
+    }
+    setup.fitted_heights = fit_heights(setup.map, triangles, setup.registers.formats).codes;
+}
+
 /// A sentence for the report if the map's values are so few of those that displacement.scale spans that the surface is
 /// nearly flat (metres in 16 bits); else empty.
 std::string unused_range_remark(const MapRange& range, const HeightMap& map) {
@@ -79,6 +96,8 @@ MachineSetup make_setup(const Job& job, const BaseMesh& mesh, const HeightMap& m
         setup.remarks.insert(setup.remarks.begin(), std::move(remark));
     setup.design = make_design(job);
     setup.machines = static_cast<unsigned>(job.hardware.machines);
+    if (job.map.heights == MapHeights::fitted)
+        fit_heights_to_own_mesh(job.limits.triangles, setup);
     return setup;
 }
 

@@ -102,7 +102,7 @@ void rank_lattice(PreparedScene& scene, const std::vector<TextureTriangle>& base
 }
 
 /// The height test's table, unless it is written from the map alone.
-void make_height_table(PreparedScene& scene) {
+void make_height_table(const TestSettings& tests, PreparedScene& scene) {
     datapath::Registers& registers = scene.registers;
     std::vector<TextureTriangle> base;
     for (const datapath::Triangle& triangle : scene.base_triangles) {
@@ -119,6 +119,9 @@ void make_height_table(PreparedScene& scene) {
             break;
         case datapath::HeightTest::curvature:
             scene.curvature_table = make_curvature_table(scene.map, base, registers.formats);
+            break;
+        case datapath::HeightTest::mipmap:
+            scene.mipmap_table = make_mipmap_table(scene.map, tests.mipmap_filter);
             break;
     }
 }
@@ -155,7 +158,7 @@ PreparedScene prepare_model(const SceneSettings& settings, const BaseMesh& mesh,
     formats.distances = formats.height_test == datapath::HeightTest::rank && settings.tests.rank_view != RankView::none;
     registers.transform = make_transform(settings.camera, model_scale, formats, saturated);
     formats.view_distance = view_distance_format(registers.transform, formats.position);
-    make_height_table(scene);
+    make_height_table(settings.tests, scene);
     remark_on_bound(settings, mesh, scene);
     lay_out_tables(registers);
 

@@ -11,6 +11,7 @@
 #include "testbench/setup/quantised_map.h"
 #include "testbench/setup/scene_settings.h"
 #include "testbench/setup/tables/curvature_table.h"
+#include "testbench/setup/tables/mipmap_table.h"
 #include "testbench/setup/tables/rank_table.h"
 
 namespace tessera {
@@ -26,9 +27,12 @@ struct InputSaturations {
 struct PreparedScene {
     datapath::Registers registers;
     QuantisedMap map;
+    /// What the displacement map holds in place of the map's codes; empty: these.
+    std::vector<std::uint16_t> fitted_heights;
     std::vector<datapath::Triangle> base_triangles;
     RankTables rank_tables;          ///< with a Rank Test
     CurvatureTable curvature_table;  ///< with a Curvature Test
+    MipmapTable mipmap_table;        ///< with a Mipmap Test
 
     /// The machine's world = scale * (model - centre); scale is a power of two.
     double scale = 1;
@@ -42,6 +46,9 @@ struct PreparedScene {
     std::uint64_t texture_clamped = 0;        ///< vertices whose u or v lay outside a clamped map
     InputSaturations input_saturations;
     std::vector<std::string> remarks;  ///< one sentence each, for a report
+
+    /// What the displacement map holds. All other tables are made of `map`.
+    const std::vector<std::uint16_t>& heights() const { return fitted_heights.empty() ? map.codes : fitted_heights; }
 };
 
 /// Takes bytes that belong at an address of the machine's memory.

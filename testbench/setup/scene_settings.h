@@ -43,6 +43,13 @@ enum class RankView : std::uint8_t {
     per_pixel,  ///< as seen: of every pixel that a point covers
 };
 
+/// What a block of a mipmap has for its height. The paper names both without more detail (2.3.1): "mipmapping ... but with
+/// a maximal filter".
+enum class MipmapFilter : std::uint8_t {
+    mean,    ///< of its texels, rounded to nearest, halves up
+    maximum  ///< of its texels
+};
+
 /// The edge tests: split = (normal or summed_height or highlight) and view and tex_coord and generation. summed_height: or
 /// the test in its place (SceneSettings::height_test).
 struct TestSettings {
@@ -55,6 +62,8 @@ struct TestSettings {
     double rank_threshold = 0.05;      ///< full scale times the square root of a texel; as seen: seen_rank_threshold
     double bound_threshold = 0.01;     ///< full scale; as seen: pixels
     double curvature_threshold = 0.1;  ///< full scale times texels
+    MipmapFilter mipmap_filter = MipmapFilter::mean;
+    double mipmap_threshold = 0.02;  ///< full scale
     bool view = true;
     double view_threshold = 5;  ///< pixels, Manhattan
     bool tex_coord = true;

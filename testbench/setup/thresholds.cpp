@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "modules/datapath/curvature.h"
+#include "modules/datapath/mipmap.h"
 #include "testbench/common/error.h"
 #include "testbench/setup/rounding.h"
 
@@ -86,6 +87,11 @@ datapath::TestParameters make_tests(const TestSettings& tests, const datapath::F
             {"tests.curvature_threshold", tests.curvature_threshold, tests.summed_height,
              std::ldexp(highest_code, datapath::curvature_fraction),
              std::ldexp(1.0, datapath::curvature_threshold_bits(formats)) - 1, "formats.displacement_bits"});
+    // compared with |2 M_ij - M_i - M_j|, twice the height
+    if (formats.height_test == datapath::HeightTest::mipmap)
+        result.mipmap_threshold = static_cast<std::uint32_t>(
+            to_register({"tests.mipmap_threshold", tests.mipmap_threshold, tests.summed_height, 2 * highest_code,
+                         std::ldexp(1.0, datapath::mipmap_threshold_bits(formats)) - 1, "formats.displacement_bits"}));
     result.view_threshold = static_cast<std::uint32_t>(
         to_register({"tests.view_threshold", tests.view_threshold, tests.view, std::ldexp(1.0, formats.screen.fraction),
                      std::ldexp(1.0, formats.screen.bits), "formats.screen_fraction"}));

@@ -28,7 +28,7 @@ void write_displacement_map(const PreparedScene& scene, const TableSink& sink) {
     TableRow row(layout, sink);
     for (std::uint32_t y = 0; y < layout.rows; ++y) {
         for (std::uint32_t x = 0; x < layout.columns; ++x)
-            row.set(x, scene.map.code(x, y));
+            row.set(x, scene.heights()[std::size_t{y} * layout.columns + x]);
         row.write(y);
     }
 }
@@ -101,6 +101,9 @@ void write_tables(const PreparedScene& scene, const TableSink& sink) {
             break;
         case datapath::HeightTest::curvature:
             write_in_one_row(scene.registers.height_table, scene.curvature_table.entries, sink);
+            break;
+        case datapath::HeightTest::mipmap:
+            write_in_one_row(scene.registers.height_table, scene.mipmap_table.entries, sink);
             break;
     }
 }

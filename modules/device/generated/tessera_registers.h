@@ -103,6 +103,7 @@
 #define TESSERA_CURVATURE_TABLE_COLUMNS 0x238u
 #define TESSERA_CURVATURE_TABLE_ROWS 0x23cu
 #define TESSERA_TESTS_CURVATURE_THRESHOLD 0x240u
+#define TESSERA_TESTS_MIPMAP_THRESHOLD 0x248u
 #define TESSERA_REGISTER_BYTES 0x400u
 
 /* Bits of control registers. */
@@ -124,7 +125,8 @@
 #define TESSERA_FEATURES_BILINEAR (1u << 4)  /* maps are read between four texels */
 #define TESSERA_FEATURES_RANK_TEST (1u << 5)  /* a Rank Test in the Summed Height Test's place */
 #define TESSERA_FEATURES_CURVATURE_TEST (1u << 6)  /* a Curvature Test there */
-#define TESSERA_FEATURES_DISTANCES (1u << 7)  /* it judges errors as the viewer sees them */
+#define TESSERA_FEATURES_DISTANCES (1u << 7)  /* the Rank Test judges errors as the viewer sees them */
+#define TESSERA_FEATURES_MIPMAP_TEST (1u << 12)  /* a Mipmap Test there */
 
 /* Register `error`. */
 enum tessera_error {
@@ -281,7 +283,8 @@ struct tessera_finished_triangle {
     X(TRANSFORM_EYE_2, 0x230u, 40, 2, 1, 1) \
     X(CURVATURE_TABLE_COLUMNS, 0x238u, 13, 1, 0, 1) \
     X(CURVATURE_TABLE_ROWS, 0x23cu, 13, 1, 0, 1) \
-    X(TESTS_CURVATURE_THRESHOLD, 0x240u, 37, 2, 0, 1)
+    X(TESTS_CURVATURE_THRESHOLD, 0x240u, 37, 2, 0, 1) \
+    X(TESTS_MIPMAP_THRESHOLD, 0x248u, 17, 1, 0, 1)
 
 /* Every register's number: a place in that list. */
 enum tessera_register {

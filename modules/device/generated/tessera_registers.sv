@@ -290,6 +290,9 @@ package tessera_registers;
   localparam logic [11:0] TESTS_CURVATURE_THRESHOLD = 12'h240;
   localparam int unsigned TESTS_CURVATURE_THRESHOLD_BITS = 37;
   localparam logic [36:0] TESTS_CURVATURE_THRESHOLD_RESET = 37'h0;
+  localparam logic [11:0] TESTS_MIPMAP_THRESHOLD = 12'h248;
+  localparam int unsigned TESTS_MIPMAP_THRESHOLD_BITS = 17;
+  localparam logic [16:0] TESTS_MIPMAP_THRESHOLD_RESET = 17'h0;
 
   // Bits of control registers.
   localparam int unsigned CONTROL_START_BIT = 0;  // begins a frame
@@ -310,7 +313,8 @@ package tessera_registers;
   localparam int unsigned FEATURES_BILINEAR_BIT = 4;  // maps are read between four texels
   localparam int unsigned FEATURES_RANK_TEST_BIT = 5;  // a Rank Test in the Summed Height Test's place
   localparam int unsigned FEATURES_CURVATURE_TEST_BIT = 6;  // a Curvature Test there
-  localparam int unsigned FEATURES_DISTANCES_BIT = 7;  // it judges errors as the viewer sees them
+  localparam int unsigned FEATURES_DISTANCES_BIT = 7;  // the Rank Test judges errors as the viewer sees them
+  localparam int unsigned FEATURES_MIPMAP_TEST_BIT = 12;  // a Mipmap Test there
 
   // Register error.
   typedef enum logic [3:0] {

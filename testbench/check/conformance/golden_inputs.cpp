@@ -28,10 +28,15 @@ golden::Diagonal golden_diagonal(datapath::Triangulation choice) {
 
 }  // namespace
 
-void set_height_table(golden::Map& map, const PreparedScene& prepared) {
+void set_tables(golden::Map& map, const PreparedScene& prepared) {
+    if (!prepared.fitted_heights.empty())
+        map.set_heights({prepared.fitted_heights.begin(), prepared.fitted_heights.end()});
     const RankTables& ranks = prepared.rank_tables;
     map.set_ranks({ranks.columns, ranks.rows, ranks.rank, ranks.bound, ranks.radius,
                    static_cast<int>(ranks.highest_bound_threshold)});
+    if (!prepared.mipmap_table.entries.empty())
+        map.make_mipmap(prepared.mipmap_table.filter == MipmapFilter::maximum ? golden::MipmapFilter::maximum
+                                                                              : golden::MipmapFilter::mean);
     const CurvatureTable& table = prepared.curvature_table;
     if (table.entries.empty())
         return;
@@ -59,7 +64,7 @@ golden::Map golden_map(const MachineSetup& setup) {
             normals.push_back(dequantise.direction(
                 map_normal(setup.map, x, y, setup.height_per_code, setup.texel_size, setup.registers.formats.normal)));
     map.set_normals(std::move(normals));
-    set_height_table(map, setup);
+    set_tables(map, setup);
     return map;
 }
 
@@ -103,6 +108,7 @@ golden::Parameters golden_parameters(const datapath::Registers& registers) {
     result.bound_threshold = static_cast<int>(tests.bound_threshold);
     result.curvature_threshold =
         real(static_cast<std::int64_t>(tests.curvature_threshold), datapath::curvature_fraction);
+    result.mipmap_threshold = real(tests.mipmap_threshold, 1);
     if (formats.distances)
         set_rank_view(registers, result);
     result.view_threshold = real(tests.view_threshold, formats.screen.fraction);

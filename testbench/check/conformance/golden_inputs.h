@@ -48,8 +48,8 @@ class Dequantise {
     double position_lsb_, normal_lsb_, texture_lsb_, screen_lsb_, view_distance_lsb_;
 };
 
-/// The height test's table, which is the author's as the map is: the Rank or the Curvature Table, where there is one.
-void set_height_table(golden::Map& map, const PreparedScene& prepared);
+/// What the author gives as the map is given: fitted heights, the Rank or the Curvature Table, the mipmap's filter.
+void set_tables(golden::Map& map, const PreparedScene& prepared);
 
 /// The registers as the golden model's parameters. Exact except for the transform's fourth column and the near plane,
 /// 64 bit integers that a double rounds to 53 bits.

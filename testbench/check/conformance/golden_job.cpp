@@ -62,6 +62,7 @@ golden::Scene make_scene(const Job& job, const BaseMesh& mesh, const HeightMap& 
     scene.rank_threshold = tests.rank_threshold;
     scene.bound_threshold = tests.bound_threshold;
     scene.curvature_threshold = tests.curvature_threshold;
+    scene.mipmap_threshold = tests.mipmap_threshold;
     if (job.hardware.height_test == HeightTest::rank) {
         scene.rank_view = golden_rank_view(job.tests.rank_view);
         scene.rank_bits = static_cast<int>(job.formats.rank_bits);
@@ -118,7 +119,7 @@ GoldenJob::GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& heig
       scene_(make_scene(job_, mesh, height_map, model_scale)),
       parameters_(golden::make_parameters(scene_)),
       map_(make_map(job_, height_map, mesh, scene_, parameters_.scale)) {
-    set_height_table(map_, tables);
+    set_tables(map_, tables);
     if (scene_.rank_view == golden::RankView::none)
         parameters_.bound_threshold = std::min(parameters_.bound_threshold, map_.rank_table().highest_bound_threshold);
 }

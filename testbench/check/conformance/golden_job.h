@@ -19,7 +19,7 @@ namespace tessera {
 class GoldenJob {
   public:
     /// `job` must be resolved (resolve_job.h), `mesh` and `height_map` must outlive this.
-    /// tables: with a Rank or Curvature Test whose table is the author's, as the map is.
+    /// tables: what the author gives as the map is given (set_tables).
     GoldenJob(const Job& job, const BaseMesh& mesh, const HeightMap& height_map, const ModelScale& model_scale,
               const PreparedScene& tables = {});
 

@@ -211,6 +211,13 @@ class RegisterCheck {
                 flag("curvature_table.columns", registers_.covered.columns, number(map.curvature_table().columns));
                 flag("curvature_table.rows", registers_.covered.rows, number(map.curvature_table().rows));
                 break;
+            case HeightTest::mipmap: {
+                std::size_t blocks = 0;
+                for (const std::vector<double>& level : map.mipmap())
+                    blocks += level.size();
+                layout("mipmap_table", table, static_cast<int>(blocks), 1, formats_.displacement.bits);
+                break;
+            }
         }
         std::array<const TableLayout*, 3> tables{&registers_.displacement_map, &registers_.normal_map,
                                                  &registers_.height_table};
@@ -243,6 +250,8 @@ class RegisterCheck {
         const bool curvature = golden_.map().has_curvatures();
         judge_.judge("tests.curvature_threshold", number(tests.curvature_threshold),
                      curvature ? golden.curvature_threshold * 8 : 0, rounded_down);
+        judge_.judge("tests.mipmap_threshold", tests.mipmap_threshold,
+                     golden_.map().mipmap().empty() ? 0 : golden.mipmap_threshold * 2, rounded_down);
         judge_.judge("tests.view_threshold", tests.view_threshold,
                      golden.view_threshold * lsb_per_unit(formats_.screen), rounded_down);
         flag("tests.generation_limit", tests.generation_limit, golden.generation_limit);

@@ -55,6 +55,8 @@ class TableCheck {
             check_rank_table();
         else if (golden_.map().has_curvatures())
             check_curvature_table();
+        else if (!golden_.map().mipmap().empty())
+            check_mipmap_table();
         else
             check_summed_height_table();
     }
@@ -82,11 +84,13 @@ class TableCheck {
     }
 
     void check_displacement_map() {
-        Judge judge(result_, "displacement map", "every code, to nearest");
+        Judge judge(result_, "displacement map", "every code, to nearest; or as the host fitted it");
         const golden::Map& map = golden_.map();
+        const bool fitted = golden_.job().map.heights == MapHeights::fitted;
         each_entry(judge, host_.displacement_map, registers_.displacement_map, map.width(), map.height(),
                    [&](std::uint32_t x, std::uint32_t y, std::uint64_t code) {
-                       const double golden = golden_.unrounded_code(texel_of(x, y));
+                       const std::size_t texel = texel_of(x, y);
+                       const double golden = fitted ? map.code(texel) : golden_.unrounded_code(texel);
                        judge.judge([&] { return fmt::format("({}, {})", x, y); }, number(code), golden, to_nearest,
                                    double_rounding * golden);
                    });
@@ -181,6 +185,17 @@ class TableCheck {
                        field("xy", found.xy * unit, cell.xy);
                        field("yy", found.yy * unit, cell.yy);
                        field("rest", found.rest * unit, cell.rest);
+                   });
+    }
+
+    void check_mipmap_table() {
+        Judge judge(result_, "mipmap table", "every block's mean, to nearest, or maximum");
+        std::vector<double> blocks;
+        for (const std::vector<double>& level : golden_.map().mipmap())
+            blocks.insert(blocks.end(), level.begin(), level.end());
+        each_entry(judge, host_.summed_height_table, registers_.height_table, static_cast<int>(blocks.size()), 1,
+                   [&](std::uint32_t x, std::uint32_t, std::uint64_t entry) {
+                       judge.judge([&] { return fmt::format("{}", x); }, number(entry), blocks[x], exact);
                    });
     }
 

@@ -82,6 +82,8 @@ RefinementForest::Edge RefinementForest::make_edge(const Vertex& i, const Vertex
     const datapath::RectangleSize size = datapath::rectangle_size(i.texture, j.texture, r.map, r.formats);
     if (r.formats.height_test == datapath::HeightTest::curvature)
         edge.height = datapath_.curvature_of(i.texture, j.texture, middle);
+    else if (r.formats.height_test == datapath::HeightTest::mipmap)
+        edge.height = datapath_.mipmap_difference_of(i.texture, j.texture, middle);
     else
         edge.height = datapath::absolute_difference(
             static_cast<std::int64_t>(2 * datapath_.sum_around(middle, size)),
@@ -149,6 +151,8 @@ bool RefinementForest::splits(const Edge& edge, const datapath::TestParameters& 
         return false;
     if (setup_.registers.formats.height_test == datapath::HeightTest::curvature)
         return edge.height > tests.curvature_threshold;
+    if (setup_.registers.formats.height_test == datapath::HeightTest::mipmap)
+        return edge.height > tests.mipmap_threshold;
     const std::uint64_t area = tests.summed_height_unit == datapath::SummedHeightUnit::area ? edge.area : 1;
     return edge.height > tests.summed_height_threshold * area;
 }

@@ -25,6 +25,12 @@ datapath::Triangulation machine_name(Triangulation triangulation) {
                                                     : datapath::Triangulation::shorter;
 }
 
+double Job::Tests::*height_threshold_of(HeightTest test) {
+    return test == HeightTest::curvature ? &Job::Tests::curvature_threshold
+           : test == HeightTest::mipmap  ? &Job::Tests::mipmap_threshold
+                                         : &Job::Tests::summed_height_threshold;
+}
+
 }  // namespace
 
 bool better(const TunedPoint& a, const TunedPoint& b, const TuneGoal& goal) {
@@ -42,8 +48,8 @@ ThresholdSearch::ThresholdSearch(RefinementForest& forest, const MachineSetup& s
       goal_(goal),
       space_(space),
       on_progress_(std::move(on_progress)),
-      curvature_(job.hardware.height_test == HeightTest::curvature),
-      height_threshold_(curvature_ ? &Job::Tests::curvature_threshold : &Job::Tests::summed_height_threshold) {}
+      height_test_(job.hardware.height_test),
+      height_threshold_(height_threshold_of(height_test_)) {}
 
 // A threshold below its register's first step is 0; one above all that can be compared with it lets nothing pass.
 
@@ -53,7 +59,9 @@ ThresholdSearch::Levels ThresholdSearch::normal_levels() const {
 
 ThresholdSearch::Levels ThresholdSearch::summed_height_levels(SummedHeightUnit unit) const {
     const auto highest_code = static_cast<double>(setup_.map.highest_code());
-    if (curvature_)
+    if (height_test_ == HeightTest::mipmap)
+        return {level_of(1 / highest_code / 2) - 1, 0};
+    if (height_test_ == HeightTest::curvature)
         return {level_of(1 / highest_code / 8) - 1,
                 level_of(2.0 * std::max(setup_.registers.covered.columns, setup_.registers.covered.rows))};
     if (unit == SummedHeightUnit::area)
@@ -252,7 +260,7 @@ void ThresholdSearch::step_done() {
 /// To be searched, the job's own first.
 std::vector<SummedHeightUnit> ThresholdSearch::units() const {
     const SummedHeightUnit own = job_.tests.summed_height_unit;
-    if (!space_.summed_height || !space_.summed_height_unit || curvature_)
+    if (!space_.summed_height || !space_.summed_height_unit || height_test_ != HeightTest::summed_height)
         return {own};
     return {own, own == SummedHeightUnit::sum ? SummedHeightUnit::area : SummedHeightUnit::sum};
 }

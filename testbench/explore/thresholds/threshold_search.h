@@ -144,7 +144,7 @@ class ThresholdSearch {
     const TuneGoal& goal_;
     const TuneSpace& space_;
     std::function<void(double)> on_progress_;
-    bool curvature_;  ///< a Curvature Test in the Summed Height Test's place
+    HeightTest height_test_;
     double Job::Tests::*height_threshold_;
     Found found_;
     std::set<Key> done_;

@@ -67,6 +67,8 @@ std::string tune_text(const TuneRequest& request, const TuneResult& result, cons
             toml_number(request.goal.largest ? tests.bound_threshold : tests.rank_threshold));
     else if (result.job.hardware.height_test == HeightTest::curvature)
         row("Curvature Test", threshold_text(tests.summed_height, tests.curvature_threshold));
+    else if (result.job.hardware.height_test == HeightTest::mipmap)
+        row("Mipmap Test", threshold_text(tests.summed_height, tests.mipmap_threshold));
     else
         row("Summed Height Test",
             threshold_text(tests.summed_height, tests.summed_height_threshold) +
@@ -106,6 +108,7 @@ std::string tune_json(const TuneRequest& request, const TuneResult& result, cons
                      {"summed_height_threshold", tests.summed_height_threshold},
                      {"summed_height_unit", name_of(tests.summed_height_unit)},
                      {"curvature_threshold", tests.curvature_threshold},
+                     {"mipmap_threshold", tests.mipmap_threshold},
                      {"rank_threshold", tests.rank_threshold},
                      {"bound_threshold", tests.bound_threshold},
                      {"view", tests.view},
@@ -130,7 +133,7 @@ std::string tune_json(const TuneRequest& request, const TuneResult& result, cons
 std::string tried_csv(const TuneRequest& request, const TuneResult& result, const ErrorUnit& unit) {
     std::string text = fmt::format(
         "base,height_test,normal_threshold,summed_height_threshold,summed_height_unit,view_threshold,generation_limit,"
-        "triangulation,curvature_threshold,rank_threshold,bound_threshold,triangles,rms [{0}],max [{0}]\n",
+        "triangulation,curvature_threshold,mipmap_threshold,rank_threshold,bound_threshold,triangles,rms [{0}],max [{0}]\n",
         unit.map_units ? "map unit" : "model unit");
     for (const TriedPoint& tried : result.tried) {
         const Job::Tests& tests = tried.point.tests;
@@ -141,11 +144,12 @@ std::string tried_csv(const TuneRequest& request, const TuneResult& result, cons
             return threshold_text(tests.summed_height && kind == test && used, threshold);
         };
         text +=
-            fmt::format("\"{}\",{},{},{},{},{},{},{},{},{},{},{},{:.6g},{:.6g}\n", base.name(), name_of(kind),
+            fmt::format("\"{}\",{},{},{},{},{},{},{},{},{},{},{},{},{:.6g},{:.6g}\n", base.name(), name_of(kind),
                         threshold_text(tests.normal, tests.normal_threshold),
                         of(HeightTest::summed_height, tests.summed_height_threshold), name_of(tests.summed_height_unit),
                         threshold_text(tests.view, tests.view_threshold), tests.generation_limit,
                         name_of(tried.point.triangulation), of(HeightTest::curvature, tests.curvature_threshold),
+                        of(HeightTest::mipmap, tests.mipmap_threshold),
                         of(HeightTest::rank, tests.rank_threshold, !request.goal.largest),
                         of(HeightTest::rank, tests.bound_threshold, request.goal.largest), outcome.triangles,
                         outcome.rms / unit.model_units, outcome.max / unit.model_units);

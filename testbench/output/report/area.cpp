@@ -113,6 +113,7 @@ class AreaCounter {
             case datapath::HeightTest::curvature:
                 return Multiplications::curvature_measure;
             case datapath::HeightTest::rank:
+            case datapath::HeightTest::mipmap:
                 break;
         }
         return 0;

@@ -72,6 +72,7 @@ void coarsen(Random& random, Job::Tests& tests) {
     tests.highlight_normal_threshold = std::min(2.0, 2 * tests.highlight_normal_threshold + 0.005);
     tests.rank_threshold = 2 * tests.rank_threshold + 0.005;
     tests.curvature_threshold = 2 * tests.curvature_threshold + 0.05;
+    tests.mipmap_threshold = std::min(1.0, 2 * tests.mipmap_threshold + 0.005);
     tests.bound_threshold = std::min(1e6, 2 * tests.bound_threshold + 0.005);
     const bool area = tests.summed_height_unit == SummedHeightUnit::area;
     tests.summed_height_threshold =
@@ -84,6 +85,7 @@ void refine(Random& random, const Job::Formats& formats, Job::Tests& tests) {
     tests.summed_height_threshold /= 4;
     tests.rank_threshold /= 4;
     tests.curvature_threshold /= 4;
+    tests.mipmap_threshold /= 4;
     tests.bound_threshold /= 4;
     if (random.coin())
         tests.view_threshold /= 4;

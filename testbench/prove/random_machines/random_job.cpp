@@ -135,6 +135,15 @@ void choose_mesh_options(Random& random, Job& job) {
                                       random.natural(1, 4)};
         return;
     }
+    if (random.chance(30)) {
+        job.hardware.height_test = HeightTest::mipmap;
+        job.tests.mipmap_filter = random.one_of({MipmapFilter::mean, MipmapFilter::maximum});
+        job.tests.mipmap_threshold = random.one_of({0.0, 0.002, 0.05});
+        job.timing.mipmap_test = {random.natural(1, 9), random.natural(1, 3), random.natural(1, 5)};
+        job.timing.mipmap_table = {random.natural(1, 4), random.natural(1, 4), random.natural(0, 20), 0,
+                                   random.natural(1, 4)};
+        return;
+    }
     job.hardware.height_test = HeightTest::rank;
     if (random.chance(70))
         job.hardware.triangulation = Triangulation::greatest_rank;
@@ -173,12 +182,16 @@ void choose_evaluations(Random& random, Job& job) {
         table.banks = 1U << random.natural(0, 6);
     }
     job.hardware.one_texel_from_map = random.coin();
+    const bool codes_are_sums =
+        job.hardware.one_texel_from_map && job.hardware.height_test == HeightTest::summed_height;
+    if (random.chance(25) && job.hardware.displacement_filter == MapFilter::nearest && !codes_are_sums)
+        job.map.heights = MapHeights::fitted;
     if (random.chance(15))
         job.hardware.machines = random.integer(2, 4);
     if (random.chance(60))
         return;
     for (MemoryTiming* memory : {&job.timing.displacement_map, &job.timing.normal_map, &table, &job.timing.rank_table,
-                                 &job.timing.curvature_table})
+                                 &job.timing.curvature_table, &job.timing.mipmap_table})
         memory->cache = {random.one_of({0U, 1U, 300U, 4096U}), random.one_of({1U, 16U, 64U, 100U}),
                          random.natural(1, 4), random.natural(1, 20)};
 }

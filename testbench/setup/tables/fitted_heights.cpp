@@ -21,11 +21,12 @@ std::size_t texel_under(const QuantisedMap& map, const datapath::TexCoord& t, co
            datapath::texel_index(datapath::integer_part(t.u, formats), g.width, g.address_u);
 }
 
-/// One for each grid point that the mesh covers. Triangles that share a point agree on its height.
+/// One for each grid point that the mesh covers; of base triangles on the same texels, for each of them. Triangles that
+/// share a point on their edges agree on its height.
 std::vector<Observation> observe(const QuantisedMap& map, const std::vector<TextureTriangle>& mesh,
                                  const datapath::Formats& formats) {
     std::vector<Observation> observations;
-    std::vector<bool> seen(map.codes.size(), false);
+    std::vector<bool> seen(map.codes.size(), false);  // on edges
     for (const TextureTriangle& triangle : mesh) {
         const GridPoints points(triangle, map.geometry, formats);
         Observation observation;
@@ -33,9 +34,11 @@ std::vector<Observation> observe(const QuantisedMap& map, const std::vector<Text
             observation.texel[k] = texel_under(map, triangle[k], formats);
         points.for_each([&](const GridPoint& point) {
             const std::size_t texel = std::size_t{point.row} * map.geometry.width + point.column;
-            if (seen[texel])
-                return;
-            seen[texel] = true;
+            if (point.is_on_an_edge()) {
+                if (seen[texel])
+                    return;
+                seen[texel] = true;
+            }
             for (std::size_t k = 0; k < 3; ++k)
                 observation.weight[k] = static_cast<double>(point.part[k]) / static_cast<double>(points.whole());
             observation.code = map.codes[texel];

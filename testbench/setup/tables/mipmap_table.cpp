@@ -1,7 +1,6 @@
 #include "testbench/setup/tables/mipmap_table.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace tessera {
 
@@ -43,23 +42,17 @@ std::vector<Block> joined(const std::vector<Block>& from, const datapath::Mipmap
 }  // namespace
 
 MipmapTable make_mipmap_table(const QuantisedMap& map, MipmapFilter filter) {
-    MipmapTable table;
+    MipmapTable table{filter, {}};
     std::vector<Block> blocks = blocks_of(map);
     const int highest = datapath::highest_mipmap_level(map.geometry);
     for (int level = 0; level <= highest; ++level) {
         const datapath::MipmapBlocks size = datapath::mipmap_blocks(level, map.geometry);
         if (level > 0)
             blocks = joined(blocks, datapath::mipmap_blocks(level - 1, map.geometry), size);
-        table.levels.push_back({size.columns, size.rows, size.first_entry});
         for (const Block& block : blocks)
             table.entries.push_back(block.height(filter));
     }
     return table;
-}
-
-std::uint32_t mipmap_threshold(double height, const datapath::Formats& formats) {
-    const double highest = std::ldexp(1.0, datapath::MipmapWidths{formats}.heights.bits) - 1;
-    return static_cast<std::uint32_t>(std::clamp(std::floor(2 * height), 0.0, highest));
 }
 
 }  // namespace tessera

@@ -115,15 +115,17 @@ TEST_CASE("tune finds a Rank Test's threshold, and a Bound Test's promise is kep
     check_by_run_and_compare(here.path(), "tuned");
 }
 
-TEST_CASE("tune finds a Curvature Test's threshold") {
-    const TestFolder here;
-    succeed(Arguments{"tune", "--triangles", "600", "--tests", "curvature", "--set", "tests.normal=false"} + small_map,
-            here.path());
-    const Json tuned = read_json(here.path() / "tuned.json");
-    CHECK(tuned.at("height_test") == "curvature");
-    CHECK(tuned.at("triangles") <= 600);
-    CHECK(tuned.at("triangles") > 500);
-    check_by_run_and_compare(here.path(), "tuned");
+TEST_CASE("tune finds a Curvature or a Mipmap Test's threshold") {
+    for (const char* const test : {"curvature", "mipmap"}) {
+        const TestFolder here;
+        succeed(Arguments{"tune", "--triangles", "600", "--tests", test, "--set", "tests.normal=false"} + small_map,
+                here.path());
+        const Json tuned = read_json(here.path() / "tuned.json");
+        CHECK(tuned.at("height_test") == test);
+        CHECK(tuned.at("triangles") <= 600);
+        CHECK(tuned.at("triangles") > 500);
+        check_by_run_and_compare(here.path(), "tuned");
+    }
 }
 
 TEST_CASE("tune chooses between the paper's tests and a Rank Test") {
@@ -168,10 +170,12 @@ TEST_CASE("tune refuses wrong usage and goals out of reach, and leaves nothing")
     CHECK_THAT(tune({}), Contains("--triangles") && Contains("--error") && Contains("tune --help"));
     CHECK_THAT(tune({"--triangles", "5", "--error", "1"}), Contains("either"));
     CHECK_THAT(tune({"--triangles", "900", "--tests", "summed_height,curvature"}), Contains("one of them"));
+    CHECK_THAT(tune({"--triangles", "900", "--tests", "mipmap,curvature"}), Contains("curvature and mipmap stand"));
     CHECK_THAT(tune({"--triangles", "900", "--tests", "rank", "--grid", "4x4"}), Contains("ranks need a lattice"));
     CHECK_THAT(tune({"--triangles", "900", "--set", "hardware.height_test=rank", "--set",
                      "hardware.test_order=cheap_first", "--set", "tests.rank_view=per_point"}),
                Contains("tests.rank_view = \"per_point\"") && Contains("=none"));
+    CHECK_THAT(tune({"--triangles", "900", "--set", "map.heights=fitted"}), Contains("map.heights=given"));
     CHECK_THAT(tune({"--triangles", "0"}), Contains("--triangles 0"));
     CHECK_THAT(tune({"--triangles", "-4"}), Contains("--triangles") && Contains("-4"));
     CHECK_THAT(tune({"--triangles", "17"}), Contains("18 triangles"));

@@ -161,6 +161,31 @@ TEST_CASE("map: the Curvature Table's nearest cell, of two the higher, at each l
     CHECK(map.curvature({3, 3}, 9).xx == map.curvature({3, 3}, 5).xx);
 }
 
+TEST_CASE("map: other heights are what the displacement map holds, and nothing else") {
+    const std::vector<double> codes{1, 2, 9, 4, 4, 6};
+    Map map(3, 2, AddressMode::clamp, AddressMode::clamp, codes);
+    map.derive_normals(0.1, {1, 1});
+    const glm::dvec3 normal = map.normal(4);
+    map.set_heights({7, 2, 9, 4, 0, 6});
+    CHECK(map.code(0) == 7);
+    CHECK(map.code({1.5, 1.5}, Filter::nearest) == 0);
+    CHECK(map.normal(4) == normal);
+    CHECK(map.sum({0, 0, 3, 2}) == 26);
+    CHECK_THROWS_AS(map.set_heights({1}), std::invalid_argument);
+}
+
+TEST_CASE("map: a mipmap's blocks, cut off by the border, hold means rounded to nearest, or maxima") {
+    Map map(3, 2, AddressMode::clamp, AddressMode::repeat, {1, 2, 9, 4, 4, 6});
+    map.make_mipmap(MipmapFilter::mean);
+    using Levels = std::vector<std::vector<double>>;
+    CHECK(map.mipmap() == Levels{{1, 2, 9, 4, 4, 6}, {3, 8}, {4}});  // 11/4, 15/2 upwards, 26/6
+    CHECK(map.mipmap_height({5, 2.5}, 0) == 9);
+    CHECK(map.mipmap_height({1.9, 1}, 1) == 3);
+    CHECK(map.mipmap_height({2, 3}, 1) == 8);
+    map.make_mipmap(MipmapFilter::maximum);
+    CHECK(map.mipmap() == Levels{{1, 2, 9, 4, 4, 6}, {4, 9}, {9}});
+}
+
 TEST_CASE("normal map: central differences, borders, thin axes") {
     const double scale = 0.01, su = 0.5, sv = 0.25;
     const auto expected = [&](double du, double dv) {

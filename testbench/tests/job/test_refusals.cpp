@@ -225,6 +225,12 @@ TEST_CASE("keys that contradict each other") {
              {"`tests.rank_view` = \"per_point\", but `hardware.height_test` = \"summed_height\" has no ranks",
               "needs `hardware.test_order` = \"cheap_first\""}},
             {"tests.rank_view=per_pixel; hardware.height_test=rank; hardware.test_order=cheap_first", {}},
+            {"map.heights=fitted", {}},
+            {"map.heights=fitted; hardware.displacement_filter=bilinear",
+             {"`hardware.displacement_filter` = \"bilinear\" mixes the heights of texels"}},
+            {"map.heights=fitted; hardware.one_texel_from_map=true",
+             {"`hardware.one_texel_from_map` = true", "set it to false"}},
+            {"map.heights=fitted; hardware.one_texel_from_map=true; hardware.height_test=mipmap", {}},
             {"formats.rank_bits=0", {"`formats.rank_bits` = 0 and `formats.bound_bits` = 0"}},
             {"formats.rank_bits=0; formats.bound_bits=6", {}},
 

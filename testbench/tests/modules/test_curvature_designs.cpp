@@ -7,7 +7,7 @@
 #include "testbench/tests/support/checked_run.h"
 #include "testbench/tests/support/job_settings.h"
 
-// Designs with a Curvature Test in the Summed Height Test's place: closed, the bare recursion's mesh bit for bit, every
+// Designs with a Curvature or a Mipmap Test in the Summed Height Test's place: closed, the bare recursion's mesh bit for bit, every
 // decision golden's within its bound, nothing lost; with the host's table and with a table of random bits.
 
 using namespace tessera;
@@ -32,11 +32,12 @@ MachineSetup with_random_table(MachineSetup setup) {
     return setup;
 }
 
-/// One entry an edge: CheckedRun compares them. Short edges read codes.
+/// Of the Curvature Test short edges read codes.
 void check_reads(const CheckedRun& run) {
     const Totals totals(run.simulation);
     CHECK(totals.height_table_reads > 0);
-    CHECK(totals.evaluated.summed_height_by_codes > 0);
+    const bool curvature = run.setup.registers.formats.height_test == HeightTest::curvature;
+    CHECK((totals.evaluated.summed_height_by_codes > 0) == curvature);
     for (const Conservation& equation : conservation(run.simulation)) {
         INFO(equation.name);
         CHECK(equation.left == equation.right);
@@ -56,6 +57,7 @@ const CaseTable designs(
         {"a lattice that is wider than the map", "mesh.source=lattice mesh.spacing=16"},
         {"a repeated map", "map.address_u=repeat map.address_v=repeat"},
         {"heights between texels", "hardware.displacement_filter=bilinear"},
+        {"fitted heights, which short edges read", "map.heights=fitted"},
         {"beside the other tests", "tests.normal=true tests.view=true tests.highlight=true hardware.culling=back"},
         {"three tests units, random stalls",
          "hardware.tests_units=3 timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=20"},
@@ -80,6 +82,31 @@ const CaseTable designs(
     },
     [](const Row& row) {
         const CheckedRun run(curved(row.settings));
+        REQUIRE(run.counts.edges_split > 100);
+        check_reads(run);
+        run.expect_closed_in_texture();
+    });
+
+const char* const mipmap = "hardware.height_test=mipmap tests.mipmap_threshold=0.01 ";
+
+const CaseTable mipmap_designs(
+    "with a Mipmap Test, ",
+    {
+        Row{"the paper's design", ""},
+        {"functional, of maxima", "mode=functional tests.mipmap_filter=maximum"},
+        {"a lattice that is wider than the map", "mesh.source=lattice mesh.spacing=16"},
+        {"a repeated map, of maxima",
+         "map.address_u=repeat map.address_v=repeat tests.mipmap_filter=maximum tests.mipmap_threshold=0.05"},
+        {"three tests units, random stalls",
+         "hardware.tests_units=3 timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=20"},
+        {"cheap tests first, final edges, beside the other tests, a slow table behind a cache",
+         "hardware.test_order=cheap_first hardware.final_edges=true tests.normal=true tests.view=true "
+         "timing.mipmap_table_cache_bytes=256 timing.mipmap_table_latency=9 timing.mipmap_test_interval=2"},
+        {"the modern design, four banks", "hardware.design=modern timing.mipmap_table_banks=4"},
+        {"three modern machines, fitted heights", "hardware.design=modern hardware.machines=3 map.heights=fitted"},
+    },
+    [](const Row& row) {
+        const CheckedRun run(curved(mipmap + row.settings));
         REQUIRE(run.counts.edges_split > 100);
         check_reads(run);
         run.expect_closed_in_texture();
@@ -111,10 +138,15 @@ const CaseTable meshes("a Curvature Test on a base mesh: ",
                            REQUIRE(run.counts.edges_split > 100);
                        });
 
-}  // namespace
+const CaseTable off("a test of heights that is off reads nothing and splits nothing: ",
+                    {
+                        Row{"Curvature Test", ""},
+                        {"Mipmap Test", mipmap},
+                    },
+                    [](const Row& row) {
+                        const CheckedRun run(curved(row.settings + " tests.summed_height=false"));
+                        CHECK(run.counts.edges_split == 0);
+                        CHECK(Totals(run.simulation).height_table_reads == 0);
+                    });
 
-TEST_CASE("a Curvature Test that is off reads nothing and splits nothing", "[curvature]") {
-    const CheckedRun run(curved("tests.summed_height=false"));
-    CHECK(run.counts.edges_split == 0);
-    CHECK(Totals(run.simulation).height_table_reads == 0);
-}
+}  // namespace

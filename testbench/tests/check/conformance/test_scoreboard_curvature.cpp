@@ -6,11 +6,12 @@
 
 #include "modules/datapath/curvature.h"
 #include "modules/datapath/midpoint.h"
+#include "modules/datapath/mipmap.h"
 #include "modules/datapath/table_shapes.h"
 #include "testbench/check/conformance/scoreboard.h"
 #include "testbench/tests/check/conformance/scoreboard_cases.h"
 
-// The Curvature Test's decision is golden's, to the last step of its threshold.
+// The Curvature Test's and the Mipmap Test's decisions are golden's, to the last step of the threshold.
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -32,6 +33,21 @@ MachineSetup random_setup(Random& random, const datapath::Formats& formats) {
     return setup;
 }
 
+/// Blocks as the map has them; the Mipmap Test alone.
+MachineSetup mipmap_setup(Random& random, const datapath::Formats& formats) {
+    MachineSetup setup = Case::make_setup(random, formats, Manner::tame);
+    setup.registers.formats.height_test = datapath::HeightTest::mipmap;
+    setup.mipmap_table = make_mipmap_table(setup.map, random.one_of({MipmapFilter::mean, MipmapFilter::maximum}));
+    datapath::TestParameters& tests = setup.registers.tests;
+    tests.normal_test = tests.view_test = tests.tex_coord_test = tests.generation_test = false;
+    return setup;
+}
+
+void set_threshold(MachineSetup& setup, std::uint64_t threshold) {
+    setup.registers.tests.curvature_threshold = threshold;
+    setup.registers.tests.mipmap_threshold = static_cast<std::uint32_t>(threshold);
+}
+
 std::uint64_t measure(const MachineSetup& setup, const datapath::TexCoord& i, const datapath::TexCoord& j,
                       const datapath::TexCoord& ij) {
     datapath::Registers r = setup.registers;
@@ -39,6 +55,12 @@ std::uint64_t measure(const MachineSetup& setup, const datapath::TexCoord& i, co
     r.displacement_map.base = r.height_table.base = 0;
     std::array<std::uint64_t, 3> read{};
     std::size_t count = 0;
+    if (r.formats.height_test == datapath::HeightTest::mipmap) {
+        mipmap_reads(i, j, ij, r, [&](std::uint64_t address) {
+            read[count++] = setup.mipmap_table.entries[address / r.height_table.entry_bytes];
+        });
+        return datapath::mipmap_difference(read);
+    }
     curvature_reads(i, j, ij, r, [&](std::uint64_t address) {
         const bool codes = curvature_by_codes(i, j, r.formats);
         read[count++] = codes ? setup.map.codes[address / r.displacement_map.entry_bytes]
@@ -57,7 +79,10 @@ datapath::TrianglePass decided(const MachineSetup& setup, datapath::TrianglePass
     pass.split = 0;
     for (unsigned k = 0; k < 3; ++k) {
         std::uint8_t& tests = pass.edges[k].tests;
-        const bool above = curvature_test(measure(setup, pass, static_cast<int>(k)), setup.registers.tests);
+        const std::uint64_t found = measure(setup, pass, static_cast<int>(k));
+        const bool above = setup.registers.formats.height_test == datapath::HeightTest::mipmap
+                               ? mipmap_test(found, setup.registers.tests)
+                               : curvature_test(found, setup.registers.tests);
         const bool splits = above != ((flipped >> k & 1u) != 0);
         tests = static_cast<std::uint8_t>(datapath::gating_tests | (splits ? datapath::summed_height_bit : 0));
         pass.split = static_cast<std::uint8_t>(pass.split | (splits ? 1u << k : 0));
@@ -67,29 +92,32 @@ datapath::TrianglePass decided(const MachineSetup& setup, datapath::TrianglePass
 
 }  // namespace
 
-TEST_CASE("the Curvature Test conforms in many formats, at thresholds that its own measures are") {
-    Random random(1);
-    std::uint64_t split = 0, compared = 0;
-    for (const datapath::Formats& formats : many_formats()) {
-        for (int design = 0; design < 40; ++design) {
-            MachineSetup setup = random_setup(random, formats);
-            datapath::TrianglePass pass = Case(setup, Manner::tame).pass(random);
-            const std::uint64_t found = measure(setup, pass, 0);
-            for (const std::uint64_t threshold : {found, found == 0 ? found : found - 1}) {
-                setup.registers.tests.curvature_threshold = threshold;
-                const Case c(setup, Manner::tame);
-                pass = decided(setup, pass);
-                const ConformanceResult result = check(c, pass);
-                INFO(result.first_mismatch);
-                REQUIRE(result.mismatches == 0);
-                CHECK(test(result, "SHT").allowed_flips == 0);
-                split += pass.split != 0 ? 1 : 0;
-                ++compared;
+TEST_CASE(
+    "the Curvature Test conforms in many formats, at thresholds that its own measures are; so does the Mipmap Test") {
+    for (const auto make_setup : {random_setup, mipmap_setup}) {
+        Random random(1);
+        std::uint64_t split = 0, compared = 0;
+        for (const datapath::Formats& formats : many_formats()) {
+            for (int design = 0; design < 40; ++design) {
+                MachineSetup setup = make_setup(random, formats);
+                datapath::TrianglePass pass = Case(setup, Manner::tame).pass(random);
+                const std::uint64_t found = measure(setup, pass, 0);
+                for (const std::uint64_t threshold : {found, found == 0 ? found : found - 1}) {
+                    set_threshold(setup, threshold);
+                    const Case c(setup, Manner::tame);
+                    pass = decided(setup, pass);
+                    const ConformanceResult result = check(c, pass);
+                    INFO(result.first_mismatch);
+                    REQUIRE(result.mismatches == 0);
+                    CHECK(test(result, "SHT").allowed_flips == 0);
+                    split += pass.split != 0 ? 1 : 0;
+                    ++compared;
+                }
             }
         }
+        CHECK(split > compared / 4);
+        CHECK(split < compared);
     }
-    CHECK(split > compared / 4);
-    CHECK(split < compared);
 }
 
 TEST_CASE("a wrong decision of the Curvature Test is caught, one step from the threshold") {
@@ -117,4 +145,17 @@ TEST_CASE("a wrong decision of the Curvature Test is caught, one step from the t
     }
     CHECK(by_codes > 100);
     CHECK(by_table > 100);
+}
+
+TEST_CASE("a wrong decision of the Mipmap Test is caught, one step from the threshold") {
+    Random random(3);
+    for (int design = 0; design < 300; ++design) {
+        MachineSetup setup = mipmap_setup(random, datapath::Formats{});
+        const datapath::TrianglePass pass = Case(setup, Manner::tame).pass(random);
+        const std::uint64_t found = measure(setup, pass, 0);
+        for (const std::uint64_t threshold : {found, found == 0 ? found : found - 1}) {
+            set_threshold(setup, threshold);
+            CHECK(test(check(Case(setup, Manner::tame), decided(setup, pass, 1)), "SHT").mismatches == 1);
+        }
+    }
 }

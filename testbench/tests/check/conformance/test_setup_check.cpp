@@ -335,6 +335,47 @@ TEST_CASE("one wrong register or table entry of a Curvature Test fails its job")
     CHECK(run.check().passed());
 }
 
+TEST_CASE("one wrong register or table entry of a Mipmap Test fails its job") {
+    Job job;
+    job.hardware.height_test = HeightTest::mipmap;
+    job.tests.mipmap_filter = MipmapFilter::maximum;
+    job.map.width = 60;
+    job.map.height = 37;
+    CheckedRun run{job};
+    const SetupResult right = run.check();
+    INFO(right.first_wrong);
+    REQUIRE(right.passed());
+    for (const Mistake& mistake : std::vector<Mistake>{
+             {"mipmap_table.columns", [](MachineSetup& s) { --s.registers.height_table.columns; }},
+             {"mipmap_table.rows", [](MachineSetup& s) { ++s.registers.height_table.rows; }},
+             {"mipmap_table.entry_bytes", [](MachineSetup& s) { ++s.registers.height_table.entry_bytes; }},
+             {"tests.mipmap_threshold", [](MachineSetup& s) { ++s.registers.tests.mipmap_threshold; }},
+             {"tests.mipmap_threshold", [](MachineSetup& s) { --s.registers.tests.mipmap_threshold; }}}) {
+        MachineSetup wrong = run.setup;
+        mistake.make(wrong);
+        run.require_noticed(wrong, mistake.name);
+    }
+    const datapath::TableLayout& table = run.setup.registers.height_table;
+    Socket& socket = run.simulation.host.summed_height_table;
+    for (const std::uint32_t x : {0U, 60U * 37, table.columns - 1}) {
+        add_to_entry(socket, table, x, 0, 0, 1);
+        CHECK_THAT(run.check().first_wrong, Contains(fmt::format("mipmap table: {}", x)));
+        add_to_entry(socket, table, x, 0, 0, -1);
+    }
+    CHECK(run.check().passed());
+}
+
+TEST_CASE("one wrong fitted height fails its job") {
+    Job job;
+    job.map.heights = MapHeights::fitted;
+    job.map.width = job.map.height = 60;
+    CheckedRun run{job};
+    REQUIRE(run.check().passed());
+    REQUIRE(run.setup.heights() != run.setup.map.codes);
+    add_to_entry(run.simulation.host.displacement_map, run.setup.registers.displacement_map, 30, 30, 0, 1);
+    CHECK_THAT(run.check().first_wrong, Contains("displacement map: (30, 30)"));
+}
+
 TEST_CASE("a mistake of every register is tried") {
     std::set<std::string> tried;
     for (const Mistake& mistake : register_mistakes())

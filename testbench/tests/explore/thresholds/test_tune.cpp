@@ -341,15 +341,18 @@ TEST_CASE("a Rank Test's threshold is the best of all that its register can hold
     }
 }
 
-TEST_CASE("a Curvature Test's threshold is tuned, alone and beside the Normal Test") {
+TEST_CASE("a Curvature or a Mipmap Test's threshold is tuned, alone and beside the Normal Test") {
     TuneRequest request = request_for(small_job());
-    request.job.hardware.height_test = HeightTest::curvature;
-    for (const bool normal : {false, true}) {
+    for (const auto& [test, normal] : {std::pair{HeightTest::curvature, false},
+                                       {HeightTest::curvature, true},
+                                       {HeightTest::mipmap, false},
+                                       {HeightTest::mipmap, true}}) {
+        request.job.hardware.height_test = test;
         request.job.tests.normal = request.space.normal = normal;
         request.goal.triangles = 300;
         const TuneResult result = tuned(request);
         CHECK(result.point.outcome.triangles <= 300);
-        CHECK(result.point.outcome.triangles >= 200);
+        CHECK(result.point.outcome.triangles >= 150);
         CHECK(result.point.tests.summed_height_threshold == request.job.tests.summed_height_threshold);
         Ground ground(result.job);
         EmittedMesh mesh;
@@ -361,6 +364,7 @@ TEST_CASE("a Curvature Test's threshold is tuned, alone and beside the Normal Te
         for (int level = -14 * levels_per_octave; level <= 2 * levels_per_octave; level += levels_per_octave / 16) {
             Job job = result.job;
             job.tests.curvature_threshold = threshold_at(level);
+            job.tests.mipmap_threshold = std::min(1.0, threshold_at(level));
             const Outcome outcome = ground.measure(job);
             if (outcome.triangles <= 300)
                 CHECK(outcome.rms >= 0.999 * result.point.outcome.rms);

@@ -1,7 +1,12 @@
 #include "modules/datapath/mipmap.h"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "modules/datapath/table_shapes.h"
 
 using namespace tessera::datapath;
 
@@ -46,12 +51,32 @@ TEST_CASE("mipmap: blocks of 2^l texels, level after level, under the addressed 
 }
 
 TEST_CASE("mipmap: the test's threshold is twice the height by which the midpoint leaves the chord") {
-    for (std::uint32_t i = 0; i < 16; ++i)
-        for (std::uint32_t j = 0; j < 16; ++j)
-            for (std::uint32_t ij = 0; ij < 16; ++ij)
-                for (std::uint32_t threshold = 0; threshold < 32; ++threshold) {
-                    const bool splits = std::abs(ij - (i + j) / 2.0) > threshold / 2.0;
-                    REQUIRE(mipmap_test(i, j, ij, threshold) == splits);
-                    REQUIRE(mipmap_test(j, i, ij, threshold) == splits);
+    TestParameters tests;
+    for (std::uint64_t i = 0; i < 16; ++i)
+        for (std::uint64_t j = 0; j < 16; ++j)
+            for (std::uint64_t ij = 0; ij < 16; ++ij)
+                for (tests.mipmap_threshold = 0; tests.mipmap_threshold < 32; ++tests.mipmap_threshold) {
+                    const double deviation = std::abs(static_cast<double>(ij) - static_cast<double>(i + j) / 2);
+                    const bool splits = deviation > tests.mipmap_threshold / 2.0;
+                    REQUIRE(mipmap_test(mipmap_difference(std::array{i, j, ij}), tests) == splits);
+                    REQUIRE(mipmap_test(mipmap_difference(std::array{j, i, ij}), tests) == splits);
                 }
+}
+
+TEST_CASE("MT: the entries of both ends and of the midpoint, of the edge's level") {
+    Registers r;
+    r.formats.height_test = HeightTest::mipmap;
+    r.map = {40, 24, AddressMode::clamp, AddressMode::repeat};
+    r.height_table.base = 0x3000;
+    shape_tables(r);
+    CHECK(r.height_table.entry_bytes == 2);
+    CHECK(r.height_table.rows == 1);
+    CHECK(r.height_table.columns == 40 * 24 + 20 * 12 + 10 * 6 + 5 * 3 + 3 * 2 + 2 * 1 + 1);
+    const TexCoord i{3 << 12, 23 << 12}, j{19 << 12, 25 << 12}, ij{11 << 12, 24 << 12};
+    std::vector<std::uint64_t> visited;
+    mipmap_reads(i, j, ij, r, [&](std::uint64_t address) { visited.push_back(address); });
+    // 16 texels: level 3, 5 x 3 blocks after those of levels 0 to 2; rows 23, 25 and 24 are 23, 1 and 0
+    const std::uint64_t first = 40 * 24 + 20 * 12 + 10 * 6;
+    CHECK(visited == std::vector<std::uint64_t>{0x3000 + 2 * (first + 2 * 5 + 0), 0x3000 + 2 * (first + 2),
+                                                0x3000 + 2 * (first + 1)});
 }

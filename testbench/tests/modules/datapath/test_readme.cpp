@@ -119,7 +119,7 @@ namespace {
 template <class Visit>
 void visit_every_register(Visit visit) {
     std::set<std::string> seen;
-    for (const HeightTest test : {HeightTest::rank, HeightTest::curvature}) {
+    for (const HeightTest test : {HeightTest::rank, HeightTest::curvature, HeightTest::mipmap}) {
         Registers registers;
         registers.formats.highlight_tag = true;
         registers.formats.height_test = test;
@@ -186,7 +186,8 @@ TEST_CASE(
         return found;
     };
     const std::vector<std::string> without = names(HeightTest::summed_height);
-    for (const auto& [test, more] : {std::pair{HeightTest::rank, 4u}, {HeightTest::curvature, 3u}}) {
+    for (const auto& [test, more] :
+         {std::pair{HeightTest::rank, 4u}, {HeightTest::curvature, 3u}, {HeightTest::mipmap, 1u}}) {
         const std::vector<std::string> with = names(test);
         REQUIRE(with.size() == without.size() + more);
         CHECK(std::equal(without.begin(), without.end(), with.begin()));

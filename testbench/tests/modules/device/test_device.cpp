@@ -73,6 +73,8 @@ constexpr const char* curvature_test =
 constexpr const char* curvature_test_modern =
     "hardware.design=modern hardware.height_test=curvature map.address_u=repeat map.address_v=repeat "
     "tests.curvature_threshold=0.02";
+constexpr const char* mipmap_test =
+    "hardware.design=modern hardware.height_test=mipmap tests.mipmap_filter=maximum tests.mipmap_threshold=0.01";
 constexpr const char* rank_test_in_view =
     "hardware.design=modern mesh.source=lattice mesh.spacing=16 hardware.height_test=rank "
     "hardware.triangulation=greatest_rank tests.normal=false tests.rank_view=per_pixel tests.rank_threshold=20 "
@@ -117,6 +119,7 @@ const CaseTable<Row> same{
         {"functional, a Curvature Test on a lattice wider than the map", curvature_test, false, 100, false, 0, 64,
          true},
         {"timed, a Curvature Test, modern design, a repeated map", curvature_test_modern, true},
+        {"timed, a Mipmap Test, modern design", mipmap_test, true},
         {"timed, a Rank Test as the viewer sees it, modern design", rank_test_in_view, true},
         {"functional, watermark 50", "hardware.queue_watermark=50", false, 3},
         {"timed, watermark 50", "hardware.queue_watermark=50", true, 3},

@@ -89,6 +89,23 @@ TEST_CASE("No other code under a vertex makes the squared error less") {
     }
 }
 
+TEST_CASE("Of meshes over the same texels each counts") {
+    Random random(3);
+    QuantisedMap map = empty_map(33, 33, AddressMode::clamp, AddressMode::clamp);
+    for (std::uint16_t& code : map.codes)
+        code = static_cast<std::uint16_t>(random.natural(20000, 40000));
+    const auto coarse = lattice_triangles(lattice_over(map.geometry, 32), formats);
+    const auto fine = lattice_triangles(lattice_over(map.geometry, 16), formats);
+    auto both = coarse;
+    both.insert(both.end(), fine.begin(), fine.end());
+    const auto of_both = [&](const QuantisedMap& heights) {
+        return squared(errors_of(heights, map, coarse)) + squared(errors_of(heights, map, fine));
+    };
+    const double together = of_both(fit_heights(map, both, formats));
+    CHECK(together < 0.999 * of_both(fit_heights(map, coarse, formats)));
+    CHECK(together < 0.999 * of_both(fit_heights(map, fine, formats)));
+}
+
 TEST_CASE("Fitted heights stay codes") {
     QuantisedMap map = empty_map(17, 17, AddressMode::clamp, AddressMode::clamp);
     map.bits = 10;

@@ -15,10 +15,9 @@ TEST_CASE("Mipmaps hold the mean, or the maximum, of each block's texels") {
             random_map(random, random.natural(1, 20), random.natural(1, 20), AddressMode::clamp, AddressMode::repeat);
         const MipmapTable means = make_mipmap_table(map, MipmapFilter::mean);
         const MipmapTable maxima = make_mipmap_table(map, MipmapFilter::maximum);
-        REQUIRE(means.levels.size() == static_cast<std::size_t>(highest_mipmap_level(map.geometry)) + 1);
-        REQUIRE(means.entries.size() == means.levels.back().first_entry + 1);
+        REQUIRE(means.entries.size() == mipmap_entries(map.geometry));
         REQUIRE(maxima.entries.size() == means.entries.size());
-        for (int level = 0; level < static_cast<int>(means.levels.size()); ++level) {
+        for (int level = 0; level <= highest_mipmap_level(map.geometry); ++level) {
             for (std::uint32_t v = 0; v < map.geometry.height; v += 1u << level) {
                 for (std::uint32_t u = 0; u < map.geometry.width; u += 1u << level) {
                     double sum = 0, count = 0;
@@ -38,9 +37,4 @@ TEST_CASE("Mipmaps hold the mean, or the maximum, of each block's texels") {
             }
         }
     }
-}
-
-TEST_CASE("The Mipmap Test's register is twice the height, within its width") {
-    CHECK(mipmap_threshold(10.75, datapath::Formats{}) == 21);
-    CHECK(mipmap_threshold(1e9, datapath::Formats{}) == 131071);
 }

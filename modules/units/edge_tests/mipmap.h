@@ -1,0 +1,33 @@
+#pragma once
+#include <cstdint>
+#include <systemc>
+
+#include "modules/datapath/mipmap.h"
+#include "modules/units/edge_tests/height_test.h"
+
+namespace tessera {
+
+/// Mipmap Test, in the Summed Height Test's place: does the filtered map at the edge's midpoint leave the chord? What the
+/// paper (2.3.1) weighs its own test against; the host fills the table with means or with maxima.
+///
+/// In:   HeightOperands. Out: HeightResult.
+/// Memory: three entries an edge of the Mipmap Table, of the level of the edge's length: of its ends and of its midpoint.
+/// Arithmetic: a count of leading zeros and shifts for the level; two adds, a compare.
+/// Timing: latency 2 after the last entry; interval 1 by default. With one port an edge's entries take three cycles.
+/// Waits for Calculate New U and the Mipmap Table; held back by the collection of the tests.
+class MipmapTest : public HeightTestUnit {
+  public:
+    using HeightTestUnit::HeightTestUnit;
+
+    void trace_signals(Signals& signals) const override;
+
+  protected:
+    void reads(const HeightOperands& edge, Reads& reads) const override;
+    HeightResult process(const HeightOperands& edge, const Entries& entries) override;
+    void trace_processed(Signals& signals, const HeightOperands& edge, const HeightResult& result) const override;
+
+  private:
+    std::uint64_t difference_ = 0;  // of the edge decided last
+};
+
+}  // namespace tessera
