@@ -15,13 +15,13 @@ void choose_timing(Random& random, Timing& timing) {
         for (UnitTiming* unit :
              {&timing.get_triangle, &timing.calculate_new_p, &timing.displace_vertex, &timing.transform,
               &timing.calculate_new_u, &timing.tex_coord_test, &timing.summed_height_test, &timing.rank_test,
-              &timing.curvature_test, &timing.normal_test, &timing.view_test, &timing.pass_or_tessellate,
-              &timing.tessellation, &timing.triangle_queue, &timing.lighting})
+              &timing.curvature_test, &timing.mipmap_test, &timing.normal_test, &timing.view_test,
+              &timing.pass_or_tessellate, &timing.tessellation, &timing.triangle_queue, &timing.lighting})
             if (random.coin())
                 *unit = {latency(), random.natural(1, 5), buffer()};
     timing.results_buffer = buffer();
     for (MemoryTiming* memory : {&timing.displacement_map, &timing.normal_map, &timing.summed_height_table,
-                                 &timing.rank_table, &timing.curvature_table}) {
+                                 &timing.rank_table, &timing.curvature_table, &timing.mipmap_table}) {
         if (random.coin())
             *memory = {random.natural(1, 4), 1u << random.natural(0, 5), random.natural(0, slow ? 60 : 3),
                        random.natural(0, 8), buffer()};
