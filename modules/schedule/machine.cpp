@@ -240,11 +240,11 @@ void Machine::account_get_triangle(Cycle begin, Cycle joined) {
     }
 }
 
-/// first_edge: when the first edge came of these triangles.
-void Machine::account_joins(Cycle first_edge) {
+/// first_tested: when the first edge came of these triangles.
+void Machine::account_joins(Cycle first_tested) {
     for (std::uint64_t k = joins_.first(); k < joins_.count(); ++k) {
         const Join& it = joins_[k];
-        join_states_.until(std::min(it.open, first_edge), State::starved);
+        join_states_.until(std::min(it.open, first_tested), State::starved);
         join_states_.until(it.open, State::starved, transform);
         join_states_.until(std::min(it.geometry, it.tests), State::starved);
         if (it.geometry <= it.tests)

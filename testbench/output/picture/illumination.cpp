@@ -84,7 +84,8 @@ void Illumination::add(const Lamp& lamp, const Patch& patch, glm::dmat3& even, s
     const double first = glm::dot(points.front().normal, lamp.direction);
     if (patch.flat && first < -largest_sine)
         return;
-    auto& [rays, facing, traced, occluded] = scratch;
+    std::vector<std::size_t>& facing = scratch.facing;
+    std::vector<std::uint8_t>& occluded = scratch.occluded;
     facing.clear();
     occluded.clear();
     const auto keep_facing = [&](std::size_t begin, std::size_t end) {

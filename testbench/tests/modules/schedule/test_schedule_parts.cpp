@@ -70,20 +70,20 @@ TEST_CASE("schedule: pipelines side by side take turns") {
 }
 
 TEST_CASE("schedule: states add up, and shares stand in the order of their first stretches") {
-    States states;
-    states.until(5, State::starved);
-    states.until(9, State::blocked, 3);
-    states.until(7, State::busy);  // past
-    states.until(10, State::waiting_for_memory, 3);
-    states.until(12, State::blocked, 3);
-    CHECK(states.cycles_in(State::starved) == 5);
-    CHECK(states.cycles_in(State::busy) == 0);
-    CHECK(states.cycles_in(State::waiting_for_memory) == 1);
-    CHECK(states.cycles_in(State::blocked) == 6);
-    CHECK(states.shares()[0].state == State::blocked);
-    CHECK(states.shares()[0].cycles == 6);
-    CHECK(states.shares()[1].state == State::waiting_for_memory);
-    CHECK(states.shares()[2].by == nobody);
+    States told;
+    told.until(5, State::starved);
+    told.until(9, State::blocked, 3);
+    told.until(7, State::busy);  // past
+    told.until(10, State::waiting_for_memory, 3);
+    told.until(12, State::blocked, 3);
+    CHECK(told.cycles_in(State::starved) == 5);
+    CHECK(told.cycles_in(State::busy) == 0);
+    CHECK(told.cycles_in(State::waiting_for_memory) == 1);
+    CHECK(told.cycles_in(State::blocked) == 6);
+    CHECK(told.shares()[0].state == State::blocked);
+    CHECK(told.shares()[0].cycles == 6);
+    CHECK(told.shares()[1].state == State::waiting_for_memory);
+    CHECK(told.shares()[2].by == nobody);
 }
 
 TEST_CASE("schedule: a level counts at the end of a cycle, one at least") {
@@ -108,14 +108,14 @@ TEST_CASE("schedule: a stage's item is starved, busy, waits for memory, and is b
     CHECK(stage.finish() == 13);
     stage.blocked(15, 1);
     stage.depart(18, 2);
-    const States& states = stage.states();
-    CHECK(states.cycles_in(State::starved) == 6);
-    CHECK(states.cycles_in(State::waiting_for_memory) == 4);
-    CHECK(states.cycles_in(State::busy) == 3);
-    CHECK(states.cycles_in(State::blocked) == 5);
-    CHECK(states.shares()[0].by == 9);
-    CHECK(states.shares()[3].by == 2);
-    CHECK(states.shares()[3].cycles == 3);
+    const States& told = stage.states();
+    CHECK(told.cycles_in(State::starved) == 6);
+    CHECK(told.cycles_in(State::waiting_for_memory) == 4);
+    CHECK(told.cycles_in(State::busy) == 3);
+    CHECK(told.cycles_in(State::blocked) == 5);
+    CHECK(told.shares()[0].by == 9);
+    CHECK(told.shares()[3].by == 2);
+    CHECK(told.shares()[3].cycles == 3);
 
     stage.take(6);
     CHECK(stage.start() == 7);    // its interval after the first
