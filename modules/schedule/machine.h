@@ -132,7 +132,7 @@ class Machine {
     void join(const Facts& facts);
     Cycle split(Cycle offer, const Facts& facts);
     void account_get_triangle(Cycle begin, Cycle joined);
-    void account_joins(Cycle first_edge);
+    void account_joins(Cycle first_tested);
 
     Plan plan_;
     Source source_;
