@@ -1,23 +1,15 @@
 #include "testbench/prove/engines/engine_run.h"
 
 #include <fmt/core.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <array>
-#include <cerrno>
-#include <csignal>
 #include <cstdint>
 #include <exception>
 #include <memory>
 #include <sstream>
-#include <system_error>
 #include <vector>
 
-#include "testbench/common/exit_process.h"
+#include "testbench/common/child_process.h"
 #include "testbench/common/hash.h"
-#include "testbench/common/pipe.h"
 #include "testbench/machine/simulation.h"
 #include "testbench/output/report/mesh_counts.h"
 #include "testbench/output/report/statistics.h"
@@ -27,7 +19,6 @@ namespace tessera {
 
 namespace {
 
-constexpr unsigned most_seconds = 120;
 constexpr std::uint64_t most_triangles = 20'000'000, most_cycles_without_progress = 1'000'000;
 
 /// Of the cycles in which items came into a unit, and left it.
@@ -88,37 +79,14 @@ std::string run(const Job& job, const BaseMesh& mesh, const HeightMap& map, bool
 }  // namespace
 
 std::string engine_run(const Job& job, const BaseMesh& mesh, const HeightMap& map, bool scheduled) {
-    std::array<int, 2> pipe{};
-    if (::pipe(pipe.data()) != 0)
-        throw std::system_error(errno, std::generic_category(), "no pipe to an engine's process");
-    std::fflush(nullptr);  // what waits in a buffer would be printed twice
-    const pid_t child = ::fork();
-    if (child < 0)
-        throw std::system_error(errno, std::generic_category(), "no process for an engine");
-    if (child == 0) {
-        ::close(pipe[0]);
-        ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-        ::alarm(most_seconds);
-        std::string text;
+    const ChildEnd end = run_in_child([&]() -> std::string {
         try {
-            text = run(job, mesh, map, scheduled);
+            return run(job, mesh, map, scheduled);
         } catch (const std::exception& error) {
-            text = error.what();
+            return error.what();
         }
-        write_to_pipe(pipe[1], text.data(), text.size());
-        std::fflush(nullptr);
-        exit_process(0);
-    }
-    ::close(pipe[1]);
-    std::string text = read_from_pipe(pipe[0]);
-    ::close(pipe[0]);
-    int status = 0;
-    while (::waitpid(child, &status, 0) < 0)
-        if (errno != EINTR)
-            throw std::system_error(errno, std::generic_category(), "an engine's process");
-    if (WIFSIGNALED(status))
-        text += fmt::format("ended by signal {}\n", WTERMSIG(status));
-    return text;
+    });
+    return end.told + end.failure;
 }
 
 std::string first_difference(const std::string& clocked, const std::string& scheduled) {

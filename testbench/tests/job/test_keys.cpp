@@ -400,7 +400,7 @@ TEST_CASE("paths") {
 }
 
 TEST_CASE("a job dumped into a run folder runs again from there") {
-    const TemporaryFolder root;
+    const TestFolder root;
     root.write("jobs/meshes/head.obj", "mesh");
     root.write("runs/one/x", "");
     root.write("runs/two/deep/x", "");

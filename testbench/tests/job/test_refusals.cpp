@@ -179,7 +179,7 @@ TEST_CASE("TOML's own errors carry file, line and column") {
 }
 
 TEST_CASE("files that are no job files") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     const auto read_error = [](const fs::path& path) { return error_of([&] { read_job(path); }); };
     CHECK_THAT(read_error(folder.path() / "none.toml"), Contains("none.toml: no such job file"));
     CHECK_THAT(read_error(folder.path() / "none" / "none.toml"), Contains("no such job file"));

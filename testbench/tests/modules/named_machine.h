@@ -1,13 +1,12 @@
 #pragma once
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
 #include <cstdint>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "modules/rasteriser.h"
+#include "testbench/common/child_process.h"
 #include "testbench/machine/hosted_machine.h"
 #include "testbench/machine/mesh_monitor.h"
 #include "testbench/tests/support/bare_mesh.h"
@@ -67,22 +66,16 @@ struct AloneResult {
 
 /// Runs one in another process, since SystemC elaborates once a process. To be called before anything is built.
 inline AloneResult run_alone(const MachineSetup& setup) {
-    int ends[2];
-    REQUIRE(pipe(ends) == 0);
-    const pid_t child = fork();
-    REQUIRE(child >= 0);
-    AloneResult result;
-    if (child == 0) {
+    const ChildEnd end = run_in_child([&]() -> std::string {
         NamedMachine machine("machine", setup);
         sc_core::sc_start();
-        if (machine.finished() && !machine.drained.empty())
-            result = {machine.cycles(), machine.drained.back().value()};
-        _exit(write(ends[1], &result, sizeof result) == sizeof result ? 0 : 1);
-    }
-    const bool read_all = read(ends[0], &result, sizeof result) == sizeof result;
-    int status = 0;
-    REQUIRE(waitpid(child, &status, 0) == child);
-    REQUIRE((read_all && status == 0 && result.drained > 0));
+        if (!machine.finished() || machine.drained.empty())
+            return {};
+        return std::to_string(machine.cycles()) + " " + std::to_string(machine.drained.back().value());
+    });
+    INFO(end.failure);
+    AloneResult result;
+    REQUIRE(std::istringstream(end.told) >> result.cycles >> result.drained);
     return result;
 }
 

@@ -1,10 +1,5 @@
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/error.h"
@@ -12,32 +7,13 @@
 #include "testbench/output/report/ply_writer.h"
 #include "testbench/run_folder/ply_reader.h"
 #include "testbench/run_folder/read_run.h"
+#include "testbench/tests/support/test_folder.h"
 
 using namespace tessera;
 using Catch::Contains;
 namespace fs = std::filesystem;
 
 namespace {
-
-class Folder {
-  public:
-    Folder() {
-        std::string name = (fs::temp_directory_path() / "tessera_measure_XXXXXX").string();
-        REQUIRE(::mkdtemp(name.data()) != nullptr);
-        path_ = name;
-    }
-    ~Folder() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    const fs::path& path() const { return path_; }
-    fs::path file() const { return path_ / "mesh.ply"; }
-
-  private:
-    fs::path path_;
-};
 
 /// Two triangles that share an edge, and one that was culled.
 EmittedMesh small_mesh() {
@@ -74,11 +50,6 @@ MeshUnits units() {
     return units;
 }
 
-std::string bytes_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
     const std::size_t place = text.find(what);
     REQUIRE(place != std::string::npos);
@@ -86,10 +57,10 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 }
 
 /// Reads the bytes as a file; the message if they are refused, which must name the file and what to do.
-std::string refusal(const Folder& here, const std::string& bytes) {
-    std::ofstream(here.file(), std::ios::binary) << bytes;
+std::string refusal(const TestFolder& here, const std::string& bytes) {
+    write_all(here / "mesh.ply", bytes);
     try {
-        read_ply(here.file());
+        read_ply(here / "mesh.ply");
     } catch (const InputError& error) {
         const std::string message = error.what();
         CHECK_THAT(message, Contains("mesh.ply") && Contains("run the job again"));
@@ -102,10 +73,10 @@ std::string refusal(const Folder& here, const std::string& bytes) {
 }  // namespace
 
 TEST_CASE("a mesh that was written is read back") {
-    const Folder here;
+    const TestFolder here;
     const EmittedMesh mesh = small_mesh();
-    write_ply(here.file(), mesh, units());
-    const RecordedMesh read = read_ply(here.file());
+    write_ply(here / "mesh.ply", mesh, units());
+    const RecordedMesh read = read_ply(here / "mesh.ply");
     REQUIRE(read.positions.size() == 4);
     REQUIRE(read.normals.size() == 4);
     REQUIRE(read.textures.size() == 4);
@@ -125,14 +96,14 @@ TEST_CASE("a mesh that was written is read back") {
             CHECK(read.textures[r.vertices[k]] == units().texture(t.corners[k].texture));
         }
     }
-    write_ply(here.file(), EmittedMesh{}, units());
-    CHECK(read_ply(here.file()).triangles.empty());
+    write_ply(here / "mesh.ply", EmittedMesh{}, units());
+    CHECK(read_ply(here / "mesh.ply").triangles.empty());
 }
 
 TEST_CASE("a mesh file cut off anywhere, or longer than it says, is refused") {
-    const Folder here;
-    write_ply(here.file(), small_mesh(), units());
-    const std::string whole = bytes_of(here.file());
+    const TestFolder here;
+    write_ply(here / "mesh.ply", small_mesh(), units());
+    const std::string whole = read_all(here / "mesh.ply");
     REQUIRE(refusal(here, whole).empty());
     for (std::size_t length = 0; length < whole.size(); ++length) {
         INFO(length);
@@ -142,9 +113,9 @@ TEST_CASE("a mesh file cut off anywhere, or longer than it says, is refused") {
 }
 
 TEST_CASE("any byte of a mesh file changed is refused or read, and a header's own is refused") {
-    const Folder here;
-    write_ply(here.file(), small_mesh(), units());
-    const std::string whole = bytes_of(here.file());
+    const TestFolder here;
+    write_ply(here / "mesh.ply", small_mesh(), units());
+    const std::string whole = read_all(here / "mesh.ply");
     const std::size_t body = whole.find("end_header\n") + 11;
     const std::size_t first_comment = whole.find("comment"), after_comments = whole.find("element vertex");
     for (std::size_t place = 0; place < whole.size(); ++place) {
@@ -161,9 +132,9 @@ TEST_CASE("any byte of a mesh file changed is refused or read, and a header's ow
 }
 
 TEST_CASE("a mesh file that says something else is refused with what it says") {
-    const Folder here;
-    write_ply(here.file(), small_mesh(), units());
-    const std::string whole = bytes_of(here.file());
+    const TestFolder here;
+    write_ply(here / "mesh.ply", small_mesh(), units());
+    const std::string whole = read_all(here / "mesh.ply");
     const auto with = [&](const std::string& what, const std::string& by) {
         return refusal(here, replaced(whole, what, by));
     };
@@ -200,16 +171,16 @@ TEST_CASE("a mesh file that says something else is refused with what it says") {
     CHECK_THAT(with_bytes(faces + 20 + 16, "\xff\xff\xff\xff"), Contains("face 1: its base triangle"));
 
     CHECK_THROWS_AS(read_ply(here.path()), InputError);
-    CHECK_THROWS_AS(read_ply(here.path() / "absent.ply"), InputError);
+    CHECK_THROWS_AS(read_ply(here / "absent.ply"), InputError);
 }
 
 TEST_CASE("a run's folder is read back, with paths that hold from there") {
-    const Folder here;
-    const fs::path run = here.path() / "runs/one";
+    const TestFolder here;
+    const fs::path run = here / "runs/one";
     fs::create_directories(run);
-    fs::create_directories(here.path() / "data");
-    write_file(here.path() / "map.pgm", "P2 1 1 9\n5\n");
-    write_file(here.path() / "data/map.pgm", "P2 1 1 9\n5\n");
+    fs::create_directories(here / "data");
+    write_file(here / "map.pgm", "P2 1 1 9\n5\n");
+    write_file(here / "data/map.pgm", "P2 1 1 9\n5\n");
     Job job;
     job.folder = here.path().string();
     job.map.source = MapSource::file;
@@ -221,22 +192,22 @@ TEST_CASE("a run's folder is read back, with paths that hold from there") {
     job.camera.up = {0, 0, 1};
     job.camera.near_plane = 0.1;
     write_file(run / "job.toml", dump_job(job, run));
-    const auto read = [&] { return read_run(run, here.path() / "data"); };
+    const auto read = [&] { return read_run(run, here / "data"); };
     CHECK_THROWS_WITH(read(), Contains("mesh.ply") && Contains("deadlocked"));
     write_ply(run / "mesh.ply", small_mesh(), units());
     const RecordedRun result = read();
     CHECK(result.mesh.triangles.size() == 2);
-    CHECK(fs::equivalent(result.job.map.path, here.path() / "map.pgm"));
+    CHECK(fs::equivalent(result.job.map.path, here / "map.pgm"));
     CHECK(result.folder == run);
     write_file(run / "job.toml", unresolved);
     CHECK_THROWS_WITH(read_run(run, {}), Contains("displacement.scale = \"auto\", which no run writes"));
 
-    fs::remove(here.path() / "map.pgm");
+    fs::remove(here / "map.pgm");
     CHECK_THROWS_WITH(read(), Contains("map.file") && Contains("map.pgm") && Contains("put it back"));
     job.map.file = "data:map.pgm";
     write_file(run / "job.toml", dump_job(job, run));
     CHECK(read().job.map.file == "data:map.pgm");
-    CHECK(read().job.map.path == here.path() / "data/map.pgm");
+    CHECK(read().job.map.path == here / "data/map.pgm");
     CHECK_THROWS_WITH(read_run(run, here.path()), Contains("--data FOLDER"));
     job.output.ply = false;
     write_file(run / "job.toml", dump_job(job, run));
@@ -246,6 +217,6 @@ TEST_CASE("a run's folder is read back, with paths that hold from there") {
     CHECK_THROWS_AS(read(), InputError);
     fs::remove(run / "job.toml");
     CHECK_THROWS_WITH(read(), Contains("no job.toml"));
-    CHECK_THROWS_WITH(read_run(here.path() / "absent", ""), Contains("no such folder"));
-    CHECK_THROWS_AS(read_run(here.path() / "data/map.pgm", ""), InputError);
+    CHECK_THROWS_WITH(read_run(here / "absent", ""), Contains("no such folder"));
+    CHECK_THROWS_AS(read_run(here / "data/map.pgm", ""), InputError);
 }

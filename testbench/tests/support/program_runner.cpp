@@ -9,9 +9,6 @@
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <regex>
 #include <sstream>
 #include <thread>
@@ -19,25 +16,6 @@
 namespace tessera {
 
 namespace fs = std::filesystem;
-
-TestFolder::TestFolder() {
-    std::string name = (fs::temp_directory_path() / "tessera_program_XXXXXX").string();
-    REQUIRE(::mkdtemp(name.data()) != nullptr);
-    path_ = fs::canonical(name);
-}
-
-TestFolder::~TestFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-}
-
-std::vector<std::string> TestFolder::names() const {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(path_))
-        names.push_back(entry.path().filename().string());
-    std::sort(names.begin(), names.end());
-    return names;
-}
 
 std::string ProgramEnd::text() const {
     std::ostringstream text;
@@ -140,17 +118,6 @@ ProgramEnd succeed(const Arguments& arguments, const fs::path& folder) {
     REQUIRE(end.exit_code == 0);
     CHECK(end.err.empty());
     return end;
-}
-
-std::string read_all(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
-void write_all(const fs::path& file, const std::string& content) {
-    std::ofstream out(file, std::ios::binary);
-    out << content;
-    REQUIRE(out.flush());
 }
 
 std::vector<std::string> lines_of(const std::string& text) {

@@ -4,23 +4,10 @@
 #include <utility>
 #include <vector>
 
+#include "testbench/tests/support/sanitized.h"
+#include "testbench/tests/support/test_folder.h"
+
 namespace tessera {
-
-/// A temporary folder, removed at the end of the test.
-class TestFolder {
-  public:
-    TestFolder();
-    ~TestFolder();
-    TestFolder(const TestFolder&) = delete;
-    TestFolder& operator=(const TestFolder&) = delete;
-
-    const std::filesystem::path& path() const { return path_; }
-    /// Sorted names in the folder, including hidden files.
-    std::vector<std::string> names() const;
-
-  private:
-    std::filesystem::path path_;
-};
 
 /// The end of a program's run.
 struct ProgramEnd {
@@ -57,19 +44,9 @@ ProgramEnd run_tessera(const Arguments& arguments, const std::filesystem::path& 
 /// The same; requires exit code 0 and an empty standard error.
 ProgramEnd succeed(const Arguments& arguments, const std::filesystem::path& folder);
 
-std::string read_all(const std::filesystem::path& file);
-void write_all(const std::filesystem::path& file, const std::string& content);
 std::vector<std::string> lines_of(const std::string& text);
 
 /// The project's source folder.
 std::filesystem::path source_folder();
-
-/// Under a sanitizer memory and time of a program are not representative.
-constexpr bool sanitized =
-#ifdef TESSERA_SANITIZE
-    true;
-#else
-    false;
-#endif
 
 }  // namespace tessera

@@ -7,43 +7,17 @@
 #include <ImfTiledOutputFile.h>
 #include <half.h>
 #include <png.h>
-#include <unistd.h>
 
 #include <catch2/catch.hpp>
 #include <cstdio>
 #include <exception>
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 
 #include "testbench/common/error.h"
 #include "testbench/input/map/read_height_map.h"
 
 namespace tessera::map_test {
-
-TemporaryFolder::TemporaryFolder() {
-    static int count = 0;
-    path_ = std::filesystem::temp_directory_path() /
-            ("tessera_maps_" + std::to_string(getpid()) + "_" + std::to_string(count++));
-    std::filesystem::create_directories(path_);
-}
-
-TemporaryFolder::~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-}
-
-void write_bytes(const std::filesystem::path& path, std::string_view bytes) {
-    std::filesystem::remove(path);  // some file systems flush a file that is truncated and written anew
-    std::ofstream file(path, std::ios::binary);
-    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    REQUIRE(file.good());
-}
-
-std::string read_bytes(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
 
 void write_png(const std::filesystem::path& path, const PngImage& image) {
     const auto fail = [](png_structp, png_const_charp message) { throw std::runtime_error(message); };

@@ -5,23 +5,9 @@
 #include <string_view>
 #include <vector>
 
+#include "testbench/tests/support/test_folder.h"
+
 namespace tessera::map_test {
-
-/// A folder of this process's own, removed when the object goes.
-class TemporaryFolder {
-  public:
-    TemporaryFolder();
-    ~TemporaryFolder();
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    std::filesystem::path operator/(std::string_view name) const { return path_ / name; }
-
-  private:
-    std::filesystem::path path_;
-};
-
-void write_bytes(const std::filesystem::path& path, std::string_view bytes);
-std::string read_bytes(const std::filesystem::path& path);
 
 /// PNG through libpng. colour_type: PNG_COLOR_TYPE_*; rows are top first, raw PNG samples (16 bit big-endian,
 /// small depths packed); palette: RGB triples.

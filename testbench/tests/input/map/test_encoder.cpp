@@ -12,9 +12,9 @@ namespace {
 
 HeightMap written_and_read(int width, int height, const std::vector<double>& heights, MapFormat format,
                            EncodedMap& map) {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     map = encode_height_map(width, height, heights, format);
-    write_bytes(folder / "map", map.bytes);
+    write_all(folder / "map", map.bytes);
     return read_height_map(folder / "map");
 }
 

@@ -64,7 +64,7 @@ std::size_t first_chunk(const std::string& file, std::size_t chunks) {
 }  // namespace
 
 TEST_CASE("an EXR map keeps its values, whatever its pixel type, compression, tiling and origin") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     const auto pixels = GENERATE(Pixels::uint, Pixels::half, Pixels::float_);
     const auto compression = GENERATE(0, 1, 2, 3, 4, 5);
     const auto tiled = GENERATE(false, true);
@@ -90,7 +90,7 @@ TEST_CASE("an EXR map keeps its values, whatever its pixel type, compression, ti
 }
 
 TEST_CASE("of a mip map the finest level is read") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     ExrImage image = steps();
     image.tiled = true;
     image.mip_map = true;
@@ -101,7 +101,7 @@ TEST_CASE("of a mip map the finest level is read") {
 }
 
 TEST_CASE("an EXR channel is chosen by name, else Y, else R, else the only one") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     ExrImage image{1, 1, {0}};
     const auto first_value = [&](std::vector<std::string> channels, const std::string& wanted) {
         image.channels = std::move(channels);
@@ -117,7 +117,7 @@ TEST_CASE("an EXR channel is chosen by name, else Y, else R, else the only one")
 }
 
 TEST_CASE("values that are not finite are repaired and counted, a map of nothing else is refused") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     for (const auto pixels : {Pixels::half, Pixels::float_}) {
         write_exr(folder / "a.exr", {3, 2, {not_a_number, infinity, -infinity, 2, 5, not_a_number}, pixels});
         const HeightMap map = read_height_map(folder / "a.exr");
@@ -135,7 +135,7 @@ TEST_CASE("values that are not finite are repaired and counted, a map of nothing
 }
 
 TEST_CASE("a constant EXR map has an empty range, subnormal numbers are kept and said") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     write_exr(folder / "a.exr", {2, 2, {7, 7, 7, 7}});
     const HeightMap constant = read_height_map(folder / "a.exr");
     CHECK(constant.range_low == 7);
@@ -147,7 +147,7 @@ TEST_CASE("a constant EXR map has an empty range, subnormal numbers are kept and
 }
 
 TEST_CASE("sides over the limit are refused from the header") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     write_exr(folder / "limit.exr", {4096, 1, std::vector<float>(4096)});
     CHECK(read_height_map(folder / "limit.exr").width == 4096);
     write_exr(folder / "wide.exr", {4097, 1, std::vector<float>(4097)});
@@ -210,7 +210,7 @@ TEST_CASE("the OpenEXR project's own test images are read") {
 }
 
 TEST_CASE("an EXR chunk that holds less than its pixels is refused, whatever its compression") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     const auto [compression, tiled] =
         GENERATE(table<int, bool>({{0, false}, {0, true}, {1, false}, {1, true}, {2, false}, {3, false}, {3, true}}));
     ExrImage image{16, 16, std::vector<float>(256)};
@@ -221,7 +221,7 @@ TEST_CASE("an EXR chunk that holds less than its pixels is refused, whatever its
     write_exr(folder / "good.exr", image);
     CHECK(read_height_map(folder / "good.exr").at(15, 15) == 7);
 
-    const std::string good = read_bytes(folder / "good.exr");
+    const std::string good = read_all(folder / "good.exr");
     const std::size_t head = tiled ? 20 : 8;
     const std::size_t chunk = first_chunk(good, tiled ? 4 : compression == 3 ? 1 : 16);
     std::string bad = good;
@@ -235,17 +235,17 @@ TEST_CASE("an EXR chunk that holds less than its pixels is refused, whatever its
         bad[chunk + head - 3] = 0;
         bad.replace(chunk + head, std::min(shorter.size(), bad.size() - chunk - head), shorter);
     }
-    write_bytes(folder / "bad.exr", bad);
+    write_all(folder / "bad.exr", bad);
     CHECK_THROWS_WITH(read_height_map(folder / "bad.exr"),
                       Contains(compression == 0 ? "bytes of pixels of " : "decompress") && Contains("It is damaged"));
 }
 
 TEST_CASE("an EXR file without what its pixels can do without is read with a remark") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     ExrImage image = steps();
     image.tiled = GENERATE(false, true);
     write_exr(folder / "good.exr", image);
-    const std::string good = read_bytes(folder / "good.exr");
+    const std::string good = read_all(folder / "good.exr");
     const std::size_t chunks = image.tiled ? 9 : 2, table = first_chunk(good, chunks) - 8 * chunks;
     std::string bad = good;
     std::string remark;
@@ -260,7 +260,7 @@ TEST_CASE("an EXR file without what its pixels can do without is read with a rem
         bad[bad.find(name)] = 'x';
         remark = "lacks the required attribute " + name;
     }
-    write_bytes(folder / "bad.exr", bad);
+    write_all(folder / "bad.exr", bad);
     const HeightMap map = read_height_map(folder / "bad.exr");
     CHECK(map.values == read_height_map(folder / "good.exr").values);
     REQUIRE(map.repairs.size() == 1);
@@ -268,9 +268,9 @@ TEST_CASE("an EXR file without what its pixels can do without is read with a rem
 }
 
 TEST_CASE("an EXR file without what its pixels need is refused") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     write_exr(folder / "good.exr", steps());
-    const std::string good = read_bytes(folder / "good.exr");
+    const std::string good = read_all(folder / "good.exr");
     std::string bad = good, message;
     SECTION("attributes") {
         const auto name = GENERATE("channels"s, "compression"s, "dataWindow"s, "lineOrder"s);
@@ -281,12 +281,12 @@ TEST_CASE("an EXR file without what its pixels need is refused") {
         bad[first_chunk(good, 2) - 5] = 1;
         message = "offset table";
     }
-    write_bytes(folder / "bad.exr", bad);
+    write_all(folder / "bad.exr", bad);
     CHECK_THROWS_WITH(read_height_map(folder / "bad.exr"), Contains(message));
 }
 
 TEST_CASE("EXR files of several parts, or of deep data, are refused") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     const std::string path = folder / "bad.exr";
     Imf::Header header(4, 4);
     header.channels().insert("Y", Imf::Channel(Imf::HALF));
@@ -309,7 +309,7 @@ TEST_CASE("EXR files of several parts, or of deep data, are refused") {
 }
 
 TEST_CASE("EXR attributes that are not as long as they say are refused") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     const auto [type, value] = GENERATE(table<std::string, std::string>({
         {"preview", "\xff\xff\0\0\xff\x3f\0\0"s},
         {"stringvector", "\xff\xff\xff\x7fhere"s},
@@ -320,10 +320,10 @@ TEST_CASE("EXR attributes that are not as long as they say are refused") {
         {"v2f", "\0\0\0\0"s},
     }));
     write_exr(folder / "good.exr", steps());
-    std::string bad = read_bytes(folder / "good.exr");
+    std::string bad = read_all(folder / "good.exr");
     constexpr std::size_t magic_and_version = 8;
     bad.insert(magic_and_version, "extra\0"s + type + '\0' + static_cast<char>(value.size()) + "\0\0\0"s + value);
-    write_bytes(folder / "bad.exr", bad);
+    write_all(folder / "bad.exr", bad);
     CHECK_THROWS_WITH(read_height_map(folder / "bad.exr"),
                       Contains("OpenEXR cannot read the file") && Contains("damaged"));
 }

@@ -2,7 +2,6 @@
 // else, and none makes the process grow by more than 256 MiB.
 #include <png.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -10,9 +9,11 @@
 #include <set>
 #include <string>
 
+#include "testbench/common/child_process.h"
 #include "testbench/common/random.h"
 #include "testbench/prove/fuzz/fuzz_target.h"
 #include "testbench/tests/input/map/map_test_files.h"
+#include "testbench/tests/support/sanitized.h"
 #include "testbench/tests/support/shared_data.h"
 
 using namespace tessera;
@@ -22,20 +23,6 @@ using namespace std::string_literals;
 namespace {
 
 constexpr long allowed_growth = 256L << 20;
-
-bool address_sanitizer() {
-#if defined(__SANITIZE_ADDRESS__)
-    return true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-    return true;
-#else
-    return false;
-#endif
-#else
-    return false;
-#endif
-}
 
 long address_space() {
     long pages = 0;
@@ -53,10 +40,8 @@ long resident_peak() {
 // neither it nor a library met the limit, and its resident memory grew less. (AddressSanitizer reserves
 // address space by the terabyte: there the limit must go.)
 bool reads_in_little_memory(const std::filesystem::path& path) {
-    const pid_t child = fork();
-    REQUIRE(child >= 0);
-    if (child == 0) {
-        if (!address_sanitizer()) {
+    const ChildEnd end = run_in_child([&]() -> std::string {
+        if (!sanitized) {
             const auto limit = static_cast<rlim_t>(address_space() + allowed_growth);
             const rlimit limits{limit, limit};
             setrlimit(RLIMIT_AS, &limits);
@@ -65,11 +50,9 @@ bool reads_in_little_memory(const std::filesystem::path& path) {
         const Outcome outcome = outcome_of(path);
         const bool short_of_memory = outcome.message.find("memory") != std::string::npos;
         const bool grew = resident_peak() - before > allowed_growth;
-        _exit(outcome.kind == Outcome::Kind::wrong_exception || short_of_memory || grew ? 1 : 0);
-    }
-    int status = 0;
-    waitpid(child, &status, 0);
-    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+        return outcome.kind == Outcome::Kind::wrong_exception || short_of_memory || grew ? "no" : "yes";
+    });
+    return end.told == "yes" && end.failure.empty();
 }
 
 // Refused, and in one line that names the file.
@@ -85,7 +68,7 @@ constexpr int damaged_files = 200;
 
 // Half of them cut off, half with one to three bytes changed; how many were refused. Every one must be, in one line, or
 // be a whole map, and a cut one is never taken for whole without a remark.
-int refused_damage(const TemporaryFolder& folder, const std::string& good) {
+int refused_damage(const TestFolder& folder, const std::string& good) {
     Random random(1);
     const auto place = [&] {
         return static_cast<std::size_t>(random.integer(0, static_cast<std::int64_t>(good.size()) - 1));
@@ -99,7 +82,7 @@ int refused_damage(const TemporaryFolder& folder, const std::string& good) {
         else
             for (std::int64_t changes = random.integer(1, 3); changes > 0; --changes)
                 bad[place()] ^= static_cast<char>(random.integer(1, 255));
-        write_bytes(folder / "damaged", bad);
+        write_all(folder / "damaged", bad);
         const Outcome outcome = outcome_of(folder / "damaged");
         INFO("damaged file " << k << " of " << bad.size() << " bytes: " << outcome.message);
         CHECK_FALSE((cut && outcome.kind == Outcome::Kind::loaded));
@@ -139,7 +122,7 @@ TEST_CASE("hostile maps are refused, but for those that can be mended") {
 }
 
 TEST_CASE("EXR files cut off or with bytes changed") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     const auto tiled = GENERATE(false, true);
     const auto compression = GENERATE(0, 1, 3, 4, 5, 6, 8);
     ExrImage image{11, 9, std::vector<float>(99)};
@@ -151,11 +134,11 @@ TEST_CASE("EXR files cut off or with bytes changed") {
     image.compression = compression;
     write_exr(folder / "good.exr", image);
     CHECK(outcome_of(folder / "good.exr").kind != Outcome::Kind::refused);
-    CHECK(refused_damage(folder, read_bytes(folder / "good.exr")) > damaged_files / 2);
+    CHECK(refused_damage(folder, read_all(folder / "good.exr")) > damaged_files / 2);
 }
 
 TEST_CASE("PNG files cut off or with bytes changed are all refused") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     const auto interlaced = GENERATE(false, true);
     const auto type = GENERATE(PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_PALETTE);
     PngImage image{5, 4, 8, type, std::vector<std::uint8_t>(20, 1), {}, interlaced};
@@ -165,11 +148,11 @@ TEST_CASE("PNG files cut off or with bytes changed are all refused") {
     write_png(folder / "good.png", image);
     CHECK(outcome_of(folder / "good.png").kind != Outcome::Kind::refused);
     // Nothing escapes the checksums.
-    CHECK(refused_damage(folder, read_bytes(folder / "good.png")) == damaged_files);
+    CHECK(refused_damage(folder, read_all(folder / "good.png")) == damaged_files);
 }
 
 TEST_CASE("PGM files cut off or with bytes changed") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     const auto good =
         GENERATE("P5\n# comment\n3 3\n65535\n0123456789abcdefgh"s, "P2\n3 2 # comment\n100\n10 20 30\n40 50 60\n"s);
     CHECK(refused_damage(folder, good) > damaged_files / 2);
@@ -197,19 +180,19 @@ constexpr std::size_t padding_for_tables = 2100000;
 }  // namespace
 
 TEST_CASE("EXR headers that claim much cost little") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     const auto compression = GENERATE(0, 1, 3, 4, 5, 7, 9);
     const auto tiled = GENERATE(false, true);
     ExrImage image{16, 16, std::vector<float>(256)};
     image.compression = compression;
     image.tiled = tiled;
     write_exr(folder / "good.exr", image);
-    const std::string good = read_bytes(folder / "good.exr");
+    const std::string good = read_all(folder / "good.exr");
     for (const std::uint32_t side : {4096U, 0x7fffffffU}) {
         for (const std::size_t padding : {std::size_t{0}, padding_for_tables}) {
             std::string bad = good + std::string(padding, '\0');
             set_far_corner(bad, side - 1, side - 1);
-            write_bytes(folder / "bad.exr", bad);
+            write_all(folder / "bad.exr", bad);
             CHECK(reads_in_little_memory(folder / "bad.exr"));
             CHECK(outcome_of(folder / "bad.exr").kind == Outcome::Kind::refused);
             if (tiled) {
@@ -217,7 +200,7 @@ TEST_CASE("EXR headers that claim much cost little") {
                 const std::size_t tiles = good.find("tiledesc") + std::string_view("tiledesc?size").size();
                 set_word(bad, tiles, side);
                 set_word(bad, tiles + 4, 2048);
-                write_bytes(folder / "bad.exr", bad);
+                write_all(folder / "bad.exr", bad);
                 CHECK(reads_in_little_memory(folder / "bad.exr"));
             }
         }
@@ -225,7 +208,7 @@ TEST_CASE("EXR headers that claim much cost little") {
 }
 
 TEST_CASE("an EXR file with more channels than can be decoded in reasonable memory and time is refused") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     const auto with_channels = [](int count, int width) {
         ExrImage image{width, 16, std::vector<float>(static_cast<std::size_t>(16 * width))};
         image.channels = {"Y"};
@@ -240,9 +223,9 @@ TEST_CASE("an EXR file with more channels than can be decoded in reasonable memo
     }
     SECTION("in the whole image") {
         write_exr(folder / "good.exr", with_channels(270, 16));
-        std::string bad = read_bytes(folder / "good.exr") + std::string(padding_for_tables, '\0');
+        std::string bad = read_all(folder / "good.exr") + std::string(padding_for_tables, '\0');
         set_far_corner(bad, 999, 999);
-        write_bytes(folder / "bad.exr", bad);
+        write_all(folder / "bad.exr", bad);
         CHECK_THAT(outcome_of(folder / "bad.exr").message,
                    Catch::Contains("the image of the EXR file has 1080000000 bytes when decoded, in 270 channels"));
     }
@@ -250,16 +233,16 @@ TEST_CASE("an EXR file with more channels than can be decoded in reasonable memo
 }
 
 TEST_CASE("an EXR file with larger tiles than a map can have is refused") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     ExrImage image{8, 8, std::vector<float>(64)};
     image.tiled = true;
     write_exr(folder / "a.exr", image);
-    std::string bytes = read_bytes(folder / "a.exr");
+    std::string bytes = read_all(folder / "a.exr");
     const std::size_t tiles = bytes.find("tiledesc") + std::string_view("tiledesc?size").size();
     set_word(bytes, tiles, 4096);
-    write_bytes(folder / "a.exr", bytes);
+    write_all(folder / "a.exr", bytes);
     CHECK(outcome_of(folder / "a.exr").kind == Outcome::Kind::loaded);
     set_word(bytes, tiles, 4097);
-    write_bytes(folder / "a.exr", bytes);
+    write_all(folder / "a.exr", bytes);
     CHECK_THAT(outcome_of(folder / "a.exr").message, Catch::Contains("exceeds max size (4097 vs max 4096)"));
 }

@@ -17,8 +17,8 @@ using Catch::Contains;
 
 namespace {
 
-HeightMap read_text_as(const TemporaryFolder& folder, const std::string& name, const std::string& bytes) {
-    write_bytes(folder / name, bytes);
+HeightMap read_text_as(const TestFolder& folder, const std::string& name, const std::string& bytes) {
+    write_all(folder / name, bytes);
     return read_height_map(folder / name);
 }
 
@@ -29,7 +29,7 @@ float eighth_bit(int sample) {
 }  // namespace
 
 TEST_CASE("a PGM map has its top row at the largest y, and sample / maxval") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     for (const std::string& bytes :
          {"P2\n# top row first\n3 2\n# maxval\n100\n0 25 50\n75 100#c\n1\n"s, "P5 3 2 100\n\0\31\62\113\144\1"s,
           "P5 3 2 100#c\n\0\31\62\113\144\1"s, "P5 #c\r3 2 100\r\0\31\62\113\144\1"s,
@@ -46,7 +46,7 @@ TEST_CASE("a PGM map has its top row at the largest y, and sample / maxval") {
 }
 
 TEST_CASE("a 16-bit P5 is big-endian, and its first sample may look like white space or a comment") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     const HeightMap map = read_text_as(folder, "a.pgm", "P5 2 1 65535\n\x01\x00\x0a\x23"s);
     CHECK(map.at(0, 0) == static_cast<float>(256 / 65535.0));
     CHECK(map.at(1, 0) == static_cast<float>(0x0a23 / 65535.0));
@@ -58,7 +58,7 @@ TEST_CASE("a 16-bit P5 is big-endian, and its first sample may look like white s
 }
 
 TEST_CASE("a PGM file with something odd about it is read with a remark") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     CHECK_THAT(read_text_as(folder, "a.pgm", "P2 1 1 9 1"s).repairs.at(0), Contains("right after its last digit"));
     CHECK_THAT(read_text_as(folder, "a.pgm", "P2 1 1 9 1\n2 3\n"s).repairs.at(0), Contains("4 bytes after"));
     CHECK_THAT(read_text_as(folder, "a.pgm", "P5 1 1 9\n\1more"s).repairs.at(0), Contains("4 bytes after"));
@@ -68,7 +68,7 @@ TEST_CASE("a PGM file with something odd about it is read with a remark") {
 }
 
 TEST_CASE("a wrong PGM file is refused with what is wrong and the value") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     const auto [bytes, message] = GENERATE(table<std::string, std::string>({
         {"P5 0 3 255\n", "the width at byte 3 of the PGM file is \"0\"; it must be a number from 1 to 4096"},
         {"P5 5000 3 255\n", "is \"5000\"; it must be a number from 1 to 4096"},
@@ -96,22 +96,22 @@ TEST_CASE("a wrong PGM file is refused with what is wrong and the value") {
         {"<!DOCTYPE html>", "web page"},
         {"\x1b[2J binary", "\"?[2J binary\", are not those of"},
     }));
-    write_bytes(folder / "bad.pgm", bytes);
+    write_all(folder / "bad.pgm", bytes);
     CHECK_THROWS_WITH(read_height_map(folder / "bad.pgm"), Contains(message) && Contains("bad.pgm: "));
     CHECK_THROWS_AS(read_height_map(folder / "bad.pgm"), InputError);
 }
 
 TEST_CASE("what is no file, or has no channels to choose from, is refused") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     CHECK_THROWS_WITH(read_height_map(folder / "none.exr"), Contains("no such map file"));
     CHECK_THROWS_WITH(read_height_map(folder / "."), Contains("not a regular file"));
     CHECK_THROWS_WITH(read_height_map("/dev/zero"), Contains("not a regular file"));
-    write_bytes(folder / "a.pgm", "P2 1 1 9 1\n");
+    write_all(folder / "a.pgm", "P2 1 1 9 1\n");
     CHECK_THROWS_WITH(read_height_map(folder / "a.pgm", "Y"), Contains("Leave map.channel empty"));
 }
 
 TEST_CASE("grey PNG maps of every depth are sample / maximum, top row at the largest y") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     for (const bool interlaced : {false, true}) {
         write_png(folder / "8.png", {2, 2, 8, PNG_COLOR_TYPE_GRAY, {0, 51, 102, 255}, {}, interlaced});
         HeightMap map = read_height_map(folder / "8.png");
@@ -135,7 +135,7 @@ TEST_CASE("grey PNG maps of every depth are sample / maximum, top row at the lar
 }
 
 TEST_CASE("colour and alpha in a PNG map: luma, exact where grey, alpha ignored, both said") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     write_png(folder / "grey.png", {1, 1, 8, PNG_COLOR_TYPE_RGB, {77, 77, 77}, {}});
     HeightMap map = read_height_map(folder / "grey.png");
     CHECK(map.at(0, 0) == eighth_bit(77));
@@ -161,11 +161,11 @@ TEST_CASE("colour and alpha in a PNG map: luma, exact where grey, alpha ignored,
 }
 
 TEST_CASE("a PNG map's transparent colour is ignored, and said") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     write_png(folder / "a.png", {2, 1, 8, PNG_COLOR_TYPE_GRAY, {7, 9}, {}});
-    std::string bytes = read_bytes(folder / "a.png");
+    std::string bytes = read_all(folder / "a.png");
     bytes.insert(33, "\0\0\0\2tRNS\0\7\xe8\xf7\x58\x9b"s);  // 7 is transparent
-    write_bytes(folder / "transparent.png", bytes);
+    write_all(folder / "transparent.png", bytes);
     const HeightMap map = read_height_map(folder / "transparent.png");
     CHECK(map.values == std::vector<float>{eighth_bit(7), eighth_bit(9)});
     REQUIRE(map.repairs.size() == 1);
@@ -173,7 +173,7 @@ TEST_CASE("a PNG map's transparent colour is ignored, and said") {
 }
 
 TEST_CASE("an interlaced PNG equals the plain one") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     std::vector<std::uint8_t> bytes(std::size_t{23} * 19);
     for (std::size_t i = 0; i < bytes.size(); ++i) {
         bytes[i] = static_cast<std::uint8_t>(i * 37);
@@ -184,39 +184,39 @@ TEST_CASE("an interlaced PNG equals the plain one") {
 }
 
 TEST_CASE("a damaged PNG map is refused, a longer one remarked on") {
-    const TemporaryFolder folder;
+    const TestFolder folder;
     write_png(folder / "a.png", {2, 2, 8, PNG_COLOR_TYPE_GRAY, {0, 51, 102, 255}, {}});
-    const std::string good = read_bytes(folder / "a.png");
+    const std::string good = read_all(folder / "a.png");
 
-    write_bytes(folder / "long.png", good + "tail");
+    write_all(folder / "long.png", good + "tail");
     CHECK_THAT(read_height_map(folder / "long.png").repairs.at(0), Contains("4 bytes after"));
 
     std::string bad = good;
     bad[good.find("IEND") - 5] ^= 1;
-    write_bytes(folder / "crc.png", bad);
+    write_all(folder / "crc.png", bad);
     CHECK_THROWS_WITH(read_height_map(folder / "crc.png"), Contains("libpng cannot read") && Contains("CRC"));
 
     // A colour profile that is none, with a wrong checksum and with a right one, is nothing to a map of heights.
     for (const std::string& checksum : {std::string(4, '\0'), std::string("\0\xcc\xe6\x19", 4)}) {
         bad = good;
         bad.insert(33, std::string("\0\0\0\x08iCCPbad\0\0\x01\x02\x03", 16) + checksum);
-        write_bytes(folder / "profile.png", bad);
+        write_all(folder / "profile.png", bad);
         CHECK(read_height_map(folder / "profile.png").values == read_height_map(folder / "a.png").values);
     }
 
     bad = good;
     bad.insert(33, std::string("\x3f\xff\xff\xfftEXtKey\0text", 16));
-    write_bytes(folder / "chunk.png", bad);
+    write_all(folder / "chunk.png", bad);
     CHECK_THROWS_WITH(read_height_map(folder / "chunk.png"), Contains("libpng cannot read"));
 
     bad = good;
     bad[16] = 1;
-    write_bytes(folder / "huge.png", bad);
+    write_all(folder / "huge.png", bad);
     CHECK_THROWS_WITH(read_height_map(folder / "huge.png"), Contains("16777218 x 2 texels"));
 
     bad = good;
     bad[18] = bad[22] = 0x10;
     bad[19] = bad[23] = 0;
-    write_bytes(folder / "liar.png", bad);
+    write_all(folder / "liar.png", bad);
     CHECK_THROWS_WITH(read_height_map(folder / "liar.png"), Contains("libpng cannot read"));
 }

@@ -4,11 +4,9 @@
 
 #include <catch2/catch.hpp>
 #include <csignal>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <set>
 #include <sstream>
 #include <string>
@@ -22,37 +20,12 @@
 #include "testbench/output/report/obj_writer.h"
 #include "testbench/output/report/ply_writer.h"
 #include "testbench/tests/support/emitted_mesh_maker.h"
+#include "testbench/tests/support/test_folder.h"
 
 namespace tessera {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A folder that goes away with the test.
-class TestFolder {
-  public:
-    TestFolder() {
-        std::string name = (fs::temp_directory_path() / "tessera_mesh_files_XXXXXX").string();
-        REQUIRE(::mkdtemp(name.data()) != nullptr);
-        path = name;
-    }
-    ~TestFolder() {
-        std::error_code ignored;
-        fs::remove_all(path, ignored);
-    }
-    TestFolder(const TestFolder&) = delete;
-    TestFolder& operator=(const TestFolder&) = delete;
-
-    std::size_t entries() const {
-        return static_cast<std::size_t>(std::distance(fs::directory_iterator(path), fs::directory_iterator()));
-    }
-    fs::path path;
-};
-
-std::string read_all(const fs::path& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 /// Files may not grow beyond this while it lives: a full disk without needing one.
 class FileSizeLimit {
@@ -143,9 +116,9 @@ std::size_t distinct_vertices(const EmittedMesh& mesh) {
 TEST_CASE("a PLY file read back holds the mesh, in model units") {
     const TestFolder folder;
     const Sample sample;
-    write_ply(folder.path / "mesh.ply", sample.mesh, sample.units);
-    CHECK(folder.entries() == 1);
-    const std::string bytes = read_all(folder.path / "mesh.ply");
+    write_ply(folder / "mesh.ply", sample.mesh, sample.units);
+    CHECK(folder.names().size() == 1);
+    const std::string bytes = read_all(folder / "mesh.ply");
     const std::string end = "end_header\n";
     const std::string header = bytes.substr(0, bytes.find(end) + end.size());
     CHECK(header.find("ply\nformat binary_little_endian 1.0\n") == 0);
@@ -202,8 +175,8 @@ TEST_CASE("a PLY file read back holds the mesh, in model units") {
 TEST_CASE("an OBJ file read back holds the mesh, grouped by generation and test") {
     const TestFolder folder;
     const Sample sample;
-    write_obj(folder.path / "mesh.obj", sample.mesh, sample.units);
-    const std::string text = read_all(folder.path / "mesh.obj");
+    write_obj(folder / "mesh.obj", sample.mesh, sample.units);
+    const std::string text = read_all(folder / "mesh.obj");
 
     tinyobj::attrib_t attributes;
     std::vector<tinyobj::shape_t> shapes;
@@ -283,19 +256,19 @@ TEST_CASE("an OBJ file read back holds the mesh, grouped by generation and test"
 TEST_CASE("writing twice gives the same bytes, whatever the locale") {
     const TestFolder folder;
     const Sample sample;
-    write_obj(folder.path / "a.obj", sample.mesh, sample.units);
-    write_ply(folder.path / "a.ply", sample.mesh, sample.units);
+    write_obj(folder / "a.obj", sample.mesh, sample.units);
+    write_ply(folder / "a.ply", sample.mesh, sample.units);
     struct Comma : std::numpunct<char> {
         char do_decimal_point() const override { return ','; }
         char do_thousands_sep() const override { return '.'; }
         std::string do_grouping() const override { return "\3"; }
     };
     const std::locale before = std::locale::global(std::locale(std::locale::classic(), new Comma));
-    write_obj(folder.path / "b.obj", sample.mesh, sample.units);
-    write_ply(folder.path / "b.ply", sample.mesh, sample.units);
+    write_obj(folder / "b.obj", sample.mesh, sample.units);
+    write_ply(folder / "b.ply", sample.mesh, sample.units);
     std::locale::global(before);
-    CHECK(read_all(folder.path / "a.obj") == read_all(folder.path / "b.obj"));
-    CHECK(read_all(folder.path / "a.ply") == read_all(folder.path / "b.ply"));
+    CHECK(read_all(folder / "a.obj") == read_all(folder / "b.obj"));
+    CHECK(read_all(folder / "a.ply") == read_all(folder / "b.ply"));
 }
 
 TEST_CASE("a mesh of which everything was culled is an empty, valid file") {
@@ -303,15 +276,15 @@ TEST_CASE("a mesh of which everything was culled is an empty, valid file") {
     Sample sample;
     for (auto& t : sample.mesh.triangles)
         t.culled = true;
-    write_ply(folder.path / "a.ply", sample.mesh, sample.units);
-    write_obj(folder.path / "a.obj", sample.mesh, sample.units);
-    CHECK(read_all(folder.path / "a.ply").find("element vertex 0\n") != std::string::npos);
-    CHECK(read_all(folder.path / "a.obj").find("# 0 vertices, 0 triangles\n") != std::string::npos);
+    write_ply(folder / "a.ply", sample.mesh, sample.units);
+    write_obj(folder / "a.obj", sample.mesh, sample.units);
+    CHECK(read_all(folder / "a.ply").find("element vertex 0\n") != std::string::npos);
+    CHECK(read_all(folder / "a.obj").find("# 0 vertices, 0 triangles\n") != std::string::npos);
 }
 
 TEST_CASE("an atomic file appears complete or not at all") {
     const TestFolder folder;
-    const fs::path path = folder.path / "out.bin";
+    const fs::path path = folder / "out.bin";
 
     SECTION("not before commit, and never without") {
         {
@@ -319,7 +292,7 @@ TEST_CASE("an atomic file appears complete or not at all") {
             file.write(std::string(3'000'000, 'x'));
             CHECK_FALSE(fs::exists(path));
         }
-        CHECK(folder.entries() == 0);
+        CHECK(folder.names().size() == 0);
     }
     SECTION("complete after commit") {
         std::string content;
@@ -329,7 +302,7 @@ TEST_CASE("an atomic file appears complete or not at all") {
         for (std::size_t at = 0; at < content.size(); at += 4099)
             file.write(std::string_view(content).substr(at, 4099));
         file.commit();
-        CHECK(folder.entries() == 1);
+        CHECK(folder.names().size() == 1);
         CHECK(read_all(path) == content);
     }
     SECTION("replaces an older one only then") {
@@ -341,10 +314,10 @@ TEST_CASE("an atomic file appears complete or not at all") {
         CHECK(read_all(path) == "old");
         write_file(path, "new");
         CHECK(read_all(path) == "new");
-        CHECK(folder.entries() == 1);
+        CHECK(folder.names().size() == 1);
     }
     SECTION("replaces a link, and never what it leads to") {
-        write_file(folder.path / "real", "old");
+        write_file(folder / "real", "old");
         for (const char* const target : {"real", "nowhere", "."}) {
             fs::remove(path);
             fs::create_symlink(target, path);
@@ -352,8 +325,8 @@ TEST_CASE("an atomic file appears complete or not at all") {
             CHECK(fs::is_regular_file(fs::symlink_status(path)));
             CHECK(read_all(path) == "new");
         }
-        CHECK(read_all(folder.path / "real") == "old");
-        CHECK(folder.entries() == 2);
+        CHECK(read_all(folder / "real") == "old");
+        CHECK(folder.names().size() == 2);
     }
     SECTION("removes what processes that were killed left unfinished, and nothing else") {
         const pid_t ended = ::fork();
@@ -367,14 +340,14 @@ TEST_CASE("an atomic file appears complete or not at all") {
         std::vector<std::string> all = others;
         all.insert(all.end(), {".tessera-" + dead + "-0.part", ".tessera-" + dead + "-12.part"});
         for (const std::string& name : all) {
-            fs::create_directory(folder.path / name);
-            std::ofstream(folder.path / name / "new-mesh.ply") << "unfinished";
+            fs::create_directory(folder / name);
+            std::ofstream(folder / name / "new-mesh.ply") << "unfinished";
         }
-        std::ofstream(folder.path / (".tessera-" + dead + "-1.part")) << "no folder";
+        std::ofstream(folder / (".tessera-" + dead + "-1.part")) << "no folder";
         write_file(path, "new");
         for (const std::string& name : others)
-            CHECK(fs::exists(folder.path / name / "new-mesh.ply"));
-        CHECK(folder.entries() == others.size() + 2);  // what is no folder, and the new file
+            CHECK(fs::exists(folder / name / "new-mesh.ply"));
+        CHECK(folder.names().size() == others.size() + 2);  // what is no folder, and the new file
     }
     SECTION("two at once for one name do not meet") {
         AtomicFile one(path), two(path);
@@ -384,7 +357,7 @@ TEST_CASE("an atomic file appears complete or not at all") {
         CHECK(read_all(path) == "one");
         two.commit();
         CHECK(read_all(path) == "two");
-        CHECK(folder.entries() == 1);
+        CHECK(folder.names().size() == 1);
     }
 }
 
@@ -394,7 +367,7 @@ TEST_CASE("a full disk leaves nothing, and says so") {
     const auto once = sample.mesh.triangles;
     for (int i = 0; i < 50; ++i)
         sample.mesh.triangles.insert(sample.mesh.triangles.end(), once.begin(), once.end());
-    write_file(folder.path / "old.ply", "old");
+    write_file(folder / "old.ply", "old");
     const auto require_failure = [&](const fs::path& path, auto&& write) {
         const FileSizeLimit limit(10000);
         try {
@@ -407,11 +380,11 @@ TEST_CASE("a full disk leaves nothing, and says so") {
             CHECK(message.find("File too large") != std::string::npos);
         }
     };
-    const fs::path obj = folder.path / "mesh.obj", ply = folder.path / "mesh.ply", old = folder.path / "old.ply";
+    const fs::path obj = folder / "mesh.obj", ply = folder / "mesh.ply", old = folder / "old.ply";
     require_failure(obj, [&] { write_obj(obj, sample.mesh, sample.units); });
     require_failure(ply, [&] { write_ply(ply, sample.mesh, sample.units); });
     require_failure(old, [&] { write_ply(old, sample.mesh, sample.units); });
-    CHECK(folder.entries() == 1);
+    CHECK(folder.names().size() == 1);
     CHECK(read_all(old) == "old");
     write_ply(ply, sample.mesh, sample.units);
     CHECK(fs::exists(ply));
@@ -419,7 +392,7 @@ TEST_CASE("a full disk leaves nothing, and says so") {
 
 TEST_CASE("a place that cannot be written is bad input") {
     const TestFolder folder;
-    write_file(folder.path / "file", "here");
+    write_file(folder / "file", "here");
     const auto message_of = [](const fs::path& path) -> std::string {
         try {
             write_file(path, "x");
@@ -431,17 +404,17 @@ TEST_CASE("a place that cannot be written is bad input") {
     const auto require_message = [&](const fs::path& path, const std::string& reason) {
         CHECK(message_of(path) == path.string() + ": cannot write: " + reason);
     };
-    require_message(folder.path / "none" / "mesh.ply", "No such file or directory");
-    require_message(folder.path / "file" / "mesh.ply", "Not a directory");
-    require_message(folder.path, "it is a folder, not a file");
+    require_message(folder / "none" / "mesh.ply", "No such file or directory");
+    require_message(folder / "file" / "mesh.ply", "Not a directory");
+    require_message(folder.path(), "it is a folder, not a file");
     require_message("/dev/full", "it is a device, not a file");
-    CHECK(message_of(folder.path / std::string(300, 'n')).find("File name too long") != std::string::npos);
+    CHECK(message_of(folder / std::string(300, 'n')).find("File name too long") != std::string::npos);
     if (::geteuid() != 0) {  // the superuser may write anywhere
-        fs::permissions(folder.path, fs::perms::owner_read | fs::perms::owner_exec);
-        require_message(folder.path / "mesh.ply", "Permission denied");
-        fs::permissions(folder.path, fs::perms::owner_all);
+        fs::permissions(folder.path(), fs::perms::owner_read | fs::perms::owner_exec);
+        require_message(folder / "mesh.ply", "Permission denied");
+        fs::permissions(folder.path(), fs::perms::owner_all);
     }
-    CHECK(folder.entries() == 1);
+    CHECK(folder.names().size() == 1);
 }
 
 }  // namespace tessera

@@ -1,8 +1,4 @@
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <fstream>
@@ -16,9 +12,8 @@
 #include "testbench/check/conformance/scoreboard.h"
 #include "testbench/check/mesh/invariants.h"
 #include "testbench/check/transport/conservation.h"
+#include "testbench/common/child_process.h"
 #include "testbench/common/error.h"
-#include "testbench/common/exit_process.h"
-#include "testbench/common/pipe.h"
 #include "testbench/prove/faults/faulty_units.h"
 #include "testbench/tests/support/timed_checks.h"
 
@@ -121,27 +116,17 @@ Outcome run_here(Mode mode, const std::optional<Fault>& fault) {
 
 /// In a process of its own: SystemC elaborates once in each.
 Outcome run(Mode mode, const std::optional<Fault>& fault) {
-    std::array<int, 2> ends{};
-    REQUIRE(pipe(ends.data()) == 0);
-    const pid_t child = fork();
-    REQUIRE(child >= 0);
-    if (child == 0) {
+    const ChildEnd end = run_in_child([&] {
         Outcome outcome;
         try {
             outcome = run_here(mode, fault);
         } catch (const std::exception& error) {
             outcome.catch_by('?', error.what());
         }
-        const std::string all = outcome.catchers + "\n" + outcome.mesh + "\n" + outcome.text;
-        write_to_pipe(ends[1], all.data(), all.size());
-        exit_process(0);
-    }
-    close(ends[1]);
-    std::istringstream lines(read_from_pipe(ends[0]));
-    close(ends[0]);
-    int status = 0;
-    REQUIRE(waitpid(child, &status, 0) == child);
-    REQUIRE(status == 0);
+        return outcome.catchers + "\n" + outcome.mesh + "\n" + outcome.text;
+    });
+    REQUIRE(end.failure.empty());
+    std::istringstream lines(end.told);
     Outcome outcome;
     std::getline(lines, outcome.catchers);
     std::getline(lines, outcome.mesh);
