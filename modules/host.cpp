@@ -15,7 +15,7 @@ Host::Host(const sc_core::sc_module_name& name, Pipeline& machine, const std::ve
     machine.clock.attach(*this);
     to_get_triangle.clocked_by(machine.clock, *this);
     SC_HAS_PROCESS(Host);
-    if (machine.transport() == Transport::blocking)
+    if (machine.transport() == Transport::blocking && !machine.conducted())
         SC_THREAD(send_triangles);
 }
 
@@ -66,13 +66,17 @@ void Host::step() {
     }
 }
 
+void Host::send_next(sc_core::sc_time& delay) {
+    datapath::Triangle triangle = next();
+    to_get_triangle->b_transport(triangle, delay);
+    ++sent_;
+}
+
 void Host::send_triangles() {
     for (;;) {
         while (sent_ < total()) {
-            datapath::Triangle triangle = next();
             sc_core::sc_time delay = sc_core::SC_ZERO_TIME;
-            to_get_triangle->b_transport(triangle, delay);
-            ++sent_;
+            send_next(delay);
             wait(delay);
         }
         wait(again_);

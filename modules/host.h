@@ -38,6 +38,12 @@ class Host : public sc_core::sc_module, public CycleProcess {
     /// Sends the triangles again when the simulation continues: another frame.
     void send_again();
 
+    /// Of a conducted machine: the triangle that send_next() sends, in functional mode.
+    const datapath::Triangle& next() const { return triangles_[first_ + sent_ * step_]; }
+    void send_next(sc_core::sc_time& delay);
+    /// Notified when it has triangles again.
+    const sc_core::sc_event& again() const { return again_; }
+
     bool idle() const { return sent_ == total() && to_get_triangle.free(); }
     std::uint64_t sent() const { return sent_; }
     std::uint64_t total() const { return (triangles_.size() + step_ - 1 - first_) / step_; }
@@ -47,8 +53,6 @@ class Host : public sc_core::sc_module, public CycleProcess {
     void send_triangles();
     void step() override;
     void write_table(std::uint64_t address, const unsigned char* bytes, std::size_t count);
-
-    const datapath::Triangle& next() const { return triangles_[first_ + sent_ * step_]; }
 
     Pipeline& machine_;
     const std::vector<datapath::Triangle>& triangles_;

@@ -84,6 +84,7 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
           design.timing.*kind_of(registers.formats.height_test).table_timing, design.timing.stalls)),
       registers_(registers),
       transport_(design.transport),
+      conducted_(design.conducted),
       random_stalls_(design.timing.stalls.per_mille > 0) {
     check(this->name(), registers, design);
     UnitFactory& units = factory == nullptr ? standard_units() : *factory;

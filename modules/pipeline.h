@@ -102,6 +102,7 @@ class Pipeline : public sc_core::sc_module {
     const std::vector<TableCache*>& caches() const { return caches_; }
 
     Transport transport() const { return transport_; }
+    bool conducted() const { return conducted_; }
     const datapath::Registers& registers() const { return registers_; }
 
     /// Items are held back at random.
@@ -130,6 +131,7 @@ class Pipeline : public sc_core::sc_module {
     sc_core::sc_event drained_{"drained"};
     const datapath::Registers& registers_;
     Transport transport_;
+    bool conducted_;
     bool random_stalls_;
     std::vector<Unit*> units_;
     std::vector<TableCache*> caches_;

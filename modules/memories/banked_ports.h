@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 #include "modules/datapath/parameters.h"
@@ -62,6 +63,12 @@ class BankedPorts {
 
     /// The table's columns from now on.
     void lay_out(std::uint32_t columns) { bank_of_.lay_out(columns); }
+
+    /// Instead of those counted: the port slots taken of each bank.
+    void assign_slots(const std::vector<std::uint64_t>& bank_slots) {
+        bank_slots_ = bank_slots;
+        slots_taken_ = std::accumulate(bank_slots.begin(), bank_slots.end(), std::uint64_t{0});
+    }
 
     unsigned latency() const { return latency_; }
     /// Port slots taken: entries times the cycles a port needs for one.

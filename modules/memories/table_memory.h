@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <systemc>
+#include <vector>
 
 #include "modules/memories/banked_ports.h"
 #include "modules/memories/channel.h"
@@ -39,6 +40,14 @@ class TableMemory : public MemoryServer {
         return channel_ != nullptr ? channel_cycles_ : std::max(ports_.occupied_cycles(), cycles_held_up());
     }
     void trace_signals(Signals& signals) const override;
+
+    /// The figures of a run in which no request came (modules/conductor.h).
+    struct Figures {
+        std::vector<std::uint64_t> bank_slots;  ///< port slots taken of each bank
+        std::uint64_t entries = 0;
+        std::uint64_t cycles_held_up = 0;
+    };
+    void assign(const Figures& figures);
 
   private:
     std::uint64_t ready(const MemoryRequest& request) const override;

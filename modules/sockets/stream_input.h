@@ -112,7 +112,10 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
         return tlm::TLM_ACCEPTED;
     }
 
-    void b_transport(Payload& payload, sc_core::sc_time& delay) override { serve_(server_, payload, delay); }
+    void b_transport(Payload& payload, sc_core::sc_time& delay) override {
+        ++taken_;
+        serve_(server_, payload, delay);
+    }
     bool get_direct_mem_ptr(Payload&, tlm::tlm_dmi&) override { return false; }
     unsigned transport_dbg(Payload&) override { return 0; }
 

@@ -45,6 +45,14 @@ class Reads {
     std::array<std::uint64_t, most_entries> address_;
 };
 
+/// Told what a unit reads for each of its items, in functional mode.
+class ReadObserver {
+  public:
+    /// part: of a triangle, 0 to 14.
+    virtual void read(unsigned part, const Reads& reads) = 0;
+    virtual ~ReadObserver() = default;
+};
+
 /// The entries read, in the order of the addresses, zero-extended.
 using Entries = std::array<std::uint64_t, Reads::most_entries>;
 

@@ -128,6 +128,10 @@ Out Stage<In, Out>::read_and_process(const In& item, sc_core::sc_time& delay) {
     if (reads_tables()) {
         Reads needed;
         reads(item, needed);
+        if constexpr (is_part<In>) {
+            if (read_observer_ != nullptr)
+                read_observer_->read(item.tag.part, needed);
+        }
         for (unsigned request = 0, entry = 0; request < needed.requests();) {
             const unsigned port = needed.port(request);
             MemoryPort::Burst burst(*machinery_->ports[port], delay);

@@ -1,27 +1,22 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <systemc>
 #include <utility>
 
-namespace tessera {
+#include "modules/timing/state.h"
 
-/// What a unit does in a cycle: exactly one of these, so that their cycles add up to the run's.
-///
-///   blocked             a finished item waits for its consumer to take it
-///   busy                not blocked, and an item with all its operands is being worked on
-///   waiting for memory  neither, and an item's table entries are outstanding
-///   starved             nothing to work on, or an operand is missing (the View Test's screen positions, the other
-///                       branch in Pass or Tessellate)
-enum class State : std::uint8_t { starved, busy, waiting_for_memory, blocked };
-constexpr std::size_t states = 4;
+namespace tessera {
 
 /// Called at the end of each stretch of cycles that a unit spends in one state.
 class ActivityObserver {
   public:
     /// [begin, end); by: the module that blocks or is waited for; may be null.
     virtual void stretch(State state, const sc_core::sc_object* by, std::uint64_t begin, std::uint64_t end) = 0;
+    /// An item came into the unit, or left it.
+    virtual void item(std::uint64_t /*cycle*/, bool /*came*/) {}
     virtual ~ActivityObserver() = default;
 };
 
@@ -40,13 +35,16 @@ class Activity {
     void item_in(std::uint64_t cycle) {
         integrate(cycle);
         ++items_in_;
-        if (++level_ > high_water_mark_)
-            high_water_mark_ = level_;
+        ++level_;
+        if (observer_ != nullptr)
+            observer_->item(cycle, true);
     }
     void item_out(std::uint64_t cycle) {
         integrate(cycle);
         ++items_out_;
         --level_;
+        if (observer_ != nullptr)
+            observer_->item(cycle, false);
     }
 
     /// Accounts for the cycles up to `cycle`, the run's end.
@@ -71,10 +69,29 @@ class Activity {
     static constexpr std::size_t most_shares = 12;
     const std::array<Share, most_shares>& shares() const { return shares_; }
 
+    /// The figures of a run that was not called cycle by cycle (modules/conductor.h).
+    struct Figures {
+        std::array<std::uint64_t, states> cycles{};
+        std::array<Share, most_shares> shares{};
+        std::uint64_t items = 0;
+        std::uint64_t high_water_mark = 0;
+        std::uint64_t item_cycles = 0;
+    };
+    void assign(const Figures& figures) {
+        cycles_ = figures.cycles;
+        shares_ = figures.shares;
+        items_in_ = items_out_ = figures.items;
+        high_water_mark_ = figures.high_water_mark;
+        item_cycles_ = figures.item_cycles;
+    }
+
     std::uint64_t items_in() const { return items_in_; }
     std::uint64_t items_out() const { return items_out_; }
     std::uint64_t level() const { return level_; }
-    std::uint64_t high_water_mark() const { return high_water_mark_; }
+    /// At the end of a cycle, at least one if any came: the order of a cycle's calls does not change it.
+    std::uint64_t high_water_mark() const {
+        return std::max({high_water_mark_, level_, std::min(items_in_, std::uint64_t{1})});
+    }
     /// Sum over all cycles of the items in the unit: mean occupancy times cycles, or the sum of all residence times.
     std::uint64_t item_cycles() const { return item_cycles_; }
 
@@ -106,6 +123,8 @@ class Activity {
         return shares_[recent_ = 0];
     }
     void integrate(std::uint64_t cycle) {
+        if (cycle > level_since_)
+            high_water_mark_ = std::max(high_water_mark_, level_);
         item_cycles_ += level_ * (cycle - level_since_);
         level_since_ = cycle;
     }

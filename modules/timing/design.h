@@ -31,6 +31,8 @@ struct Design {
     unsigned edge_lanes = 1;    ///< of families, tests cheapest first: cheap tests side by side
     unsigned normal_tests = 1;  ///< likewise: Normal Tests that share the lanes' edges
     unsigned transform_pipelines = 1;
+    /// In functional mode a Conductor (modules/conductor.h) sends the triangles of the host and of the queue.
+    bool conducted = false;
     bool direct_memory = true;  ///< units read memories through DMI in functional mode
 #ifdef NDEBUG
     bool packed_streams = false;

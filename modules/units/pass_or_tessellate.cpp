@@ -136,7 +136,6 @@ PassOrTessellate::Incomplete* PassOrTessellate::open_place(const PartTag& tag, s
 
 bool PassOrTessellate::take_parts(std::uint64_t cycle) {
     bool taken = false;
-    most_ahead_of_parts_ = std::max(most_ahead_of_parts_, from_get_triangle.size());
     for (; !from_transform.empty(); from_transform.pop()) {
         const ScreenPoint& part = from_transform.front();
         Incomplete* place = incomplete_.find(part.tag.triangle);
@@ -173,6 +172,9 @@ bool PassOrTessellate::deliver(Decided& next) {
 
 void PassOrTessellate::step() {
     const std::uint64_t cycle = now();
+    if (cycle > stepped_)
+        most_ahead_of_parts_ = std::max(most_ahead_of_parts_, ahead_of_parts_);
+    stepped_ = cycle;
     while (pipeline_.front_finished(cycle) && deliver(pipeline_.front())) {
         pipeline_.pop();
         activity_.item_out(cycle);
@@ -193,6 +195,7 @@ void PassOrTessellate::step() {
             changed = true;
         }
     }
+    ahead_of_parts_ = from_get_triangle.size();
     if (!to_lighting.free())
         activity_.set(cycle, State::blocked, to_lighting.consumer());
     else if (!to_tessellation.free())

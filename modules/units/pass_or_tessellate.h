@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <systemc>
@@ -39,8 +40,11 @@ class PassOrTessellate : public DecidingUnit {
 
     bool joined() const override { return incomplete_.empty(); }
     std::size_t most_incomplete() const override { return most_incomplete_; }
-    /// Most triangles that waited for their first part.
-    std::size_t most_ahead_of_parts() const { return most_ahead_of_parts_; }
+    /// Most triangles that waited for their first part, at the end of a cycle; at least one if any came.
+    std::size_t most_ahead_of_parts() const {
+        return std::max({most_ahead_of_parts_, ahead_of_parts_, std::size_t{from_get_triangle.taken() > 0}});
+    }
+    void assign_most_ahead_of_parts(std::size_t most) { most_ahead_of_parts_ = most; }
 
     std::string describe_contents() const override;
     std::uint64_t occupied_cycles() const override { return activity_.items_out() * timing_.interval; }
@@ -97,6 +101,8 @@ class PassOrTessellate : public DecidingUnit {
     PerTriangle<Incomplete> incomplete_;
     std::size_t most_incomplete_ = 0;
     std::size_t most_ahead_of_parts_ = 0;
+    std::size_t ahead_of_parts_ = 0;  // at the end of the last step, which was in
+    std::uint64_t stepped_ = 0;       // this cycle
     ElasticPipeline<Decided> pipeline_;
     Shown last_;
     const sc_core::sc_object* transform_ = nullptr;

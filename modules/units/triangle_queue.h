@@ -1,7 +1,9 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <systemc>
+#include <utility>
 
 #include "modules/sockets/items.h"
 #include "modules/sockets/memory_port.h"
@@ -10,6 +12,7 @@
 #include "modules/stage/unit.h"
 #include "modules/timing/elastic_pipeline.h"
 #include "modules/timing/level_history.h"
+#include "modules/units/triangle_places.h"
 #include "modules/units/triangle_store.h"
 
 namespace tessera {
@@ -35,7 +38,7 @@ class TriangleQueue : public Unit {
 
     bool below_watermark() const { return waiting() < design_.watermark; }
 
-    bool drained() const { return waiting() == 0 && !sending_; }
+    bool drained() const { return waiting() == 0 && !sending_ && kept_.empty(); }
     /// Functional mode: notified when the last triangle that waited has gone through the machine.
     const sc_core::sc_event& emptied() const { return emptied_; }
     /// Triangles on chip, off chip, and on their way.
@@ -55,12 +58,28 @@ class TriangleQueue : public Unit {
     /// A triangle had to be spilled while off-chip memory was full.
     bool off_chip_memory_full() const { return off_chip_memory_full_; }
 
+    /// Conducted: where the triangles are kept that have come since the last call, and how many.
+    struct Arrived {
+        std::array<std::uint32_t, 4> place{};
+        unsigned count = 0;
+    };
+    Arrived take_arrived() { return std::exchange(arrived_, {}); }
+    const datapath::Triangle& kept(std::uint32_t place) { return kept_.at(place); }
+    /// Conducted: sends the triangle that is kept there.
+    void send(std::uint32_t place, sc_core::sc_time& delay);
+    struct Levels {
+        std::uint64_t most = 0, most_on_chip = 0;
+        LevelHistory history;
+    };
+    void assign(const Levels& levels);
+
     std::string describe_contents() const override;
     std::uint64_t occupied_cycles() const override { return taken_ * timing_.interval; }
     void trace_signals(Signals& signals) const override;
 
   private:
     void b_transport(datapath::Triangle& triangle, sc_core::sc_time& delay);
+    void keep(const datapath::Triangle& triangle);
     void send_waiting();
     void tell_level(sc_core::sc_time& delay);
 
@@ -91,6 +110,10 @@ class TriangleQueue : public Unit {
     bool overflowed_ = false;
     bool off_chip_memory_full_ = false;
     LevelHistory history_;
+
+    const bool conducted_;
+    TrianglePlaces kept_;
+    Arrived arrived_;
 
     sc_core::sc_event arrival_{"arrival"};
     sc_core::sc_event emptied_{"emptied"};

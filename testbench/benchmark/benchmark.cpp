@@ -1,6 +1,8 @@
 #include <benchmark/benchmark.h>
 
 #include <array>
+#include <cstdlib>
+#include <optional>
 #include <systemc>
 #include <vector>
 
@@ -16,25 +18,26 @@
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/simulation.h"
 
-// One process, one job: half donut 1024 x 1024 on the plane of 18 triangles, about 0.2 million triangles out. Times the
-// golden model, the bare datapath, functional and timed mode of both machines, and the device on a loosely timed bus, side
-// by side, in edges evaluated and triangles finished per second.
+// One process, one job: half donut on the plane of 18 triangles, of 1024 x 1024 texels, about 0.2 million triangles out, or
+// of as many texels a side as the program is called with. Times the golden model, the bare datapath, functional and timed
+// mode of both machines, timed mode by a schedule, and the device on a loosely timed bus, side by side, in edges evaluated
+// and triangles finished per second.
 
 namespace tessera {
 namespace {
 
-Job benchmark_job() {
+Job benchmark_job(int map_side) {
     Job job;
     job.mode = Mode::functional;
-    job.map.width = job.map.height = 1024;
+    job.map.width = job.map.height = map_side;
     job.tests.normal_threshold = 0.02;
     job.tests.summed_height_threshold = 1;
     job.tests.view_threshold = 0.5;
     return job;
 }
 
-MachineSetup benchmark_setup(DesignPreset design) {
-    Job job = benchmark_job();
+MachineSetup benchmark_setup(DesignPreset design, int map_side) {
+    Job job = benchmark_job(map_side);
     job.hardware.design = design;
     apply_design(job);
     const Inputs inputs = load_inputs(job);
@@ -79,11 +82,11 @@ void one_frame(benchmark::State& state, Simulation& simulation) {
     for (auto _ : state) {
         simulation.monitor.mesh.triangles.clear();
         simulation.host.send_again();
-        const std::uint64_t first_cycle = simulation.pipeline.clock.cycle();
+        const std::uint64_t first_cycle = simulation.last_machine().last_cycle();
         if (!simulation.run().empty())
             state.SkipWithError("the simulation did not drain");
         if (timed)
-            cycles += simulation.cycles() - first_cycle;
+            cycles += simulation.last_machine().last_cycle() - first_cycle;
     }
     report(state, edges_so_far() - before, simulation.monitor.mesh.triangles.size());
     if (timed)
@@ -173,26 +176,37 @@ MachineSetup in_timed_mode(MachineSetup setup) {
     return setup;
 }
 
+MachineSetup by_schedule(MachineSetup setup) {
+    setup.scheduled = true;
+    return setup;
+}
+
 }  // namespace
 }  // namespace tessera
 
 int sc_main(int argc, char** argv) {
     benchmark::Initialize(&argc, argv);
-    const tessera::MachineSetup setup = tessera::benchmark_setup(tessera::DesignPreset::paper);
+    const int map_side = argc > 1 ? std::atoi(argv[1]) : 1024;
+    const tessera::MachineSetup setup = tessera::benchmark_setup(tessera::DesignPreset::paper, map_side);
     tessera::BareRecursion bare(setup);
     tessera::Simulation simulation(setup, std::uint64_t{1} << 40);
     // All simulations are of one elaboration; names that exist get a number.
     sc_core::sc_report_handler::set_actions(sc_core::SC_ID_INSTANCE_EXISTS_, sc_core::SC_DO_NOTHING);
     const tessera::MachineSetup timed_setup = tessera::in_timed_mode(setup);
     tessera::Simulation timed_simulation(timed_setup, std::uint64_t{1} << 40);
-    const tessera::MachineSetup modern_setup = tessera::benchmark_setup(tessera::DesignPreset::modern);
+    const tessera::MachineSetup scheduled_setup = tessera::by_schedule(timed_setup);
+    tessera::Simulation scheduled_simulation(scheduled_setup, std::uint64_t{1} << 40);
+    const tessera::MachineSetup modern_setup = tessera::benchmark_setup(tessera::DesignPreset::modern, map_side);
     tessera::Simulation modern_simulation(modern_setup, std::uint64_t{1} << 40);
     const tessera::MachineSetup modern_timed_setup = tessera::in_timed_mode(modern_setup);
     tessera::Simulation modern_timed_simulation(modern_timed_setup, std::uint64_t{1} << 40);
     tlm::tlm_global_quantum::instance().set(sc_core::sc_time(1, sc_core::SC_MS));
-    tessera::Platform platform(setup);
+    std::optional<tessera::Platform> platform;  // of memory for the default map
+    if (map_side <= 1024)
+        platform.emplace(setup);
     simulation.run();
-    platform.draw_frame();
+    if (platform)
+        platform->draw_frame();
     benchmark::RegisterBenchmark("golden_model", [&](benchmark::State& state) {
         tessera::golden_model(state, setup);
     })->Unit(benchmark::kMillisecond);
@@ -202,11 +216,15 @@ int sc_main(int argc, char** argv) {
     benchmark::RegisterBenchmark("functional_mode", [&](benchmark::State& state) {
         tessera::one_frame(state, simulation);
     })->Unit(benchmark::kMillisecond);
-    benchmark::RegisterBenchmark("device_functional", [&](benchmark::State& state) {
-        tessera::device_frame(state, platform);
-    })->Unit(benchmark::kMillisecond);
+    if (platform)
+        benchmark::RegisterBenchmark("device_functional", [&](benchmark::State& state) {
+            tessera::device_frame(state, *platform);
+        })->Unit(benchmark::kMillisecond);
     benchmark::RegisterBenchmark("timed_mode", [&](benchmark::State& state) {
         tessera::one_frame(state, timed_simulation);
+    })->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark("timed_mode_by_schedule", [&](benchmark::State& state) {
+        tessera::one_frame(state, scheduled_simulation);
     })->Unit(benchmark::kMillisecond);
     benchmark::RegisterBenchmark("modern_functional_mode", [&](benchmark::State& state) {
         tessera::one_frame(state, modern_simulation);

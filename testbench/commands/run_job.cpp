@@ -25,6 +25,7 @@
 #include "testbench/common/in_background.h"
 #include "testbench/common/parallel.h"
 #include "testbench/job/dump_job.h"
+#include "testbench/machine/engine.h"
 #include "testbench/machine/fingerprint.h"
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/simulation.h"
@@ -65,6 +66,7 @@ Loaded load(const Job& asked) {
     Loaded loaded{load_inputs(asked), {}};
     const Inputs& inputs = loaded.inputs;
     loaded.setup = make_setup(inputs.resolved.job, inputs.mesh, inputs.map);
+    choose_engine(inputs.resolved.job, loaded.setup);
     std::vector<std::string> remarks;
     for (const std::string& repair : inputs.mesh.repairs)
         remarks.push_back("mesh: " + repair);

@@ -23,6 +23,8 @@ enum class Culling { none, back };
 using datapath::SummedHeightUnit;
 using Overflow = QueueOverflow;
 enum class Mode { functional, timed };
+/// What counts the cycles of timed mode.
+enum class Engine { any, schedule, clocked };
 enum class DesignPreset { paper, modern };
 
 /// Whether a mesh of this source is what mesh.file names.
@@ -116,7 +118,9 @@ struct Job {
         double ambient = 0.2;
     } hardware;
 
-    Timing timing;  // timed mode: every unit's and memory's, see modules/timing/timing.h
+    struct TimingSettings : Timing {  // timed mode: every unit's and memory's, see modules/timing/timing.h
+        Engine engine = Engine::any;
+    } timing;
 
     struct Check {
         bool golden = true;      // scoreboard: every edge against the golden model

@@ -318,7 +318,10 @@ std::vector<KeyTable> declare_keys() {
         key.add("light", &Hardware::light, "-", coordinate_range, "Direction towards the light, world space, of any length");
         key.add("ambient", &Hardware::ambient, "full scale", between(0, 1), "Light that falls on every surface");
     });
-    list.table("timing", &Job::timing, "Timed mode: the datasheet figures of every unit and memory.", [](const auto& key) { declare_timing_keys(key); });
+    list.table("timing", &Job::timing, "Timed mode: the datasheet figures of every unit and memory.", [](const auto& key) {
+        key.add("engine", &Job::TimingSettings::engine, "How a run is timed, with the same results: by a schedule, several times as fast, or by a clock that calls each unit in each cycle; auto: by a schedule where the design and the options of the run have one (modules/schedule/README.md)");
+        declare_timing_keys(key);
+    });
     list.table("check", &Job::check, "Conformance to the golden model.", [](const auto& key) {
         using Check = Job::Check;
         key.add("golden", &Check::golden, "Every edge's decision against the golden model (scoreboard), and every register and table entry against what golden derives from the job by itself");

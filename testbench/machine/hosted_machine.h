@@ -1,8 +1,10 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <tlm>
 
+#include "modules/conductor.h"
 #include "modules/host.h"
 #include "modules/rasteriser.h"
 #include "testbench/machine/machine_setup.h"
@@ -26,6 +28,13 @@ class HostedMachine : private tlm::tlm_analysis_if<datapath::Triangle> {
     Host host;
     Rasteriser rasteriser;
     Decisions decisions;
+
+    std::optional<Conductor> conductor;  ///< if setup.scheduled
+
+    /// Timed mode: the last cycle in which anything happened.
+    std::uint64_t last_cycle() const { return conductor ? conductor->last_cycle() : pipeline.clock.last_cycle(); }
+    /// Timed mode, at the end of a run of so many cycles.
+    void finish(std::uint64_t cycles);
 
     /// Nothing is left to send, and nothing in flight.
     bool drained() const { return host.idle() && pipeline.idle(); }

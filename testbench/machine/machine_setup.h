@@ -1,4 +1,6 @@
 #pragma once
+#include <string>
+
 #include "modules/pipeline.h"
 #include "testbench/job/job.h"
 #include "testbench/setup/mesh/base_mesh.h"
@@ -11,7 +13,9 @@ namespace tessera {
 struct MachineSetup : PreparedScene {
     ModelScale model_scale;  ///< scale and centre
     Design design;
-    unsigned machines = 1;  ///< of that design, side by side; base triangle b goes to machine b mod so many
+    unsigned machines = 1;      ///< of that design, side by side; base triangle b goes to machine b mod so many
+    bool scheduled = false;     ///< timed mode by a schedule (modules/conductor.h), not by the clock
+    std::string engine_reason;  ///< why
     bool summed_height_bits_chosen = false;  ///< by `auto`
 };
 

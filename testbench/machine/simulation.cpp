@@ -43,9 +43,7 @@ void Simulation::observe_decisions(tlm::tlm_analysis_if<datapath::TrianglePass>&
 }
 
 const HostedMachine& Simulation::last_machine() const {
-    const auto earlier = [](const auto& a, const auto& b) {
-        return a->pipeline.clock.last_cycle() < b->pipeline.clock.last_cycle();
-    };
+    const auto earlier = [](const auto& a, const auto& b) { return a->last_cycle() < b->last_cycle(); };
     return **std::max_element(machines.begin(), machines.end(), earlier);
 }
 
@@ -77,12 +75,9 @@ std::string Simulation::run() {
         pipeline.clock.run_ahead(cycles_ahead);
     start();
     if (setup.design.transport == Transport::non_blocking) {
-        cycles_ = last_machine().pipeline.clock.last_cycle() + 1;
-        for (const auto& machine : machines) {
-            for (Unit* unit : machine->pipeline.units())
-                unit->activity().finish(cycles_);
-            machine->pipeline.triangle_queue.history().finish(cycles_);
-        }
+        cycles_ = last_machine().last_cycle() + 1;
+        for (const auto& machine : machines)
+            machine->finish(cycles_);
     }
     if (monitor.limit_reached())
         throw ResourceError(fmt::format(

@@ -12,6 +12,7 @@
 #include "testbench/common/error.h"
 #include "testbench/common/parallel.h"
 #include "testbench/explore/thresholds/rank_search.h"
+#include "testbench/explore/thresholds/refinement_forest.h"
 #include "testbench/explore/thresholds/texel_error.h"
 #include "testbench/explore/thresholds/tuned_figures.h"
 #include "testbench/input/mesh/obj_reader.h"
@@ -23,18 +24,16 @@ namespace {
 
 constexpr std::size_t most_refined = 3;
 
-/// One base mesh, prepared: all its evaluations share the setup and the forest.
+/// One base mesh, prepared: all its evaluations share the setup.
 struct Ground {
     Job job;
     MachineSetup setup;
     TexelError errors;
-    RefinementForest forest;
 
     Ground(const TuneRequest& request, const BaseChoice& base, const HeightMap& map)
         : job(job_with_base(request.job, base, request.goal)),
           setup(make_setup(job, base_mesh_of(job, base, map), map)),
-          errors(setup, map, DisplacementOf::from(job, map)),
-          forest(setup, &errors) {}
+          errors(setup, map, DisplacementOf::from(job, map)) {}
 };
 
 /// The result of exploring one base mesh.
@@ -160,12 +159,13 @@ TuneResult tune(const TuneRequest& request, const HeightMap& map,
             e.found = search.search();
             return;
         }
-        ThresholdSearch search(ground.forest, ground.setup, ground.job, goal, request.space, [&](double done) {
+        RefinementForest forest(ground.setup, &ground.errors);
+        ThresholdSearch search(forest, ground.setup, ground.job, goal, request.space, [&](double done) {
             exploring.set(k, done, fmt::format("exploring {} base meshes", bases), 0, 0.5);
         });
         const datapath::Triangulation triangulation = ground.setup.registers.triangulation;
         if (goal.triangles > 0)
-            e.finest = ground.forest.count(search.finest(), triangulation, goal.triangles);
+            e.finest = forest.count(search.finest(), triangulation, goal.triangles);
         search.explore();
         e.found = search.found();
     });
@@ -194,7 +194,8 @@ TuneResult tune(const TuneRequest& request, const HeightMap& map,
         if (request.bases[order[k]].ranks)
             return;
         Ground ground(request, request.bases[order[k]], map);
-        ThresholdSearch search(ground.forest, ground.setup, ground.job, goal, request.space, [&](double done) {
+        RefinementForest forest(ground.setup, &ground.errors);
+        ThresholdSearch search(forest, ground.setup, ground.job, goal, request.space, [&](double done) {
             refining.set(k, done, fmt::format("refining the best {}", order.size()), 0.5, 1);
         });
         search.start_from(refined[k]);

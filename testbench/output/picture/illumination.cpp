@@ -19,6 +19,10 @@ const glm::dvec3 ground_strength(0.13, 0.12, 0.115);
 constexpr double least = 0.035;  // so that the deepest crevice is not black
 constexpr double highlight_strength = 0.10;
 
+/// Of the angle between two normals of a flat patch: sqrt(1 - least_flat^2), rounded up.
+constexpr double largest_sine = 0.44;
+static_assert(largest_sine * largest_sine + Illumination::least_flat * Illumination::least_flat > 1);
+
 double to_the_16th(double x) {
     const double x2 = x * x;
     const double x4 = x2 * x2;
@@ -73,42 +77,64 @@ void Illumination::trace(const Lamp& lamp, const std::vector<ShadingPoint>& poin
     scratch.occluded.insert(scratch.occluded.end(), scratch.traced.begin(), scratch.traced.end());
 }
 
-void Illumination::add(const Lamp& lamp, const std::vector<ShadingPoint>& points, std::size_t probes,
-                       std::vector<Light>& lights, Scratch& scratch) const {
-    auto& [rays, facing, traced, occluded] = scratch;
+/// Adds what all points of a flat patch receive alike to `even`, the diffuse light as a linear function of the normal.
+void Illumination::add(const Lamp& lamp, const Patch& patch, glm::dmat3& even, std::vector<Light>& lights,
+                       Scratch& scratch) const {
+    const std::vector<ShadingPoint>& points = patch.points;
+    const double first = glm::dot(points.front().normal, lamp.direction);
+    if (patch.flat && first < -largest_sine)
+        return;
+    std::vector<std::size_t>& facing = scratch.facing;
+    std::vector<std::uint8_t>& occluded = scratch.occluded;
     facing.clear();
     occluded.clear();
-    std::size_t facing_probes = 0;
-    for (std::size_t i = 0; i < points.size(); ++i)
-        if (glm::dot(points[i].normal, lamp.direction) > 0) {
-            facing_probes += i < probes;
-            facing.push_back(i);
-        }
+    const auto keep_facing = [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            if (glm::dot(points[i].normal, lamp.direction) > 0)
+                facing.push_back(i);
+    };
+    const std::size_t probes = patch.probes();
+    keep_facing(0, probes);
+    const std::size_t facing_probes = facing.size();
     trace(lamp, points, 0, facing_probes, scratch);
     const auto hidden = static_cast<std::size_t>(std::count(occluded.begin(), occluded.end(), 1));
     if (facing_probes == probes && hidden == probes)
         return;
-    if (facing_probes == probes && hidden == 0)
+    const auto add_highlight = [&](std::size_t i) {
+        if (lamp.highlight > 0)
+            lights[i].highlight += lamp.highlight * to_the_16th(std::max(0.0, glm::dot(points[i].normal, lamp.half)));
+    };
+    const bool in_sight = facing_probes == probes && hidden == 0;
+    if (in_sight && patch.flat && first > largest_sine) {
+        even += glm::outerProduct(lamp.diffuse, lamp.direction);
+        for (std::size_t i = 0; i < points.size(); ++i)
+            add_highlight(i);
+        return;
+    }
+    keep_facing(probes, points.size());
+    if (in_sight)
         occluded.resize(facing.size(), 0);
     else
         trace(lamp, points, facing_probes, facing.size(), scratch);
     for (std::size_t f = 0; f < facing.size(); ++f)
         if (!occluded[f]) {
-            const glm::dvec3& normal = points[facing[f]].normal;
-            Light& light = lights[facing[f]];
-            light.diffuse += lamp.diffuse * glm::dot(normal, lamp.direction);
-            if (lamp.highlight > 0)
-                light.highlight += lamp.highlight * to_the_16th(std::max(0.0, glm::dot(normal, lamp.half)));
+            const std::size_t i = facing[f];
+            lights[i].diffuse += lamp.diffuse * glm::dot(points[i].normal, lamp.direction);
+            add_highlight(i);
         }
 }
 
-void Illumination::light(std::size_t sample, const std::vector<ShadingPoint>& points, std::size_t probes,
-                         std::vector<Light>& lights, Scratch& scratch) const {
+void Illumination::light(std::size_t sample, const Patch& patch, std::vector<Light>& lights, Scratch& scratch) const {
+    const std::vector<ShadingPoint>& points = patch.points;
     lights.assign(points.size(), Light{});
-    for (std::size_t i = 0; i < points.size(); ++i)
-        lights[i].diffuse = least + fill_strength * std::max(0.0, glm::dot(points[i].normal, fill_));
+    if (points.empty())
+        return;
+    glm::dmat3 even(0);
     for (const Lamp& lamp : lamps_[sample])
-        add(lamp, points, probes, lights, scratch);
+        add(lamp, patch, even, lights, scratch);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        lights[i].diffuse +=
+            least + fill_strength * std::max(0.0, glm::dot(points[i].normal, fill_)) + even * points[i].normal;
 }
 
 }  // namespace tessera

@@ -10,7 +10,7 @@
 namespace tessera {
 
 /// Sub-pixel samples; each sees its own share of the lights, all of them together see all.
-inline constexpr std::size_t samples_per_pixel = 16;
+inline constexpr std::size_t samples_per_pixel = 8;
 
 /// The light at a point, linear: about 1 for a white surface that faces full light.
 struct Light {
@@ -31,10 +31,17 @@ class Illumination {
         std::vector<std::uint8_t> traced, occluded;
     };
 
-    /// The light at points that share a sub-pixel position; fast if they are neighbours. If all of
-    /// the first `probes` points see a direction, or none does, the others are treated alike.
-    void light(std::size_t sample, const std::vector<ShadingPoint>& points, std::size_t probes,
-               std::vector<Light>& lights, Scratch& scratch) const;
+    /// A part of the surface: points that share a sub-pixel position; fast if they are neighbours.
+    struct Patch {
+        const std::vector<ShadingPoint>& points;
+        bool flat;  ///< no normal's cosine to the first one is below least_flat
+
+        /// If all of the first points see a direction, or none does, the others of a flat patch are treated alike.
+        std::size_t probes() const { return flat ? (points.size() + 3) / 4 : points.size(); }
+    };
+    static constexpr double least_flat = 0.9;
+
+    void light(std::size_t sample, const Patch& patch, std::vector<Light>& lights, Scratch& scratch) const;
 
   private:
     struct Lamp {
@@ -46,7 +53,7 @@ class Illumination {
 
     void trace(const Lamp& lamp, const std::vector<ShadingPoint>& points, std::size_t first, std::size_t end,
                Scratch& scratch) const;
-    void add(const Lamp& lamp, const std::vector<ShadingPoint>& points, std::size_t probes, std::vector<Light>& lights,
+    void add(const Lamp& lamp, const Patch& patch, glm::dmat3& even, std::vector<Light>& lights,
              Scratch& scratch) const;
 
     const RayScene& scene_;

@@ -94,7 +94,7 @@ glm::dvec3 to_linear(const Colour& colour) {
     return {linear(colour[0]), linear(colour[1]), linear(colour[2])};
 }
 
-Colour to_srgb(const glm::dvec3& linear) {
+Colour to_srgb(const glm::vec3& linear) {
     const auto code = [](double value) {
         const double x = std::clamp(value, 0.0, 1.0);
         const double encoded = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;

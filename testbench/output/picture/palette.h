@@ -30,6 +30,6 @@ Colour error_colour(double fraction);
 
 /// Linear light, 0..1 per component.
 glm::dvec3 to_linear(const Colour& colour);
-Colour to_srgb(const glm::dvec3& linear);
+Colour to_srgb(const glm::vec3& linear);
 
 }  // namespace tessera

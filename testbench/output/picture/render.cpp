@@ -16,17 +16,13 @@ namespace tessera {
 namespace {
 
 constexpr int tile_side = 8;
-constexpr double least_flat = 0.9;   // cosine between normals in a tile
 constexpr double line_shade = 0.16;  // of the surface's colour
 constexpr double far_in_sizes = 50;  // an eye further from the mesh than that many of its sizes is far away
 
-/// 4 x 4 strata; no two samples share a row or a column of 16, so edges along the axes are smooth too.
+/// No two samples share a row or a column of 8, so edges along the axes are smooth too.
 glm::dvec2 sample_position(std::size_t sample) {
-    const std::size_t place = sample % 4;
-    const std::size_t line = sample / 4;
-    const auto column = static_cast<double>(place);
-    const auto row = static_cast<double>(line);
-    return {(column + (row + 0.5) / 4) / 4, (row + (column + 0.5) / 4) / 4};
+    constexpr std::array<double, samples_per_pixel> row{4, 1, 6, 3, 0, 7, 2, 5};
+    return {(static_cast<double>(sample) + 0.5) / samples_per_pixel, (row[sample] + 0.5) / samples_per_pixel};
 }
 
 /// Calls at(x, y): for the first pixel of each square of 2 x 2, then for the second ones, and so on.
@@ -180,13 +176,11 @@ class Renderer {
         return true;
     }
 
-    static void set_pixel(Picture& picture, int x, int y, const glm::dvec3& light) {
+    /// The image's colours are those of the linear light as written, in single precision.
+    static void set_pixel(Picture& picture, int x, int y, const glm::vec3& light) {
         picture.image.set(x, y, to_srgb(light));
-        if (picture.linear.values.empty())
-            return;
-        float* const values = &picture.linear.values[picture.linear.offset(x, y)];
-        for (int k = 0; k < 3; ++k)
-            values[k] = static_cast<float>(light[k]);
+        if (!picture.linear.values.empty())
+            std::copy_n(&light[0], 3, &picture.linear.values[picture.linear.offset(x, y)]);
     }
 
     /// Adds one sample of every pixel in the tile to the sums; false if none hit the mesh.
@@ -206,7 +200,7 @@ class Renderer {
         for (std::size_t i = 0; i < rays.size(); ++i)
             if (hits[i] != RayScene::nothing)
                 points.push_back(shading_point(rays[i], hits[i]));
-        illumination_.light(sample, points, probes(points, rays.size()), lights, scratch);
+        illumination_.light(sample, {points, flat(points, rays.size())}, lights, scratch);
 
         std::size_t point = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -230,15 +224,12 @@ class Renderer {
         return !points.empty();
     }
 
-    /// How many points decide for all which directions are visible: the first quarter, a pixel of each square of
-    /// 2 x 2, where the mesh covers the tile and is nearly flat in it.
-    static std::size_t probes(const std::vector<ShadingPoint>& points, std::size_t rays) {
-        if (points.size() < rays)
-            return points.size();
-        for (const ShadingPoint& point : points)
-            if (glm::dot(point.normal, points.front().normal) < least_flat)
-                return points.size();
-        return (points.size() + 3) / 4;
+    /// The mesh covers the tile and is nearly flat in it. Its first points, a quarter, are then those of a pixel of each
+    /// square of 2 x 2.
+    static bool flat(const std::vector<ShadingPoint>& points, std::size_t rays) {
+        return points.size() == rays && std::all_of(points.begin(), points.end(), [&](const ShadingPoint& point) {
+                   return glm::dot(point.normal, points.front().normal) >= Illumination::least_flat;
+               });
     }
 
     ShadingPoint shading_point(const Ray& ray, std::uint32_t index) const {

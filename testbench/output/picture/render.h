@@ -9,8 +9,8 @@
 
 namespace tessera {
 
-/// A picture of the mesh: displaced normals interpolated, soft shadows and sky light by rays, 4 x 4 samples a
-/// pixel. The same input gives the same bytes, whatever the machine's load. Nothing in sight: the background.
+/// A picture of the mesh: displaced normals interpolated, soft shadows and sky light by rays, 8 samples a pixel.
+/// The same input gives the same bytes, whatever the machine's load. Nothing in sight: the background.
 /// Memory beside the mesh: about 100 bytes a triangle, 3 bytes a pixel. Throws ResourceError when it runs out.
 Image render(const RenderMesh& mesh, const View& view, const Style& style);
 

@@ -1,0 +1,63 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <systemc>
+#include <vector>
+
+#include "modules/host.h"
+#include "modules/memories/interleave.h"
+#include "modules/pipeline.h"
+#include "modules/rasteriser.h"
+#include "modules/schedule/machine.h"
+
+namespace tessera {
+
+/// Times a machine in functional mode by its schedule (modules/schedule/README.md): asks the schedule which triangle Get
+/// Triangle begins next, sends that triangle from the host or the Triangle Queue through the machine, and tells the
+/// schedule what its pass depended on. At the end of a run the units have the figures that timed mode would have given
+/// them.
+class Conductor : public sc_core::sc_module {
+  public:
+    /// The key of a job file whose value has no schedule; empty: the design has one.
+    static std::string key_without_schedule(const Design& design, const datapath::Formats& formats);
+
+    /// machine: of a conducted design, in functional mode; `timed`: the same design as timed mode has it.
+    Conductor(const sc_core::sc_module_name& name, Pipeline& machine, Host& host, const Rasteriser& rasteriser,
+              const Design& timed);
+
+    /// The last cycle in which anything happened so far.
+    std::uint64_t last_cycle() const { return schedule_.last(); }
+    /// Null: none.
+    void observe(const Unit& unit, schedule::ItemObserver* observer);
+    /// Gives the units their figures, for a run of so many cycles.
+    void finish(std::uint64_t cycles);
+
+  private:
+    /// Turns a unit's reads into the banks of a table's entries.
+    class ReadFacts : public ReadObserver {
+      public:
+        using Parts = std::array<schedule::PartReads, schedule::Facts::parts_of_a_triangle>;
+        ReadFacts(Parts& parts, const MemoryTiming& timing, const datapath::TableLayout& layout)
+            : parts_(parts), bank_of_(timing, layout), banked_(timing.banks > 1) {}
+        void read(unsigned part, const Reads& reads) override;
+
+      private:
+        Parts& parts_;
+        BankOfEntry bank_of_;
+        bool banked_;
+    };
+
+    static schedule::Plan plan_of(Pipeline& machine, const Rasteriser& rasteriser, const Design& timed);
+    void conduct();
+    void send(const schedule::Source::Next& next);
+
+    Pipeline& machine_;
+    Host& host_;
+    schedule::Machine schedule_;
+    schedule::Facts facts_;
+    ReadFacts vertices_, heights_, normals_;
+    std::vector<Unit*> units_;                          // by the schedule's numbers; null: the rasteriser
+    std::vector<const sc_core::sc_object*> consumers_;  // the same, with the rasteriser
+};
+
+}  // namespace tessera

@@ -1,0 +1,34 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+namespace tessera::schedule {
+
+/// The table entries that a unit read for one part of a triangle: one to three requests, one after another.
+struct PartReads {
+    static constexpr unsigned most_requests = 3;
+    static constexpr unsigned most_entries = 27;
+
+    std::uint8_t requests = 0;
+    std::array<std::uint8_t, most_requests> entries;  ///< of each request
+    std::array<std::uint8_t, most_entries> banks;     ///< of each entry, if the table has more than one
+};
+
+/// Where Pass or Tessellate sends a triangle.
+enum class Way : std::uint8_t { tessellation, lighting, dropped };
+
+/// What a pass of a triangle through the machine depends on, besides the design.
+struct Facts {
+    static constexpr unsigned parts_of_a_triangle = 9;
+
+    std::uint16_t parts = 0;  ///< one bit each: three vertices, three normals, three edges
+    bool tested = true;       ///< its vertices and edges go to the tests
+    std::array<PartReads, parts_of_a_triangle> displace_vertex;
+    std::array<PartReads, parts_of_a_triangle> height_test;
+    std::array<PartReads, parts_of_a_triangle> normal_test;
+    Way way = Way::dropped;
+    unsigned children = 0;
+    std::array<std::uint32_t, 4> place{};  ///< of each child, where the caller keeps it
+};
+
+}  // namespace tessera::schedule

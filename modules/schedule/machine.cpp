@@ -1,0 +1,312 @@
+#include "modules/schedule/machine.h"
+
+#include <algorithm>
+
+namespace tessera::schedule {
+
+namespace {
+
+constexpr unsigned first_edge = 6;
+constexpr unsigned vertices = 0007, edges = 0700;
+
+}  // namespace
+
+Machine::Machine(const Plan& plan)
+    : plan_(plan),
+      source_(plan.source),
+      calculate_new_p_(plan.calculate_new_p),
+      displace_vertex_(plan.displace_vertex),
+      transform_(plan.transform),
+      calculate_new_u_(plan.calculate_new_u),
+      tex_coord_test_(plan.tex_coord_test),
+      height_test_(plan.height_test),
+      normal_test_(plan.normal_test),
+      view_test_(plan.view_test),
+      corners_(plan.view_test_corners),
+      results_{Input(plan.results[0]), Input(plan.results[1]), Input(plan.results[2]), Input(plan.results[3])},
+      displacement_map_(plan.displacement_map),
+      normal_map_(plan.normal_map),
+      height_table_(plan.height_table),
+      join_triangles_(plan.join_triangles),
+      join_parts_(plan.join_parts),
+      join_edges_(plan.join_edges),
+      join_starts_(plan.join_places),
+      join_(plan.join),
+      join_level_(plan.join_places + plan.join.stages),
+      ahead_of_parts_(plan.join_triangles.depth),
+      tessellation_input_(plan.tessellation_input),
+      lighting_(plan.lighting),
+      rasteriser_(plan.rasteriser) {}
+
+void Machine::pass(const Facts& facts) {
+    const Cycle begin = next_.begin;
+    joining_ = {};
+    joining_.open = begin;
+    opened_ = false;
+    corners_come_ = corners_bumped_ = 0;
+    arrived_ = join_triangles_.take(begin);
+    to_geometry_.begin(begin, plan_.get_triangle.latency);
+    to_tests_.begin(begin, plan_.get_triangle.latency);
+    for (unsigned left = facts.parts; left != 0; left &= left - 1) {
+        geometry(static_cast<unsigned>(__builtin_ctz(left)), facts);
+        ++parts_sent_;
+    }
+    for (unsigned left = facts.tested ? facts.parts & (vertices | edges) : 0; left != 0; left &= left - 1)
+        test(static_cast<unsigned>(__builtin_ctz(left)), facts);
+    free_ = std::max({to_geometry_.free, to_tests_.free, arrived_});
+    account_get_triangle(begin, arrived_);
+    get_triangle_level_.stay(begin, free_);
+    join(facts);
+}
+
+Cycle Machine::read(Table& table, const PartReads& reads, Cycle start, Cycle& asked) {
+    asked = start;
+    Cycle answer = 0;
+    for (unsigned request = 0, entry = 0; request < reads.requests; entry += reads.entries[request++]) {
+        answer = table.request(asked, &reads.banks[entry], reads.entries[request]);
+        asked = table.taken();
+    }
+    return answer;
+}
+
+/// Get Triangle, Calculate New P, Displace Vertex, Transform, Pass or Tessellate.
+void Machine::geometry(unsigned part, const Facts& facts) {
+    const Cycle sent = to_geometry_.send(plan_.get_triangle.interval);
+    to_geometry_.taken(sent, calculate_new_p_.take(sent));
+    calculate_new_p_.start();
+    calculate_new_p_.depart(displace_vertex_.take(calculate_new_p_.finish()), displace_vertex);
+
+    const Cycle start = displace_vertex_.start(vertices_asked_);
+    const PartReads& reads = facts.displace_vertex[part];
+    if (reads.requests > 0)
+        displace_vertex_.answer(read(displacement_map_, reads, start, vertices_asked_), displacement_map);
+    displace_vertex_.depart(transform_.take(displace_vertex_.finish()), transform);
+
+    transform_.start();
+    const Cycle offer = transform_.finish();
+    const Cycle taken = join_parts_.take(offer);
+    if (!opened_) {
+        opened_ = true;
+        joining_.open = std::max({taken, arrived_, join_starts_[join_starts_.count() - plan_.join_places]});
+        join_triangles_.pop(joining_.open);
+        ahead_of_parts_.stay(arrived_, joining_.open);
+    }
+    joining_.geometry = std::max(taken, joining_.open);
+    join_parts_.pop(joining_.geometry);
+    transform_.blocked(taken, pass_or_tessellate);
+    Cycle departs = taken;
+    if ((vertices >> part & 1) != 0) {
+        corners_come_ = corners_.take(offer);
+        corners_.pop(corners_come_);
+        transform_.blocked(corners_come_, view_test);
+        departs = std::max(departs, corners_come_);
+    }
+    transform_.depart(departs);
+}
+
+/// Get Triangle, Calculate New U, the tests, Collect Tests, Pass or Tessellate. A vertex ends in the Normal Test.
+void Machine::test(unsigned part, const Facts& facts) {
+    const bool is_edge = part >= first_edge;
+    const bool base = (facts.parts & vertices) != 0;
+    const Cycle sent = to_tests_.send(plan_.get_triangle.interval);
+    to_tests_.taken(sent, calculate_new_u_.take(sent));
+    calculate_new_u_.start();
+    const Cycle offer = calculate_new_u_.finish();
+    Cycle departs = normal_test_.take(offer);
+    calculate_new_u_.blocked(departs, normal_test);
+    const auto fork = [&](Stage& test, Unit its) {
+        const Cycle taken = test.take(offer);
+        calculate_new_u_.blocked(taken, its);
+        departs = std::max(departs, taken);
+    };
+    if (is_edge) {
+        fork(tex_coord_test_, tex_coord_test);
+        fork(height_test_, height_test);
+        fork(view_test_, view_test);
+    }
+    calculate_new_u_.depart(departs);
+
+    const Cycle start = normal_test_.start(normals_asked_, is_edge && base ? corners_bumped_ : 0);
+    const Cycle answer = read(normal_map_, facts.normal_test[part], start, normals_asked_);
+    normal_test_.answer(answer, normal_map);
+    const Cycle normal_offer = normal_test_.finish();
+    if (!is_edge) {
+        corners_bumped_ = answer;
+        normal_test_.depart(normal_offer);
+        return;
+    }
+    Cycle all = results_[0].take(normal_offer);
+    normal_test_.depart(all, collect_tests);
+    const auto result = [&](Stage& test, std::size_t input) {
+        const Cycle taken = results_[input].take(test.finish());
+        test.depart(taken, collect_tests);
+        all = std::max(all, taken);
+    };
+    tex_coord_test_.start();
+    result(tex_coord_test_, 1);
+    const Cycle height_start = height_test_.start(heights_asked_);
+    const PartReads& reads = facts.height_test[part];
+    if (reads.requests > 0)
+        height_test_.answer(read(height_table_, reads, height_start, heights_asked_), height_table);
+    result(height_test_, 2);
+    view_test_.start(0, base ? corners_come_ : 0, transform);
+    result(view_test_, 3);
+
+    const Cycle collected = std::max(all, collected_);
+    for (Input& input : results_)
+        input.pop(collected);
+    collected_ = join_edges_.take(collected);
+    collect_states_.until(collected, State::starved);
+    collect_states_.until(collected_, State::blocked, pass_or_tessellate);
+    collect_level_.stay(collected, collected_);
+    if (!joining_.has_edges)
+        joining_.first_edge = collected_;
+    joining_.has_edges = true;
+    joining_.tests = std::max({joining_.tests, collected_, joining_.open});
+    join_edges_.pop(joining_.tests);
+}
+
+/// Pass or Tessellate, once all parts have come.
+void Machine::join(const Facts& facts) {
+    joining_.start = join_.start(std::max(joining_.geometry, joining_.tests));
+    join_starts_.add(joining_.start);
+    joining_.finish = joining_.start + join_.latency();
+    const Cycle offer = std::max(joining_.finish, join_.last_depart());
+    joining_.depart = offer;
+    if (facts.way == Way::lighting) {
+        joining_.to = lighting;
+        joining_.depart = lighting_.take(offer);
+        lighting_.start();
+        const Cycle lit = rasteriser_.take(lighting_.finish());
+        rasteriser_.pop(lit);
+        lighting_.depart(lit, rasteriser);
+        last_ = std::max(last_, lit);
+    } else if (facts.way == Way::tessellation) {
+        joining_.to = tessellation;
+        joining_.depart = split(offer, facts);
+    }
+    join_.depart(joining_.depart);
+    join_level_.stay(joining_.open, joining_.depart);
+    last_ = std::max(last_, joining_.depart);
+    joins_.add(joining_);
+    if (joining_.has_edges)
+        account_joins(joining_.first_edge);
+}
+
+/// Tessellation. Returns when it takes the triangle.
+Cycle Machine::split(Cycle offer, const Facts& facts) {
+    const Cycle taken = tessellation_input_.take(offer);
+    const Cycle begin = std::max(taken, tessellated_);
+    tessellation_input_.pop(begin);
+    tessellation_states_.until(begin, State::starved);
+    next_child_ = std::max(next_child_, begin + plan_.tessellation.latency);
+    tessellated_ = begin;
+    for (unsigned k = 0; k < facts.children; ++k) {
+        const Cycle sent = std::max(next_child_, tessellated_);
+        next_child_ = sent + plan_.tessellation.interval;
+        tessellated_ = source_.offer(sent, facts.place[k]);
+        tessellation_states_.until(sent, State::busy);
+        tessellation_states_.until(tessellated_, State::blocked, triangle_queue);
+    }
+    tessellation_level_.stay(begin, tessellated_);
+    return taken;
+}
+
+/// Of several outputs that are not free the first counts.
+void Machine::account_get_triangle(Cycle begin, Cycle joined) {
+    get_triangle_states_.until(begin, State::starved);
+    unsigned geometry = 0, tests = 0;
+    for (Cycle cycle = begin; cycle < free_;) {
+        Unit by = nobody;
+        Cycle end = free_;
+        const auto look_at = [&](const Branch& branch, unsigned& k, Unit consumer) {
+            while (k < branch.count && branch.offers[k].to <= cycle)
+                ++k;
+            if (by != nobody || k == branch.count)
+                return;
+            const auto [from, to] = branch.offers[k];
+            if (from <= cycle)
+                by = consumer;
+            end = std::min(end, from <= cycle ? to : from);
+        };
+        look_at(to_geometry_, geometry, calculate_new_p);
+        look_at(to_tests_, tests, calculate_new_u);
+        if (by == nobody && cycle < joined) {
+            by = pass_or_tessellate;
+            end = std::min(end, joined);
+        }
+        get_triangle_states_.until(end, by == nobody ? State::busy : State::blocked, by);
+        cycle = end;
+    }
+}
+
+/// first_tested: when the first edge came of these triangles.
+void Machine::account_joins(Cycle first_tested) {
+    for (std::uint64_t k = joins_.first(); k < joins_.count(); ++k) {
+        const Join& it = joins_[k];
+        join_states_.until(std::min(it.open, first_tested), State::starved);
+        join_states_.until(it.open, State::starved, transform);
+        join_states_.until(std::min(it.geometry, it.tests), State::starved);
+        if (it.geometry <= it.tests)
+            join_states_.until(it.tests, State::starved, collect_tests);
+        else
+            join_states_.until(it.geometry, State::starved, transform);
+        join_states_.until(it.finish, State::busy);
+        join_states_.until(it.depart, State::blocked, it.to);
+    }
+    joins_.forget_before(joins_.count());
+}
+
+/// each(unit, states, level), for all but the Triangle Queue.
+template <class Self, class Each>
+void Machine::for_each_unit(Self& m, Each&& each) {
+    const auto stage = [&](Unit unit, auto& it) { each(unit, it.states(), it.level()); };
+    each(get_triangle, m.get_triangle_states_, m.get_triangle_level_);
+    stage(calculate_new_p, m.calculate_new_p_);
+    stage(displace_vertex, m.displace_vertex_);
+    stage(transform, m.transform_);
+    each(pass_or_tessellate, m.join_states_, m.join_level_);
+    each(tessellation, m.tessellation_states_, m.tessellation_level_);
+    stage(lighting, m.lighting_);
+    stage(displacement_map, m.displacement_map_);
+    stage(normal_map, m.normal_map_);
+    stage(height_table, m.height_table_);
+    stage(calculate_new_u, m.calculate_new_u_);
+    stage(tex_coord_test, m.tex_coord_test_);
+    stage(height_test, m.height_test_);
+    stage(normal_test, m.normal_test_);
+    stage(view_test, m.view_test_);
+    each(collect_tests, m.collect_states_, m.collect_level_);
+}
+
+void Machine::finish(Cycle end) {
+    account_joins(end);
+    source_.finish(end);
+    for_each_unit(*this, [&](Unit, States& states, const Level&) { states.until(end, State::starved); });
+}
+
+Figures Machine::figures(Unit unit) const {
+    if (unit == triangle_queue)
+        return {&source_.states(), source_.pushed(), source_.most(), source_.item_cycles()};
+    Figures found;
+    for_each_unit(*this, [&](Unit its, const States& states, const Level& level) {
+        if (its == unit)
+            found = {&states, level.items(), level.most(), level.item_cycles()};
+    });
+    return found;
+}
+
+void Machine::observe(Unit unit, ItemObserver* observer) {
+    if (unit == triangle_queue)
+        source_.observe(observer);
+    for_each_unit(*this, [&](Unit its, States&, Level& level) {
+        if (its == unit)
+            level.observe(observer);
+    });
+}
+
+const Table& Machine::table(Unit memory) const {
+    return memory == displacement_map ? displacement_map_ : memory == normal_map ? normal_map_ : height_table_;
+}
+
+}  // namespace tessera::schedule

@@ -1,0 +1,103 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "modules/schedule/history.h"
+#include "modules/timing/state.h"
+
+namespace tessera::schedule {
+
+/// A unit's number in the machine (machine.h).
+using Unit = std::uint8_t;
+constexpr Unit nobody = 255;
+
+/// A unit's cycles by state and by whom, told in stretches, earliest first.
+class States {
+  public:
+    struct Share {
+        State state = State::starved;
+        Unit by = nobody;
+        Cycle cycles = 0;
+    };
+    static constexpr std::size_t most_shares = 12;
+
+    /// The unit was in this state from the end of the last stretch up to, not including, `cycle`; nothing if that is
+    /// past.
+    void until(Cycle cycle, State state, Unit by = nobody) {
+        if (cycle <= since_)
+            return;
+        cycles_[static_cast<std::size_t>(state)] += cycle - since_;
+        if (by != nobody)
+            share(state, by).cycles += cycle - since_;
+        since_ = cycle;
+    }
+
+    Cycle cycles_in(State state) const { return cycles_[static_cast<std::size_t>(state)]; }
+    /// In the order of their first stretches; by: nobody: no more.
+    const std::array<Share, most_shares>& shares() const { return shares_; }
+
+  private:
+    Share& share(State state, Unit by) {
+        const auto is_it = [&](const Share& share) {
+            return share.by == nobody || (share.by == by && share.state == state);
+        };
+        if (shares_[recent_].by != by || shares_[recent_].state != state)
+            recent_ =
+                static_cast<std::size_t>(std::find_if(shares_.begin(), shares_.end() - 1, is_it) - shares_.begin());
+        shares_[recent_].state = state;
+        shares_[recent_].by = by;
+        return shares_[recent_];
+    }
+
+    std::array<Cycle, states> cycles_{};
+    std::array<Share, most_shares> shares_{};
+    std::size_t recent_ = 0;
+    Cycle since_ = 0;
+};
+
+/// Told when each item came into a unit and left it.
+class ItemObserver {
+  public:
+    virtual void item(Cycle cycle, bool came) = 0;
+    virtual ~ItemObserver() = default;
+};
+
+/// How many items are in a unit, which they leave in the order in which they came.
+class Level {
+  public:
+    /// most: at a time.
+    explicit Level(std::size_t most) : out_(most + 1) {}
+
+    /// The next item came in `in` and left in `out`.
+    void stay(Cycle in, Cycle out) {
+        while (left_ < items_ && out_[left_] <= in)
+            ++left_;
+        out_.add(out);
+        ++items_;
+        most_ = std::max({most_, std::uint64_t{1}, items_ - left_ - (out == in ? 1 : 0)});
+        item_cycles_ += out - in;
+        if (observer_ != nullptr) {
+            observer_->item(in, true);
+            observer_->item(out, false);
+        }
+    }
+    void observe(ItemObserver* observer) { observer_ = observer; }
+
+    std::uint64_t items() const { return items_; }
+    /// At the end of a cycle, at least one if any came.
+    std::uint64_t most() const { return most_; }
+    /// The sum of all stays.
+    std::uint64_t item_cycles() const { return item_cycles_; }
+
+  private:
+    History out_;
+    std::uint64_t items_ = 0;
+    std::uint64_t left_ = 0;
+    std::uint64_t most_ = 0;
+    std::uint64_t item_cycles_ = 0;
+    ItemObserver* observer_ = nullptr;
+};
+
+}  // namespace tessera::schedule

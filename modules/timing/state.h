@@ -1,0 +1,17 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+namespace tessera {
+
+/// What a unit does in a cycle: exactly one of these, so that their cycles add up to the run's.
+///
+///   blocked             a finished item waits for its consumer to take it
+///   busy                not blocked, and an item with all its operands is being worked on
+///   waiting for memory  neither, and an item's table entries are outstanding
+///   starved             nothing to work on, or an operand is missing (the View Test's screen positions, the other
+///                       branch in Pass or Tessellate)
+enum class State : std::uint8_t { starved, busy, waiting_for_memory, blocked };
+constexpr std::size_t states = 4;
+
+}  // namespace tessera

@@ -1,0 +1,137 @@
+#include "testbench/prove/engines/engine_run.h"
+
+#include <fmt/core.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <sstream>
+#include <system_error>
+#include <vector>
+
+#include "testbench/common/exit_process.h"
+#include "testbench/common/hash.h"
+#include "testbench/common/pipe.h"
+#include "testbench/machine/simulation.h"
+#include "testbench/output/report/mesh_counts.h"
+#include "testbench/output/report/statistics.h"
+#include "testbench/output/report/timing_report.h"
+
+namespace tessera {
+
+namespace {
+
+constexpr unsigned most_seconds = 120;
+constexpr std::uint64_t most_triangles = 20'000'000, most_cycles_without_progress = 1'000'000;
+
+/// Of the cycles in which items came into a unit, and left it.
+class ItemTimes : public ActivityObserver, public schedule::ItemObserver {
+  public:
+    void stretch(State, const sc_core::sc_object*, std::uint64_t, std::uint64_t) override {}
+    void item(std::uint64_t cycle, bool came) override {
+        std::uint64_t& digest = came ? came_ : left_;
+        digest = mix_hash(digest, cycle);
+    }
+    std::string text() const { return fmt::format("{:016x} {:016x}", came_, left_); }
+
+  private:
+    std::uint64_t came_ = 0, left_ = 0;
+};
+
+/// Of one machine's triangles, in their order; between machines it is not the same, and no result depends on it.
+std::uint64_t digest_of(const EmittedMesh& mesh, std::size_t machine, std::size_t machines) {
+    std::uint64_t digest = 0;
+    for (const EmittedTriangle& triangle : mesh.triangles) {
+        if (triangle.base % machines != machine)
+            continue;
+        for (const auto& c : triangle.corners)
+            for (const std::int64_t value :
+                 {std::int64_t{c.displaced.x}, std::int64_t{c.displaced.y}, std::int64_t{c.displaced.z},
+                  std::int64_t{c.texture.u}, std::int64_t{c.texture.v}, std::int64_t{triangle.base}})
+                digest = mix_hash(digest, static_cast<std::uint64_t>(value));
+    }
+    return digest;
+}
+
+std::string run(const Job& job, const BaseMesh& mesh, const HeightMap& map, bool scheduled) {
+    MachineSetup setup = make_setup(job, mesh, map);
+    setup.scheduled = scheduled;
+    Simulation simulation(setup, most_triangles, most_cycles_without_progress);
+    std::vector<std::pair<const Unit*, std::unique_ptr<ItemTimes>>> times;
+    for (const auto& machine : simulation.machines) {
+        for (Unit* unit : machine->pipeline.units()) {
+            times.emplace_back(unit, std::make_unique<ItemTimes>());
+            if (scheduled)
+                machine->conductor->observe(*unit, times.back().second.get());
+            else
+                unit->activity().observe(times.back().second.get());
+        }
+    }
+    std::string text = simulation.run();
+    for (std::size_t k = 0; k < setup.machines; ++k)
+        text += fmt::format("mesh {:016x}\n", digest_of(simulation.monitor.mesh, k, setup.machines));
+    for (const auto& [unit, its] : times)
+        text += fmt::format("items of {}: {}\n", unit->name(), its->text());
+    text += statistics_csv(collect_statistics(setup, simulation, count_mesh(simulation.monitor.mesh)));
+    text += timing_text(simulation);
+    for (const auto& machine : simulation.machines)
+        text += queue_levels_csv(machine->pipeline.triangle_queue.history());
+    return text;
+}
+
+}  // namespace
+
+std::string engine_run(const Job& job, const BaseMesh& mesh, const HeightMap& map, bool scheduled) {
+    std::array<int, 2> pipe{};
+    if (::pipe(pipe.data()) != 0)
+        throw std::system_error(errno, std::generic_category(), "no pipe to an engine's process");
+    std::fflush(nullptr);  // what waits in a buffer would be printed twice
+    const pid_t child = ::fork();
+    if (child < 0)
+        throw std::system_error(errno, std::generic_category(), "no process for an engine");
+    if (child == 0) {
+        ::close(pipe[0]);
+        ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+        ::alarm(most_seconds);
+        std::string text;
+        try {
+            text = run(job, mesh, map, scheduled);
+        } catch (const std::exception& error) {
+            text = error.what();
+        }
+        write_to_pipe(pipe[1], text.data(), text.size());
+        std::fflush(nullptr);
+        exit_process(0);
+    }
+    ::close(pipe[1]);
+    std::string text = read_from_pipe(pipe[0]);
+    ::close(pipe[0]);
+    int status = 0;
+    while (::waitpid(child, &status, 0) < 0)
+        if (errno != EINTR)
+            throw std::system_error(errno, std::generic_category(), "an engine's process");
+    if (WIFSIGNALED(status))
+        text += fmt::format("ended by signal {}\n", WTERMSIG(status));
+    return text;
+}
+
+std::string first_difference(const std::string& clocked, const std::string& scheduled) {
+    std::istringstream left(clocked), right(scheduled);
+    std::string a, b;
+    while (true) {
+        const bool more_left = static_cast<bool>(std::getline(left, a)),
+                   more_right = static_cast<bool>(std::getline(right, b));
+        if (!more_left && !more_right)
+            return {};
+        if (more_left != more_right || a != b)
+            return fmt::format("clocked:  {}\nschedule: {}", more_left ? a : "", more_right ? b : "");
+    }
+}
+
+}  // namespace tessera

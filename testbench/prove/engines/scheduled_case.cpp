@@ -1,0 +1,62 @@
+#include "testbench/prove/engines/scheduled_case.h"
+
+#include "testbench/common/random.h"
+
+namespace tessera {
+
+namespace {
+
+/// More than random cases do, whose runs are many more: here each figure may decide which of two things comes first.
+void choose_timing(Random& random, Timing& timing) {
+    const bool slow = random.chance(30), deep = random.chance(30);
+    const auto latency = [&] { return random.natural(1, slow ? 60 : 6); };
+    const auto buffer = [&] { return random.natural(1, deep ? 12 : 2); };
+    if (random.chance(60))
+        for (UnitTiming* unit :
+             {&timing.get_triangle, &timing.calculate_new_p, &timing.displace_vertex, &timing.transform,
+              &timing.calculate_new_u, &timing.tex_coord_test, &timing.summed_height_test, &timing.rank_test,
+              &timing.curvature_test, &timing.mipmap_test, &timing.normal_test, &timing.view_test,
+              &timing.pass_or_tessellate, &timing.tessellation, &timing.triangle_queue, &timing.lighting})
+            if (random.coin())
+                *unit = {latency(), random.natural(1, 5), buffer()};
+    timing.results_buffer = buffer();
+    for (MemoryTiming* memory : {&timing.displacement_map, &timing.normal_map, &timing.summed_height_table,
+                                 &timing.rank_table, &timing.curvature_table, &timing.mipmap_table}) {
+        if (random.coin())
+            *memory = {random.natural(1, 4), 1u << random.natural(0, 5), random.natural(0, slow ? 60 : 3),
+                       random.natural(0, 8), buffer()};
+        memory->cache = {};
+    }
+    if (random.coin()) {
+        timing.summed_height_table.window = random.natural(0, 12);
+        timing.summed_height_table.interleave = random.coin() ? Interleave::exclusive_or : Interleave::entry;
+        timing.summed_height_table.banks = 1u << random.natural(0, 6);
+    }
+    timing.stalls = {};
+    if (random.chance(60))
+        timing.stalls = {random.natural(0, 1000000), random.natural(10, 500), random.natural(1, 40)};
+}
+
+}  // namespace
+
+RandomCase make_scheduled_case(std::uint64_t seed) {
+    RandomCase made = make_random_case(seed);
+    Random random(~seed);
+    Job::Hardware& hardware = made.job.hardware;
+    hardware.work = Work::triangle;
+    hardware.test_order = TestOrder::parallel;
+    hardware.edge_lanes = hardware.normal_tests = 1;
+    hardware.tests_units = 1;
+    hardware.one_texel_from_map = false;
+    hardware.queue_capacity = 0;
+    hardware.transform_pipelines = random.one_of<std::int64_t>({1, 1, 2, 3, 7});
+    hardware.queue_watermark = random.one_of<std::int64_t>({1, 1, 2, 5, 30, 1000});
+    hardware.machines = random.chance(10) ? 2 : 1;
+    made.job.tests.rank_view = RankView::none;
+    if (hardware.height_test == HeightTest::curvature)
+        hardware.height_test = HeightTest::summed_height;
+    choose_timing(random, made.job.timing);
+    return made;
+}
+
+}  // namespace tessera
