@@ -69,10 +69,10 @@ def screen_lengths(positions, camera):
     return lambda a, b: float(np.linalg.norm(seen[a] - seen[b]))
 
 
-def write_obj(path, base, normals, length, pixels):
-    """The base mesh, undisplaced, cut by its edges' lengths on the screen. Both patches of an edge cut it alike."""
-    lines, faces, numbers, cut = [], [], {}, {}
-    corners = np.hstack([base.positions, normals, base.texture])
+def write_obj(path, base, length, pixels):
+    """A plane's triangles, undisplaced, cut by their edges' lengths on the screen. Both patches of an edge cut it alike."""
+    lines, faces, numbers, cut = ["vn 0 0 1\n"], [], {}, {}
+    corners = np.hstack([base.positions[:, :2], base.texture])
     for a, b, c in base.triangles:
         edges = tuple(factor_of(length(*sorted(edge)), pixels) for edge in ((a, b), (b, c), (c, a)))
         if edges not in cut:
@@ -81,14 +81,11 @@ def write_obj(path, base, normals, length, pixels):
         order = sorted(range(3), key=lambda k: (a, b, c)[k])  # so that an edge's points are the same from both sides
         made = []
         for point in points:
-            value = sum(point[k] * corners[(a, b, c)[k]] for k in order)
-            value[3:6] /= np.linalg.norm(value[3:6])
-            text = "v {:.12g} {:.12g} {:.12g}\nvn {:.12g} {:.12g} {:.12g}\nvt {:.12g} {:.12g}\n".format(*value)
+            text = "v {:.12g} {:.12g} 0\nvt {:.12g} {:.12g}\n".format(*sum(point[k] * corners[(a, b, c)[k]] for k in order))
             if text not in numbers:
                 numbers[text] = len(numbers) + 1
                 lines.append(text)
             made.append(numbers[text])
-        faces += ["f " + " ".join("{0}/{0}/{0}".format(made[k]) for k in face) + "\n" for face in triangles]
+        faces += ["f " + " ".join("{0}/{0}/1".format(made[k]) for k in face) + "\n" for face in triangles]
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text("".join(lines + faces))
-    return len(faces)
