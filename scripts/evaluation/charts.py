@@ -31,7 +31,7 @@ def thousands(value, _position=None):
 def lines(series, x_label, y_label, log_x=False, log_y=False, emphasised=()):
     """series: {name: ([x], [y])}."""
     below = len(series) > 6
-    figure, axes = pyplot.subplots(figsize=(7.2, 5.2 if below else 4.3))
+    figure, axes = pyplot.subplots(figsize=(7.2, 5.9 if below else 4.3))
     for (name, (x, y)), (colour, marker) in zip(series.items(), STYLES * 3):
         strong = not emphasised or name in emphasised
         axes.plot(x, y, marker=marker, color=colour, label=name, alpha=1 if strong else 0.75,
@@ -44,7 +44,7 @@ def lines(series, x_label, y_label, log_x=False, log_y=False, emphasised=()):
         axis.set_major_formatter(FuncFormatter(thousands))
     axes.set_xlabel(x_label)
     axes.set_ylabel(y_label)
-    place = {"loc": "upper center", "bbox_to_anchor": (0.45, -0.14), "ncols": 3, "fontsize": 9} if below else {"fontsize": 10}
+    place = {"loc": "upper center", "bbox_to_anchor": (0.45, -0.14), "ncols": 2, "fontsize": 11} if below else {"fontsize": 10}
     axes.legend(frameon=False, **place)
     return svg_of(figure)
 

@@ -57,15 +57,21 @@ def strip(outer, inner):
     return triangles
 
 
-def screen_lengths(positions, camera):
-    """Function of two vertices: pixels between them. camera: of an effective job."""
+def on_screen(positions, camera):
+    """Pixels from the picture's centre, and depths. camera: of an effective job."""
     eye, target, up = (np.array(camera[name], float) for name in ("eye", "target", "up"))
     forward = (target - eye) / np.linalg.norm(target - eye)
     right = np.cross(forward, up)
     right /= np.linalg.norm(right)
     focal = camera["viewport_height"] / 2 / math.tan(math.radians(camera["field_of_view"]) / 2)
     away = positions - eye
-    seen = focal * np.stack([away @ right, away @ np.cross(right, forward)], axis=1) / (away @ forward)[:, None]
+    depth = away @ forward
+    return focal * np.stack([away @ right, away @ np.cross(right, forward)], axis=-1) / depth[..., None], depth
+
+
+def screen_lengths(positions, camera):
+    """Function of two vertices: pixels between them."""
+    seen, _ = on_screen(positions, camera)
     return lambda a, b: float(np.linalg.norm(seen[a] - seen[b]))
 
 

@@ -4,6 +4,7 @@ measure() of an experiment names its runs, yields, and then reads them. What all
 """
 import json
 import shlex
+import tomllib
 from functools import cached_property
 from pathlib import Path
 
@@ -121,6 +122,12 @@ class Run:
     def mesh(self):
         self.finished()
         return read_mesh(self.folder / "mesh.ply")
+
+    @cached_property
+    def job(self):
+        """Every key."""
+        self.finished()
+        return tomllib.loads((self.folder / "job.toml").read_text())
 
     @property
     def tuned(self):

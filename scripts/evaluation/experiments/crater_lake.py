@@ -110,6 +110,11 @@ def vertical_errors(mesh, height, scale=1000):
     return errors, owner
 
 
+def rms_and_largest(mesh, height, scale=1000):
+    errors, owner = vertical_errors(mesh, height, scale)
+    return float(np.sqrt((errors[owner >= 0] ** 2).mean())), float(np.abs(errors).max())
+
+
 def worst_spot(run, finest):
     """The mesh at its largest vertical error, and the finest mesh there for comparison."""
     spot = np.array([run.error[f"worst_vertical.{axis}"] for axis in "xyz"])

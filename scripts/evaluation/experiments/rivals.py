@@ -1,15 +1,15 @@
 """Error against triangles of every test, the paper's rivals (2.3.1) and a tessellator as GPUs have it; cycles, reads and bits of
 each test; precalculated points (2.5)."""
-import tomllib
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from experiments.crater_lake import MAP, OTHER_METHODS, at_equal_triangles, elevations, reference_curves, vertical_errors
+from experiments.crater_lake import MAP, OTHER_METHODS, at_equal_triangles, elevations, reference_curves, rms_and_largest
 from gpu_tessellator import screen_lengths, write_obj
 from section import Chart, Claim, Experiment, Picture, Section, Table, MEASURED, reproduced_if
 from sweep_file import JOBS
+from .rank_test import seen_errors
 from .view_distances import SOURCE
 import charts
 
@@ -44,7 +44,7 @@ CURVES = {BESIDE + SUMMED: ("normal,summed_height", {}),  # the paper's
 ALONE = {SUMMED: ("summed_height", {}), **{name: ("mipmap", filtered) for name, filtered in RIVALS.items()}}
 TESTS = {**CURVES, **ALONE}
 PATCHES = "factor an edge, as on GPUs"
-PIXELS = (36, 24, 16, 11)  # of a part of an edge
+PIXELS = (36, 26, 16, 11)  # of a part of an edge
 UNSPLIT = {"hardware.height_test": "summed_height", "hardware.triangulation": "shorter", "tests.normal": False, "tests.summed_height": False}
 REFERENCES = {"rtin": "RTIN", "hmm": "greedy insertion"}
 FITTED = (0.0885, 0.039, 0.0158)
@@ -79,14 +79,9 @@ def references_of(surface):
     return {name: reference_curves(file, part)[method] for method, name in REFERENCES.items()}
 
 
-def effective(run, section):
-    return tomllib.loads((run.folder / "job.toml").read_text())[section]
-
-
 def errors_of(run, surface, height):
     """Triangles, RMS and largest vertical error at the map's points."""
-    errors, owner = vertical_errors(run.mesh, height, SURFACES[surface].full / effective(run, "displacement")["scale"])
-    return run.triangles, float(np.sqrt((errors[owner >= 0] ** 2).mean())), float(np.abs(errors).max())
+    return run.triangles, *rms_and_largest(run.mesh, height, SURFACES[surface].full / run.job["displacement"]["scale"])
 
 
 def move_to_points(mesh, height):
@@ -98,19 +93,19 @@ def move_to_points(mesh, height):
     mesh.positions = np.column_stack([mesh.positions[:, :2], height[rows - 1 - y, x] / 1000])
 
 
-def triangles_at(curve, rms):
-    """Of a curve's meshes, by a power law; None beyond them."""
+def multiple(curve, mesh):
+    """How many times a mesh's triangles a curve has at its RMS error, by a power law."""
     points = sorted((np.log(point[1]), np.log(point[0])) for point in curve)
-    if not points[0][0] <= np.log(rms) <= points[-1][0]:
-        return None
-    return float(np.exp(np.interp(np.log(rms), *zip(*points))))
+    if np.log(mesh[1]) < points[0][0]:
+        return f"more than {max(curve)[0] / mesh[0]:.1f}"
+    return f"{np.exp(np.interp(np.log(mesh[1]), *zip(*points))) / mesh[0]:.1f}"
 
 
 def add_patches(study, bases):
     """Runs on meshes that a GPU's tessellator makes, by surface. They are not split further; the machine displaces them."""
     runs = {surface: [] for surface in bases}
     for surface, base in bases.items():
-        length = screen_lengths(base.mesh.positions, effective(base, "camera"))
+        length = screen_lengths(base.mesh.positions, base.job["camera"])
         for pixels in PIXELS:
             path = study.store.folder.parent / "meshes" / f"{label(surface, pixels)}.obj"
             write_obj(path, base.mesh, length, pixels)
@@ -147,8 +142,10 @@ def measure(study):
     for name, runs in patches.items():
         curves[name][PATCHES] = [errors_of(run, name, maps[name]) for run in runs]
         curves[name].update(references_of(name))
-    add_curves(section, curves)
     lake = maps["Crater Lake"]
+    seen = [seen_errors(run, lake) for run in patches["Crater Lake"]]
+    add_curves(section, curves, "By the error in pixels, in Crater Lake's picture: " + ", ".join(
+        f"{multiple(seen, seen_errors(timed[test][0], lake))} of the {test}'s" for test in (BESIDE + SUMMED, RANK)))
     add_machines(section, timed)
     add_fitted(section, [[errors_of(run, "Crater Lake", lake) for run in pair] for pair in fitted])
     add_points(section, points, lake)
@@ -158,7 +155,7 @@ def measure(study):
     return section
 
 
-def add_curves(section, curves):
+def add_curves(section, curves, in_picture):
     for name, of in curves.items():
         for column, error in ((1, "RMS"), (2, "largest")):
             series = {test: list(zip(*((point[0], point[column]) for point in points if 600 <= point[0] <= 20000)))
@@ -179,10 +176,7 @@ def add_curves(section, curves):
         return all(of[prefix + SUMMED][1] < min(of[prefix + rival][1] for rival in RIVALS) for of in at.values())
 
     def multiples(test):
-        needed = {name: triangles_at(curves[name][PATCHES], of[test][1]) for name, of in at.items()}
-        return f"of the {test}'s: " + ", ".join(
-            f"{name} " + (f"{needed[name] / of[test][0]:.1f}" if needed[name] else
-                          f"more than {max(curves[name][PATCHES])[0] / of[test][0]:.1f}") for name, of in at.items())
+        return f"of the {test}'s: " + ", ".join(f"{name} {multiple(curves[name][PATCHES], of[test])}" for name, of in at.items())
 
     against = {name: [point[1] / other for point in of[RANK] if (other := at_equal_triangles(of["RTIN"], point[0]))] for name, of in curves.items()}
     section.claims += [
@@ -191,8 +185,7 @@ def add_curves(section, curves):
         Claim("The Normal Test with the Summed Height Test filters the map effectively, which is not possible with maximal mipmaps.",
               "sections 2.3.1, 5", "each beside the Normal Test. " + beside(BESIDE), reproduced_if(best(BESIDE))),
         Claim("A patch with a factor for each edge, from its length on the screen, and uniform inside, as GPUs have had since Direct3D 11.",
-              "since the paper", f"triangles at equal RMS error, {multiples(BESIDE + SUMMED)}; {multiples(RANK)}. Length on the screen says "
-              "nothing of the map.", MEASURED),
+              "since the paper", f"triangles at equal RMS error, {multiples(BESIDE + SUMMED)}; {multiples(RANK)}. {in_picture}", MEASURED),
         Claim("The Rank Test's error is below RTIN's at every number of triangles.", "modules/DECISIONS.md",
               "; ".join(f"{name}: {min(parts):.2f} to {max(parts):.2f} times its RMS error" for name, parts in against.items()),
               reproduced_if(all(max(parts) < 1 for parts in against.values())))]
@@ -204,19 +197,25 @@ def add_curves(section, curves):
 
 
 def add_machines(section, timed):
-    rows = []
+    rows = {}
     for test, runs in timed.items():
         table = TESTS[test][0].split(",")[-1] + "_table"
         of = [run.figures for run in runs]
         reads = [figures[f"{table}.reads"] for figures in of]
         texels = of[0]["displacement_map.size"] / of[0]["displacement_map.entry"]
-        rows.append([test, runs[0].triangles, 8 * of[0][f"{table}.size"] / texels,
-                     *(value for figures, read, run in zip(of, reads, runs) for value in
-                       (read / figures["run.edges_tested"], read / run.triangles, figures["timing.cycles"] / run.triangles))])
+        rows[test] = [runs[0].triangles, 8 * of[0][f"{table}.size"] / texels,
+                      *(value for figures, read, run in zip(of, reads, runs) for value in
+                        (read / figures["run.edges_tested"], read / run.triangles, figures["timing.cycles"] / run.triangles))]
+    section.claims.append(Claim(
+        "The Summed Height Test takes four cycles a point, since each of four values must be read.", "section 3.1.3",
+        f"{rows[SUMMED][2]:.3g} entries an edge; cycles a triangle in the paper's design and in the modern one: "
+        + ", ".join(f"{test} {rows[test][4]:.1f} and {rows[test][7]:.1f}" for test in (*ALONE, "Curvature Test", RANK, BOUND)),
+        reproduced_if(rows[SUMMED][2] == 12)))
     section.tables.append(Table(
         "rivals_machine", "Crater Lake: entries read from the test's table, and cycles, in the paper's design and the modern one",
         [("test", ""), ("triangles", ""), ("table", "bit/texel"), *((column, "") for design in ("paper's design", "modern design") for column in
-                                                                    (f"{design}: reads an edge", "reads a triangle", "cycles a triangle"))], rows))
+                                                                    (f"{design}: reads an edge", "reads a triangle", "cycles a triangle"))],
+        [[test, *row] for test, row in rows.items()]))
 
 
 def add_fitted(section, fits):
