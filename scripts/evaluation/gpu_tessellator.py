@@ -1,7 +1,7 @@
 """What GPUs have had since 2009 (Direct3D 11): a triangle patch has an integer factor for each edge, and is uniform inside."""
-import math
-
 import numpy as np
+
+from emitted_mesh import on_screen
 
 MOST = 64  # of a factor
 
@@ -55,18 +55,6 @@ def strip(outer, inner):
             triangles.append((outer[i], inner[j + 1], inner[j]))
             j += 1
     return triangles
-
-
-def on_screen(positions, camera):
-    """Pixels from the picture's centre, and depths. camera: of an effective job."""
-    eye, target, up = (np.array(camera[name], float) for name in ("eye", "target", "up"))
-    forward = (target - eye) / np.linalg.norm(target - eye)
-    right = np.cross(forward, up)
-    right /= np.linalg.norm(right)
-    focal = camera["viewport_height"] / 2 / math.tan(math.radians(camera["field_of_view"]) / 2)
-    away = positions - eye
-    depth = away @ forward
-    return focal * np.stack([away @ right, away @ np.cross(right, forward)], axis=-1) / depth[..., None], depth
 
 
 def screen_lengths(positions, camera):

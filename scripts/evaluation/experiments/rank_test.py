@@ -1,8 +1,8 @@
 """Rank and Bound Test on Crater Lake: tables of several widths, a bound that holds, and the view from the rim."""
 import numpy as np
 
+from emitted_mesh import on_screen
 from experiments.crater_lake import MAP, elevations, rms_and_largest, vertical_errors
-from gpu_tessellator import on_screen
 from section import Chart, Claim, Experiment, Picture, Section, Table, reproduced_if
 import charts
 
