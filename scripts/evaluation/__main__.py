@@ -17,7 +17,7 @@ from store import Store  # noqa: E402
 from study import ROOT, ProgramError, Study  # noqa: E402
 
 # In the order of the page.
-NAMES = ["text_plane", "two_tests", "view_distances", "crater_lake", "rank_test", "teapot", "tex_coord_test", "generation_limit",
+NAMES = ["text_plane", "two_tests", "view_distances", "crater_lake", "rank_test", "rivals", "teapot", "tex_coord_test", "generation_limit",
          "triangulation", "tests_units", "designs", "ladder", "off_chip", "host_bandwidth", "highlight_test", "curved_surfaces",
          "displacement_scale"]
 

@@ -20,7 +20,8 @@ matplotlib.rcParams.update({
     "lines.linewidth": 2,
 })
 # Colours for colour-blind readers (Okabe and Ito), and different markers.
-STYLES = [("#d55e00", "o"), ("#0072b2", "s"), ("#009e73", "^"), ("#cc79a7", "D"), ("#e69f00", "v"), ("#56b4e9", "P")]
+STYLES = [("#d55e00", "o"), ("#0072b2", "s"), ("#009e73", "^"), ("#cc79a7", "D"), ("#e69f00", "v"), ("#56b4e9", "P"),
+          ("#000000", "X"), ("#77756d", "*"), ("#8b5a2b", "<")]
 
 
 def thousands(value, _position=None):
@@ -29,7 +30,8 @@ def thousands(value, _position=None):
 
 def lines(series, x_label, y_label, log_x=False, log_y=False, emphasised=()):
     """series: {name: ([x], [y])}."""
-    figure, axes = pyplot.subplots(figsize=(7.2, 4.3))
+    below = len(series) > 6
+    figure, axes = pyplot.subplots(figsize=(7.2, 5.9 if below else 4.3))
     for (name, (x, y)), (colour, marker) in zip(series.items(), STYLES * 3):
         strong = not emphasised or name in emphasised
         axes.plot(x, y, marker=marker, color=colour, label=name, alpha=1 if strong else 0.75,
@@ -42,7 +44,8 @@ def lines(series, x_label, y_label, log_x=False, log_y=False, emphasised=()):
         axis.set_major_formatter(FuncFormatter(thousands))
     axes.set_xlabel(x_label)
     axes.set_ylabel(y_label)
-    axes.legend(frameon=False, fontsize=10)
+    place = {"loc": "upper center", "bbox_to_anchor": (0.45, -0.14), "ncols": 2, "fontsize": 11} if below else {"fontsize": 10}
+    axes.legend(frameon=False, **place)
     return svg_of(figure)
 
 

@@ -1,4 +1,5 @@
-"""A run's mesh.ply as arrays, and the positions of its triangles on the map."""
+"""A run's mesh.ply as arrays, and the positions of its triangles on the map and of points in the picture."""
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -69,3 +70,15 @@ def density_in(mesh, region):
     their centres. The ratio between regions shows where the detail is."""
     share = region.mean()
     return float(values_at(mesh, region).sum() / share) if share > 0 else 0.0
+
+
+def on_screen(positions, camera):
+    """Pixels from the picture's centre, and depths. camera: of an effective job."""
+    eye, target, up = (np.array(camera[name], float) for name in ("eye", "target", "up"))
+    forward = (target - eye) / np.linalg.norm(target - eye)
+    right = np.cross(forward, up)
+    right /= np.linalg.norm(right)
+    focal = camera["viewport_height"] / 2 / math.tan(math.radians(camera["field_of_view"]) / 2)
+    away = positions - eye
+    depth = away @ forward
+    return focal * np.stack([away @ right, away @ np.cross(right, forward)], axis=-1) / depth[..., None], depth

@@ -4,6 +4,7 @@ measure() of an experiment names its runs, yields, and then reads them. What all
 """
 import json
 import shlex
+import tomllib
 from functools import cached_property
 from pathlib import Path
 
@@ -39,13 +40,14 @@ class Study:
         job, settings = job and JOBS / f"{job}.toml", {**self.QUIET, **(settings or {})}
         return self.add(name, [self._content(job, settings), error], run_commands(self.program, job, settings, error), keep)
 
-    def tune(self, name, triangles, job=None, tests="normal,summed_height", settings=None, grid=None):
-        """A run with the thresholds (and, with `grid`, the base mesh) of least RMS error for a number of triangles."""
+    def tune(self, name, triangles, job=None, tests="normal,summed_height", settings=None, grid=None, metric=None, run=True):
+        """A run with the thresholds (and, with `grid`, the base mesh) of least error for a number of triangles; without `run`
+        what `tessera tune` found."""
         job, settings, tuned = job and JOBS / f"{job}.toml", settings or {}, f"{FOLDER}/tuned.toml"
         tune = self.words("tune", job, "--triangles", triangles, "--tests", tests, "--output", tuned, grid and "--grid", grid,
-                          *set_options(settings))
+                          metric and "--metric", metric, *set_options(settings))
         return self.add(name, [self._content(job, settings), tune[1:], self.QUIET],
-                        [tune, *run_commands(self.program, tuned, self.QUIET, True)])
+                        [tune, *(run_commands(self.program, tuned, self.QUIET, True) if run else [])])
 
     def bake(self, name, surface, mesh=None):
         """A run on the map that a surface file gives over the mesh of another file."""
@@ -121,9 +123,16 @@ class Run:
         self.finished()
         return read_mesh(self.folder / "mesh.ply")
 
+    @cached_property
+    def job(self):
+        """Every key."""
+        self.finished()
+        return tomllib.loads((self.folder / "job.toml").read_text())
+
     @property
     def tuned(self):
         """What `tessera tune` found."""
+        self.finished()
         return json.loads((self.files / "tuned.json").read_text())
 
     def render(self, view, name=None, part="", **options):

@@ -75,36 +75,44 @@ def regions_of(height):
     return {"island": ~water & ~outside, "rim": rim, "water": water, "land beyond the rim": outside & ~rim}
 
 
-def reference_curves(path):
+def reference_curves(path, surface=None):
     curves = {}
     for row in csv.DictReader(line for line in path.read_text().splitlines() if not line.startswith("#")):
-        curves.setdefault(row["method"], []).append((int(row["triangles"]), float(row["rms"]), float(row["max"])))
+        if row.get("map") == surface:
+            curves.setdefault(row["method"], []).append((int(row["triangles"]), float(row["rms"]), float(row["max"])))
     return curves
 
 
-def vertical_errors(mesh, height):
-    """At every grid point (texel centre, row 0 on top): the mesh's height minus the map's, in m, and its triangle."""
+def vertical_errors(mesh, height, scale=1000):
+    """At every grid point (texel centre, row 0 on top): the mesh's height minus the map's, in m, and its triangle; -1 without
+    one. scale: m a model unit."""
     rows, columns = height.shape
     errors, owner = np.zeros(height.shape), np.full(height.shape, -1)
-    x, y = mesh.texture[:, 0] * columns - 0.5, (1 - mesh.texture[:, 1]) * rows - 0.5
-    z = mesh.positions[:, 2] * 1000
-    for k, (a, b, c) in enumerate(mesh.triangles):
-        double_area = (x[b] - x[a]) * (y[c] - y[a]) - (x[c] - x[a]) * (y[b] - y[a])
-        if double_area == 0:
-            continue
-        left, right = int(np.ceil(min(x[a], x[b], x[c]) - 1e-9)), int(np.floor(max(x[a], x[b], x[c]) + 1e-9))
-        top, bottom = int(np.ceil(min(y[a], y[b], y[c]) - 1e-9)), int(np.floor(max(y[a], y[b], y[c]) + 1e-9))
-        left, top, right, bottom = max(left, 0), max(top, 0), min(right, columns - 1), min(bottom, rows - 1)
-        if left > right or top > bottom:
-            continue
-        u, v = np.meshgrid(np.arange(left, right + 1), np.arange(top, bottom + 1))
-        weight_b = ((u - x[a]) * (y[c] - y[a]) - (x[c] - x[a]) * (v - y[a])) / double_area
-        weight_c = ((x[b] - x[a]) * (v - y[a]) - (u - x[a]) * (y[b] - y[a])) / double_area
-        inside = (weight_b >= -1e-9) & (weight_c >= -1e-9) & (weight_b + weight_c <= 1 + 1e-9)
-        value = z[a] + weight_b * (z[b] - z[a]) + weight_c * (z[c] - z[a])
-        errors[v[inside], u[inside]] = value[inside] - height[v[inside], u[inside]]
-        owner[v[inside], u[inside]] = k
+    x, y, z = (values[mesh.triangles].T for values in (mesh.texture[:, 0] * columns - 0.5, (1 - mesh.texture[:, 1]) * rows - 0.5,
+                                                       mesh.positions[:, 2] * scale))
+    double_area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0])
+    left, top = (np.maximum(np.ceil(values.min(axis=0) - 1e-9), 0).astype(int) for values in (x, y))
+    right, bottom = (np.minimum(np.floor(values.max(axis=0) + 1e-9), most - 1).astype(int) for values, most in ((x, columns), (y, rows)))
+    width = np.maximum(right - left + 1, 0)
+    points = np.where(double_area != 0, width * np.maximum(bottom - top + 1, 0), 0)
+    # Every point of a triangle's box.
+    k = np.repeat(np.arange(len(points)), points)
+    place = np.arange(len(k)) - np.repeat(np.cumsum(points) - points, points)
+    u, v = left[k] + place % width[k], top[k] + place // width[k]
+    x, y, z = x[:, k], y[:, k], z[:, k]
+    weight_b = ((u - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (v - y[0])) / double_area[k]
+    weight_c = ((x[1] - x[0]) * (v - y[0]) - (u - x[0]) * (y[1] - y[0])) / double_area[k]
+    inside = (weight_b >= -1e-9) & (weight_c >= -1e-9) & (weight_b + weight_c <= 1 + 1e-9)
+    value = z[0] + weight_b * (z[1] - z[0]) + weight_c * (z[2] - z[0])
+    u, v = u[inside], v[inside]
+    errors[v, u] = value[inside] - height[v, u]
+    owner[v, u] = k[inside]
     return errors, owner
+
+
+def rms_and_largest(mesh, height, scale=1000):
+    errors, owner = vertical_errors(mesh, height, scale)
+    return float(np.sqrt((errors[owner >= 0] ** 2).mean())), float(np.abs(errors).max())
 
 
 def worst_spot(run, finest):
@@ -141,12 +149,12 @@ def squares_by(run, height, regions):
             "worst": 100 * float(np.sort(square.ravel())[-square.size // 100:].sum() / total)}
 
 
-def at_equal_triangles(points, triangles):
-    """A reference curve's RMS at a number of triangles, interpolated by a power law; None outside its points."""
-    count, rms = np.log([point[0] for point in points]), np.log([point[1] for point in points])
+def at_equal_triangles(points, triangles, column=1):
+    """A reference curve's RMS (2: largest error) at a number of triangles, interpolated by a power law; None outside its points."""
+    count, error = np.log([point[0] for point in points]), np.log([point[column] for point in points])
     if not count[0] <= np.log(triangles) <= count[-1]:
         return None
-    return float(np.exp(np.interp(np.log(triangles), count, rms)))
+    return float(np.exp(np.interp(np.log(triangles), count, error)))
 
 
 def low_counts(rows, references):
