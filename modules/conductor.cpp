@@ -235,6 +235,10 @@ void Conductor::finish(std::uint64_t cycles) {
     const schedule::Source& source = schedule_.source();
     machine_.triangle_queue.assign({source.highest(), source.highest_in_store(), source.history()});
     machine_.triangle_pass_or_tessellate->assign_most_ahead_of_parts(schedule_.most_ahead_of_parts());
+    machine_.get_triangle.assign_parts_sent(schedule_.parts_sent());
+    machine_.triangle_pass_or_tessellate->from_transform.assign_taken(schedule_.parts_sent());
+    machine_.triangle_pass_or_tessellate->from_tessellation_tests[0].assign_taken(schedule_.edges());
+    machine_.tessellation_tests[0].view_test.from_transform->assign_taken(schedule_.corners());
     machine_.off_chip_memory.activity().finish(cycles);
 }
 

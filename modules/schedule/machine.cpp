@@ -7,7 +7,7 @@ namespace tessera::schedule {
 namespace {
 
 constexpr unsigned first_edge = 6;
-constexpr unsigned vertices = 0007, edges = 0700;
+constexpr unsigned vertex_parts = 0007, edge_parts = 0700;
 
 }  // namespace
 
@@ -51,7 +51,7 @@ void Machine::pass(const Facts& facts) {
         geometry(static_cast<unsigned>(__builtin_ctz(left)), facts);
         ++parts_sent_;
     }
-    for (unsigned left = facts.tested ? facts.parts & (vertices | edges) : 0; left != 0; left &= left - 1)
+    for (unsigned left = facts.tested ? facts.parts & (vertex_parts | edge_parts) : 0; left != 0; left &= left - 1)
         test(static_cast<unsigned>(__builtin_ctz(left)), facts);
     free_ = std::max({to_geometry_.free, to_tests_.free, arrived_});
     account_get_triangle(begin, arrived_);
@@ -95,7 +95,7 @@ void Machine::geometry(unsigned part, const Facts& facts) {
     join_parts_.pop(joining_.geometry);
     transform_.blocked(taken, pass_or_tessellate);
     Cycle departs = taken;
-    if ((vertices >> part & 1) != 0) {
+    if ((vertex_parts >> part & 1) != 0) {
         corners_come_ = corners_.take(offer);
         corners_.pop(corners_come_);
         transform_.blocked(corners_come_, view_test);
@@ -107,7 +107,7 @@ void Machine::geometry(unsigned part, const Facts& facts) {
 /// Get Triangle, Calculate New U, the tests, Collect Tests, Pass or Tessellate. A vertex ends in the Normal Test.
 void Machine::test(unsigned part, const Facts& facts) {
     const bool is_edge = part >= first_edge;
-    const bool base = (facts.parts & vertices) != 0;
+    const bool base = (facts.parts & vertex_parts) != 0;
     const Cycle sent = to_tests_.send(plan_.get_triangle.interval);
     to_tests_.taken(sent, calculate_new_u_.take(sent));
     calculate_new_u_.start();

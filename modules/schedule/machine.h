@@ -83,7 +83,11 @@ class Machine {
     const Table& table(Unit memory) const;
     /// Most triangles that waited for their first part, or for any, at the end of a cycle.
     std::uint64_t most_ahead_of_parts() const { return ahead_of_parts_.most(); }
+    /// To Calculate New P.
     std::uint64_t parts_sent() const { return parts_sent_; }
+    /// Vertices taken by the View Test, and edges by Pass or Tessellate.
+    std::uint64_t corners() const { return corners_.taken(); }
+    std::uint64_t edges() const { return join_edges_.taken(); }
 
   private:
     /// One of Get Triangle's outputs: the cycle of its next part, and of what it has sent of the triangle, when that was

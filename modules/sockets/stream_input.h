@@ -55,7 +55,9 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
     std::size_t depth() const { return buffer_.capacity(); }
     /// An item waits to be taken into the buffer.
     bool holds_back() const { return !pending_.empty(); }
+    /// Timed mode: items so far.
     std::uint64_t taken() const { return taken_; }
+    void assign_taken(std::uint64_t taken) { taken_ = taken; }
 
     Payload& front() { return buffer_.front(); }
     const Payload& front() const { return buffer_.front(); }
@@ -112,10 +114,7 @@ class StreamInput : public tlm::tlm_target_socket<32, Stream<Payload>>,
         return tlm::TLM_ACCEPTED;
     }
 
-    void b_transport(Payload& payload, sc_core::sc_time& delay) override {
-        ++taken_;
-        serve_(server_, payload, delay);
-    }
+    void b_transport(Payload& payload, sc_core::sc_time& delay) override { serve_(server_, payload, delay); }
     bool get_direct_mem_ptr(Payload&, tlm::tlm_dmi&) override { return false; }
     unsigned transport_dbg(Payload&) override { return 0; }
 

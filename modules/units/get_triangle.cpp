@@ -93,8 +93,6 @@ void GetTriangle::send_whole(Branch<Item>& branch, const TakenTriangle& taken, P
         sc_core::sc_time its_delay = start;
         branch.output->transport(item, its_delay);
         delay = std::max(delay, its_delay);
-        if (branch.takes == all_parts)
-            ++parts_sent_;
     }
 }
 

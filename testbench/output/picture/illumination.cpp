@@ -19,15 +19,22 @@ const glm::dvec3 ground_strength(0.13, 0.12, 0.115);
 constexpr double least = 0.035;  // so that the deepest crevice is not black
 constexpr double highlight_strength = 0.10;
 
-/// Of the angle between two normals of a flat patch: sqrt(1 - least_flat^2), rounded up.
-constexpr double largest_sine = 0.44;
-static_assert(largest_sine * largest_sine + Illumination::least_flat * Illumination::least_flat > 1);
+/// Of the angle between the first normal of a flat patch and any other: the least cosine, and the largest sine, rounded
+/// up.
+constexpr double least_cosine = 0.9, largest_sine = 0.44;
+static_assert(largest_sine * largest_sine + least_cosine * least_cosine > 1);
 
 double to_the_16th(double x) {
     const double x2 = x * x;
     const double x4 = x2 * x2;
     const double x8 = x4 * x4;
     return x8 * x8;
+}
+
+bool is_flat(const std::vector<ShadingPoint>& points) {
+    return std::all_of(points.begin(), points.end(), [&](const ShadingPoint& point) {
+        return glm::dot(point.normal, points.front().normal) >= least_cosine;
+    });
 }
 
 }  // namespace
@@ -78,11 +85,10 @@ void Illumination::trace(const Lamp& lamp, const std::vector<ShadingPoint>& poin
 }
 
 /// Adds what all points of a flat patch receive alike to `even`, the diffuse light as a linear function of the normal.
-void Illumination::add(const Lamp& lamp, const Patch& patch, glm::dmat3& even, std::vector<Light>& lights,
-                       Scratch& scratch) const {
-    const std::vector<ShadingPoint>& points = patch.points;
+void Illumination::add(const Lamp& lamp, const std::vector<ShadingPoint>& points, bool flat, glm::dmat3& even,
+                       std::vector<Light>& lights, Scratch& scratch) const {
     const double first = glm::dot(points.front().normal, lamp.direction);
-    if (patch.flat && first < -largest_sine)
+    if (flat && first < -largest_sine)
         return;
     std::vector<std::size_t>& facing = scratch.facing;
     std::vector<std::uint8_t>& occluded = scratch.occluded;
@@ -93,7 +99,7 @@ void Illumination::add(const Lamp& lamp, const Patch& patch, glm::dmat3& even, s
             if (glm::dot(points[i].normal, lamp.direction) > 0)
                 facing.push_back(i);
     };
-    const std::size_t probes = patch.probes();
+    const std::size_t probes = flat ? (points.size() + 3) / 4 : points.size();
     keep_facing(0, probes);
     const std::size_t facing_probes = facing.size();
     trace(lamp, points, 0, facing_probes, scratch);
@@ -105,7 +111,7 @@ void Illumination::add(const Lamp& lamp, const Patch& patch, glm::dmat3& even, s
             lights[i].highlight += lamp.highlight * to_the_16th(std::max(0.0, glm::dot(points[i].normal, lamp.half)));
     };
     const bool in_sight = facing_probes == probes && hidden == 0;
-    if (in_sight && patch.flat && first > largest_sine) {
+    if (in_sight && flat && first > largest_sine) {
         even += glm::outerProduct(lamp.diffuse, lamp.direction);
         for (std::size_t i = 0; i < points.size(); ++i)
             add_highlight(i);
@@ -129,9 +135,10 @@ void Illumination::light(std::size_t sample, const Patch& patch, std::vector<Lig
     lights.assign(points.size(), Light{});
     if (points.empty())
         return;
+    const bool flat = patch.whole && is_flat(points);
     glm::dmat3 even(0);
     for (const Lamp& lamp : lamps_[sample])
-        add(lamp, patch, even, lights, scratch);
+        add(lamp, points, flat, even, lights, scratch);
     for (std::size_t i = 0; i < points.size(); ++i)
         lights[i].diffuse +=
             least + fill_strength * std::max(0.0, glm::dot(points[i].normal, fill_)) + even * points[i].normal;

@@ -34,12 +34,10 @@ class Illumination {
     /// A part of the surface: points that share a sub-pixel position; fast if they are neighbours.
     struct Patch {
         const std::vector<ShadingPoint>& points;
-        bool flat;  ///< no normal's cosine to the first one is below least_flat
-
-        /// If all of the first points see a direction, or none does, the others of a flat patch are treated alike.
-        std::size_t probes() const { return flat ? (points.size() + 3) / 4 : points.size(); }
+        /// No gap is between them. If all of the first quarter of the points see a direction, or none does, the others are
+        /// then treated alike, provided that the patch is nearly flat.
+        bool whole;
     };
-    static constexpr double least_flat = 0.9;
 
     void light(std::size_t sample, const Patch& patch, std::vector<Light>& lights, Scratch& scratch) const;
 
@@ -53,8 +51,8 @@ class Illumination {
 
     void trace(const Lamp& lamp, const std::vector<ShadingPoint>& points, std::size_t first, std::size_t end,
                Scratch& scratch) const;
-    void add(const Lamp& lamp, const Patch& patch, glm::dmat3& even, std::vector<Light>& lights,
-             Scratch& scratch) const;
+    void add(const Lamp& lamp, const std::vector<ShadingPoint>& points, bool flat, glm::dmat3& even,
+             std::vector<Light>& lights, Scratch& scratch) const;
 
     const RayScene& scene_;
     glm::dvec3 eye_;  ///< direction towards the viewer, good enough for highlights

@@ -25,7 +25,7 @@ glm::dvec2 sample_position(std::size_t sample) {
     return {(static_cast<double>(sample) + 0.5) / samples_per_pixel, (row[sample] + 0.5) / samples_per_pixel};
 }
 
-/// Calls at(x, y): for the first pixel of each square of 2 x 2, then for the second ones, and so on.
+/// Calls at(x, y): for the first pixel of each square of 2 x 2, a quarter of all, then for the second ones, and so on.
 template <class At>
 void for_each_pixel(int left, int top, int right, int bottom, const At& at) {
     for (int k = 0; k < 4; ++k)
@@ -200,7 +200,7 @@ class Renderer {
         for (std::size_t i = 0; i < rays.size(); ++i)
             if (hits[i] != RayScene::nothing)
                 points.push_back(shading_point(rays[i], hits[i]));
-        illumination_.light(sample, {points, flat(points, rays.size())}, lights, scratch);
+        illumination_.light(sample, {points, points.size() == rays.size()}, lights, scratch);
 
         std::size_t point = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -222,14 +222,6 @@ class Renderer {
             ++point;
         }
         return !points.empty();
-    }
-
-    /// The mesh covers the tile and is nearly flat in it. Its first points, a quarter, are then those of a pixel of each
-    /// square of 2 x 2.
-    static bool flat(const std::vector<ShadingPoint>& points, std::size_t rays) {
-        return points.size() == rays && std::all_of(points.begin(), points.end(), [&](const ShadingPoint& point) {
-                   return glm::dot(point.normal, points.front().normal) >= Illumination::least_flat;
-               });
     }
 
     ShadingPoint shading_point(const Ray& ray, std::uint32_t index) const {

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <vector>
 
+#include "testbench/check/transport/conservation.h"
 #include "testbench/common/child_process.h"
 #include "testbench/common/hash.h"
 #include "testbench/machine/simulation.h"
@@ -65,6 +66,8 @@ std::string run(const Job& job, const BaseMesh& mesh, const HeightMap& map, bool
         }
     }
     std::string text = simulation.run();
+    for (const Conservation& equation : conservation(simulation))
+        text += fmt::format("{}: {}, {}\n", equation.name, equation.left, equation.right);
     for (std::size_t k = 0; k < setup.machines; ++k)
         text += fmt::format("mesh {:016x}\n", digest_of(simulation.monitor.mesh, k, setup.machines));
     for (const auto& [unit, its] : times)

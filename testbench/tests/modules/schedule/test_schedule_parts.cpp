@@ -155,11 +155,13 @@ TEST_CASE("schedule: a table's narrow port takes several cycles an entry") {
 }
 
 TEST_CASE("schedule: a request waits for a port of each of its banks") {
-    Table table({{4, {}}, 1, 2, 1, 1, 0, 4});
-    constexpr std::uint8_t first[] = {0, 0, 0}, both[] = {0, 1};
+    Table table({{4, {}}, 1, 3, 1, 1, 0, 4});
+    constexpr std::uint8_t first[] = {0, 0, 0}, both[] = {0, 1}, third[] = {2};
     CHECK(table.request(0, first, 3) == 3);
     CHECK(table.request(0, both, 2) == 4);
     CHECK(table.held_up() == 3);
+    CHECK(table.request(0, third, 1) == 4);  // its bank is free from cycle 0 on: served in 3, after the one before
+    CHECK(table.request(0, third, 1) == 5);
 }
 
 TEST_CASE("schedule: with a window requests overlap") {
@@ -205,16 +207,23 @@ TEST_CASE("schedule: the queue's triangles have priority over the host's") {
 }
 
 TEST_CASE("schedule: below the watermark the host's triangles do not wait for the queue's") {
-    for (const std::uint64_t watermark : {1u, 2u}) {
-        SourcePlan plan = queue_of(false, watermark);
+    struct Row {
+        std::uint64_t watermark;
+        Cycle free;
+        bool from_host;
+        Cycle begin;
+    };
+    // The queue's triangle arrives in cycle 13, in which it has priority.
+    for (const Row& row : {Row{1, 5, false, 13}, Row{2, 5, true, 5}, Row{2, 12, true, 12}, Row{2, 13, false, 13}}) {
+        SourcePlan plan = queue_of(false, row.watermark);
         plan.queue.latency = 10;
         Source source(plan);
         source.send(2, 0);
         source.next(0);
         source.offer(3, 30);
-        const Source::Next next = source.next(5);
-        CHECK(next.from_host == (watermark == 2));
-        CHECK(next.begin == (watermark == 2 ? 5 : 13));
+        const Source::Next next = source.next(row.free);
+        CHECK(next.from_host == row.from_host);
+        CHECK(next.begin == row.begin);
     }
 }
 

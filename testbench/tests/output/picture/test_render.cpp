@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "testbench/common/parallel.h"
+#include "testbench/output/picture/illumination.h"
 #include "testbench/output/picture/image.h"
 #include "testbench/output/picture/key_light.h"
 #include "testbench/output/picture/palette.h"
@@ -84,6 +85,49 @@ TEST_CASE("The side towards the key light is the brighter one") {
     other.key_light = {1, -1, 0.5};
     const Image turned = render(make_sphere({0, 0, 0}), look_down(4, 120, 120, 120), other);
     CHECK(brightness(turned, 60 - 15, 60 - 15) + 60 < brightness(turned, 60 + 15, 60 + 15));
+}
+
+TEST_CASE("A patch is lit like each of its points, and not by a lamp from which it turns away") {
+    const View view = look_down(4, 120, 120, 120);
+    Illumination::Scratch scratch;
+    std::vector<ShadingPoint> points(4);
+    std::vector<Light> lights, alone;
+
+    const RenderMesh nothing;
+    const RayScene open(nothing);
+    const Illumination sky(view, Style{}, open);
+    double most_apart = 0;
+    for (const glm::vec3& normal : make_sphere({}, 16).normals) {
+        const glm::dvec3 first(normal);
+        const glm::dvec3 side = glm::normalize(glm::cross(first, glm::dvec3(0.3, 0.5, 0.8)));
+        const glm::dvec3 other = glm::cross(first, side);
+        points[0].normal = glm::normalize(first);
+        for (std::size_t k = 1; k < 4; ++k) {
+            const double angle = 2 * pi * static_cast<double>(k) / 3;
+            points[k].normal = glm::normalize(first + 0.45 * (std::cos(angle) * side + std::sin(angle) * other));
+        }
+        for (std::size_t sample = 0; sample < samples_per_pixel; ++sample) {
+            sky.light(sample, {points, true}, lights, scratch);
+            sky.light(sample, {points, false}, alone, scratch);
+            for (std::size_t k = 0; k < 4; ++k)
+                most_apart = std::max({most_apart, glm::length(lights[k].diffuse - alone[k].diffuse),
+                                       std::abs(lights[k].highlight - alone[k].highlight)});
+        }
+    }
+    CHECK(most_apart < 1e-12);
+
+    // In a closed sphere only the fill light is left, which comes from the right and throws no shadow.
+    const RenderMesh ball = make_sphere({});
+    const RayScene closed(ball);
+    const Illumination cave(view, Style{}, closed);
+    const auto light_of = [&](const glm::dvec3& normal) {
+        for (ShadingPoint& point : points)
+            point.normal = glm::normalize(normal);
+        cave.light(0, {points, true}, lights, scratch);
+        return lights.back().diffuse;
+    };
+    CHECK(light_of({-1, 0, 0}) == light_of({-1, 0, -1}));
+    CHECK(light_of({1, 0, 0}).x > light_of({-1, 0, 0}).x + 0.05);
 }
 
 TEST_CASE("A ball over a sheet throws a shadow") {
