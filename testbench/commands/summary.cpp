@@ -78,8 +78,8 @@ std::string checks_rows(const Checks& checks) {
                                       i.cracks, i.t_vertices, wrong, i.collapsed, i.turned_over));
         if (i.open_texture_seam_edges > 0)
             text += row("texture seams",
-                        fmt::format("{} edges open: the map is not continuous across a seam of this mesh's texture "
-                                    "coordinates",
+                        fmt::format("{} edges open: the map, or a table made of it, is not continuous across a seam of "
+                                    "this mesh's texture coordinates",
                                     count(i.open_texture_seam_edges)));
     }
     if (checks.work)

@@ -15,7 +15,9 @@ using datapath::Format;
 
 namespace {
 
-std::uint32_t to_texture(double coordinate, std::uint32_t size, bool clamp, const Format& format, bool& clamped) {
+/// remedy: for coordinates that do not fit.
+std::uint32_t to_texture(double coordinate, std::uint32_t size, bool clamp, const Format& format, const char* remedy,
+                         bool& clamped) {
     double texels = coordinate * size;
     if (clamp && (texels < 0 || texels > size)) {
         clamped = true;
@@ -25,10 +27,9 @@ std::uint32_t to_texture(double coordinate, std::uint32_t size, bool clamp, cons
     // the border bit holds 2^integer itself and nothing beyond
     if (fixed < 0 || fixed > std::ldexp(1.0, format.bits - 1))
         throw InputError(fmt::format(
-            "texture coordinate {} is {} texels of a map of {}, beyond the 0..{} that the texture "
-            "coordinate's format holds: let each triangle repeat the map less often, or use a smaller map or "
-            "a larger formats.texture_integer",
-            coordinate, texels, size, 1 << (format.bits - 1 - format.fraction)));
+            "texture coordinate {} is {} texels of a map of {}, beyond the 0..{} that the texture coordinate's format "
+            "holds: {}",
+            coordinate, texels, size, 1 << (format.bits - 1 - format.fraction), remedy));
     return static_cast<std::uint32_t>(fixed);
 }
 
@@ -50,6 +51,10 @@ BaseTriangles round_base_triangles(const BaseMesh& original, const ModelScale& m
     const auto clamps = [&](datapath::AddressMode mode) {
         return mode == datapath::AddressMode::clamp && !mesh.beyond_map;
     };
+    const char* const remedy =
+        mesh.beyond_map
+            ? "choose a smaller mesh.spacing, a smaller map or a larger formats.texture_integer"
+            : "let each triangle repeat the map less often, or use a smaller map or a larger formats.texture_integer";
     std::vector<datapath::Vertex> vertices;
     vertices.reserve(mesh.vertices.size());
     for (const BaseVertex& base : mesh.vertices) {
@@ -62,8 +67,9 @@ BaseTriangles round_base_triangles(const BaseMesh& original, const ModelScale& m
         vertex.tangent = to_direction(base.tangent, formats.normal, result.saturated_directions);
         vertex.handedness = base.handedness < 0 ? std::int8_t{-1} : std::int8_t{1};
         bool beyond_u = false, beyond_v = false;
-        vertex.texture = {to_texture(base.texture.x, map.width, clamps(map.address_u), formats.texture, beyond_u),
-                          to_texture(base.texture.y, map.height, clamps(map.address_v), formats.texture, beyond_v)};
+        vertex.texture = {
+            to_texture(base.texture.x, map.width, clamps(map.address_u), formats.texture, remedy, beyond_u),
+            to_texture(base.texture.y, map.height, clamps(map.address_v), formats.texture, remedy, beyond_v)};
         result.texture_clamped += beyond_u || beyond_v ? 1 : 0;
         clamped_u = clamped_u || beyond_u;
         clamped_v = clamped_v || beyond_v;

@@ -1,6 +1,6 @@
 #include "testbench/setup/prepare_model.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -69,36 +69,57 @@ std::optional<RadiusScale> radius_scale(const PreparedScene& scene) {
                        4 * (1 + 8 * root_of_three * position / step)};
 }
 
-/// What keeps a bound in the picture from holding.
+/// What keeps a bound from holding, on the surface or in the picture; a base mesh's own part: remark_on_base.
 void remark_on_bound(const SceneSettings& settings, const BaseMesh& mesh, PreparedScene& scene) {
     const datapath::Formats& formats = scene.registers.formats;
-    if (!formats.distances || formats.bound_bits == 0)
+    if (formats.height_test != datapath::HeightTest::rank || formats.bound_bits == 0)
         return;
     const auto unless = [&](bool fine, const char* why) {
         if (!fine)
-            scene.remarks.push_back(fmt::format("tests.bound_threshold promises nothing in the picture: {}", why));
+            scene.remarks.push_back(fmt::format("tests.bound_threshold promises nothing{}: {}",
+                                                formats.distances ? " in the picture" : "", why));
     };
+    unless(!settings.tests.view, "the View Test may keep an edge whole that is needed; set tests.view = false");
+    unless(settings.triangulation == datapath::Triangulation::greatest_rank,
+           "cuts in another order leave other edges; set hardware.triangulation = \"greatest_rank\"");
+    if (!formats.distances)
+        return;
     constexpr double whole_map = 65536;  // codes
     unless(mesh.beyond_map, "radii are those of a flat base mesh, mesh.source = \"lattice\"");
-    unless(!settings.tests.view, "the View Test may keep an edge whole that is needed; set tests.view = false");
     unless(scene.rank_tables.highest_bound_threshold >= bound_threshold(whole_map, formats.bound_bits),
            "formats.bound_bits leave no room for all that depends on one another; raise them");
+}
+
+/// What the Rank Test cannot do on a base mesh, and what can.
+void remark_on_base(const std::vector<TextureTriangle>& base, PreparedScene& scene) {
+    const RankTables& tables = scene.rank_tables;
+    std::vector<std::string> limits;
+    if (tables.least_error > 0) {
+        limits.push_back(fmt::format(
+            "whatever its thresholds, errors of up to {:.2g} of full scale remain, since midpoints do not reach every texel",
+            tables.least_error / scene.map.highest_code()));
+        if (const std::uint64_t whole = count_whole_base_edges(base, scene.registers.formats); whole > 0)
+            limits.push_back(fmt::format(
+                "{} edges of the base mesh, whose ends are no even numbers of texels apart, never split", whole));
+    }
+    if (tables.clashes > 0)
+        limits.push_back(
+            fmt::format("{} midpoints share a texel of the Rank Table with another and take the greater rank: more "
+                        "triangles than are needed, and no bound on the error",
+                        tables.clashes));
+    if (!limits.empty())
+        scene.remarks.push_back(fmt::format(
+            "the Rank Test serves this base mesh only in part: {}. mesh.source = \"lattice\" suits it, with a "
+            "mesh.spacing that divides each side on which the map repeats; the Summed Height, Curvature and "
+            "Mipmap Tests serve any base mesh",
+            fmt::join(limits, "; ")));
 }
 
 void rank_lattice(PreparedScene& scene, const std::vector<TextureTriangle>& base) {
     const datapath::Formats& formats = scene.registers.formats;
     scene.rank_tables =
         make_rank_tables(scene.map, base, formats, formats.rank_bits, formats.bound_bits, radius_scale(scene));
-    if (const std::uint64_t whole = count_whole_base_edges(base, formats); whole > 0)
-        scene.remarks.push_back(fmt::format(
-            "{} edges of the base mesh have a length of an odd number of texels, or none that is whole, and the Rank Test "
-            "never splits them: mesh.source = \"lattice\" is made for it; the Summed Height Test serves any mesh",
-            whole));
-    if (scene.rank_tables.clashes > 0)
-        scene.remarks.push_back(fmt::format(
-            "{} midpoints share a texel of the Rank Table with another, and take the greater rank: more triangles than are "
-            "needed, and no bound on the error",
-            scene.rank_tables.clashes));
+    remark_on_base(base, scene);
 }
 
 /// The height test's table, unless it is written from the map alone.

@@ -114,7 +114,7 @@ std::vector<InvariantFigure> invariant_figures(const InvariantResult& r) {
         {"displaced_collapsed", Kind::rounding, r.displaced_collapsed, "triangle",
          "two corners at one displaced position"},
         {"open_texture_seam_edges", Kind::input, r.open_texture_seam_edges, "edge",
-         "emitted edges along texture seams that do not meet: the map is not continuous across the seam"},
+         "emitted edges along texture seams that do not meet: the map, or a table of it, is not continuous there"},
         {"open_crease_edges", Kind::input, r.open_crease_edges, "edge",
          "likewise along creases: the base mesh's normals or tangents are not continuous"},
     };

@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <iomanip>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "testbench/tests/support/program_runner.h"
 
@@ -111,71 +109,6 @@ TEST_CASE("where all edges split, a bilinear filter leaves a third of the error,
     const double nearest = rms("nearest", "paper"), bilinear = rms("bilinear", "paper");
     CHECK(3 * bilinear < nearest);
     CHECK(rms("bilinear", "modern") == bilinear);
-}
-
-namespace {
-
-/// A plane with vertices at the map's border and every 16 texels from `first` on, as OBJ.
-std::string plane_from(double first, int width, int height) {
-    const auto lines = [first](int texels) {
-        std::vector<double> at{0};
-        for (double line = first; line < texels; line += 16)
-            if (line > 0)
-                at.push_back(line);
-        at.push_back(texels);
-        return at;
-    };
-    const std::vector<double> u = lines(width), v = lines(height);
-    std::ostringstream text, textures;
-    text << std::setprecision(12);
-    textures << std::setprecision(12);
-    for (const double y : v)
-        for (const double x : u) {
-            text << "v " << 10.05 * (x / width - 0.5) << ' ' << 13.74 * (y / height - 0.5) << " 0\n";
-            textures << "vt " << x / width << ' ' << y / height << '\n';
-        }
-    text << textures.str() << "vn 0 0 1\n";
-    const auto corner = [](std::size_t k) {
-        const std::string number = std::to_string(k);
-        return ' ' + number + '/' + number + "/1";
-    };
-    for (std::size_t j = 0; j + 1 < v.size(); ++j)
-        for (std::size_t i = 0; i + 1 < u.size(); ++i) {
-            const std::size_t a = j * u.size() + i + 1, b = a + 1, c = b + u.size(), d = a + u.size();
-            text << 'f' << corner(a) << corner(b) << corner(c) << "\nf" << corner(a) << corner(c) << corner(d) << '\n';
-        }
-    return text.str();
-}
-
-}  // namespace
-
-TEST_CASE("with half texels a bilinear filter's error is small where the base vertices lie worst") {
-    const TestFolder here;
-    write_all(here.path() / "base.obj", plane_from(0.25, 336, 459));
-    run_job(here.path(), {(source_folder() / "testbench/examples/jobs/crater_lake_704.toml").string(),
-                          "--set",
-                          "mesh.source=file",
-                          "--set",
-                          "mesh.file=" + (here.path() / "base.obj").string(),
-                          "--set",
-                          "hardware.displacement_filter=bilinear",
-                          "--set",
-                          "formats.tex_coord_fraction=1",
-                          "--set",
-                          "tests.view=false",
-                          "--set",
-                          "tests.normal_threshold=0",
-                          "--set",
-                          "tests.summed_height_threshold=0",
-                          "--set",
-                          "check.invariants=false",
-                          "--set",
-                          "limits.triangles=2000000",
-                          "--set",
-                          "output.folder=run"});
-    succeed({"compare", "run"}, here.path());
-    const json error = json::parse(read_all(here.path() / "run/error.json"));
-    CHECK(error.at("vertical").at("rms").at("value").get<double>() < 0.0013);  // km
 }
 
 TEST_CASE("an undisplaced run of a constant map has the error its bias makes") {

@@ -29,19 +29,3 @@ TEST_CASE("curvature: Crater Lake's error at 2,400 to 19,200 triangles") {
         CHECK(found.rms <= row.rms);
     }
 }
-
-TEST_CASE("curvature: other base meshes are closed, in the modern design") {
-    const TestFolder here;
-    for (const char* const job : {"head", "teapot", "half_donut"}) {
-        INFO(job);
-        const ProgramEnd end = succeed(
-            Arguments{"run", (source_folder() / "testbench/examples/jobs" / (std::string(job) + ".toml")).string(),
-                      "--set", "hardware.design=modern", "--set", "mode=functional", "--set", "output.picture=false",
-                      "--set", "output.folder=run", "--set", "tests.normal=false", "--set",
-                      "tests.curvature_threshold=0.3"} +
-                with_the_test,
-            here.path());
-        CHECK_THAT(end.out, Catch::Contains("0 cracks, 0 T-vertices") && Catch::Contains("all checks passed"));
-        CHECK(RunFolder(here.path() / "run").count("run", "edges_split") > 1000);
-    }
-}

@@ -1,10 +1,12 @@
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 
 #include "testbench/common/hash.h"
 #include "testbench/tests/support/job_results.h"
 #include "testbench/tests/support/program_runner.h"
 #include "testbench/tests/support/run_folder.h"
+#include "testbench/tests/support/shared_data.h"
 
 using namespace tessera;
 using Catch::Contains;
@@ -98,6 +100,58 @@ TEST_CASE("the job head passes and its seam is closed") {
 }
 TEST_CASE("the job teapot passes") {
     run_job_well("teapot");
+}
+
+namespace {
+
+const std::array<std::string, 3> other_height_tests{"mipmap", "curvature", "rank"};
+
+/// Runs a job with another height test alone, in the modern design: closed, and golden's own mesh is the same.
+ProgramEnd run_with_test(const TestFolder& here, const std::string& job, const std::string& test,
+                         const Arguments& settings) {
+    INFO(job << ", " << test);
+    ProgramEnd end = succeed(
+        Arguments{"run", (source_folder() / "testbench/examples/jobs" / (job + ".toml")).string(), "--set",
+                  "hardware.design=modern", "--set", "mode=functional", "--set", "output.picture=false", "--set",
+                  "output.folder=run", "--set", "tests.normal=false", "--set", "hardware.height_test=" + test, "--set",
+                  "tests.curvature_threshold=0.3", "--set", "tests.mipmap_threshold=0.05"} +
+            settings,
+        here.path());
+    CHECK_THAT(end.out, Contains("0 cracks, 0 T-vertices") && Contains("all checks passed"));
+    const RunFolder run(here.path() / "run");
+    const bool is_served =
+        end.out.find("of the base mesh, whose ends are no even numbers of texels apart, never split") ==
+        std::string::npos;
+    CHECK((run.count("run", "edges_split") > 100) == is_served);
+    if (job == "head")
+        CHECK(run.invariant("open_texture_seam_edges") == 0);
+    return end;
+}
+
+}  // namespace
+
+TEST_CASE("every height test closes the head on a cylinder of whole texels, and the teapot") {
+    const TestFolder here;
+    for (const std::string& test : other_height_tests) {
+        const ProgramEnd head =
+            run_with_test(here, "head", test, {"--set", "mesh.columns=32", "--set", "mesh.rows=32"});
+        CHECK((head.out.find("serves this base mesh only in part") != std::string::npos) == (test == "rank"));
+        CHECK_THAT(head.out, !Contains("never split"));
+        run_with_test(here, "teapot", test, {});
+    }
+}
+
+TEST_CASE("every height test closes the head on the paper's cylinder and the teapot as OBJ files") {
+    const fs::path cylinder = shared_data("meshes/cylinder_1800_lps.obj"), teapot = shared_data("meshes/teapot_n4.obj");
+    if (cylinder.empty() || teapot.empty())
+        return;
+    const TestFolder here;
+    for (const std::string& test : other_height_tests) {
+        const ProgramEnd head =
+            run_with_test(here, "head", test, {"--set", "mesh.source=file", "--set", "mesh.file=" + cylinder.string()});
+        CHECK((head.out.find("never split") != std::string::npos) == (test == "rank"));  // 30 quads over 512 texels
+        run_with_test(here, "teapot", test, {"--set", "mesh.source=file", "--set", "mesh.file=" + teapot.string()});
+    }
 }
 
 TEST_CASE("the data folder can be elsewhere") {

@@ -128,16 +128,6 @@ const CaseTable random_tables("a Curvature Table of random bits: ",
                                   run.expect_closed_in_texture();
                               });
 
-const CaseTable meshes("a Curvature Test on a base mesh: ",
-                       {
-                           Row{"sphere", "mesh.source=sphere map.address_u=repeat tests.generation_limit=4"},
-                           {"cylinder", "mesh.source=cylinder map.address_u=repeat tests.generation_limit=6"},
-                       },
-                       [](const Row& row) {
-                           const CheckedRun run(curved("hardware.design=modern map.source=noise " + row.settings));
-                           REQUIRE(run.counts.edges_split > 100);
-                       });
-
 const CaseTable off("a test of heights that is off reads nothing and splits nothing: ",
                     {
                         Row{"Curvature Test", ""},

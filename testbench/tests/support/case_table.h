@@ -5,6 +5,7 @@
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace tessera::testing {
 
@@ -14,6 +15,9 @@ template <class Row>
 class CaseTable {
   public:
     CaseTable(const std::string& prefix, std::initializer_list<Row> rows, std::common_type_t<void (*)(const Row&)> run,
+              const char* file = __builtin_FILE(), std::size_t line = __builtin_LINE())
+        : CaseTable(prefix, std::vector<Row>(rows), run, file, line) {}
+    CaseTable(const std::string& prefix, const std::vector<Row>& rows, std::common_type_t<void (*)(const Row&)> run,
               const char* file = __builtin_FILE(), std::size_t line = __builtin_LINE()) {
         for (const Row& row : rows)
             Catch::AutoReg(new Case([=] { run(row); }), {file, line}, "", {prefix + row.name});

@@ -144,13 +144,30 @@ TEST_CASE("triangles shifted by themselves decide as those of one chart, and no 
     CHECK(seams.open_texture_seam_edges == 0);
 }
 
+namespace {
+
+std::string refusal(const Job& job, const BaseMesh& base, const HeightMap& map) {
+    try {
+        make_setup(resolve_job(job, base, map).job, base, map);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return {};
+}
+
+}  // namespace
+
 TEST_CASE("one triangle of more periods than the format holds is refused") {
     const BaseMesh base = stretched(make_plane(1, 1, 2, 2), {100, 1});
-    const HeightMap map = noise_map(64, 64, 1);
-    try {
-        make_setup(resolve_job(tiling_job(), base, map).job, base, map);
-        FAIL("not refused");
-    } catch (const InputError& error) {
-        CHECK_THAT(error.what(), Contains("beyond the 0..4096") && Contains("repeat the map less often"));
-    }
+    CHECK_THAT(refusal(tiling_job(), base, noise_map(64, 64, 1)),
+               Contains("beyond the 0..4096") && Contains("repeat the map less often"));
+}
+
+TEST_CASE("a lattice that reaches beyond the format is refused, and a smaller spacing named") {
+    const HeightMap map = noise_map(3000, 4, 1);
+    const auto refused = [&](std::int64_t spacing) {
+        return refusal({}, make_lattice({3000, 4}, {false, false}, spacing, 2, 2), map);
+    };
+    CHECK_THAT(refused(2048), Contains("beyond the 0..4096") && Contains("smaller mesh.spacing"));
+    CHECK(refused(1024).empty());
 }

@@ -144,6 +144,33 @@ TEST_CASE("No grid point lies beyond the Bound Test's threshold") {
     }
 }
 
+TEST_CASE("Off the lattice no grid point lies beyond the Bound Test's threshold and what the tables say remains") {
+    Random random(10);
+    int with_rest = 0, with_splits = 0;
+    for (int trial = 0; trial < random_cases(300); ++trial) {
+        RandomCase at(random);
+        const std::uint32_t texel = 1u << formats.texture.fraction;
+        const std::uint32_t part = random.natural(1, 4);  // quarters of a quad
+        const TexCoord shift{random.natural(0, texel), random.natural(0, texel)};
+        for (Corners& corners : at.base)
+            for (TexCoord& corner : corners)
+                corner = {(corner.u - texel / 2) / 4 * part + shift.u, (corner.v - texel / 2) / 4 * part + shift.v};
+        const RankTables tables = make_rank_tables(at.map, at.base, formats, 0, 16);
+        if (tables.clashes > 0)
+            continue;
+        const std::uint32_t threshold =
+            std::min(bound_threshold(std::exp2(random.real(-2, 16)), 16), tables.highest_bound_threshold);
+        const auto mesh = mesh_of(at.base, table_of(tables.bound, tables), threshold, formats);
+        INFO("trial " << trial << ", threshold " << threshold);
+        REQUIRE(error_figures(vertical_errors(at.map, mesh, formats.texture.fraction)).largest <=
+                std::max(bound_error(threshold, 16), tables.least_error) + 1e-6);
+        with_rest += tables.least_error > 0 ? 1 : 0;
+        with_splits += mesh.size() > at.base.size() ? 1 : 0;
+    }
+    CHECK(with_rest > 100);
+    CHECK(with_splits > 50);
+}
+
 namespace {
 
 /// A view of a clamped map whose texels and codes measure `steps`, in LSB of positions and distances.
