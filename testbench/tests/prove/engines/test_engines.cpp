@@ -50,6 +50,8 @@ const CaseTable designs(
         {"random stalls, last in first out",
          "hardware.queue_order=lifo timing.stalls_seed=3 timing.stalls_per_mille=300 "
          "timing.stalls_longest=20"},
+        {"stalls longer than a part's way to Pass or Tessellate",
+         "timing.stalls_seed=3 timing.stalls_per_mille=20 timing.stalls_longest=200"},
     },
     [](const Row& row) {
         Job job =
