@@ -50,6 +50,7 @@ const CaseTable designs(
         {"random stalls, last in first out",
          "hardware.queue_order=lifo timing.stalls_seed=3 timing.stalls_per_mille=300 "
          "timing.stalls_longest=20"},
+        {"one place in Pass or Tessellate", "timing.pass_or_tessellate_buffer=1"},
         {"stalls longer than a part's way to Pass or Tessellate",
          "timing.stalls_seed=3 timing.stalls_per_mille=20 timing.stalls_longest=200"},
     },
