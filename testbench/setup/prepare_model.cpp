@@ -100,7 +100,7 @@ void remark_on_base(const std::vector<TextureTriangle>& base, PreparedScene& sce
             tables.least_error / scene.map.highest_code()));
         if (const std::uint64_t whole = count_whole_base_edges(base, scene.registers.formats); whole > 0)
             limits.push_back(fmt::format(
-                "{} edges of the base mesh, whose ends are no even numbers of texels apart, never split", whole));
+                "{} edges of the base mesh never split: their ends are not an even number of texels apart", whole));
     }
     if (tables.clashes > 0)
         limits.push_back(

@@ -120,7 +120,7 @@ ProgramEnd run_with_test(const TestFolder& here, const std::string& job, const s
     CHECK_THAT(end.out, Contains("0 cracks, 0 T-vertices") && Contains("all checks passed"));
     const RunFolder run(here.path() / "run");
     const bool is_served =
-        end.out.find("of the base mesh, whose ends are no even numbers of texels apart, never split") ==
+        end.out.find("of the base mesh never split: their ends are not an even number of texels apart") ==
         std::string::npos;
     CHECK((run.count("run", "edges_split") > 100) == is_served);
     if (job == "head")

@@ -125,6 +125,6 @@ TEST_CASE("rank: a base mesh that the test cannot split is named, with one that 
                                     "mesh.columns=8", "--set", "output.picture=false", "--set", "output.folder=run"},
                                    here.path());
     CHECK_THAT(end.out,
-               Contains("edges of the base mesh, whose ends are no even numbers of texels apart, never split") &&
+               Contains("edges of the base mesh never split: their ends are not an even number of texels apart") &&
                    Contains("mesh.source = \"lattice\" suits it"));
 }
