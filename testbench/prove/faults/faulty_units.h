@@ -15,6 +15,7 @@ class FaultyUnits : public ReadCheckedUnits {
     FaultyUnits(Fault fault, const datapath::Formats& formats, int tag_bits);
 
     void made(sc_core::sc_module& module) override;
+    using ReadCheckedUnits::join;
     void join(MemoryPort& port, TableMemory& memory) override;
     void join(MemoryPort& port, OffChipMemory& memory) override;
 
