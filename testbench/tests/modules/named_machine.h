@@ -73,9 +73,10 @@ inline AloneResult run_alone(const MachineSetup& setup) {
             return {};
         return std::to_string(machine.cycles()) + " " + std::to_string(machine.drained.back().value());
     });
-    INFO(end.failure);
+    REQUIRE(end.failure.empty());
     AloneResult result;
     REQUIRE(std::istringstream(end.told) >> result.cycles >> result.drained);
+    REQUIRE(result.drained > 0);
     return result;
 }
 
