@@ -52,8 +52,6 @@ std::string Conductor::key_without_schedule(const Design& design, const datapath
         return "hardware.tests_units";
     if (formats.codes)
         return "hardware.one_texel_from_map";
-    if (kind.codes > 0 && formats.height_test != datapath::HeightTest::summed_height)
-        return "hardware.height_test";
     const auto cached = [&](const MemoryTiming& table) { return table.cache.bytes > 0; };
     if (cached(design.timing.displacement_map))
         return "timing.displacement_map_cache_bytes";
@@ -112,6 +110,10 @@ schedule::Plan Conductor::plan_of(Pipeline& machine, const Rasteriser& rasterise
     plan.displacement_map =
         table_plan(inputs.of(machine.displacement_map, t.displacement_map.buffer), t.displacement_map,
                    registers.displacement_map.entry_bytes, plan.displace_vertex.pipeline.stages + 1);
+    if (machine.displacement_map_for_tests != nullptr)
+        plan.displacement_map_for_tests =
+            table_plan(inputs.of(*machine.displacement_map_for_tests, t.displacement_map.buffer), t.displacement_map,
+                       registers.displacement_map.entry_bytes, plan.height_test.pipeline.stages + 1);
     plan.normal_map = table_plan(inputs.of(machine.normal_map, t.normal_map.buffer), t.normal_map,
                                  registers.normal_map.entry_bytes, plan.normal_test.pipeline.stages + 1);
     plan.height_table =
@@ -122,13 +124,16 @@ schedule::Plan Conductor::plan_of(Pipeline& machine, const Rasteriser& rasterise
 
 void Conductor::ReadFacts::read(unsigned part, const Reads& reads) {
     schedule::PartReads& facts = parts_[part];
+    if (reads.requests() > 0)
+        facts.memory = static_cast<std::uint8_t>(reads.port(0));
     facts.requests = static_cast<std::uint8_t>(reads.requests());
     for (unsigned k = 0; k < reads.requests(); ++k)
         facts.entries[k] = static_cast<std::uint8_t>(reads.count(k));
-    if (!banked_)
+    const BankOfEntry& bank_of = memories_[facts.memory];
+    if (!bank_of.several())
         return;
     for (unsigned k = 0; k < reads.entries(); ++k)
-        facts.banks[k] = static_cast<std::uint8_t>(bank_of_(reads.addresses()[k]));
+        facts.banks[k] = static_cast<std::uint8_t>(bank_of(reads.addresses()[k]));
 }
 
 Conductor::Conductor(const sc_core::sc_module_name& name, Pipeline& machine, Host& host, const Rasteriser& rasteriser,
@@ -137,10 +142,13 @@ Conductor::Conductor(const sc_core::sc_module_name& name, Pipeline& machine, Hos
       machine_(machine),
       host_(host),
       schedule_(plan_of(machine, rasteriser, timed)),
-      vertices_(facts_.displace_vertex, timed.timing.displacement_map, machine.registers().displacement_map),
-      heights_(facts_.height_test, timed.timing.*kind_of(machine.registers().formats.height_test).table_timing,
-               machine.registers().height_table),
-      normals_(facts_.normal_test, timed.timing.normal_map, machine.registers().normal_map) {
+      vertices_(facts_.displace_vertex,
+                {BankOfEntry(timed.timing.displacement_map, machine.registers().displacement_map)}),
+      heights_(facts_.height_test,
+               {BankOfEntry(timed.timing.*kind_of(machine.registers().formats.height_test).table_timing,
+                            machine.registers().height_table),
+                BankOfEntry(timed.timing.displacement_map, machine.registers().displacement_map)}),
+      normals_(facts_.normal_test, {BankOfEntry(timed.timing.normal_map, machine.registers().normal_map)}) {
     TessellationTests& tests = machine.tessellation_tests[0];
     machine.displace_vertex.observe_reads(&vertices_);
     tests.height_test.observe_reads(&heights_);
@@ -154,6 +162,7 @@ Conductor::Conductor(const sc_core::sc_module_name& name, Pipeline& machine, Hos
               &machine.triangle_queue,
               &machine.lighting,
               &machine.displacement_map,
+              machine.displacement_map_for_tests.get(),
               &machine.normal_map,
               &machine.height_table,
               nullptr,
@@ -230,6 +239,8 @@ void Conductor::finish(std::uint64_t cycles) {
         memory.assign({table.bank_slots(), table.entries(), table.held_up()});
     };
     assign(machine_.displacement_map, schedule::displacement_map);
+    if (machine_.displacement_map_for_tests != nullptr)
+        assign(*machine_.displacement_map_for_tests, schedule::displacement_map_for_tests);
     assign(machine_.normal_map, schedule::normal_map);
     assign(machine_.height_table, schedule::height_table);
     const schedule::Source& source = schedule_.source();

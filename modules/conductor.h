@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <string>
 #include <systemc>
+#include <utility>
 #include <vector>
 
 #include "modules/host.h"
@@ -33,18 +34,16 @@ class Conductor : public sc_core::sc_module {
     void finish(std::uint64_t cycles);
 
   private:
-    /// Turns a unit's reads into the banks of a table's entries.
+    /// Turns a unit's reads into the banks of the entries of its memories, of which an item reads one.
     class ReadFacts : public ReadObserver {
       public:
         using Parts = std::array<schedule::PartReads, schedule::Facts::parts_of_a_triangle>;
-        ReadFacts(Parts& parts, const MemoryTiming& timing, const datapath::TableLayout& layout)
-            : parts_(parts), bank_of_(timing, layout), banked_(timing.banks > 1) {}
+        ReadFacts(Parts& parts, std::vector<BankOfEntry> memories) : parts_(parts), memories_(std::move(memories)) {}
         void read(unsigned part, const Reads& reads) override;
 
       private:
         Parts& parts_;
-        BankOfEntry bank_of_;
-        bool banked_;
+        std::vector<BankOfEntry> memories_;  // by the unit's ports
     };
 
     static schedule::Plan plan_of(Pipeline& machine, const Rasteriser& rasteriser, const Design& timed);
@@ -56,7 +55,7 @@ class Conductor : public sc_core::sc_module {
     schedule::Machine schedule_;
     schedule::Facts facts_;
     ReadFacts vertices_, heights_, normals_;
-    std::vector<Unit*> units_;                          // by the schedule's numbers; null: the rasteriser
+    std::vector<Unit*> units_;                          // by the schedule's numbers; null: the rasteriser, or not there
     std::vector<const sc_core::sc_object*> consumers_;  // the same, with the rasteriser
 };
 

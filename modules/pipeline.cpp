@@ -70,6 +70,7 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
                       datapath::packed_triangle_tag_bytes),
       displacement_map("displacement_map", clock, registers.displacement_map, design.timing.displacement_map,
                        design.timing.stalls, &off_chip_memory.channel()),
+      displacement_map_for_tests(make_second_side(registers, design)),
       normal_map("normal_map", clock, registers.normal_map, design.timing.normal_map, design.timing.stalls,
                  &off_chip_memory.channel()),
       height_table(kind_of(registers.formats.height_test).table, clock, registers.height_table,
@@ -102,6 +103,15 @@ Pipeline::Pipeline(const sc_core::sc_module_name& name, const datapath::Register
 std::unique_ptr<TableCache> Pipeline::make_cache(const char* name, const datapath::TableLayout& layout,
                                                  const MemoryTiming& timing, const StallParameters& stalls) {
     return timing.cache.bytes == 0 ? nullptr : std::make_unique<TableCache>(name, clock, layout, timing, stalls);
+}
+
+std::unique_ptr<DisplacementMap> Pipeline::make_second_side(const datapath::Registers& registers,
+                                                            const Design& design) {
+    if (!displacement_map_has_two_sides(design, registers.formats))
+        return nullptr;
+    return std::make_unique<DisplacementMap>("displacement_map_for_tests", clock, displacement_map,
+                                             registers.displacement_map, design.timing.displacement_map,
+                                             design.timing.stalls);
 }
 
 namespace {
@@ -140,7 +150,9 @@ void Pipeline::wire(UnitFactory& factory) {
     for (TessellationTests& tests : tessellation_tests) {
         join(factory, tests.height_test.table, height_table, height_table_cache.get());
         if (tests.height_test.displacement_map)
-            join(factory, *tests.height_test.displacement_map, displacement_map, displacement_map_cache.get());
+            join(factory, *tests.height_test.displacement_map,
+                 displacement_map_for_tests != nullptr ? *displacement_map_for_tests : displacement_map,
+                 displacement_map_cache.get());
         for (NormalTest* normal_test : tests.normal_tests())
             join(factory, normal_test->normal_map, normal_map, normal_map_cache.get());
     }
@@ -187,17 +199,20 @@ void Pipeline::attach() {
     for (TessellationTests& tests : tessellation_tests)
         for (Unit* unit : tests.units())
             units_.push_back(unit);
-    units_.insert(units_.end(), {&pass_or_tessellate, &tessellation, &triangle_queue, &lighting, &displacement_map,
-                                 &normal_map, &height_table, &off_chip_memory});
+    std::vector<Unit*> tables{&displacement_map, &normal_map, &height_table};
+    if (displacement_map_for_tests != nullptr)
+        tables.insert(tables.begin() + 1, displacement_map_for_tests.get());
+    units_.insert(units_.end(), {&pass_or_tessellate, &tessellation, &triangle_queue, &lighting});
+    units_.insert(units_.end(), tables.begin(), tables.end());
+    units_.push_back(&off_chip_memory);
     for (const auto* cache : {&displacement_map_cache, &normal_map_cache, &height_table_cache}) {
         if (*cache != nullptr)
             caches_.push_back(cache->get());
     }
     units_.insert(units_.end(), caches_.begin(), caches_.end());
     clock.attach(off_chip_memory);
-    for (Unit* memory :
-         {static_cast<Unit*>(&displacement_map), static_cast<Unit*>(&normal_map), static_cast<Unit*>(&height_table)})
-        clock.attach(*memory);
+    for (Unit* table : tables)
+        clock.attach(*table);
     for (TableCache* cache : caches_)
         clock.attach(*cache);
     clock.attach(lighting);
@@ -239,6 +254,8 @@ void Pipeline::tables_changed() {
             cache->lay_out(columns);
     };
     lay_out(displacement_map, displacement_map_cache.get(), registers_.displacement_map.columns);
+    if (displacement_map_for_tests != nullptr)
+        lay_out(*displacement_map_for_tests, nullptr, registers_.displacement_map.columns);
     lay_out(normal_map, normal_map_cache.get(), registers_.normal_map.columns);
     lay_out(height_table, height_table_cache.get(), registers_.height_table.columns);
 }

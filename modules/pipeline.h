@@ -75,6 +75,7 @@ class Pipeline : public sc_core::sc_module {
     Lighting& lighting = *made_.lighting;
     OffChipMemory off_chip_memory;
     DisplacementMap displacement_map;
+    std::unique_ptr<DisplacementMap> displacement_map_for_tests;  ///< its second side; null: it has one
     NormalMap normal_map;
     HeightTable height_table;
     std::unique_ptr<TableCache> displacement_map_cache;  ///< null: the table is on chip
@@ -125,6 +126,7 @@ class Pipeline : public sc_core::sc_module {
     void wire_families();
     std::unique_ptr<TableCache> make_cache(const char* name, const datapath::TableLayout& layout,
                                            const MemoryTiming& timing, const StallParameters& stalls);
+    std::unique_ptr<DisplacementMap> make_second_side(const datapath::Registers& registers, const Design& design);
     void attach();
     void see_whether_drained();
 

@@ -126,7 +126,7 @@ class UnitFactory {
     /// (StreamOutput).
     virtual void made(sc_core::sc_module& /*module*/) {}
 
-    /// Joins a unit's port to its memory.
+    /// Joins a unit's port to its memory. Both sides of a displacement map that has two are memories here.
     virtual void join(MemoryPort& port, TableMemory& memory) { port.bind(memory); }
     virtual void join(MemoryPort& port, TableCache& cache) { port.bind(cache); }
     virtual void join(MemoryPort& port, OffChipMemory& memory) { port.bind(memory); }

@@ -10,14 +10,22 @@ TableMemory::TableMemory(const sc_core::sc_module_name& name, CycleScheduler& cl
                          const datapath::TableLayout& layout, const MemoryTiming& timing, const StallParameters& stalls,
                          Channel* off_chip)
     : MemoryServer(name, clock, timing.buffer, stalls),
-      storage_(layout.base, layout.bytes() + (timing.cache.bytes == 0 ? 0 : timing.cache.line_bytes)),
+      storage_(std::make_shared<Storage>(layout.base,
+                                         layout.bytes() + (timing.cache.bytes == 0 ? 0 : timing.cache.line_bytes))),
       ports_(timing, layout),
       channel_(timing.cache.bytes == 0 ? nullptr : off_chip) {
-    storage_.all();
+    storage_->all();
 }
 
+TableMemory::TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock, const TableMemory& first_side,
+                         const datapath::TableLayout& layout, const MemoryTiming& timing, const StallParameters& stalls)
+    : MemoryServer(name, clock, timing.buffer, stalls),
+      storage_(first_side.storage_),
+      ports_(timing, layout),
+      channel_(nullptr) {}
+
 void TableMemory::read(MemoryRequest& request) {
-    access(storage_, request, false);
+    access(*storage_, request, false);
     request.dmi_allowed = request.is_ok();
     if (request.is_ok())
         transactions_ += request.count;
@@ -52,11 +60,11 @@ void TableMemory::b_transport(int, MemoryRequest& request, sc_core::sc_time& del
 }
 
 bool TableMemory::get_direct_mem_ptr(int, MemoryRequest& request, tlm::tlm_dmi& dmi) {
-    if (request.command != tlm::TLM_READ_COMMAND || !storage_.covers(request.address[0], 1))
+    if (request.command != tlm::TLM_READ_COMMAND || !storage_->covers(request.address[0], 1))
         return false;
-    dmi.set_start_address(storage_.base());
-    dmi.set_end_address(storage_.base() + storage_.size() - 1);
-    dmi.set_dmi_ptr(storage_.all());
+    dmi.set_start_address(storage_->base());
+    dmi.set_end_address(storage_->base() + storage_->size() - 1);
+    dmi.set_dmi_ptr(storage_->all());
     dmi.set_read_latency(clock_.period() * ports_.latency());
     dmi.allow_read();
     return true;
@@ -72,8 +80,8 @@ void TableMemory::trace_signals(Signals& signals) const {
     if (signals.when(signals.changed("slots_taken", slots_taken()) && signals.running())) {
         std::uint64_t data = 0;
         const std::size_t bytes = std::min<std::size_t>(last_entry_bytes_, sizeof data);
-        if (storage_.covers(last_address_, bytes))
-            storage_.read(last_address_, reinterpret_cast<unsigned char*>(&data), bytes);
+        if (storage_->covers(last_address_, bytes))
+            storage_->read(last_address_, reinterpret_cast<unsigned char*>(&data), bytes);
         signals.value("address", 32, last_address_);
         signals.value("entries", 4, last_entries_);
         signals.value("data", 64, data);

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <systemc>
 #include <vector>
 
@@ -11,7 +12,8 @@
 
 namespace tessera {
 
-/// A memory that holds one table.
+/// A memory that holds one table, or the second side of one: a dual-port memory has two sides, each with ports, a queue and
+/// figures of its own, so that neither side's readers wait for the other's. The bits are there once.
 ///
 /// Address map: [layout.base, layout.base + layout.bytes()); entry (x, y) at layout.address(x, y), little endian.
 /// Off chip it reaches to the end of its last line. Read by units, written only by the host's debug transport before
@@ -26,6 +28,9 @@ class TableMemory : public MemoryServer {
     /// off_chip: used if the table has a cache.
     TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock, const datapath::TableLayout& layout,
                 const MemoryTiming& timing, const StallParameters& stalls, Channel* off_chip = nullptr);
+    /// The second side of a memory on chip, which the host fills through the first.
+    TableMemory(const sc_core::sc_module_name& name, CycleScheduler& clock, const TableMemory& first_side,
+                const datapath::TableLayout& layout, const MemoryTiming& timing, const StallParameters& stalls);
 
     /// Between runs: the table's columns from now on. Its base, the size of its entries and the memory's capacity stay.
     void lay_out(std::uint32_t columns) { ports_.lay_out(columns); }
@@ -54,10 +59,10 @@ class TableMemory : public MemoryServer {
     std::uint64_t serve(MemoryRequest& request, std::uint64_t cycle) override;
     void b_transport(int id, MemoryRequest& request, sc_core::sc_time& delay) override;
     bool get_direct_mem_ptr(int id, MemoryRequest& request, tlm::tlm_dmi& dmi) override;
-    unsigned transport_dbg(int, MemoryRequest& request) override { return move(storage_, request); }
+    unsigned transport_dbg(int, MemoryRequest& request) override { return move(*storage_, request); }
     void read(MemoryRequest& request);
 
-    Storage storage_;
+    std::shared_ptr<Storage> storage_;  // of both sides
     BankedPorts ports_;
     Channel* channel_;  // null: on chip
     std::uint64_t channel_cycles_ = 0;
@@ -68,7 +73,7 @@ class TableMemory : public MemoryServer {
 };
 
 /// The displacement map: one unsigned code per texel. Read by Displace Vertex, with Formats::codes also by Summed
-/// Height Test.
+/// Height Test. The Curvature Test reads its second side.
 class DisplacementMap : public TableMemory {
   public:
     using TableMemory::TableMemory;

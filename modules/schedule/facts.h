@@ -4,12 +4,14 @@
 
 namespace tessera::schedule {
 
-/// The table entries that a unit read for one part of a triangle: one to three requests, one after another.
+/// The table entries that a unit read for one part of a triangle: one to three requests, one after another, all to one of
+/// its memories.
 struct PartReads {
     static constexpr unsigned most_requests = 3;
     static constexpr unsigned most_entries = 27;
 
     std::uint8_t requests = 0;
+    std::uint8_t memory = 0;                          ///< which of the unit's
     std::array<std::uint8_t, most_requests> entries;  ///< of each request
     std::array<std::uint8_t, most_entries> banks;     ///< of each entry, if the table has more than one
 };

@@ -25,6 +25,7 @@ Machine::Machine(const Plan& plan)
       corners_(plan.view_test_corners),
       results_{Input(plan.results[0]), Input(plan.results[1]), Input(plan.results[2]), Input(plan.results[3])},
       displacement_map_(plan.displacement_map),
+      displacement_map_for_tests_(plan.displacement_map_for_tests),
       normal_map_(plan.normal_map),
       height_table_(plan.height_table),
       join_triangles_(plan.join_triangles),
@@ -146,8 +147,11 @@ void Machine::test(unsigned part, const Facts& facts) {
     result(tex_coord_test_, 1);
     const Cycle height_start = height_test_.start(heights_asked_);
     const PartReads& reads = facts.height_test[part];
-    if (reads.requests > 0)
-        height_test_.answer(read(height_table_, reads, height_start, heights_asked_), height_table);
+    if (reads.requests > 0) {
+        const Unit memory = reads.memory == 0 ? height_table : displacement_map_for_tests;
+        Table& table = reads.memory == 0 ? height_table_ : displacement_map_for_tests_;
+        height_test_.answer(read(table, reads, height_start, heights_asked_), memory);
+    }
     result(height_test_, 2);
     view_test_.start(0, base ? corners_come_ : 0, transform);
     result(view_test_, 3);
@@ -269,6 +273,7 @@ void Machine::for_each_unit(Self& m, Each&& each) {
     each(tessellation, m.tessellation_states_, m.tessellation_level_);
     stage(lighting, m.lighting_);
     stage(displacement_map, m.displacement_map_);
+    stage(displacement_map_for_tests, m.displacement_map_for_tests_);
     stage(normal_map, m.normal_map_);
     stage(height_table, m.height_table_);
     stage(calculate_new_u, m.calculate_new_u_);
@@ -306,7 +311,16 @@ void Machine::observe(Unit unit, ItemObserver* observer) {
 }
 
 const Table& Machine::table(Unit memory) const {
-    return memory == displacement_map ? displacement_map_ : memory == normal_map ? normal_map_ : height_table_;
+    switch (memory) {
+        case displacement_map:
+            return displacement_map_;
+        case displacement_map_for_tests:
+            return displacement_map_for_tests_;
+        case normal_map:
+            return normal_map_;
+        default:
+            return height_table_;
+    }
 }
 
 }  // namespace tessera::schedule

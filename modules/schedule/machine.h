@@ -21,6 +21,7 @@ enum : Unit {
     triangle_queue,
     lighting,
     displacement_map,
+    displacement_map_for_tests,
     normal_map,
     height_table,
     rasteriser,
@@ -49,6 +50,7 @@ struct Plan {
     StagePlan lighting;
     InputPlan rasteriser;
     TablePlan displacement_map, normal_map, height_table;
+    TablePlan displacement_map_for_tests;  ///< the height test's second memory, if it has one
 };
 
 /// What a unit did in a run.
@@ -153,7 +155,7 @@ class Machine {
     Cycle collected_ = 0;  // the last edge has left Collect Tests
     States collect_states_;
     Level collect_level_{1};
-    Table displacement_map_, normal_map_, height_table_;
+    Table displacement_map_, displacement_map_for_tests_, normal_map_, height_table_;
     Cycle vertices_asked_ = 0, heights_asked_ = 0, normals_asked_ = 0;  // the last request was taken
 
     Input join_triangles_, join_parts_, join_edges_;

@@ -76,6 +76,7 @@ const std::vector<UnitNumbers::Entry>& UnitNumbers::all() {
         {63, "tessellation_tests_2.mipmap_test"},
         {64, "mipmap_table"},
         {65, "mipmap_table_cache"},
+        {66, "displacement_map_for_tests"},
     };
     return entries;
 }

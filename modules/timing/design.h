@@ -56,6 +56,11 @@ constexpr unsigned height_test_latency(const Design& design, const datapath::For
     return height_test_reads_codes(formats) ? std::max(table, t.read_latency(t.displacement_map)) : table;
 }
 
+/// The displacement map on chip is a dual-port memory: Displace Vertex reads one side, the Curvature Test the other.
+constexpr bool displacement_map_has_two_sides(const Design& design, const datapath::Formats& formats) {
+    return formats.height_test == datapath::HeightTest::curvature && design.timing.displacement_map.cache.bytes == 0;
+}
+
 /// Of Displace Vertex's reads: of the displacement map and, of families, of the normal map.
 constexpr unsigned displace_vertex_latency(const Design& design) {
     const Timing& t = design.timing;

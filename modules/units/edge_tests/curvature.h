@@ -12,7 +12,8 @@ namespace tessera {
 ///
 /// In:   HeightOperands. Out: HeightResult.
 /// Memory: one entry an edge of the Curvature Table, of the level of the edge's length. Of an edge of at most two texels
-///         the displacement map instead: the codes of its ends and of its midpoint, in one request.
+///         the displacement map instead: the codes of its ends and of its midpoint, in one request, through the map's
+///         second side (table_memory.h); behind a cache, which Displace Vertex reads too.
 /// Arithmetic: a count of leading zeros and shifts for the level; three products of 4 x 4 bits, three of 8 x 7, their sum,
 ///         a shift, a compare.
 /// Timing: latency 4 after the last entry; interval 1 by default. With one port a short edge's codes take three cycles.

@@ -191,14 +191,26 @@ void add_timed(Equations& list, const MachineSetup& setup, const HostedMachine& 
     const Read displacement_map(p.displacement_map, p.displacement_map_cache);
     const Read normal_map(p.normal_map, p.normal_map_cache);
     const Read height_table(p.height_table, p.height_table_cache);
-    list.add("entries of displacement_map = read", displacement_map.entries(), p.displacement_map_reads());
+    const TableMemory* const second_side = p.displacement_map_for_tests.get();
+    const std::uint64_t by_displace_vertex = p.displace_vertex.displacement_map.reads();
+    if (second_side == nullptr) {
+        list.add("entries of displacement_map = read", displacement_map.entries(), p.displacement_map_reads());
+        list.add("requests to displacement_map = vertices, midpoints and texels", displacement_map.requests(),
+                 vertices + midpoints + by_codes);
+    } else {
+        list.add("entries of displacement_map = read by displace_vertex", displacement_map.entries(),
+                 by_displace_vertex);
+        list.add("entries of displacement_map_for_tests = read by its test", second_side->transactions(),
+                 p.displacement_map_reads() - by_displace_vertex);
+        list.add("requests to displacement_map = vertices and midpoints", displacement_map.requests(),
+                 vertices + midpoints);
+        list.add("requests to displacement_map_for_tests = edges tested by codes", items(*second_side), by_codes);
+    }
     list.add("entries of normal_map = read", normal_map.entries(), p.normal_map_reads());
     list.add("entries of " + std::string(height_test.table) + " = read by its test", height_table.entries(),
              p.height_table_reads());
     for (const Read& read : {displacement_map, normal_map, height_table})
         read.add_fills(list);
-    list.add("requests to displacement_map = vertices, midpoints and texels", displacement_map.requests(),
-             vertices + midpoints + by_codes);
     list.add("requests to normal_map = vertices and edges of normal_test", normal_map.requests(),
              normal_map_requests(p, vertices, normal));
     const std::uint64_t asked = height_test.requests * (summed_height - by_codes - off_lattice);

@@ -44,9 +44,11 @@ class AreaCounter {
         areas_.back().memory_bits = queue_places * bits<datapath::Triangle>();
         stage<TriangleToLight, LitTriangle>("lighting", t.lighting, 3 * M::light);
         const auto addresses = static_cast<std::uint64_t>(entries());
-        table("displacement_map", registers_.displacement_map, f.displacement.bits, t.displacement_map, addresses);
-        table("normal_map", registers_.normal_map, 3 * f.normal.bits, t.normal_map, addresses);
         const HeightTestKind& height = kind_of(f.height_test);
+        table("displacement_map", registers_.displacement_map, f.displacement.bits, t.displacement_map, addresses);
+        if (displacement_map_has_two_sides(design_, f))
+            table("displacement_map_for_tests", registers_.displacement_map, 0, t.displacement_map, height.codes);
+        table("normal_map", registers_.normal_map, 3 * f.normal.bits, t.normal_map, addresses);
         table(height.table, registers_.height_table, datapath::height_entry_bits(f), t.*height.table_timing,
               height.rectangles ? corners_of_a_rectangle() : 1);
         return std::move(areas_);
@@ -170,7 +172,8 @@ class AreaCounter {
         return across * along;
     }
 
-    /// addresses: of a request. Those that wait, in the buffer or at the banks, are registers.
+    /// addresses: of a request. Those that wait, in the buffer or at the banks, are registers. entry_bits: 0: the bits are
+    /// counted elsewhere.
     void table(const char* name, const datapath::TableLayout& layout, int entry_bits, const MemoryTiming& timing,
                std::uint64_t addresses) {
         std::uint64_t entries = std::uint64_t{layout.rows} * layout.columns;

@@ -35,6 +35,13 @@ void choose_timing(Random& random, Timing& timing) {
     timing.stalls = {};
     if (random.chance(60))
         timing.stalls = {random.natural(0, 1000000), random.natural(10, 500), random.natural(1, 40)};
+    for (MemoryTiming* memory : {&timing.displacement_map, &timing.curvature_table}) {
+        if (!random.chance(30))
+            continue;
+        memory->banks = 1u << random.natural(0, 5);
+        memory->window = random.natural(0, 12);
+        memory->interleave = random.coin() ? Interleave::exclusive_or : Interleave::entry;
+    }
 }
 
 }  // namespace
@@ -53,8 +60,6 @@ RandomCase make_scheduled_case(std::uint64_t seed) {
     hardware.queue_watermark = random.one_of<std::int64_t>({1, 1, 2, 5, 30, 1000});
     hardware.machines = random.chance(10) ? 2 : 1;
     made.job.tests.rank_view = RankView::none;
-    if (hardware.height_test == HeightTest::curvature)
-        hardware.height_test = HeightTest::summed_height;
     choose_timing(random, made.job.timing);
     return made;
 }

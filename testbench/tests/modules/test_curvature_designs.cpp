@@ -128,6 +128,40 @@ const CaseTable random_tables("a Curvature Table of random bits: ",
                                   run.expect_closed_in_texture();
                               });
 
+/// How the map's readers are joined.
+struct SidesRow {
+    std::string name;
+    std::string settings;
+    bool two_sides;
+};
+
+const CaseTable sides("sides of the displacement map: ",
+                      {
+                          SidesRow{"a Curvature Test has one of its own", "", true},
+                          {"three Curvature Tests share it", "hardware.tests_units=3", true},
+                          {"in the modern design", "hardware.design=modern", true},
+                          {"one behind a cache", "timing.displacement_map_cache_bytes=1024", false},
+                          {"one for the Summed Height Test",
+                           "hardware.height_test=summed_height hardware.one_texel_from_map=true tests.normal=true",
+                           false},
+                      },
+                      [](const SidesRow& row) {
+                          const CheckedRun run(curved(row.settings));
+                          const Pipeline& p = run.pipeline;
+                          REQUIRE((p.displacement_map_for_tests != nullptr) == row.two_sides);
+                          const sc_core::sc_object* first = &p.displacement_map;
+                          if (p.displacement_map_cache)
+                              first = p.displacement_map_cache.get();
+                          const sc_core::sc_object* second = row.two_sides ? p.displacement_map_for_tests.get() : first;
+                          CHECK(p.displace_vertex.displacement_map.memory() == first);
+                          for (const TessellationTests& tests : p.tessellation_tests)
+                              CHECK(tests.height_test.displacement_map->memory() == second);
+                          CHECK(Totals(run.simulation).evaluated.summed_height_by_codes > 0);
+                          if (row.two_sides)
+                              CHECK(3 * p.displacement_map_for_tests->activity().items_in() ==
+                                    p.displacement_map_for_tests->transactions());
+                      });
+
 const CaseTable off("a test of heights that is off reads nothing and splits nothing: ",
                     {
                         Row{"Curvature Test", ""},

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "testbench/check/transport/conservation.h"
+#include "testbench/tests/support/job_settings.h"
 #include "testbench/tests/support/timed_checks.h"
 
 // Each equation of conservation.cpp: what its sides are in a run that can be counted by hand, and that each side counts
@@ -264,6 +265,40 @@ TEST_CASE("conservation: a read too many") {
     expect_change("Summed Height Table, past its unit", simulation,
                   [&] { read_directly(p.tessellation_tests[0].height_test.table, r.height_table.base); },
                   {{"entries of summed_height_table = read by its test", {1, 0}}});
+}
+
+TEST_CASE("conservation: each side of the displacement map has its own requests and entries") {
+    MachineSetup setup = setup_of(with_settings(full_split_job(1, 1),
+                                                "hardware.height_test=curvature map.width=2 map.height=2 "
+                                                "tests.tex_coord=false"));  // edges of two texels at most
+    Simulation simulation(setup, 1000);
+    run_timed(simulation);
+    Pipeline& p = simulation.pipeline;
+    const Equations sides = sides_of(simulation);
+    CHECK(sides.at("reads of displacement_map = vertices, midpoints and texels") == Sides{36 + 90, 36 + 90});
+    CHECK(sides.at("entries of displacement_map = read by displace_vertex") == Sides{36, 36});
+    CHECK(sides.at("entries of displacement_map_for_tests = read by its test") == Sides{90, 90});
+    CHECK(sides.at("requests to displacement_map = vertices and midpoints") == Sides{36, 6 + 30});
+    CHECK(sides.at("requests to displacement_map_for_tests = edges tested by codes") == Sides{30, 30});
+    const std::uint64_t address = setup.registers.displacement_map.base;
+    MemoryPort& of_test = *p.tessellation_tests[0].height_test.displacement_map;
+    sc_core::sc_time delay;
+    expect_change("a request too many to the first side", simulation,
+                  [&] { p.displacement_map.activity().item_in(simulation.cycles()); },
+                  {{"requests to displacement_map = vertices and midpoints", {1, 0}}});
+    expect_change("a request too many to the second side", simulation,
+                  [&] { p.displacement_map_for_tests->activity().item_in(simulation.cycles()); },
+                  {{"requests to displacement_map_for_tests = edges tested by codes", {1, 0}}});
+    expect_change("a read too many of the first side", simulation,
+                  [&] { p.displace_vertex.displacement_map.read(address, delay); },
+                  {{"reads of displacement_map by displace_vertex = vertices and midpoints", {1, 0}},
+                   {"reads of displacement_map = vertices, midpoints and texels", {1, 0}},
+                   {"entries of displacement_map = read by displace_vertex", {1, 1}}});
+    expect_change("a read too many of the second side", simulation, [&] { of_test.read(address, delay); },
+                  {{"reads of displacement_map = vertices, midpoints and texels", {1, 0}},
+                   {"entries of displacement_map_for_tests = read by its test", {1, 1}}});
+    expect_change("the second side, past its unit", simulation, [&] { read_directly(of_test, address); },
+                  {{"entries of displacement_map_for_tests = read by its test", {1, 0}}});
 }
 
 // By blocking transport, which does the whole work at once.

@@ -254,6 +254,31 @@ TEST_CASE("memory: the mean occupancy is throughput times latency") {
     CHECK(bench.memory.activity().high_water_mark() == 1);
 }
 
+// Gathers of four from entry k on: as if each side were alone, 4 cycles a gather, the second side's latency of 3.
+TEST_CASE("memory: two sides hold one table, and neither side's readers wait for the other's") {
+    Bench bench(timing(1, 1, 1));
+    TableMemory second("second_side", bench.clock, bench.memory, layout, timing(1, 1, 3), {});
+    bench.clock.attach(second);
+    MemoryReader reader("reader_of_second_side", bench.clock, 64, true);
+    reader.base = layout.base;
+    reader.entry_bytes = reader.port.entry_bytes();
+    reader.port.bind(second);
+    bench.reader().reads = gathers(10, 4);
+    reader.reads = gathers(12, 4);
+    bench.run();
+    reader.check_values();
+    CHECK(bench.reader().answered == every(14, 4, 10));
+    CHECK(reader.answered == every(16, 4, 12));
+    CHECK(bench.memory.transactions() == 40);
+    CHECK(second.transactions() == 48);
+    CHECK(second.slots_taken() == 48);
+    // functional mode: by a transaction, then by DMI, what was written through the first side
+    sc_time delay;
+    for (const std::uint32_t entry : {77u, 78u})
+        CHECK(reader.port.read(layout.base + 4 * entry, delay) == 3 * entry + 1);
+    CHECK(second.transactions() == 49);
+}
+
 TEST_CASE("memory: random stalls delay answers and change none") {
     Bench bench(timing(2, 2, 3), 3, {9, 400, 12});
     for (const auto& reader : bench.readers)

@@ -132,6 +132,22 @@ TEST_CASE("area: what each parameter changes") {
     CHECK(more / 44 > 400);
 }
 
+// 264 x 264 texels: 17 bits an address. Three codes a request.
+TEST_CASE("area: the second side of a displacement map has ports and addresses, and the bits are there once") {
+    const std::string curvature = "hardware.height_test=curvature timing.displacement_map_buffer=2 ";
+    auto units = area(curvature + "timing.displacement_map_ports=2 timing.displacement_map_banks=4");
+    CHECK(units["displacement_map"].ports == 8);
+    CHECK(units["displacement_map_for_tests"].ports == 8);
+    CHECK(units["displacement_map"].memory_bits == 264 * 264 * 16);
+    CHECK(units["displacement_map_for_tests"].memory_bits == 0);
+    CHECK(units["displacement_map"].register_bits == 2 * 1 * 17);
+    CHECK(units["displacement_map_for_tests"].register_bits == 2 * 3 * 17);
+    CHECK(units["total"].ports == 8 + 8 + 1 + 1);
+    for (const char* const shared : {"timing.displacement_map_cache_bytes=4096", "hardware.height_test=summed_height",
+                                     "hardware.height_test=mipmap"})
+        CHECK(area(curvature + shared).count("displacement_map_for_tests") == 0);
+}
+
 TEST_CASE("area: three machines have three times one's hardware") {
     MachineSetup setup = setup_of(with_settings(timed_job(), "hardware.queue_capacity=40"));
     setup.machines = 3;

@@ -34,6 +34,12 @@ const CaseTable designs(
         {"Crater Lake on 704 triangles", "", "crater_lake_704"},
         {"Crater Lake by ranks, tests in parallel",
          "hardware.test_order=parallel tests.rank_view=none tests.rank_threshold=0.02", "crater_lake_rank"},
+        {"Crater Lake by curvature", "hardware.height_test=curvature tests.normal=false", "crater_lake_24"},
+        {"Crater Lake by curvature, a bilinear filter, banks, random stalls",
+         "hardware.height_test=curvature tests.curvature_threshold=1 hardware.displacement_filter=bilinear "
+         "timing.displacement_map_banks=4 timing.displacement_map_latency=7 timing.curvature_table_banks=3 "
+         "timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=20",
+         "crater_lake_24"},
         {"teapot", "", "teapot"},
         {"head", "", "head"},
         {"last in first out", "hardware.queue_order=lifo"},
@@ -85,6 +91,7 @@ std::string chosen(const std::string& settings) {
 
 TEST_CASE("which engine times a run, and why") {
     CHECK(chosen("") == "schedule: the design has one");
+    CHECK(chosen("hardware.height_test=curvature") == "schedule: the design has one");
     CHECK(chosen("timing.engine=schedule") == "schedule: timing.engine");
     CHECK(chosen("timing.engine=clocked") == "clocked: timing.engine");
     CHECK(chosen("mode=functional") == "clocked: ");
@@ -94,7 +101,6 @@ TEST_CASE("which engine times a run, and why") {
         {"hardware.queue_capacity", "64"},
         {"hardware.tests_units", "3"},
         {"hardware.one_texel_from_map", "true"},
-        {"hardware.height_test", "\"curvature\""},
         {"timing.displacement_map_cache_bytes", "4096"},
         {"timing.normal_map_cache_bytes", "4096"},
         {"timing.summed_height_table_cache_bytes", "4096"},
