@@ -48,8 +48,10 @@ void run_full_split(Simulation& simulation) {
     REQUIRE(p.pass_or_tessellate.counts().finished == finished);
     REQUIRE(p.get_triangle.parts_sent() == parts);
     // No rectangle wraps: four entries each.
+    const HeightTestKind& kind = kind_of(p.registers().formats.height_test);
     const Decisions::Evaluated& evaluated = simulation.decisions.evaluated();
-    REQUIRE(p.height_table.transactions() == 12 * (evaluated.summed_height - evaluated.summed_height_by_codes));
+    REQUIRE(p.height_table.transactions() ==
+            kind.requests * (kind.rectangles ? 4 : 1) * (evaluated.summed_height - evaluated.summed_height_by_codes));
 }
 
 void require_sole_bottleneck(const Simulation& simulation, const Unit* unit) {
@@ -72,6 +74,10 @@ struct Row {
 };
 
 constexpr std::uint64_t splits = (passes - base) / 4;
+const char* const short_edges =
+    "hardware.height_test=curvature tests.curvature_threshold=0 map.width=24 map.height=24 map.address_u=repeat "
+    "map.address_v=repeat tests.tex_coord=false";
+constexpr std::uint64_t short_passes = passes - 18 * (1 + 4);
 // With ports to spare, the first part leaves Get Triangle in cycle 1; the last takes Calculate New P 1, the map 1,
 // Displace Vertex 6, Transform 20, Pass or Tessellate 1, Lighting 4 to come out.
 constexpr std::uint64_t a_part_a_cycle = 1 + parts + 1 + 1 + 6 + 20 + 1 + 4;
@@ -104,11 +110,11 @@ const CaseTable rates(
         // The Normal Test asks for every split that the Generation Test allows: the table is hardly read.
         {"cheap tests first, one port: a part a cycle is what binds", "hardware.test_order=cheap_first", a_part_a_cycle,
          a_part_a_cycle + base* until_on_screen, "get_triangle", parts},
-        // All edges are two texels long or less: three codes each, through ports that Displace Vertex does not use. The
-        // Curvature Test has a cycle more latency than the Summed Height Test.
-        {"a Curvature Test of short edges: 9 cycles a pass",
-         "hardware.height_test=curvature map.width=6 map.height=6 tests.tex_coord=false", fill + 9 * passes + drain + 1,
-         fill + 9 * passes + drain + 1 + base* until_on_screen, "displacement_map_for_tests", 9 * passes},
+        // Edges of eight and four texels read the table, those of the 18 * (16 + 64 + 256) passes below, of two texels and
+        // less, three codes each, through ports that Displace Vertex does not use.
+        {"a Curvature Test, most edges short: 9 cycles a pass", short_edges, 9 * short_passes,
+         9 * short_passes + 3 * (passes - short_passes) + 100 + base* until_on_screen, "displacement_map_for_tests",
+         9 * short_passes},
         // They share the one port: nothing gained but the first triangle's three cycles and one vertex.
         {"three tests units on one port: 36 cycles a pass as before", "hardware.tests_units=3",
          fill_of_three + 36 * passes + drain, fill_of_three + 36 * passes + drain, "summed_height_table", 36 * passes},
