@@ -77,11 +77,10 @@ Illumination::Illumination(const View& view, const Style& style, const RayScene&
 /// Appends to scratch.occluded.
 void Illumination::trace(const Lamp& lamp, const std::vector<ShadingPoint>& points, std::size_t first, std::size_t end,
                          Scratch& scratch) const {
-    scratch.rays.clear();
+    scratch.origins.clear();
     for (std::size_t f = first; f < end; ++f)
-        scratch.rays.push_back({points[scratch.facing[f]].ray_origin, lamp.direction, 0});
-    scene_.occlusions(scratch.rays, scratch.traced);
-    scratch.occluded.insert(scratch.occluded.end(), scratch.traced.begin(), scratch.traced.end());
+        scratch.origins.push_back(points[scratch.facing[f]].ray_origin);
+    scene_.occlusions(scratch.origins, lamp.direction, scratch.occluded);
 }
 
 /// Adds what all points of a flat patch receive alike to `even`, the diffuse light as a linear function of the normal.

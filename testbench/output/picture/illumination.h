@@ -26,9 +26,9 @@ class Illumination {
 
     /// Reusable memory for light(), one per thread.
     struct Scratch {
-        std::vector<Ray> rays;
+        std::vector<glm::vec3> origins;
         std::vector<std::size_t> facing;  // points on the lamp's side
-        std::vector<std::uint8_t> traced, occluded;
+        std::vector<std::uint8_t> occluded;
     };
 
     /// A part of the surface: points that share a sub-pixel position; fast if they are neighbours.

@@ -122,16 +122,23 @@ void RayScene::first_hits(const std::vector<Ray>& rays, std::vector<std::uint32_
     });
 }
 
-void RayScene::occlusions(const std::vector<Ray>& rays, std::vector<std::uint8_t>& occluded) const {
-    occluded.resize(rays.size());
+void RayScene::occlusions(const std::vector<glm::vec3>& origins, const glm::dvec3& direction,
+                          std::vector<std::uint8_t>& occluded) const {
     RTCIntersectContext context = coherent_context();
-    for_each_packet(rays.size(), [&](std::size_t first, std::size_t count, const int* valid) {
-        RTCRay8 packed;
+    RTCRay8 rays{};
+    for (std::size_t lane = 0; lane < packet; ++lane)
+        put({{}, direction}, lane, rays);
+    for_each_packet(origins.size(), [&](std::size_t first, std::size_t count, const int* valid) {
+        for (std::size_t lane = 0; lane < count; ++lane) {
+            const glm::vec3& origin = origins[first + lane];
+            rays.org_x[lane] = origin.x;
+            rays.org_y[lane] = origin.y;
+            rays.org_z[lane] = origin.z;
+            rays.tfar[lane] = std::numeric_limits<float>::infinity();
+        }
+        rtcOccluded8(valid, handles_->scene.get(), &context, &rays);
         for (std::size_t lane = 0; lane < count; ++lane)
-            put(rays[first + lane], lane, packed);
-        rtcOccluded8(valid, handles_->scene.get(), &context, &packed);
-        for (std::size_t lane = 0; lane < count; ++lane)
-            occluded[first + lane] = packed.tfar[lane] < 0;
+            occluded.push_back(rays.tfar[lane] < 0);
     });
 }
 

@@ -28,8 +28,9 @@ class RayScene {
     /// Per ray the first triangle, or nothing. Fast if neighbours in the batch are neighbours in space.
     void first_hits(const std::vector<Ray>& rays, std::vector<std::uint32_t>& triangles) const;
 
-    /// Per ray 1 if a triangle is in its way, else 0.
-    void occlusions(const std::vector<Ray>& rays, std::vector<std::uint8_t>& occluded) const;
+    /// Appends 1 for each origin from which a triangle is in the way, else 0.
+    void occlusions(const std::vector<glm::vec3>& origins, const glm::dvec3& direction,
+                    std::vector<std::uint8_t>& occluded) const;
 
   private:
     struct Handles;

@@ -141,6 +141,14 @@ class Renderer {
     }
 
   private:
+    /// What all rays that meet a triangle need of it.
+    struct Met {
+        std::uint32_t triangle = RayScene::nothing;
+        std::array<glm::dvec3, 3> positions, normals;
+        glm::dvec3 across{0}, flat{0};  // its own normal, and that of unit length
+        Wireframe lines;
+    };
+
     /// Reusable memory for a tile, one per thread.
     struct Tile {
         std::vector<Ray> rays;
@@ -150,12 +158,7 @@ class Renderer {
         std::vector<Light> lights;
         std::vector<glm::dvec3> sums;  // linear light, one plane per style
         Illumination::Scratch scratch;
-        /// A cache of triangles' lines, by number modulo its size: neighbouring pixels hit the same triangles.
-        struct Lines {
-            std::uint32_t triangle = RayScene::nothing;
-            Wireframe lines;
-        };
-        std::array<Lines, 256> lines;
+        std::array<Met, 256> met;  // a cache, by number modulo its size: neighbouring pixels meet the same triangles
     };
 
     /// False if no part of the mesh is visible in it.
@@ -185,7 +188,7 @@ class Renderer {
 
     /// Adds one sample of every pixel in the tile to the sums; false if none hit the mesh.
     bool add_sample(Tile& tile, std::size_t sample, int left, int top, int right, int bottom) const {
-        auto& [rays, at, hits, points, lights, sums, scratch, lines_met] = tile;
+        auto& [rays, at, hits, points, lights, sums, scratch, met] = tile;
         const glm::dvec2 offset = sample_position(sample);
         rays.clear();
         at.clear();
@@ -199,7 +202,7 @@ class Renderer {
         points.clear();
         for (std::size_t i = 0; i < rays.size(); ++i)
             if (hits[i] != RayScene::nothing)
-                points.push_back(shading_point(rays[i], hits[i]));
+                points.push_back(shading_point(rays[i], meet(tile, hits[i])));
         illumination_.light(sample, {points, points.size() == rays.size()}, lights, scratch);
 
         std::size_t point = 0;
@@ -209,30 +212,39 @@ class Renderer {
                     sums[s * rays.size() + i] += paints_[s].background();
                 continue;
             }
-            const Wireframe* lines = nullptr;
-            if (line_width_ > 0) {
-                Tile::Lines& place = lines_met[hits[i] % lines_met.size()];
-                if (place.triangle != hits[i])
-                    place = {hits[i], wireframe_of(hits[i])};
-                lines = &place.lines;
-            }
             for (std::size_t s = 0; s < paints_.size(); ++s)
-                sums[s * rays.size() + i] +=
-                    paints_[s].colour(points[point], lights[point], paints_[s].has_lines() ? lines : nullptr, at[i]);
+                sums[s * rays.size() + i] += paints_[s].colour(
+                    points[point], lights[point], paints_[s].has_lines() ? &meet(tile, hits[i]).lines : nullptr, at[i]);
             ++point;
         }
         return !points.empty();
     }
 
-    ShadingPoint shading_point(const Ray& ray, std::uint32_t index) const {
-        std::array<glm::dvec3, 3> p, n;
+    const Met& meet(Tile& tile, std::uint32_t index) const {
+        Met& place = tile.met[index % tile.met.size()];
+        if (place.triangle == index)
+            return place;
+        place.triangle = index;
+        std::array<glm::dvec3, 3> projected;
         for (std::size_t k = 0; k < 3; ++k) {
-            p[k] = mesh_.positions[mesh_.triangles[index].vertices[k]];
-            n[k] = mesh_.normals[mesh_.triangles[index].vertices[k]];
+            const std::uint32_t vertex = mesh_.triangles[index].vertices[k];
+            place.positions[k] = mesh_.positions[vertex];
+            place.normals[k] = mesh_.normals[vertex];
+            projected[k] = view_.project(mesh_.origin + place.positions[k]);
         }
-        const glm::dvec3 across = glm::cross(p[1] - p[0], p[2] - p[0]);
-        const double facing = -glm::dot(across, ray.direction);
-        const glm::dvec3 flat = glm::normalize(facing < 0 ? -across : across);
+        const auto& p = place.positions;
+        place.across = glm::cross(p[1] - p[0], p[2] - p[0]);
+        place.flat = glm::normalize(place.across);
+        if (line_width_ > 0)
+            place.lines = {projected, line_width_};
+        return place;
+    }
+
+    ShadingPoint shading_point(const Ray& ray, const Met& met) const {
+        const auto& p = met.positions;
+        const auto& n = met.normals;
+        const double facing = -glm::dot(met.across, ray.direction);
+        const glm::dvec3 flat = facing < 0 ? -met.flat : met.flat;
 
         // Möller and Trumbore's barycentric coordinates, kept inside: Embree's own rounding may be a little
         // out.
@@ -248,32 +260,19 @@ class Renderer {
         }
         const std::array<double, 3> b{1 - b1 - b2, b1, b2};
 
-        ShadingPoint result;
-        result.triangle = index;
-        result.weights = {b[0], b[1], b[2]};
-        glm::dvec3 normal(0);
+        glm::dvec3 position(0), normal(0);
         for (std::size_t k = 0; k < 3; ++k) {
-            result.position += b[k] * p[k];
+            position += b[k] * p[k];
             normal += b[k] * n[k];
         }
         const double side = glm::dot(normal, flat) < 0 ? -1 : 1;
         const double length = glm::length(normal);
-        result.normal = length > 0.01 ? normal * (side / length) : flat;
 
         // Hanika, Hacking the Shadow Terminator (Ray Tracing Gems II, 4).
-        glm::dvec3 lifted = result.position;
+        glm::dvec3 lifted = position;
         for (std::size_t k = 0; k < 3; ++k)
-            lifted -= b[k] * std::min(0.0, glm::dot(result.position - p[k], side * n[k])) * side * n[k];
-        result.ray_origin = lifted + clearance_ * flat;
-        return result;
-    }
-
-    Wireframe wireframe_of(std::uint32_t triangle) const {
-        std::array<glm::dvec3, 3> corners;
-        for (std::size_t k = 0; k < 3; ++k)
-            corners[k] =
-                view_.project(mesh_.origin + glm::dvec3(mesh_.positions[mesh_.triangles[triangle].vertices[k]]));
-        return {corners, line_width_};
+            lifted -= b[k] * std::min(0.0, glm::dot(position - p[k], side * n[k])) * side * n[k];
+        return {met.triangle, glm::vec3(lifted + clearance_ * flat), length > 0.01 ? normal * (side / length) : flat};
     }
 
     const RenderMesh& mesh_;

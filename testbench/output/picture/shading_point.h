@@ -7,12 +7,10 @@ namespace tessera {
 /// Where a ray met the mesh, seen from the viewer's side. Positions count from the mesh's origin.
 struct ShadingPoint {
     std::uint32_t triangle = 0;
-    glm::dvec3 weights{0};  ///< of the triangle's corners
-    glm::dvec3 position{0};
-    glm::dvec3 normal{0};  ///< unit, interpolated from N', on the viewer's side
     /// Where rays to the lights begin: outside the flat triangle, on the round surface its normals stand for,
     /// so that a coarse triangle does not shadow itself.
-    glm::dvec3 ray_origin{0};
+    glm::vec3 ray_origin{0};
+    glm::dvec3 normal{0};  ///< unit, interpolated from N', on the viewer's side
 };
 
 }  // namespace tessera
