@@ -3,7 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "modules/datapath/widths.h"
 #include "testbench/common/grouped_digits.h"
@@ -192,9 +194,12 @@ std::string summary(const MachineSetup& setup, const Simulation& simulation, con
                                               ? fmt::format(", highlight alone {}", count(decided.split_by_highlight))
                                               : ""));
     text += row("  wanted, but stopped by",
-                fmt::format("view alone {}, tex coord alone {}, generation alone {}, several {}",
-                            count(decided.stopped_by_view_alone), count(decided.stopped_by_tex_coord_alone),
-                            count(decided.stopped_by_generation_alone), count(decided.stopped_by_several)));
+                fmt::format("view alone {}, tex coord{} alone {}, generation alone {}, several {}",
+                            count(decided.stopped_by_view_alone),
+                            std::array{"", " (half texels)", " (quarter texels)"}.at(
+                                static_cast<std::size_t>(setup.registers.formats.tex_coord_fraction)),
+                            count(decided.stopped_by_tex_coord_alone), count(decided.stopped_by_generation_alone),
+                            count(decided.stopped_by_several)));
     text += work_rows(simulation, mesh);
     text += row("triangle queue",
                 fmt::format("at most {} triangles waiting, {} bits each", count(totals.most_queued), widths.triangle));

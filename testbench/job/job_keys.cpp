@@ -284,7 +284,7 @@ std::vector<KeyTable> declare_keys() {
         key.add("normal_fraction", &Formats::normal_fraction, "bits", within(Limits::normal_fraction), "Normals: fraction bits, at least 2 fewer than normal_bits");
         key.add("texture_integer", &Formats::texture_integer, "bits", within(Limits::texture_integer), "Texture coordinates, unsigned, in texels: integer bits");
         key.add("texture_fraction", &Formats::texture_fraction, "bits", within(Limits::texture_fraction), "Texture coordinates: fraction bits");
-        key.add("tex_coord_fraction", &Formats::tex_coord_fraction, "bits", within(Limits::tex_coord_fraction), "Tex Coord Test: fraction bits of texture coordinates that it compares, at most texture_fraction. 0, the paper's: it ends at texels; 1: at half texels, which a bilinear filter follows where vertices lie off the texels' centres");
+        key.add("tex_coord_fraction", &Formats::tex_coord_fraction, "bits", between(-1, Limits::tex_coord_fraction.most), "Tex Coord Test: fraction bits of texture coordinates that it compares, at most texture_fraction. 0, the paper's: it ends at texels; 1: at half texels; -1: 1 with hardware.displacement_filter = \"bilinear\", whose heights change within texels, else 0");
         key.add("displacement_bits", &Formats::displacement_bits, "bits", within(Limits::displacement_bits), "Displacement map, unsigned");
         key.add("summed_height_bits", &Formats::summed_height_bits, "bits", zero_or_between(Limits::summed_height_bits.least, Limits::summed_height_bits.most), "Summed Height Table, unsigned; 0: the narrowest of 32, 40, 48 the mesh needs");
         key.add("screen_bits", &Formats::screen_bits, "bits", within(Limits::screen_bits), "Screen positions, signed, in pixels");

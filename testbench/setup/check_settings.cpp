@@ -140,6 +140,8 @@ void check_ranges(const SceneSettings& settings, Faults& faults) {
     bits("formats.normal_fraction", f.normal_fraction, Limits::normal_fraction);
     bits("formats.texture_integer", f.texture_integer, Limits::texture_integer);
     bits("formats.texture_fraction", f.texture_fraction, Limits::texture_fraction);
+    if (f.tex_coord_fraction != -1)
+        bits("formats.tex_coord_fraction", f.tex_coord_fraction, Limits::tex_coord_fraction);
     bits("formats.displacement_bits", f.displacement_bits, Limits::displacement_bits);
     if (f.summed_height_bits != 0)
         bits("formats.summed_height_bits", f.summed_height_bits, Limits::summed_height_bits);

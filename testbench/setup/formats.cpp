@@ -2,6 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cstdint>
+
 #include "modules/datapath/all_intermediates.h"
 #include "testbench/common/error.h"
 
@@ -22,9 +25,16 @@ void check_intermediates(const datapath::Formats& formats) {
     });
 }
 
+/// Between texels heights change all the way: from texels' borders midpoints reach the centres only in half texels.
+std::int64_t tex_coord_fraction(const FormatSettings& settings, datapath::MapFilter filter) {
+    if (settings.tex_coord_fraction >= 0)
+        return settings.tex_coord_fraction;
+    return filter == datapath::MapFilter::bilinear ? std::min<std::int64_t>(1, settings.texture_fraction) : 0;
+}
+
 }  // namespace
 
-datapath::Formats make_formats(const FormatSettings& settings) {
+datapath::Formats make_formats(const FormatSettings& settings, datapath::MapFilter filter) {
     const auto bits = [](std::int64_t value) { return static_cast<int>(value); };
     datapath::Formats formats;
     formats.position = Format::make_signed(bits(settings.position_bits), bits(settings.position_fraction));
@@ -32,7 +42,8 @@ datapath::Formats make_formats(const FormatSettings& settings) {
     formats.normal = Format::make_signed(bits(settings.normal_bits), bits(settings.normal_fraction));
     formats.texture = Format::make_unsigned(bits(settings.texture_integer + settings.texture_fraction) + 1,
                                             bits(settings.texture_fraction));
-    formats.tex_coord_fraction = bits(settings.tex_coord_fraction);
+    formats.tex_coord_fraction = bits(tex_coord_fraction(settings, filter));
+    formats.filter = filter;
     formats.displacement = Format::make_unsigned(bits(settings.displacement_bits), bits(settings.displacement_bits));
     formats.summed_height =
         Format::make_unsigned(bits(settings.summed_height_bits == 0 ? 32 : settings.summed_height_bits), 0);

@@ -155,7 +155,7 @@ PreparedScene prepare_model(const SceneSettings& settings, const BaseMesh& mesh,
     datapath::Registers& registers = scene.registers;
     datapath::Formats& formats = registers.formats;
     std::uint64_t& saturated = scene.input_saturations.registers;
-    formats = make_formats(settings.formats);
+    formats = make_formats(settings.formats, settings.filter);
     scene.map = quantise_map(map, formats.displacement.bits, settings.address_u, settings.address_v);
     registers.map = scene.map.geometry;
 
@@ -195,7 +195,6 @@ PreparedScene prepare_model(const SceneSettings& settings, const BaseMesh& mesh,
     formats.families = settings.families;
     formats.final_edges = settings.final_edges && !formats.families;
     formats.codes = settings.one_texel_from_map && formats.height_test == datapath::HeightTest::summed_height;
-    formats.filter = settings.filter;
     if (settings.tests.highlight && !set_highlight_test(settings.tests, towards_light(settings.light), view.backward,
                                                         formats, registers.tests, saturated))
         scene.remarks.emplace_back(

@@ -79,7 +79,7 @@ struct FormatSettings {
     std::int64_t position_bits = 32, position_fraction = 16;
     std::int64_t normal_bits = 16, normal_fraction = 14;
     std::int64_t texture_integer = 12, texture_fraction = 12;
-    std::int64_t tex_coord_fraction = 0;  ///< of these, what the Tex Coord Test compares
+    std::int64_t tex_coord_fraction = -1;  ///< what the Tex Coord Test compares; -1: 1 with a bilinear filter, else 0
     std::int64_t displacement_bits = 16;
     std::int64_t summed_height_bits = 0;  ///< 0: the narrowest of 32, 40, 48 the mesh needs
     std::int64_t screen_bits = 24, screen_fraction = 8;

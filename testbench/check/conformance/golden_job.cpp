@@ -43,6 +43,13 @@ glm::dvec2 texel_size(const BaseMesh& mesh, const HeightMap& map, double scale) 
     return scale * glm::dvec2(mesh.texture_scale.mean_u, mesh.texture_scale.mean_v) / glm::dvec2(map.width, map.height);
 }
 
+/// Whole texels or, between whose centres heights change, halves of those that texture coordinates can halve.
+double texel_parts(const Job::Formats& formats, golden::Filter filter) {
+    if (formats.tex_coord_fraction >= 0)
+        return std::ldexp(1.0, static_cast<int>(formats.tex_coord_fraction));
+    return filter == golden::Filter::bilinear && formats.texture_fraction > 0 ? 2 : 1;
+}
+
 golden::Scene make_scene(const Job& job, const BaseMesh& mesh, const HeightMap& map, const ModelScale& model_scale) {
     golden::Scene scene;
     const Job::Camera& camera = job.camera;
@@ -79,7 +86,7 @@ golden::Scene make_scene(const Job& job, const BaseMesh& mesh, const HeightMap& 
                                                                                   : golden::Diagonal::shorter;
     scene.filter =
         job.hardware.displacement_filter == MapFilter::bilinear ? golden::Filter::bilinear : golden::Filter::nearest;
-    scene.texel_parts = std::ldexp(1.0, static_cast<int>(job.formats.tex_coord_fraction));
+    scene.texel_parts = texel_parts(job.formats, scene.filter);
     scene.light = vector(job.hardware.light);
     return scene;
 }

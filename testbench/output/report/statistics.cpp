@@ -57,6 +57,7 @@ Collector format_figures(const MachineSetup& setup) {
     c.add("model_scale", setup.model_scale.scale, "world/model", "world unit of the machine per unit of the model");
     c.add("normal_bits", formats.normal.bits, "bit", "N, T, N', N's, normal map, one component");
     c.add("texture_bits", formats.texture.bits, "bit", "u or v, the border bit included");
+    c.add("tex_coord_fraction", formats.tex_coord_fraction, "bit", "of u or v, what the Tex Coord Test compares");
     c.add("displacement_bits", formats.displacement.bits, "bit", "d");
     c.add("summed_height_bits", formats.summed_height.bits, "bit",
           setup.summed_height_bits_chosen ? "SAT entry, chosen for this mesh" : "SAT entry, as configured");

@@ -124,7 +124,7 @@ void choose_mesh_options(Random& random, Job& job) {
     if (random.coin())
         job.hardware.displacement_filter = MapFilter::bilinear;
     job.formats.tex_coord_fraction =
-        std::min(job.formats.texture_fraction, random.one_of<std::int64_t>({0, 0, 0, 1, 2}));
+        std::min(job.formats.texture_fraction, random.one_of<std::int64_t>({-1, -1, 0, 1, 2}));
     if (random.chance(75))
         return;
     if (random.chance(40)) {

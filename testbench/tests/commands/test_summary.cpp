@@ -48,11 +48,14 @@ TEST_CASE("summary: counts of the machine, each in its place") {
     CHECK(value_of(text, "cycles") == "no such row");
     CHECK(value_of(text, "golden model") == "no such row");
 
+    run.setup.registers.formats.tex_coord_fraction = 1;
     run.setup.registers.tests.highlight_test = false;
     run.setup.base_triangles.resize(1);  // whose vertices would be three of those made
     const std::string other = summary(run.setup, run.simulation, {}, {}, 0.5);
     CHECK(value_of(other, "triangles") == "1 base -> 9 finished, 2 culled");
     CHECK(value_of(other, "  split by") == "normal alone 10, summed height alone 4, both 1");
+    CHECK(value_of(other, "  wanted, but stopped by") ==
+          "view alone 3, tex coord (half texels) alone 4, generation alone 1, several 1");
     CHECK(value_of(other, "distinct edges") == "0, each tested 0.0 times on average");
     CHECK(value_of(other, "distinct vertices") == "0; 33 computed, 13 of them discarded, and 15 normals transformed");
 }

@@ -117,6 +117,8 @@ TEST_CASE("a scene that cannot be is refused, with the value and what to do") {
              s.settings.camera.up = {0, 2, -1.5};
          }},
         {"`formats.position_bits` = 40: must be 8 to 32", [](Scene& s) { s.settings.formats.position_bits = 40; }},
+        {"`formats.tex_coord_fraction` = 3: must be 0 to 2",
+         [](Scene& s) { s.settings.formats.tex_coord_fraction = 3; }},
         {"`tests.normal_threshold` is not set, or not a number",
          [](Scene& s) { s.settings.tests.normal_threshold = nan; }},
         {"`tests.generation_limit` = 9, but `formats.generation_bits` = 3",

@@ -15,6 +15,7 @@
 #include "testbench/check/conformance/end_to_end.h"
 #include "testbench/check/conformance/setup_check.h"
 #include "testbench/common/parallel.h"
+#include "testbench/job/job_choices.h"
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/simulation.h"
 #include "testbench/output/report/conformance_report.h"
@@ -391,6 +392,32 @@ TEST_CASE("a mistake of every register is tried") {
         const auto other = under.find(field.name);
         CHECK(tried.count(other == under.end() ? field.name : other->second) == 1);
     });
+}
+
+TEST_CASE("what the Tex Coord Test compares is the job's or follows from the filter, and golden judges it") {
+    struct Case {
+        MapFilter filter;
+        std::int64_t asked, texture_fraction;
+        int expected;
+    };
+    constexpr std::int64_t chosen = -1;
+    for (const Case& c : {Case{MapFilter::nearest, chosen, 12, 0}, Case{MapFilter::nearest, 1, 12, 1},
+                          Case{MapFilter::bilinear, chosen, 12, 1}, Case{MapFilter::bilinear, chosen, 1, 1},
+                          Case{MapFilter::bilinear, chosen, 0, 0}, Case{MapFilter::bilinear, 0, 12, 0},
+                          Case{MapFilter::bilinear, 2, 12, 2}}) {
+        INFO(name_of(c.filter) << ", " << c.asked << " of " << c.texture_fraction << " bits");
+        Job job;
+        job.map.width = job.map.height = 20;
+        job.hardware.displacement_filter = c.filter;
+        job.formats.tex_coord_fraction = c.asked;
+        job.formats.texture_fraction = c.texture_fraction;
+        CheckedRun run{job};
+        CHECK(run.check().passed());
+        int& fraction = run.setup.registers.formats.tex_coord_fraction;
+        CHECK(fraction == c.expected);
+        fraction = c.expected == 0 ? 1 : 0;
+        run.require_noticed(run.setup, "tex_coord_fraction");
+    }
 }
 
 TEST_CASE("the set-up of a job of other formats, with bias, highlight and a map that repeats, is right") {
