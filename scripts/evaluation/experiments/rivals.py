@@ -23,15 +23,18 @@ class Surface(NamedTuple):
     job: str
     settings: dict
     quads: tuple  # of a mesh that ends at the map's border, for a GPU
+    pixels: tuple  # of a part of an edge, for a GPU, until its error is as small as all tests' with SHOWN triangles
     unit: str  # of errors
     full: float  # the displacement's scale in this unit
     per_map_unit: float
 
 
 SURFACES = {
-    "Crater Lake": Surface("crater_lake_rank", LATTICE, (3, 4), "m", 2478, 1),
-    "half torus": Surface(None, {**LATTICE, "mesh.spacing": 64, "map.width": 256, "map.height": 256}, (4, 4), "‰", 1000, 1000),
-    "head": Surface(None, {**LATTICE, "mesh.spacing": 128, "map.source": "file", "map.file": HEAD}, (4, 4), "‰", 1000, 1000 / 65535)}
+    "Crater Lake": Surface("crater_lake_rank", LATTICE, (3, 4), (36, 26, 16, 11), "m", 2478, 1),
+    "half torus": Surface(None, {**LATTICE, "mesh.spacing": 64, "map.width": 256, "map.height": 256}, (8, 8),
+                          (36, 26, 16, 11, 5, 3, 2.2), "‰", 1000, 1000),
+    "head": Surface(None, {**LATTICE, "mesh.spacing": 128, "map.source": "file", "map.file": HEAD}, (8, 8),
+                    (36, 26, 16, 11, 5, 3), "‰", 1000, 1000 / 65535)}
 BUDGETS, SHOWN = (1200, 4800, 9600), 4800
 BESIDE, SUMMED, RANK, BOUND = "Normal Test or ", "Summed Height Test", "8-bit Rank Test", "Bound Test"
 RIVALS = {"mipmap": {"tests.mipmap_filter": "mean"}, "maximal mipmap": {"tests.mipmap_filter": "maximum"}}
@@ -44,7 +47,6 @@ CURVES = {BESIDE + SUMMED: ("normal,summed_height", {}),  # the paper's
 ALONE = {SUMMED: ("summed_height", {}), **{name: ("mipmap", filtered) for name, filtered in RIVALS.items()}}
 TESTS = {**CURVES, **ALONE}
 PATCHES = "factor an edge, as on GPUs"
-PIXELS = (36, 26, 16, 11)  # of a part of an edge
 UNSPLIT = {"hardware.height_test": "summed_height", "hardware.triangulation": "shorter", "tests.normal": False, "tests.summed_height": False}
 REFERENCES = {"rtin": "RTIN", "hmm": "greedy insertion"}
 FITTED = (0.0885, 0.039, 0.0158)
@@ -106,7 +108,7 @@ def add_patches(study, bases):
     runs = {surface: [] for surface in bases}
     for surface, base in bases.items():
         length = screen_lengths(base.mesh.positions, base.job["camera"])
-        for pixels in PIXELS:
+        for pixels in SURFACES[surface].pixels:
             path = study.store.folder.parent / "meshes" / f"{label(surface, pixels)}.obj"
             write_obj(path, base.mesh, length, pixels)
             runs[surface].append(study.run(label(surface, "patches", pixels), SURFACES[surface].job, {
@@ -126,7 +128,7 @@ def measure(study):
                for heights in ("given", "fitted")] for rank in FITTED]
     points = [[study.run(f"points_{threshold}_{which}", "crater_lake_24", {
         "tests.view": False, "tests.normal": False, "tests.generation_limit": 15, "tests.summed_height_threshold": threshold,
-        "hardware.displacement_filter": which}) for which in ("nearest", "bilinear")] for threshold in POINTS]
+        "hardware.displacement_filter": which, "formats.tex_coord_fraction": 0}) for which in ("nearest", "bilinear")] for threshold in POINTS]
     yield
     timed = {test: [study.run(label("timed", test, design), SURFACES["Crater Lake"].job, {
         **LATTICE, **settings_of(test), **found_settings(tuned["Crater Lake", test, SHOWN]), "mode": "timed", "hardware.design": design})
