@@ -8,6 +8,8 @@
 #include <map>
 #include <set>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "modules/datapath/map_entry.h"
@@ -395,29 +397,19 @@ TEST_CASE("a mistake of every register is tried") {
 }
 
 TEST_CASE("what the Tex Coord Test compares is the job's or follows from the filter, and golden judges it") {
-    struct Case {
-        MapFilter filter;
-        std::int64_t asked, texture_fraction;
-        int expected;
-    };
-    constexpr std::int64_t chosen = -1;
-    for (const Case& c : {Case{MapFilter::nearest, chosen, 12, 0}, Case{MapFilter::nearest, 1, 12, 1},
-                          Case{MapFilter::bilinear, chosen, 12, 1}, Case{MapFilter::bilinear, chosen, 1, 1},
-                          Case{MapFilter::bilinear, chosen, 0, 0}, Case{MapFilter::bilinear, 0, 12, 0},
-                          Case{MapFilter::bilinear, 2, 12, 2}}) {
-        INFO(name_of(c.filter) << ", " << c.asked << " of " << c.texture_fraction << " bits");
-        Job job;
-        job.map.width = job.map.height = 20;
-        job.hardware.displacement_filter = c.filter;
-        job.formats.tex_coord_fraction = c.asked;
-        job.formats.texture_fraction = c.texture_fraction;
-        CheckedRun run{job};
-        CHECK(run.check().passed());
-        int& fraction = run.setup.registers.formats.tex_coord_fraction;
-        CHECK(fraction == c.expected);
-        fraction = c.expected == 0 ? 1 : 0;
-        run.require_noticed(run.setup, "tex_coord_fraction");
-    }
+    constexpr MapFilter nearest = MapFilter::nearest, bilinear = MapFilter::bilinear;
+    const auto [filter, asked, texture_fraction, expected] =
+        GENERATE(std::tuple(nearest, -1, 12, 0), std::tuple(nearest, 1, 12, 1), std::tuple(bilinear, -1, 12, 1),
+                 std::tuple(bilinear, -1, 0, 0), std::tuple(bilinear, 0, 12, 0), std::tuple(bilinear, 2, 12, 2));
+    Job job;
+    job.map.width = job.map.height = 20;
+    job.hardware.displacement_filter = filter;
+    job.formats.tex_coord_fraction = asked;
+    job.formats.texture_fraction = texture_fraction;
+    CheckedRun run{job};
+    CHECK(run.check().passed());
+    CHECK(std::exchange(run.setup.registers.formats.tex_coord_fraction, expected == 0 ? 1 : 0) == expected);
+    run.require_noticed(run.setup, "tex_coord_fraction");
 }
 
 TEST_CASE("the set-up of a job of other formats, with bias, highlight and a map that repeats, is right") {
