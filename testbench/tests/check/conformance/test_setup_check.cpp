@@ -8,8 +8,6 @@
 #include <map>
 #include <set>
 #include <string>
-#include <tuple>
-#include <utility>
 #include <vector>
 
 #include "modules/datapath/map_entry.h"
@@ -17,54 +15,17 @@
 #include "testbench/check/conformance/end_to_end.h"
 #include "testbench/check/conformance/setup_check.h"
 #include "testbench/common/parallel.h"
-#include "testbench/job/job_choices.h"
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/simulation.h"
 #include "testbench/output/report/conformance_report.h"
+#include "testbench/tests/check/conformance/setup_run.h"
+#include "testbench/tests/support/case_table.h"
 
 using namespace tessera;
 using Catch::Contains;
+using testing::SetupRun;
 
 namespace {
-
-/// A job's run as the program makes it, in functional mode, up to the set-up check.
-struct CheckedRun {
-    explicit CheckedRun(const Job& job) : CheckedRun(job, load_mesh(job), load_map(job)) {}
-    CheckedRun(const Job& job, const BaseMesh& its_mesh, const HeightMap& its_map)
-        : mesh(its_mesh),
-          map(its_map),
-          resolved(resolve_job(functional(job), mesh, map).job),
-          setup(make_setup(resolved, mesh, map)),
-          golden(resolved, mesh, map, setup.model_scale, setup),
-          simulation(setup, 1000000) {
-        REQUIRE(simulation.run().empty());
-    }
-
-    static Job functional(Job job) {
-        job.mode = Mode::functional;
-        return job;
-    }
-    SetupResult check() { return check_setup(setup, golden, simulation); }
-
-    /// The verdict on another set-up, with the memories as they are.
-    void require_noticed(const MachineSetup& wrong, const std::string& name) {
-        const SetupResult result = check_setup(wrong, golden, simulation);
-        INFO(name << ": " << result.first_wrong);
-        CHECK(result.wrong() > 0);
-        CHECK_THAT(result.first_wrong, Contains(name));
-        Checks checks;
-        checks.setup = result;
-        CHECK_FALSE(checks.passed());
-        CHECK_THAT(conformance_text(checks), Contains(result.first_wrong) && Contains("Set-up: FAILED"));
-    }
-
-    BaseMesh mesh;
-    HeightMap map;
-    Job resolved;
-    MachineSetup setup;
-    GoldenJob golden;
-    Simulation simulation;
-};
 
 struct Mistake {
     std::string name;  // as the check names it
@@ -269,7 +230,7 @@ void add_to_entry(Socket& socket, const datapath::TableLayout& layout, std::uint
 }  // namespace
 
 TEST_CASE("one wrong register, base vertex or table entry fails the default job") {
-    CheckedRun run{Job{}};
+    SetupRun run{Job{}};
     const SetupResult right = run.check();
     INFO(right.first_wrong);
     REQUIRE(right.passed());
@@ -308,7 +269,7 @@ TEST_CASE("one wrong register or table entry of a Curvature Test fails its job")
     Job job;
     job.hardware.height_test = HeightTest::curvature;
     job.map.width = job.map.height = 60;
-    CheckedRun run{job};
+    SetupRun run{job};
     const SetupResult right = run.check();
     INFO(right.first_wrong);
     REQUIRE(right.passed());
@@ -344,7 +305,7 @@ TEST_CASE("one wrong register or table entry of a Mipmap Test fails its job") {
     job.tests.mipmap_filter = MipmapFilter::maximum;
     job.map.width = 60;
     job.map.height = 37;
-    CheckedRun run{job};
+    SetupRun run{job};
     const SetupResult right = run.check();
     INFO(right.first_wrong);
     REQUIRE(right.passed());
@@ -372,7 +333,7 @@ TEST_CASE("one wrong fitted height fails its job") {
     Job job;
     job.map.heights = MapHeights::fitted;
     job.map.width = job.map.height = 60;
-    CheckedRun run{job};
+    SetupRun run{job};
     REQUIRE(run.check().passed());
     REQUIRE(run.setup.heights() != run.setup.map.codes);
     add_to_entry(run.simulation.host.displacement_map, run.setup.registers.displacement_map, 30, 30, 0, 1);
@@ -396,21 +357,38 @@ TEST_CASE("a mistake of every register is tried") {
     });
 }
 
-TEST_CASE("what the Tex Coord Test compares is the job's or follows from the filter, and golden judges it") {
-    constexpr MapFilter nearest = MapFilter::nearest, bilinear = MapFilter::bilinear;
-    const auto [filter, asked, texture_fraction, expected] =
-        GENERATE(std::tuple(nearest, -1, 12, 0), std::tuple(nearest, 1, 12, 1), std::tuple(bilinear, -1, 12, 1),
-                 std::tuple(bilinear, -1, 0, 0), std::tuple(bilinear, 0, 12, 0), std::tuple(bilinear, 2, 12, 2));
-    Job job;
-    job.map.width = job.map.height = 20;
-    job.hardware.displacement_filter = filter;
-    job.formats.tex_coord_fraction = asked;
-    job.formats.texture_fraction = texture_fraction;
-    CheckedRun run{job};
-    CHECK(run.check().passed());
-    CHECK(std::exchange(run.setup.registers.formats.tex_coord_fraction, expected == 0 ? 1 : 0) == expected);
-    run.require_noticed(run.setup, "tex_coord_fraction");
-}
+namespace {
+
+struct TexCoordRow {
+    std::string name;
+    MapFilter filter;
+    std::int64_t asked, texture_fraction;
+    int expected;
+};
+
+const testing::CaseTable tex_coord_fractions("what the Tex Coord Test compares, judged by golden: ",
+                                             {TexCoordRow{"nearest, whole texels", MapFilter::nearest, -1, 12, 0},
+                                              {"nearest, the job's half texels", MapFilter::nearest, 1, 12, 1},
+                                              {"bilinear, half texels", MapFilter::bilinear, -1, 12, 1},
+                                              {"bilinear, half texels of one bit", MapFilter::bilinear, -1, 1, 1},
+                                              {"bilinear, whole texels of no bit", MapFilter::bilinear, -1, 0, 0},
+                                              {"bilinear, the job's whole texels", MapFilter::bilinear, 0, 12, 0},
+                                              {"bilinear, the job's quarter texels", MapFilter::bilinear, 2, 12, 2}},
+                                             [](const TexCoordRow& row) {
+                                                 Job job;
+                                                 job.map.width = job.map.height = 20;
+                                                 job.hardware.displacement_filter = row.filter;
+                                                 job.formats.tex_coord_fraction = row.asked;
+                                                 job.formats.texture_fraction = row.texture_fraction;
+                                                 SetupRun run{job};
+                                                 CHECK(run.check().passed());
+                                                 int& fraction = run.setup.registers.formats.tex_coord_fraction;
+                                                 CHECK(fraction == row.expected);
+                                                 fraction = row.expected == 0 ? 1 : 0;
+                                                 run.require_noticed(run.setup, "tex_coord_fraction");
+                                             });
+
+}  // namespace
 
 TEST_CASE("the set-up of a job of other formats, with bias, highlight and a map that repeats, is right") {
     Job job;
@@ -435,7 +413,7 @@ TEST_CASE("the set-up of a job of other formats, with bias, highlight and a map 
     job.formats.texture_fraction = 5;
     job.hardware.culling = Culling::back;
     job.hardware.triangulation = Triangulation::second;
-    CheckedRun run{job};
+    SetupRun run{job};
     const SetupResult result = run.check();
     INFO(result.first_wrong);
     CHECK(result.passed());
@@ -474,7 +452,7 @@ TEST_CASE("a base triangle that collapses in the formats is left out, any other 
     mesh.vertices.push_back(moved);
     const auto last = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
     mesh.triangles.insert(mesh.triangles.begin() + 3, {corners[0], last, corners[1]});
-    CheckedRun run{job, mesh, load_map(job)};
+    SetupRun run{job, mesh, load_map(job)};
     const SetupResult result = run.check();
     INFO(result.first_wrong);
     CHECK(result.passed());
@@ -485,7 +463,7 @@ TEST_CASE("a base triangle that collapses in the formats is left out, any other 
 }
 
 TEST_CASE("a model scale that is no power of two, or too large, is not sound") {
-    CheckedRun run{Job{}};
+    SetupRun run{Job{}};
     ModelScale three = run.setup.model_scale;
     three.scale *= 3;
     CHECK_THAT(check_setup(run.setup, GoldenJob(run.resolved, run.mesh, run.map, three), run.simulation).first_wrong,
@@ -502,7 +480,7 @@ TEST_CASE("golden's own run is judged: by its triangles, by the surfaces' distan
     job.tests.generation_limit = 4;
     job.displacement.scale = 0.5;
     job.displacement.bias = -0.2;
-    CheckedRun run{job};
+    SetupRun run{job};
     const SetupResult checked = run.check();
     const auto compare = [&](const EmittedMesh& mesh, double allowed) {
         return GoldenRun(run.setup, run.golden, checked.base_triangles).compare(mesh, allowed);
@@ -587,7 +565,7 @@ TEST_CASE("on a cylinder rounding moves normals, too, and they turn") {
     job.tests.generation_limit = 4;
     job.displacement.scale = 0.5;
     job.displacement.bias = -0.2;
-    CheckedRun run{job};
+    SetupRun run{job};
     const SetupResult checked = run.check();
     const EndToEndResult result =
         GoldenRun(run.setup, run.golden, checked.base_triangles).compare(run.simulation.monitor.mesh, 1);
