@@ -12,8 +12,8 @@
 
 namespace tessera {
 
-/// A memory that holds one table, or the second side of one: a dual-port memory has two sides, each with ports, a queue and
-/// figures of its own, so that neither side's readers wait for the other's. The bits are there once.
+/// A memory that holds one table, or the second side of one: a dual-port memory has two sides, each with ports, a queue
+/// and figures of its own, so that neither side's readers wait for the other's. The bits are there once.
 ///
 /// Address map: [layout.base, layout.base + layout.bytes()); entry (x, y) at layout.address(x, y), little endian.
 /// Off chip it reaches to the end of its last line. Read by units, written only by the host's debug transport before

@@ -4,8 +4,8 @@
 
 namespace tessera::schedule {
 
-/// The table entries that a unit read for one part of a triangle: one to three requests, one after another, all to one of
-/// its memories.
+/// The table entries that a unit read for one part of a triangle: one to three requests, one after another, all to one
+/// of its memories.
 struct PartReads {
     static constexpr unsigned most_requests = 3;
     static constexpr unsigned most_entries = 27;
