@@ -128,7 +128,8 @@ def measure(study):
                for heights in ("given", "fitted")] for rank in FITTED]
     points = [[study.run(f"points_{threshold}_{which}", "crater_lake_24", {
         "tests.view": False, "tests.normal": False, "tests.generation_limit": 15, "tests.summed_height_threshold": threshold,
-        "hardware.displacement_filter": which, "formats.tex_coord_fraction": 0}) for which in ("nearest", "bilinear")] for threshold in POINTS]
+        "hardware.displacement_filter": which, "formats.tex_coord_fraction": 0}) for which in ("nearest", "bilinear")]
+        for threshold in POINTS]
     yield
     timed = {test: [study.run(label("timed", test, design), SURFACES["Crater Lake"].job, {
         **LATTICE, **settings_of(test), **found_settings(tuned["Crater Lake", test, SHOWN]), "mode": "timed", "hardware.design": design})
