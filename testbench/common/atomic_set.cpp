@@ -58,7 +58,8 @@ class Moves {
     /// What stands at `to` is kept as `aside`.
     bool replace(const fs::path& from, const fs::path& to, const fs::path& aside) {
         const bool kept = ::link(to.c_str(), aside.c_str()) == 0;
-        if (!kept && errno != ENOENT && errno != EPERM && errno != EOPNOTSUPP)  // nothing there; no links here
+        // Nothing there; put aside, and another run's stands there since; no links on this file system.
+        if (!kept && errno != ENOENT && errno != EEXIST && errno != EPERM && errno != EOPNOTSUPP)
             return false;
         return move(from, to, kept ? Move{aside, to} : Move{to, from});
     }
