@@ -179,19 +179,13 @@ TEST_CASE("hostile pieces of TOML") {
 }
 
 TEST_CASE("a dumped job cut at every byte") {
-    const std::string dump = dump_job(Job{});
-    for (std::size_t length = 0; length <= dump.size(); ++length) {
-        survives(dump.substr(0, length));
+    const std::string bare = bare_dump(Job{});
+    for (std::size_t length = 0; length <= bare.size(); ++length) {
+        survives(bare.substr(0, length));
     }
 }
 
 TEST_CASE("a dumped job with every byte changed") {
-    const std::string dump = dump_job(Job{});
-    for (std::size_t i = 0; i < dump.size(); ++i) {
-        std::string changed = dump;
-        changed[i] = static_cast<char>(~static_cast<unsigned char>(changed[i]));
-        survives(changed);
-    }
     const std::string bare = bare_dump(Job{});
     REQUIRE(same_settings(parse_job(bare, "bare.toml"), Job{}));
     for (std::size_t i = 0; i < bare.size(); ++i) {
