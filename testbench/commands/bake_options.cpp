@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "testbench/commands/parse_side.h"
+#include "testbench/commands/option_values.h"
 #include "testbench/setup/height_map.h"
 
 namespace tessera {
@@ -50,8 +50,8 @@ BakeRequest BakeOptions::request() const {
     request.output = output_;
     request.format = format_of(request.output);
     const std::size_t by = size_.find('x');
-    request.width = parse_side(size_.substr(0, by));
-    request.height = by == std::string::npos ? -1 : parse_side(size_.substr(by + 1));
+    request.width = parse_number(size_.substr(0, by));
+    request.height = by == std::string::npos ? -1 : parse_number(size_.substr(by + 1));
     const auto allowed = [](int side) { return side >= 1 && side <= largest_map_side; };
     if (!allowed(request.width) || !allowed(request.height))
         throw InputError(

@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "testbench/commands/parse_side.h"
+#include "testbench/commands/option_values.h"
 
 namespace tessera {
 
@@ -31,8 +31,8 @@ PictureView view_of(const std::string& name) {
 
 void apply_size(const std::string& text, PictureOptions& picture) {
     const std::size_t by = text.find('x');
-    picture.width = parse_side(text.substr(0, by));
-    picture.height = by == std::string::npos ? 0 : parse_side(text.substr(by + 1));
+    picture.width = parse_number(text.substr(0, by));
+    picture.height = by == std::string::npos ? 0 : parse_number(text.substr(by + 1));
     const auto allowed = [](int side) { return side >= least_picture_side && side <= most_picture_side; };
     if (!allowed(picture.width) || !(by == std::string::npos || allowed(picture.height)))
         throw InputError(

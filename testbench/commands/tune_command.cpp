@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <limits>
 #include <optional>
 #include <string_view>
 
 #include "testbench/commands/load_job.h"
+#include "testbench/commands/option_values.h"
 #include "testbench/commands/output_folder.h"
 #include "testbench/commands/progress.h"
 #include "testbench/commands/run_files.h"
@@ -33,14 +33,6 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t largest_base_for_error = 2048;
 constexpr int most_rounds = 20;
-
-/// A positive whole number; 0 for anything else.
-std::int64_t number_in(const std::string& text) {
-    const bool digits = !text.empty() && text.size() <= 6 && std::all_of(text.begin(), text.end(), [](char c) {
-        return std::isdigit(static_cast<unsigned char>(c)) != 0;
-    });
-    return digits ? std::stol(text) : 0;
-}
 
 /// Which tests are searched: the paper's, a Rank or Bound Test, or first one and then the other.
 struct Searched {
@@ -74,8 +66,8 @@ void add_grid(const std::string& grid, const TuneRequest& request, const Searche
     }
     const std::string lattice = "lattice";
     if (grid.rfind(lattice, 0) == 0) {
-        const std::int64_t spacing = number_in(grid.substr(lattice.size()));
-        if (spacing == 0 || (spacing & (spacing - 1)) != 0 || spacing > std::min(map.width, map.height))
+        const std::int64_t spacing = parse_number(grid.substr(lattice.size()));
+        if (spacing < 1 || (spacing & (spacing - 1)) != 0 || spacing > std::min(map.width, map.height))
             refuse(fmt::format("a lattice's spacing is a power of two of at most {} texels, as in lattice32",
                                std::min(map.width, map.height)));
         for (const bool alternate : {false, true})
@@ -96,10 +88,10 @@ void add_grid(const std::string& grid, const TuneRequest& request, const Searche
     BaseChoice plane;
     plane.kind = BaseChoice::Kind::plane;
     if (x != std::string::npos) {
-        plane.columns = number_in(grid.substr(0, x));
-        plane.rows = number_in(grid.substr(x + 1));
+        plane.columns = parse_number(grid.substr(0, x));
+        plane.rows = parse_number(grid.substr(x + 1));
     }
-    if (plane.columns == 0 || plane.rows == 0)
+    if (plane.columns < 1 || plane.rows < 1)
         refuse("expected auto, COLUMNSxROWS as in 16x22, or latticeSPACING as in lattice32");
     if (!tests.paper)
         refuse("ranks need a lattice: auto, or latticeSPACING as in lattice32");

@@ -8,17 +8,12 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "testbench/commands/option_values.h"
 #include "testbench/job/job_choices.h"
 
 namespace tessera {
 
 namespace {
-
-constexpr unsigned most_jobs = 64;
-
-void refuse(const std::string& what) {
-    throw InputError(what + "; see `tessera tune --help`");
-}
 
 /// Checks the text: the conversion would turn a number beyond 64 bits into another one.
 std::string triangles_complaint(const std::string& text) {
@@ -67,21 +62,23 @@ void TuneOptions::add_to(CLI::App& tune) {
 TuneOrder TuneOptions::order() const {
     TuneOrder order = order_;
     if (job_given_->count() > 0 && order.job_file.empty())
-        refuse("JOB is empty: name a job file, or leave it out for the default job");
+        refuse_usage("tune", "JOB is empty: name a job file, or leave it out for the default job");
     if ((triangles_given_->count() > 0) == (error_given_->count() > 0))
-        refuse("say what to tune for: either --triangles N or --error E");
+        refuse_usage("tune", "say what to tune for: either --triangles N or --error E");
     if (triangles_given_->count() > 0 && order.triangles == 0)
-        refuse("--triangles 0: a mesh has at least one");
+        refuse_usage("tune", "--triangles 0: a mesh has at least one");
     if (error_given_->count() > 0 && !(order.error > 0 && std::isfinite(order.error)))
-        refuse(fmt::format("--error {}: must be above 0", order.error));
+        refuse_usage("tune", fmt::format("--error {}: must be above 0", order.error));
     if (metric_ != "rms" && metric_ != "max")
-        refuse(fmt::format("--metric {}: must be rms or max", metric_));
+        refuse_usage("tune", fmt::format("--metric {}: must be rms or max", metric_));
     order.largest = metric_ == "max";
     const std::vector<std::string_view> height_tests = names_of<HeightTest>();
     for (const std::string& test : order.tests)
         if (test != "normal" && test != "view" &&
             std::find(height_tests.begin(), height_tests.end(), test) == height_tests.end())
-            refuse(fmt::format("--tests {}: must be normal, summed_height, curvature, mipmap, view or rank", test));
+            refuse_usage(
+                "tune",
+                fmt::format("--tests {}: must be normal, summed_height, curvature, mipmap, view or rank", test));
     if (vary_given_->count() > 0) {
         order.vary.summed_height_unit = order.vary.generation_limit = order.vary.triangulation = false;
         for (const std::string& choice : vary_) {
@@ -92,13 +89,14 @@ TuneOrder TuneOptions::order() const {
             else if (choice == "triangulation")
                 order.vary.triangulation = true;
             else if (choice != "none" || vary_.size() > 1)
-                refuse(fmt::format("--vary {}: must be unit, generation or triangulation, or none alone", choice));
+                refuse_usage(
+                    "tune", fmt::format("--vary {}: must be unit, generation or triangulation, or none alone", choice));
         }
     }
     if (order.jobs < 1 || order.jobs > most_jobs)
-        refuse(fmt::format("--jobs {}: must be 1 to {}", order.jobs, most_jobs));
+        refuse_usage("tune", fmt::format("--jobs {}: must be 1 to {}", order.jobs, most_jobs));
     if (order.output.empty())
-        refuse("--output is empty: name the tuned job's file");
+        refuse_usage("tune", "--output is empty: name the tuned job's file");
     return order;
 }
 

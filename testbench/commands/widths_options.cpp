@@ -3,39 +3,28 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cctype>
 #include <cmath>
+
+#include "testbench/commands/option_values.h"
 
 namespace tessera {
 
 namespace {
 
-constexpr unsigned most_jobs = 64;
 constexpr std::int64_t most_bits = 64;
-
-void refuse(const std::string& what) {
-    throw InputError(what + "; see `tessera widths --help`");
-}
-
-/// A positive whole number; 0 for anything else.
-std::int64_t number_in(const std::string& text) {
-    const bool digits = !text.empty() && text.size() <= 3 && std::all_of(text.begin(), text.end(), [](char c) {
-        return std::isdigit(static_cast<unsigned char>(c)) != 0;
-    });
-    return digits ? std::stol(text) : 0;
-}
 
 std::pair<std::int64_t, std::int64_t> range_in(const std::string& text) {
     const std::size_t dots = text.find("..");
-    const std::int64_t from = number_in(text.substr(0, dots));
-    const std::int64_t to = dots == std::string::npos ? from : number_in(text.substr(dots + 2));
+    const std::int64_t from = parse_number(text.substr(0, dots));
+    const std::int64_t to = dots == std::string::npos ? from : parse_number(text.substr(dots + 2));
     if (from < 1 || to < 1)
-        refuse(fmt::format("--bits {}: expected a range of widths in bits, as in --bits 8..16, or one width", text));
+        refuse_usage(
+            "widths",
+            fmt::format("--bits {}: expected a range of widths in bits, as in --bits 8..16, or one width", text));
     if (from > to)
-        refuse(fmt::format("--bits {}: ends before it begins; write {}..{}", text, to, from));
+        refuse_usage("widths", fmt::format("--bits {}: ends before it begins; write {}..{}", text, to, from));
     if (to > most_bits)
-        refuse(fmt::format("--bits {}: no format has more than {} bits", text, most_bits));
+        refuse_usage("widths", fmt::format("--bits {}: no format has more than {} bits", text, most_bits));
     return {from, to};
 }
 
@@ -67,23 +56,23 @@ void WidthsOptions::add_to(CLI::App& widths) {
 WidthsOrder WidthsOptions::order() const {
     WidthsOrder order = order_;
     if (job_given_->count() > 0 && order.job_file.empty())
-        refuse("JOB is empty: name a job file, or leave it out for the default job");
+        refuse_usage("widths", "JOB is empty: name a job file, or leave it out for the default job");
     if (bits_given_->count() > 0)
         order.bits = range_in(bits_);
     if (flips_given_->count() > 0) {
         if (!(flips_ >= 0 && flips_ <= 100))
-            refuse(fmt::format("--flips {}: must be 0 to 100 percent", flips_));
+            refuse_usage("widths", fmt::format("--flips {}: must be 0 to 100 percent", flips_));
         order.most_flips = flips_;
     }
     if (error_given_->count() > 0) {
         if (!(error_ >= 0 && std::isfinite(error_)))
-            refuse(fmt::format("--error {}: must be 0 or more", error_));
+            refuse_usage("widths", fmt::format("--error {}: must be 0 or more", error_));
         order.most_error = error_;
     }
     if (order.jobs < 1 || order.jobs > most_jobs)
-        refuse(fmt::format("--jobs {}: must be 1 to {}", order.jobs, most_jobs));
+        refuse_usage("widths", fmt::format("--jobs {}: must be 1 to {}", order.jobs, most_jobs));
     if (order.output.empty())
-        refuse("--output is empty: name a folder, or a .csv file");
+        refuse_usage("widths", "--output is empty: name a folder, or a .csv file");
     return order;
 }
 

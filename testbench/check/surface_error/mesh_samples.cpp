@@ -6,7 +6,7 @@
 namespace tessera {
 namespace {
 
-std::uint32_t subdivision_for(double parts) {
+std::uint32_t edge_parts(double parts) {
     return static_cast<std::uint32_t>(std::clamp(std::ceil(parts - 1e-3), 1.0, 1e6));  // s and t are floats
 }
 
@@ -29,7 +29,7 @@ MeshSamples::MeshSamples(const RecordedMesh& mesh, const glm::dvec2& map, double
     const auto count = [&](double factor) {
         std::uint64_t sum = 0;
         for (const float extent : extents) {
-            const std::uint64_t m = subdivision_for(factor * static_cast<double>(extent));
+            const std::uint64_t m = edge_parts(factor * static_cast<double>(extent));
             sum += m * m;
         }
         return sum;
@@ -44,7 +44,7 @@ MeshSamples::MeshSamples(const RecordedMesh& mesh, const glm::dvec2& map, double
     }
     subdivisions_.reserve(extents.size());
     for (const float extent : extents)
-        subdivisions_.push_back(subdivision_for(density_ * static_cast<double>(extent)));
+        subdivisions_.push_back(edge_parts(density_ * static_cast<double>(extent)));
 }
 
 }  // namespace tessera

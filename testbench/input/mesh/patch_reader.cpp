@@ -11,17 +11,17 @@
 namespace tessera {
 namespace {
 
-constexpr const char* blanks = " \t\r";
+constexpr const char* blank_characters = " \t\r";
 
 std::string_view trimmed(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(blanks);
+    const std::size_t first = text.find_first_not_of(blank_characters);
     return first == std::string_view::npos ? std::string_view()
-                                           : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+                                           : text.substr(first, text.find_last_not_of(blank_characters) - first + 1);
 }
 
-class Reader {
+class PatchReader {
   public:
-    Reader(std::string_view text, const std::string& name) : rest_(text), name_(name) {}
+    PatchReader(std::string_view text, const std::string& name) : rest_(text), name_(name) {}
 
     BezierPatches read() {
         const std::size_t patches = count("patches", largest_base_triangles);
@@ -149,7 +149,7 @@ class Reader {
 }  // namespace
 
 BezierPatches parse_bezier_patches(std::string_view text, const std::string& name) {
-    return Reader(text, name).read();
+    return PatchReader(text, name).read();
 }
 
 BezierPatches read_bezier_patches(const std::string& path) {

@@ -8,12 +8,12 @@
 #include "testbench/common/grouped_digits.h"
 #include "testbench/input/map/stroke_font.h"
 #include "testbench/output/picture/palette.h"
+#include "testbench/output/picture/picture_options.h"
 
 namespace tessera {
 namespace {
 
-// Pixels at scale 1, which is that of a surface 800 wide.
-constexpr double usual_width = 800;
+// Pixels at scale 1, which is that of a surface of usual_width.
 constexpr double least_scale = 0.85;  // smaller letters are hard to read; used where they fit
 constexpr double margin = 16;
 constexpr double title_size = 10;  // height of its letters
@@ -27,7 +27,6 @@ constexpr double total_height = margin + title_size + title_gap + bar_height + l
 
 constexpr double pen_width = 0.13;  // of the letters' height
 constexpr double least_pen = 1.1;   // pixels
-constexpr unsigned last_generation = 12;
 constexpr int error_steps = 8;
 
 Legend generation_legend(const RenderMesh& mesh) {

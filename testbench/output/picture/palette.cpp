@@ -6,8 +6,6 @@
 namespace tessera {
 namespace {
 
-constexpr double last_generation = 12;
-
 constexpr Colour generation_scale[] = {{255, 244, 204}, {218, 236, 176}, {160, 215, 176}, {92, 189, 190},
                                        {44, 150, 192},  {38, 104, 174},  {44, 60, 140},   {36, 26, 88}};
 
@@ -32,7 +30,7 @@ Colour between(const Scale& scale, double fraction) {
 }  // namespace
 
 Colour generation_colour(unsigned generation) {
-    return between(generation_scale, std::min(generation / last_generation, 1.0));
+    return between(generation_scale, std::min(static_cast<double>(generation) / last_generation, 1.0));
 }
 
 Colour error_colour(double fraction) {

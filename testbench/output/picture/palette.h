@@ -7,8 +7,10 @@
 
 namespace tessera {
 
+inline constexpr unsigned last_generation = 12;  // beyond it all look alike
+
 /// A generation's colour, pale to dark in lightness as in hue (safe for the colour-blind and in grey). It
-/// does not depend on the mesh, so pictures of different runs compare; 12 and beyond look alike.
+/// does not depend on the mesh, so pictures of different runs compare.
 Colour generation_colour(unsigned generation);
 
 /// From the palette of Okabe and Ito, safe for the colour-blind.

@@ -7,7 +7,6 @@ namespace tessera {
 namespace {
 
 constexpr double usual_line = 1.1;  // in a surface of usual_width
-constexpr double usual_width = 800;
 
 }  // namespace
 

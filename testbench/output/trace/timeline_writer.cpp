@@ -10,7 +10,7 @@
 namespace tessera {
 namespace {
 
-constexpr std::size_t buffer_bytes = std::size_t{1} << 16;
+constexpr std::size_t flush_bytes = std::size_t{1} << 16;
 
 struct Colour {
     std::string_view state;
@@ -35,7 +35,7 @@ TimelineWriter::TimelineWriter(std::ostream& out, std::uint64_t cycle_picosecond
     : out_(out), cycle_picoseconds_(cycle_picoseconds), window_(window) {
     if (cycle_picoseconds == 0)
         throw std::logic_error("TimelineWriter: a clock without period");
-    buffer_.reserve(2 * buffer_bytes);
+    buffer_.reserve(2 * flush_bytes);
     buffer_ = R"({"displayTimeUnit":"ns","traceEvents":[
 {"ph":"M","pid":1,"name":"process_name","args":{"name":"tessera"}})";
 }
@@ -185,7 +185,7 @@ void TimelineWriter::begin_event(const char* phase, std::string_view name) {
 
 void TimelineWriter::end_event() {
     buffer_ += '}';
-    if (buffer_.size() >= buffer_bytes) {
+    if (buffer_.size() >= flush_bytes) {
         out_ << buffer_;
         buffer_.clear();
     }
