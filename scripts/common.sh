@@ -4,8 +4,10 @@
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.." && pwd)
 cores=$(nproc)
 
-# Messages and their order must not depend on the machine's language. It is also part of what ccache looks objects up by.
-export LC_ALL=C.UTF-8
+# Messages and their order must not depend on the machine's language. These variables, set or not, are also part of what
+# ccache looks objects up by.
+export LC_ALL=C.UTF-8 LANG=C.UTF-8
+unset LC_CTYPE LC_MESSAGES
 
 # ccache avoids repeated compilation, also across clones. It is used only if its cache is writable.
 if command -v ccache >/dev/null && mkdir -p "$(ccache --get-config cache_dir)" 2>/dev/null; then
