@@ -60,9 +60,10 @@ void start() {
     try {
         sc_core::sc_start();
     } catch (const sc_core::sc_report& report) {
-        // The kernel converts exceptions of a process to its own report, and has one for stacks that do not fit.
-        if (report.get_msg() == std::string_view(std::bad_alloc().what()) ||
-            report.get_msg_type() == std::string_view(sc_core::SC_ID_STACK_SETUP_FAILED_))
+        // The kernel converts exceptions of a process to its own report, and has one for stacks that do not fit, whose
+        // type has another name in SystemC 3.
+        const std::string_view said = report.get_msg();
+        if (said == std::bad_alloc().what() || said == "failed to allocate stack memory")
             throw std::bad_alloc();
         throw;
     }
