@@ -13,7 +13,7 @@
 namespace tessera {
 namespace {
 
-constexpr double most = 65535;
+constexpr double highest_code = 65535;
 
 /// Rows from the top, as in all three formats.
 template <typename Sample, typename Convert>
@@ -50,10 +50,10 @@ EncodedMap encode_height_map(int width, int height, const std::vector<double>& h
     const double range = *high - *low;
     if (range > 0) {
         map.scale = range;
-        map.step = range / most;
+        map.step = range / highest_code;
     }
     const auto samples = top_down<std::uint16_t>(width, heights, [&](double value) {
-        return static_cast<std::uint16_t>(std::floor((value - map.bias) / map.scale * most + 0.5));
+        return static_cast<std::uint16_t>(std::floor((value - map.bias) / map.scale * highest_code + 0.5));
     });
     if (format == MapFormat::pgm) {
         map.bytes = pgm_file(width, height, samples);
