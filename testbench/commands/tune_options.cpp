@@ -55,7 +55,8 @@ void TuneOptions::add_to(CLI::App& tune) {
         ->allow_extra_args(false);
     tune.add_option("--output", order_.output, "the tuned job; its figures beside it as .json, a lattice as .obj");
     tune.add_option("--tried", order_.tried, "CSV file for a table of everything tried");
-    tune.add_option("--jobs", order_.jobs, "threads; the result does not depend on them");
+    tune.add_option("--jobs", order_.jobs, "threads; the result does not depend on them")
+        ->check(CLI::Range(1u, most_jobs));
     tune.add_option("--set", order_.settings, "set one key of the job first")->take_all()->allow_extra_args(false);
 }
 
@@ -93,8 +94,6 @@ TuneOrder TuneOptions::order() const {
                     "tune", fmt::format("--vary {}: must be unit, generation or triangulation, or none alone", choice));
         }
     }
-    if (order.jobs < 1 || order.jobs > most_jobs)
-        refuse_usage("tune", fmt::format("--jobs {}: must be 1 to {}", order.jobs, most_jobs));
     if (order.output.empty())
         refuse_usage("tune", "--output is empty: name the tuned job's file");
     return order;

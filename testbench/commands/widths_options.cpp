@@ -49,7 +49,8 @@ void WidthsOptions::add_to(CLI::App& widths) {
                                      "default: 1.25 times that of the widest");
     widths.add_option("--output", order_.output,
                       "folder for widths.csv and widths.json, or a .csv file, with a .json beside it");
-    widths.add_option("--jobs", order_.jobs, "threads; the result does not depend on them");
+    widths.add_option("--jobs", order_.jobs, "threads; the result does not depend on them")
+        ->check(CLI::Range(1u, most_jobs));
     widths.add_option("--set", order_.settings, "set one key of the job first")->take_all()->allow_extra_args(false);
 }
 
@@ -69,8 +70,6 @@ WidthsOrder WidthsOptions::order() const {
             refuse_usage("widths", fmt::format("--error {}: must be 0 or more", error_));
         order.most_error = error_;
     }
-    if (order.jobs < 1 || order.jobs > most_jobs)
-        refuse_usage("widths", fmt::format("--jobs {}: must be 1 to {}", order.jobs, most_jobs));
     if (order.output.empty())
         refuse_usage("widths", "--output is empty: name a folder, or a .csv file");
     return order;

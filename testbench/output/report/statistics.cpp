@@ -12,6 +12,7 @@
 #include "testbench/machine/host_traffic.h"
 #include "testbench/machine/totals.h"
 #include "testbench/output/report/area.h"
+#include "testbench/output/report/ratio.h"
 #include "testbench/output/report/saturation_figures.h"
 #include "testbench/output/report/timing_statistics.h"
 
@@ -43,10 +44,6 @@ class Collector {
   private:
     std::string group_;
 };
-
-double ratio(double part, double whole) {
-    return whole > 0 ? part / whole : 0;
-}
 
 Collector format_figures(const MachineSetup& setup) {
     const datapath::Formats& formats = setup.registers.formats;
@@ -94,19 +91,19 @@ Collector stream_figures(const MachineSetup& setup) {
     return c;
 }
 
-Collector memory_figures(const char* name, const datapath::TableLayout& table, std::uint64_t reads, double edges) {
+Collector memory_figures(const char* name, const datapath::TableLayout& table, std::uint64_t reads,
+                         std::uint64_t edges) {
     Collector c(name);
     c.add("size", table.bytes(), "byte", "the whole table");
     c.add("entry", table.entry_bytes, "byte", "one entry");
     c.add("reads", reads, "entry", "entries read");
     c.add("bytes_read", reads * table.entry_bytes, "byte", "bytes read");
-    c.add("reads_per_edge", ratio(static_cast<double>(reads), edges), "entry/edge", "entries read per edge tested");
+    c.add("reads_per_edge", ratio(reads, edges), "entry/edge", "entries read per edge tested");
     return c;
 }
 
 void add_cache_figures(Collector& c, const Simulation& simulation, const std::unique_ptr<TableCache> Pipeline::*cache,
                        std::uint64_t finished) {
-    const auto real = [](std::uint64_t value) { return static_cast<double>(value); };
     std::uint64_t hits = 0, fills = 0, entries = 0, bytes = 0;
     for (const auto& machine : simulation.machines) {
         const TableCache& its = *(machine->pipeline.*cache);
@@ -117,9 +114,9 @@ void add_cache_figures(Collector& c, const Simulation& simulation, const std::un
     }
     c.add("cache_hits", hits, "entry", "entries whose line was there, or on its way");
     c.add("cache_fills", fills, "line", "lines fetched from off-chip memory");
-    c.add("cache_hit_rate", 100 * ratio(real(hits), real(entries)), "percent", "of entries read");
+    c.add("cache_hit_rate", 100 * ratio(hits, entries), "percent", "of entries read");
     c.add("bytes_fetched", bytes, "byte", "of these lines");
-    c.add("bytes_fetched_per_triangle", ratio(real(bytes), real(finished)), "byte/triangle", "per finished triangle");
+    c.add("bytes_fetched_per_triangle", ratio(bytes, finished), "byte/triangle", "per finished triangle");
 }
 
 Collector host_figures(const MachineSetup& setup, std::uint64_t finished, std::uint64_t vertices) {
@@ -144,10 +141,9 @@ Collector host_figures(const MachineSetup& setup, std::uint64_t finished, std::u
           "triangle; every frame");
     c.add("tessellated_mesh_bytes_unindexed", whole, "byte",
           "likewise, three vertices per triangle as the base mesh is sent");
-    c.add("bandwidth_saving", ratio(static_cast<double>(indexed), static_cast<double>(base)), "times",
+    c.add("bandwidth_saving", ratio(indexed, base), "times",
           "tessellated mesh, indexed, over base mesh, per frame; tables left out");
-    c.add("frames_to_pay_for_tables",
-          indexed > base ? ratio(static_cast<double>(tables), static_cast<double>(indexed - base)) : 0.0, "frame",
+    c.add("frames_to_pay_for_tables", indexed > base ? ratio(tables, indexed - base) : 0.0, "frame",
           "after so many frames the tables' bytes are saved; 0: never");
     return c;
 }
@@ -174,9 +170,6 @@ Collector area_figures(const Simulation& simulation) {
 /// Repeated work of the machine, beside what the mesh needs.
 Collector useful_work_figures(const Totals& totals, const Decisions::Evaluated& evaluated, const MeshCounts& mesh) {
     const std::uint64_t made = totals.positions, normals = totals.normals, tested = totals.counts.edges_tested;
-    const auto per = [](std::uint64_t done, std::uint64_t needed) {
-        return ratio(static_cast<double>(done), static_cast<double>(needed));
-    };
     Collector c("useful_work");
     c.add("vertices", mesh.vertices, "vertex",
           "distinct vertices of the finished mesh, by t, P' and N', culled triangles included");
@@ -186,10 +179,10 @@ Collector useful_work_figures(const Totals& totals, const Decisions::Evaluated& 
         "edge split");
     c.add("vertices_thrown_away", totals.thrown_away_vertices(), "vertex",
           "of these: midpoints of edges that were not split");
-    c.add("made_per_vertex", per(made, mesh.vertices), "times", "vertices made per distinct vertex");
+    c.add("made_per_vertex", ratio(made, mesh.vertices), "times", "vertices made per distinct vertex");
     c.add("normals_transformed", normals, "normal",
           "N's: a vertex's again in each triangle whose parent did not have it");
-    c.add("normals_per_vertex", per(normals, mesh.vertices), "times", "normals transformed per distinct vertex");
+    c.add("normals_per_vertex", ratio(normals, mesh.vertices), "times", "normals transformed per distinct vertex");
     c.add("edges", mesh.tested_edges(), "edge",
           "distinct edges that were tested, by their two vertices: those of the finished mesh, and those that "
           "were split");
@@ -199,7 +192,7 @@ Collector useful_work_figures(const Totals& totals, const Decisions::Evaluated& 
           "likewise the Summed Height Test, or the test in its place, unless it is switched off");
     c.add("summed_height_tests_by_codes", evaluated.summed_height_by_codes, "edge",
           "of these, edges whose rectangles are single texels, with hardware.one_texel_from_map");
-    c.add("tests_per_edge", per(tested, mesh.tested_edges()), "times", "edge tests per distinct edge");
+    c.add("tests_per_edge", ratio(tested, mesh.tested_edges()), "times", "edge tests per distinct edge");
     return c;
 }
 
@@ -228,7 +221,6 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     const DecidingUnit::Counts& counts = totals.counts;
     const Decisions::Counts& decided = totals.decided;
     const std::uint64_t edges = counts.edges_tested;
-    const auto edges_real = static_cast<double>(edges);
     std::vector<Figure> all;
     const auto take = [&](Collector c) {
         all.insert(all.end(), std::make_move_iterator(c.figures.begin()), std::make_move_iterator(c.figures.end()));
@@ -242,8 +234,7 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     run.add("edges_tested", edges, "edge", "edges that went through Tessellation Tests");
     run.add("edges_split", counts.edges_split, "edge", "of which split");
     run.add("triangles_finished", counts.finished, "triangle", "left the machine, culled ones included");
-    run.add("edges_per_triangle", ratio(edges_real, static_cast<double>(counts.finished)), "edge/triangle",
-            "edges tested per finished triangle");
+    run.add("edges_per_triangle", ratio(edges, counts.finished), "edge/triangle", "edges tested per finished triangle");
     take(std::move(run));
     take(format_figures(setup));
     take(stream_figures(setup));
@@ -315,7 +306,7 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
 
     const auto table = [&](const char* name, const datapath::TableLayout& layout, std::uint64_t reads,
                            const std::unique_ptr<TableCache> Pipeline::*cache) {
-        Collector figures = memory_figures(name, layout, reads, edges_real);
+        Collector figures = memory_figures(name, layout, reads, edges);
         if (simulation.pipeline.*cache != nullptr && timed)
             add_cache_figures(figures, simulation, cache, counts.finished);
         take(std::move(figures));

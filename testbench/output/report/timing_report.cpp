@@ -7,13 +7,11 @@
 #include <string_view>
 #include <utility>
 
+#include "testbench/output/report/ratio.h"
+
 namespace tessera {
 
 namespace {
-
-double ratio(std::uint64_t part, std::uint64_t whole) {
-    return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
-}
 
 double state_percent(const Unit& unit, State state, std::uint64_t cycles) {
     return 100 * ratio(unit.activity().cycles_in(state), cycles);

@@ -6,15 +6,12 @@
 
 #include "modules/datapath/pack_triangle.h"
 #include "testbench/machine/totals.h"
+#include "testbench/output/report/ratio.h"
 #include "testbench/output/report/timing_report.h"
 
 namespace tessera {
 
 namespace {
-
-double per(std::uint64_t part, std::uint64_t whole) {
-    return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
-}
 
 class Group {
   public:
@@ -46,10 +43,10 @@ void run_figures(const Simulation& simulation, std::vector<Figure>& figures) {
     run.count("clock_period", simulation.setup.design.timing.cycle_picoseconds, "ps", "one cycle");
     run.real("time", static_cast<double>(cycles) * simulation.setup.design.timing.cycle_picoseconds * 1e-12, "s",
              "cycles times the clock's period");
-    run.real("cycles_per_triangle", per(cycles, counts.finished), "cycle/triangle", "per finished triangle");
-    run.real("cycles_per_pass", per(cycles, counts.passes), "cycle/pass", "per triangle that went through the tests");
-    run.real("cycles_per_edge", per(cycles, counts.edges_tested), "cycle/edge", "per edge tested");
-    run.real("base_triangle_share", per(totals.host_triangles, totals.host_triangles + totals.queue_triangles), "",
+    run.real("cycles_per_triangle", ratio(cycles, counts.finished), "cycle/triangle", "per finished triangle");
+    run.real("cycles_per_pass", ratio(cycles, counts.passes), "cycle/pass", "per triangle that went through the tests");
+    run.real("cycles_per_edge", ratio(cycles, counts.edges_tested), "cycle/edge", "per edge tested");
+    run.real("base_triangle_share", ratio(totals.host_triangles, totals.host_triangles + totals.queue_triangles), "",
              "base triangles in all triangles that Get Triangle took");
     run.count("most_triangles_ahead_of_parts", p.most_ahead_of_parts(), "triangle",
               "that waited for their first part where its parts come together");
@@ -90,9 +87,9 @@ void unit_figures(const Unit& unit, std::uint64_t cycles, std::vector<Figure>& f
     group.count("items_out", activity.items_out(), "item", "finished and handed on, or dropped as not needed");
     if (!is_queue_or_wire(unit))
         state_figures(unit, cycles, group);
-    group.real("throughput", per(activity.items_out(), cycles), "item/cycle", "items out per cycle");
-    group.real("occupancy", per(activity.item_cycles(), cycles), "item", "items in the unit, on average");
-    group.real("latency", per(activity.item_cycles(), activity.items_out()), "cycle",
+    group.real("throughput", ratio(activity.items_out(), cycles), "item/cycle", "items out per cycle");
+    group.real("occupancy", ratio(activity.item_cycles(), cycles), "item", "items in the unit, on average");
+    group.real("latency", ratio(activity.item_cycles(), activity.items_out()), "cycle",
                "an item's stay in the unit, on average");
     group.count("high_water_mark", activity.high_water_mark(), "item", "most at a time");
 }

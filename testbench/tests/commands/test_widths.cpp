@@ -123,7 +123,7 @@ TEST_CASE("widths: wrong usage is refused in one line, and leaves nothing") {
     CHECK_THAT(refused({"--flips", "nan"}), Contains("--flips"));
     CHECK_THAT(refused({"--error", "-1"}), Contains("--error"));
     CHECK_THAT(refused({"--error", "inf"}), Contains("--error"));
-    CHECK_THAT(refused({"--jobs", "0"}), Contains("--jobs 0"));
+    CHECK_THAT(refused({"--jobs", "0"}), Contains("--jobs: Value 0 not in range 1 to 64"));
     CHECK_THAT(refused({"--output", ""}), Contains("--output"));
     CHECK_THAT(refused({"--output", "absent/w.csv"}), Contains("absent"));
     CHECK_THAT(refused({"absent.toml"}), Contains("no such job file"));
