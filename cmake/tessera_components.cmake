@@ -51,6 +51,8 @@ function(tessera_add_component name)
   if(arg_SOURCES)
     set(scope PUBLIC)
     add_library(${target} STATIC ${arg_SOURCES})
+    # Most of the time goes into headers; joined sources compile them once.
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ${TESSERA_ONE_UNIT})
     foreach(library tessera_options ${arg_PRIVATE_LIBRARIES})
       target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:${library}>)
     endforeach()
