@@ -18,14 +18,6 @@ ProgramEnd bake(std::vector<std::string> arguments, const fs::path& here, const 
     return run_tessera(arguments, here, limits);
 }
 
-std::string baked(const std::vector<std::string>& arguments, const fs::path& here) {
-    const ProgramEnd end = bake(arguments, here);
-    INFO(end.text());
-    REQUIRE(end.exit_code == 0);
-    CHECK(end.err.empty());
-    return end.out;
-}
-
 /// Requires this exit code, one message on standard error with these words, and no new file.
 void refused(const std::vector<std::string>& arguments, const TestFolder& here, const std::vector<std::string>& words) {
     const std::vector<std::string> before = here.names();
@@ -49,7 +41,8 @@ TEST_CASE("bake: the examples in all formats, the same twice, and jobs that run"
         const std::string surface = example((std::string(name) + ".toml").c_str()).string();
         const std::string map = name;
         for (const std::string ending : {".pgm", ".png", ".exr", ".PGM"}) {
-            const std::string out = baked({surface, "--size", "40x30", "--output", map + ending}, here.path());
+            const std::string out =
+                succeed({"bake", surface, "--size", "40x30", "--output", map + ending}, here.path()).out;
             CHECK_THAT(out,
                        Contains("40 x 30 texels") && Contains("displacement.scale") && Contains(map + ".job.toml"));
             const HeightMap read = read_height_map(here.path() / (map + ending));
@@ -57,7 +50,7 @@ TEST_CASE("bake: the examples in all formats, the same twice, and jobs that run"
             CHECK(read.height == 30);
             const std::string once = read_all(here.path() / (map + ending)),
                               job = read_all(here.path() / (map + ".job.toml"));
-            baked({surface, "--size", "40x30", "--output", map + ending}, here.path());
+            succeed({"bake", surface, "--size", "40x30", "--output", map + ending}, here.path());
             CHECK(read_all(here.path() / (map + ending)) == once);
             CHECK(read_all(here.path() / (map + ".job.toml")) == job);
         }
@@ -70,7 +63,7 @@ TEST_CASE("bake: the examples in all formats, the same twice, and jobs that run"
 
 TEST_CASE("bake: without a size the map has 256 x 256 texels") {
     const TestFolder here;
-    baked({example("dome.toml").string(), "--output", "dome.pgm"}, here.path());
+    succeed({"bake", example("dome.toml").string(), "--output", "dome.pgm"}, here.path());
     CHECK(read_height_map(here.path() / "dome.pgm").width == 256);
     CHECK(here.names() == std::vector<std::string>{"dome.job.toml", "dome.pgm"});
 }
@@ -85,12 +78,13 @@ TEST_CASE("bake: the job fits the domain and finds its files from its own folder
               "v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n");
     write_all(here.path() / "base/job.toml",
               "mode = \"functional\"\n[mesh]\nsource = \"file\"\nfile = \"square.obj\"\n");
-    baked({"wide.toml", "--output", "out/wide.png"}, here.path());
+    succeed({"bake", "wide.toml", "--output", "out/wide.png"}, here.path());
     const std::string job = read_all(here.path() / "out/wide.job.toml");
     CHECK_THAT(job, Contains("width = 4.0\ndepth = 0.5\n") && Contains("file = \"wide.png\""));
 
     write_all(here.path() / "ball.toml", "[quadric]\nshape = \"sphere\"\nradius = 3\n");
-    const std::string out = baked({"ball.toml", "--mesh", "base/job.toml", "--output", "out/ball.pgm"}, here.path());
+    const std::string out =
+        succeed({"bake", "ball.toml", "--mesh", "base/job.toml", "--output", "out/ball.pgm"}, here.path()).out;
     CHECK_THAT(out, Contains("no base triangle"));
     CHECK_THAT(read_all(here.path() / "out/ball.job.toml"), Contains("file = \"../base/square.obj\""));
     const ProgramEnd run = run_tessera({"run", "out/ball.job.toml"}, here.path());
@@ -98,8 +92,8 @@ TEST_CASE("bake: the job fits the domain and finds its files from its own folder
     CHECK(run.exit_code == 0);
 
     // A patch is the same map over whatever base mesh.
-    baked({example("hills.toml").string(), "--output", "plain.pgm"}, here.path());
-    baked({example("hills.toml").string(), "--mesh", "base/job.toml", "--output", "meshed.pgm"}, here.path());
+    succeed({"bake", example("hills.toml").string(), "--output", "plain.pgm"}, here.path());
+    succeed({"bake", example("hills.toml").string(), "--mesh", "base/job.toml", "--output", "meshed.pgm"}, here.path());
     CHECK(read_all(here.path() / "plain.pgm") == read_all(here.path() / "meshed.pgm"));
     CHECK_THAT(read_all(here.path() / "meshed.job.toml"), Contains("base/square.obj"));
 }
@@ -107,9 +101,10 @@ TEST_CASE("bake: the job fits the domain and finds its files from its own folder
 TEST_CASE("bake: overlapping base triangles are told of") {
     const TestFolder here;
     write_all(here.path() / "ball.toml", "[quadric]\nshape = \"sphere\"\nradius = 6\n");
-    CHECK_THAT(baked({"ball.toml", "--mesh", (source_folder() / "testbench/examples/jobs/teapot.toml").string(),
-                      "--output", "ball.pgm"},
-                     here.path()),
+    CHECK_THAT(succeed({"bake", "ball.toml", "--mesh",
+                        (source_folder() / "testbench/examples/jobs/teapot.toml").string(), "--output", "ball.pgm"},
+                       here.path())
+                   .out,
                Contains("note: 6") && Contains("lie in several base triangles"));
 }
 

@@ -13,16 +13,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string baked(const std::vector<std::string>& arguments, const fs::path& here) {
-    std::vector<std::string> all{"bake"};
-    all.insert(all.end(), arguments.begin(), arguments.end());
-    const ProgramEnd end = run_tessera(all, here);
-    INFO(end.text());
-    REQUIRE(end.exit_code == 0);
-    CHECK(end.err.empty());
-    return end.out;
-}
-
 /// Runs a job in functional mode, with all checks, and gives its mesh.
 RecordedMesh mesh_of_run(const std::string& job, const std::vector<std::string>& settings, const fs::path& here) {
     std::vector<std::string> arguments{"run", job};
@@ -63,7 +53,7 @@ void check_round_trip(const std::string& surface, const std::string& map, double
     const TestFolder here;
     write_all(here.path() / "surface.toml", surface);
     write_all(here.path() / "square.obj", centred_square);
-    baked({"surface.toml", "--size", "129x129", "--output", map}, here.path());
+    succeed({"bake", "surface.toml", "--size", "129x129", "--output", map}, here.path());
     const RecordedMesh mesh = mesh_of_run(map.substr(0, map.find('.')) + ".job.toml",
                                           {"mesh.source=file", "mesh.file=square.obj", "tests.generation_limit=7",
                                            "tests.view=false", "tests.normal_threshold=0.02"},
@@ -107,7 +97,8 @@ TEST_CASE("round trip: a baked Bezier patch's vertices lie on the patch") {
 
 TEST_CASE("round trip: on the default plane a vertex lies on the dome at the texel it reads") {
     const TestFolder here;
-    baked({(source_folder() / "testbench/examples/surfaces/dome.toml").string(), "--output", "dome.pgm"}, here.path());
+    succeed({"bake", (source_folder() / "testbench/examples/surfaces/dome.toml").string(), "--output", "dome.pgm"},
+            here.path());
     const RecordedMesh mesh = mesh_of_run("dome.job.toml", {}, here.path());
     CHECK(mesh.triangles.size() > 1000);
     const auto centre = [](double t) {  // of the texel that t reads, in the plane -1..1
@@ -130,9 +121,10 @@ TEST_CASE("round trip: a cylinder baked to a sphere closes at its seam, and only
     const fs::path examples = source_folder() / "testbench/examples/surfaces";
     // Off the axis, so that the two sides of the seam are not each other's mirror image.
     write_all(here.path() / "ball.toml", "[quadric]\nshape = \"sphere\"\nradius = 1.4\ncentre = [0.25, 0.1, 0.05]\n");
-    const std::string out = baked(
-        {"ball.toml", "--mesh", (examples / "barrel_base.toml").string(), "--size", "512x256", "--output", "ball.pgm"},
-        here.path());
+    const std::string out = succeed({"bake", "ball.toml", "--mesh", (examples / "barrel_base.toml").string(), "--size",
+                                     "512x256", "--output", "ball.pgm"},
+                                    here.path())
+                                .out;
     CHECK(out.find("note") == std::string::npos);
     const RecordedMesh mesh = mesh_of_run("ball.job.toml", {}, here.path());
     CHECK(invariant(here.path(), "open_texture_seam_edges") == 0);

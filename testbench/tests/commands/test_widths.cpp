@@ -11,14 +11,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const Arguments small{"--set", "map.width=48", "--set", "map.height=48", "--set", "tests.generation_limit=6"};
+const Arguments quick{"--set", "map.width=48", "--set", "map.height=48", "--set", "tests.generation_limit=6"};
 
 }  // namespace
 
 TEST_CASE("widths: a row has the figures of tessera run with those formats") {
     const TestFolder here;
     const ProgramEnd end =
-        succeed(Arguments{"widths", "--quantity", "normal,screen_range", "--bits", "8..14", "--output", "w"} + small,
+        succeed(Arguments{"widths", "--quantity", "normal,screen_range", "--bits", "8..14", "--output", "w"} + quick,
                 here.path());
     CHECK_THAT(end.out, Contains("knee: ") && Contains("refused: ") && Contains("w/widths.csv"));
     CHECK(lines_of(read_all(here.path() / "w/widths.csv")).size() == 1 + 14);
@@ -33,7 +33,7 @@ TEST_CASE("widths: a row has the figures of tessera run with those formats") {
         succeed(
             Arguments{"run", "--set", "mode=functional", "--set", "output.picture=false", "--set",
                       "check.allowed_flips=100", "--set", "check.allowed_triangles=100", "--set", "output.folder=run"} +
-                formats + small,
+                formats + quick,
             here.path());
         const Json statistics = read_json(here.path() / "run/statistics.json");
         const Json conformance = read_json(here.path() / "run/conformance.json");
@@ -60,13 +60,13 @@ TEST_CASE("widths: a row of saturated screen positions has the run's count, and 
     const TestFolder here;
     const Arguments near{"--set", "camera.eye=[0.2, -0.5, 0.4]", "--set", "camera.viewport_width=256",
                          "--set", "camera.viewport_height=256"};
-    succeed(Arguments{"widths", "--quantity", "screen_range", "--bits", "18", "--output", "s.csv"} + near + small,
+    succeed(Arguments{"widths", "--quantity", "screen_range", "--bits", "18", "--output", "s.csv"} + near + quick,
             here.path());
     const Json row = read_json(here.path() / "s.json").at("quantities").at("screen_range").at("rows").at(0);
     const ProgramEnd run =
         succeed(Arguments{"run", "--set", "formats.screen_bits=18", "--set", "check.allowed_triangles=100", "--set",
                           "output.folder=run", "--set", "output.picture=false"} +
-                    near + small,
+                    near + quick,
                 here.path());
     const Json statistics = read_json(here.path() / "run/statistics.json");
     const Json counted = statistics.at("saturations").at("screen_position").at("value");
@@ -92,7 +92,7 @@ TEST_CASE("widths: a map that the mesh's quads do not divide: the sweep warns") 
 
 TEST_CASE("widths: the same bytes again, with two threads, into a folder or a file") {
     const TestFolder here;
-    const Arguments sweep = Arguments{"widths", "--quantity", "position,displacement", "--bits", "10..12"} + small;
+    const Arguments sweep = Arguments{"widths", "--quantity", "position,displacement", "--bits", "10..12"} + quick;
     const ProgramEnd first = succeed(sweep + Arguments{"--output", "a"}, here.path());
     const ProgramEnd second = succeed(sweep + Arguments{"--output", "b.csv", "--jobs", "2"}, here.path());
     CHECK(here.names() == Arguments{"a", "b.csv", "b.json"});
@@ -104,7 +104,7 @@ TEST_CASE("widths: the same bytes again, with two threads, into a folder or a fi
 TEST_CASE("widths: wrong usage is refused in one line, and leaves nothing") {
     const TestFolder here;
     const auto refused = [&](const Arguments& more) {
-        const ProgramEnd end = run_tessera(Arguments{"widths"} + more + small, here.path());
+        const ProgramEnd end = run_tessera(Arguments{"widths"} + more + quick, here.path());
         INFO(end.text());
         CHECK(end.exit_code == 2);
         CHECK(end.out.empty());
@@ -141,7 +141,7 @@ TEST_CASE("widths: wrong usage is refused in one line, and leaves nothing") {
 TEST_CASE("widths: a sweep of which every width is refused is no result") {
     const TestFolder here;
     const ProgramEnd end = run_tessera(
-        Arguments{"widths", "--quantity", "screen", "--bits", "10..14", "--output", "w"} + small, here.path());
+        Arguments{"widths", "--quantity", "screen", "--bits", "10..14", "--output", "w"} + quick, here.path());
     INFO(end.text());
     CHECK(end.exit_code == 2);
     CHECK(lines_of(end.err).size() == 1);

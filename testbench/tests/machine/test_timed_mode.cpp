@@ -29,7 +29,7 @@ std::string queue(const std::string& order, int capacity) {
     return "hardware.queue_order=" + order + " hardware.queue_capacity=" + std::to_string(capacity) + " ";
 }
 
-struct Row {
+struct TimedMesh {
     std::string name;
     std::string job;
     std::string settings;
@@ -39,7 +39,7 @@ struct Row {
 const CaseTable meshes(
     "timed mesh: ",
     {
-        Row{"half donut, the paper's design", "", "", 50'000},
+        TimedMesh{"half donut, the paper's design", "", "", 50'000},
         {"half donut, three tests units, four ports, stalls", "",
          "hardware.tests_units=3 timing.summed_height_table_ports=4 " + stalls(3, 200), 50'000},
         {"last in first out", small, "hardware.queue_order=lifo"},
@@ -78,7 +78,7 @@ const CaseTable meshes(
         {"a queue large enough never overflows", small, queue("lifo", 64) + "hardware.queue_overflow=error"},
         {"the watermark lets host triangles in while fewer wait", small, "hardware.queue_watermark=40"},
     },
-    [](const Row& row) {
+    [](const TimedMesh& row) {
         const CheckedRun run(with_settings(timed_job(), row.job + row.settings));
         CHECK(run.conformance.passed(0.5));
         CHECK(run.mesh.triangles.size() > 2 * run.setup.base_triangles.size());

@@ -64,7 +64,7 @@ const Unit& unit_named(const Pipeline& pipeline, const std::string& name) {
 }
 
 /// Cycles, from `least` to `most`, and for how many of them one unit is occupied.
-struct Row {
+struct Bound {
     std::string name;
     std::string settings;
     std::uint64_t least, most;
@@ -91,8 +91,8 @@ const CaseTable rates(
     "",
     {
         // 18 cycles a pass; the first triangle's first two edges are through in 5 to 16, its third comes in 32.
-        Row{"two ports on the Summed Height Table: 18 cycles a pass", "timing.summed_height_table_ports=2",
-            fill + 15 + 18 * passes + drain, fill + 15 + 18 * passes + drain, "summed_height_table", 18 * passes},
+        Bound{"two ports on the Summed Height Table: 18 cycles a pass", "timing.summed_height_table_ports=2",
+              fill + 15 + 18 * passes + drain, fill + 15 + 18 * passes + drain, "summed_height_table", 18 * passes},
         // 9 cycles a pass: still more than a pass has parts (at most 6). A base triangle's 31 cycles to the screen are
         // now longer than the work on the ones before it, so each of 18 may hold the table up for so long at most.
         {"four ports on the Summed Height Table: 9 cycles a pass, still bound by it",
@@ -140,7 +140,7 @@ const CaseTable rates(
         {"Get Triangle every 100 cycles binds: 100 cycles a part", "timing.get_triangle_interval=100",
          100 * (parts - 1), 100 * parts + 1000, "get_triangle", 100 * parts, true},
     },
-    [](const Row& row) {
+    [](const Bound& row) {
         const MachineSetup setup = full_split(row.settings);
         Simulation simulation(setup, 1'000'000);
         run_full_split(simulation);

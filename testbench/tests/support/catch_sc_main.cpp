@@ -1,12 +1,10 @@
-// Catch2's runner inside sc_main, for tests that elaborate SystemC modules. A process can elaborate once only: run each
-// case in its own process, as ctest does.
-#define CATCH_CONFIG_RUNNER
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <systemc>
 
+#include "testbench/tests/support/catch_runner.h"
+
 int sc_main(int argc, char** argv) {
-    return Catch::Session().run(argc, argv);
+    return run_cases(argc, argv);
 }
 
 int main(int argc, char** argv) {

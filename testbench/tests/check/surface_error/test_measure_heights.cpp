@@ -7,7 +7,7 @@ using namespace tessera;
 
 namespace {
 
-DisplacementOf heights(double scale, double bias = 0, Addressing mode = Addressing::clamp) {
+DisplacementOf scaled(double scale, double bias = 0, Addressing mode = Addressing::clamp) {
     return {scale, bias, mode, mode};
 }
 
@@ -26,7 +26,7 @@ TEST_CASE("vertical error of the undisplaced base is the map itself") {
     const BaseMesh base = make_plane(3, 2, 4, 6);
     HeightMap map = make_map(5, 7, [](int x, int y) { return x == 3 && y == 2 ? 1 : 0.25; });
     map.source_units = 200;
-    const VerticalError error = vertical(base, map, heights(2), emitted(base));
+    const VerticalError error = vertical(base, map, scaled(2), emitted(base));
     CHECK(error.grid_points == 35);
     CHECK(error.covered == 35);
     CHECK(error.max == Approx(2));
@@ -47,21 +47,21 @@ TEST_CASE("a mesh through all texel centres has no vertical error, and a hole is
         const int y = static_cast<int>(std::lround(v.position.y + (size - 1) / 2.0));
         return v.position + glm::dvec3(0, 0, 1 + 0.5 * static_cast<double>(map.at(x, y)));
     });
-    VerticalError error = vertical(base, map, heights(0.5, 1), mesh);
+    VerticalError error = vertical(base, map, scaled(0.5, 1), mesh);
     CHECK(error.covered == 36);
     CHECK(error.max < 1e-6);
     for (glm::dvec3& p : mesh.positions)
         p.z += 0.125;
-    error = vertical(base, map, heights(0.5, 1), mesh);
+    error = vertical(base, map, scaled(0.5, 1), mesh);
     CHECK(error.max == Approx(0.125).epsilon(1e-6));
     CHECK(error.rms == Approx(0.125).epsilon(1e-6));
     // Without the two triangles at the first corner its grid point is bare.
     mesh.triangles.erase(mesh.triangles.begin(), mesh.triangles.begin() + 2);
-    error = vertical(base, map, heights(0.5, 1), mesh);
+    error = vertical(base, map, scaled(0.5, 1), mesh);
     CHECK(error.grid_points == 36);
     CHECK(error.covered == 35);
-    CHECK(vertical(base, map, heights(0.5, 1), RecordedMesh{}).covered == 0);
-    CHECK(vertical(base, map, heights(0), mesh).map_unit == 0);
+    CHECK(vertical(base, map, scaled(0.5, 1), RecordedMesh{}).covered == 0);
+    CHECK(vertical(base, map, scaled(0), mesh).map_unit == 0);
 }
 
 TEST_CASE("heights over a plane in any position, and over each copy of a map that repeats") {
@@ -74,7 +74,7 @@ TEST_CASE("heights over a plane in any position, and over each copy of a map tha
         v.normal = e2;
         v.texture = 2.0 * v.texture;
     }
-    const VerticalError error = vertical(base, map, heights(0.5, 0, Addressing::repeat), emitted(base));
+    const VerticalError error = vertical(base, map, scaled(0.5, 0, Addressing::repeat), emitted(base));
     CHECK(error.grid_points == 64);
     CHECK(error.covered == 64);
     CHECK(error.max == Approx(3));
@@ -87,7 +87,7 @@ TEST_CASE("heights over a plane in any position, and over each copy of a map tha
         v.normal = -v.normal;
         v.texture.x = 2 - v.texture.x;
     }
-    CHECK(vertical(base, map, heights(0.5, 0, Addressing::repeat), emitted(base)).max == Approx(3));
+    CHECK(vertical(base, map, scaled(0.5, 0, Addressing::repeat), emitted(base)).max == Approx(3));
 }
 
 TEST_CASE("an axis that repeats and one that clamps are told apart") {
@@ -97,7 +97,7 @@ TEST_CASE("an axis that repeats and one that clamps are told apart") {
         BaseMesh base = make_plane(2, 2, 2, 2);
         for (BaseVertex& v : base.vertices)
             (along_u ? v.texture.x : v.texture.y) *= 2;
-        DisplacementOf displacement = heights(1);
+        DisplacementOf displacement = scaled(1);
         (along_u ? displacement.address_u : displacement.address_v) = Addressing::repeat;
         const VerticalError error = vertical(base, map, displacement, emitted(base));
         CHECK(error.grid_points == 32);
@@ -110,21 +110,21 @@ TEST_CASE("an axis that repeats and one that clamps are told apart") {
 TEST_CASE("what is no height field is told in words") {
     const HeightMap map = make_map(4, 4, [](int, int) { return 0; });
     std::string why;
-    CHECK_FALSE(find_height_field(make_cylinder(8, 1, 1, 1), map, heights(1), why));
+    CHECK_FALSE(find_height_field(make_cylinder(8, 1, 1, 1), map, scaled(1), why));
     CHECK(why == "the base mesh is not planar");
     BaseMesh tilted = make_plane(1, 1, 2, 2);
     tilted.vertices[0].normal = glm::normalize(glm::dvec3(0.1, 0, 1));
-    CHECK_FALSE(find_height_field(tilted, map, heights(1), why));
+    CHECK_FALSE(find_height_field(tilted, map, scaled(1), why));
     CHECK(why == "the base mesh's normals are not those of its plane");
     BaseMesh bent = make_plane(2, 2, 2, 2);
     bent.vertices[4].texture.x += 0.1;
-    CHECK_FALSE(find_height_field(bent, map, heights(1), why));
+    CHECK_FALSE(find_height_field(bent, map, scaled(1), why));
     CHECK(why == "texture coordinates are not an affine function of position");
     BaseMesh line = make_plane(1, 1, 2, 2);
     for (BaseVertex& v : line.vertices)
         v.texture.y = 0;
-    CHECK_FALSE(find_height_field(line, map, heights(1), why));
-    CHECK(find_height_field(make_plane(3, 3, 1e-30, 1e-30), map, heights(1), why));
-    CHECK(find_height_field(make_plane(3, 3, 1e30, 1e30), map, heights(1), why));
+    CHECK_FALSE(find_height_field(line, map, scaled(1), why));
+    CHECK(find_height_field(make_plane(3, 3, 1e-30, 1e-30), map, scaled(1), why));
+    CHECK(find_height_field(make_plane(3, 3, 1e30, 1e30), map, scaled(1), why));
     CHECK(why.empty());
 }

@@ -18,7 +18,7 @@ using tessera::testing::Random;
 
 namespace {
 
-constexpr std::array<AddressMode, 2> both_modes{AddressMode::clamp, AddressMode::repeat};
+constexpr std::array<AddressMode, 2> clamp_and_repeat{AddressMode::clamp, AddressMode::repeat};
 
 Registers narrow_registers(AddressMode u, AddressMode v) {
     Registers registers;
@@ -89,8 +89,8 @@ std::vector<Vertex> all_vertices(Machine& machine) {
 TEST_CASE("reversal: every edge of narrow vertices, six tests, decision, inserted vertex, every address mode") {
     std::array<std::uint64_t, 6> yes{};
     std::uint64_t edges = 0, splits = 0;
-    for (const AddressMode u : both_modes) {
-        for (const AddressMode v : both_modes) {
+    for (const AddressMode u : clamp_and_repeat) {
+        for (const AddressMode v : clamp_and_repeat) {
             Random random(61);
             Registers registers = narrow_registers(u, v);
             const NarrowMap map(random, registers);
@@ -150,7 +150,7 @@ TEST_CASE("reversal: Summed Height Test, every edge on maps of 1 to 4 texels a s
         formats.texture = Format::make_unsigned(3 + 1 + 1, 1);
         formats.displacement = Format::make_unsigned(2, 2);
         formats.summed_height = Format::make_unsigned(6, 0);  // 16 texels of 2 bits: the table itself wraps
-        registers.map = {width, height, both_modes[shape >> 4 & 1], both_modes[shape >> 5]};
+        registers.map = {width, height, clamp_and_repeat[shape >> 4 & 1], clamp_and_repeat[shape >> 5]};
         std::vector<std::uint32_t> codes;
         for (std::uint32_t k = 0; k < width * height; ++k)
             codes.push_back(random.coin() ? 3 * random.natural(0, 1) : random.natural(0, 3));

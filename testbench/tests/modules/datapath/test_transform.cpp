@@ -92,7 +92,7 @@ Row any_row(Random& random) {
             random.any_size(largest_offset)};
 }
 
-Position any_position(Random& random) {
+Position extreme_position(Random& random) {
     const auto one = [&] {
         return random.integer(0, 31) == 0 ? std::numeric_limits<std::int32_t>::min()
                                           : static_cast<std::int32_t>(random.any_size(0x7fffffff));
@@ -120,7 +120,7 @@ TEST_CASE("transform: any position, any legal register") {
         parameters.exponent = static_cast<int>(random.integer(0, largest_exponent));
         if (random.integer(0, 3) == 0)
             parameters.near_plane = std::abs(random.any_size(largest_offset));
-        check(any_position(random), parameters, formats, worst);
+        check(extreme_position(random), parameters, formats, worst);
     }
     CHECK(worst.in_front > 500'000);
     CHECK(worst.saturated > 100'000);
