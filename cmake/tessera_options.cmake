@@ -1,12 +1,14 @@
 # Compiler settings every target of ours shares. Clients of the libraries see none of them.
 #  * warnings are errors in our code, built by itself; libraries come in as SYSTEM includes
 #  * -fno-plt, -falign-functions: a twentieth of timed mode, which calls the SystemC kernel eight times an edge
+#  * -fmacro-prefix-map: reports name a source file by its path in the project, and objects are the same in all checkouts
 #  * -ffp-contract=off: the golden model's doubles must not depend on the compiler fusing a multiply-add
 add_library(tessera_options INTERFACE)
 target_compile_features(tessera_options INTERFACE cxx_std_17)
 target_compile_options(tessera_options INTERFACE
   -Wall -Wextra -Wpedantic $<$<BOOL:${PROJECT_IS_TOP_LEVEL}>:-Werror> -Wshadow -Wconversion -Wsign-conversion
-  $<$<COMPILE_LANGUAGE:CXX>:-Wold-style-cast> $<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor> -Wcast-align -ffp-contract=off -fno-plt -falign-functions=32)
+  $<$<COMPILE_LANGUAGE:CXX>:-Wold-style-cast> $<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor> -Wcast-align -ffp-contract=off -fno-plt -falign-functions=32
+  -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
 if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # gcc takes joined sources for headers.
   target_compile_options(tessera_options INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)

@@ -173,7 +173,7 @@ TEST_CASE("a frame that fails ends the run with its exit code and its name") {
             "\"$0\" run --set frames.count=2 --set output.folder=out --set map.width=1024 & parent=$!\n"
             "until [ \"$child\" ]; do child=$(cat /proc/$parent/task/$parent/children); done\n"
             "kill -TERM $child; wait $parent; echo ended $?";
-        const ProgramEnd end = run_program({"sh", "-c", kill_the_first_frame, TESSERA_PROGRAM}, here.path());
+        const ProgramEnd end = run_program({"sh", "-c", kill_the_first_frame, tessera_program()}, here.path());
         INFO(end.text());
         CHECK_THAT(end.out, Contains("ended 143"));  // 128 + SIGTERM
         CHECK_THAT(end.err, Contains("frame_000") && Contains("Terminated") && Contains("0 of 2"));
@@ -204,7 +204,7 @@ TEST_CASE("a signal to the process of all frames ends the frame's too, and a lin
         "child=$(cat /proc/$parent/task/$parent/children); done\n"
         "kill -TERM $parent; wait $parent; echo ended $?\n"
         "while grep -qs 'State:.[^Z]' /proc/$child/status; do sleep 0.01; done; find out -name '.tessera-*'";
-    const ProgramEnd end = run_program({"sh", "-c", interrupt, TESSERA_PROGRAM}, here.path());
+    const ProgramEnd end = run_program({"sh", "-c", interrupt, tessera_program()}, here.path());
     INFO(end.text());
     CHECK_THAT(end.out, Contains("ended 143\n") && !Contains(".tessera-"));
     CHECK_THAT(end.err, Contains("tessera: interrupted (SIGTERM) at ") && Contains("of 20 frames, complete"));

@@ -168,7 +168,7 @@ TEST_CASE("the data folder can be elsewhere") {
     with_option.insert(with_option.end(), {"--data", "data"});
     CHECK(run_tessera(with_option, here.path()).exit_code == 0);
 
-    std::vector<std::string> command{TESSERA_PROGRAM};
+    std::vector<std::string> command{tessera_program()};
     command.insert(command.end(), job.begin(), job.end());
     CHECK(run_program(command, here.path(), {}, {{"TESSERA_DATA", (here.path() / "data").string()}}).exit_code == 0);
 

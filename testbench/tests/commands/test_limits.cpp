@@ -149,7 +149,7 @@ TEST_CASE("limits: memory that runs out, wherever it does, is told as that") {
     const TestFolder here;
     const auto within = [&](unsigned kibibytes, const std::string& command) {
         return run_program(
-            {"sh", "-c", "ulimit -v " + std::to_string(kibibytes) + "; exec \"$0\" " + command, TESSERA_PROGRAM},
+            {"sh", "-c", "ulimit -v " + std::to_string(kibibytes) + "; exec \"$0\" " + command, tessera_program()},
             here.path());
     };
     unsigned floor = 40000;  // what the program needs to begin depends on the machine's libraries

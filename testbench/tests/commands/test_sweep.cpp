@@ -123,7 +123,7 @@ TEST_CASE("sweep: a row a design, the front marked, a failed run as a row with i
     INFO("another program's results are not these");
     const fs::path program = checkout.root() / "build/release/testbench/commands/tessera";
     fs::remove(program);
-    fs::copy(TESSERA_PROGRAM, program);
+    fs::copy(tessera_program(), program);
     std::ofstream(program, std::ios::app) << "x";
     CHECK_THAT(checkout.run("scripts/sweep small.toml --check").err, Contains("9 designs; 8 runs to do"));
 }

@@ -152,7 +152,7 @@ TEST_CASE("a stated limit ends a run with exit code 4, one message and no trace"
     SECTION("standard output on a full disk") {
         for (const std::string words : {"keys", "run --dump-config", "run --set output.folder=out"}) {
             const ProgramEnd end =
-                run_program({"bash", "-c", "\"$0\" " + words + " > /dev/full", TESSERA_PROGRAM}, here.path());
+                run_program({"bash", "-c", "\"$0\" " + words + " > /dev/full", tessera_program()}, here.path());
             INFO(words);
             INFO(end.text());
             CHECK(end.exit_code == 4);
@@ -246,7 +246,7 @@ TEST_CASE("keys lists every key of a dumped job") {
 TEST_CASE("a reader that goes away early ends the program quietly") {
     const TestFolder here;
     const ProgramEnd end =
-        run_program({"bash", "-c", "\"$0\" keys | head -n 1 > /dev/null", TESSERA_PROGRAM}, here.path());
+        run_program({"bash", "-c", "\"$0\" keys | head -n 1 > /dev/null", tessera_program()}, here.path());
     CHECK(end.exit_code == 0);
     CHECK(end.err.empty());
 }

@@ -40,7 +40,7 @@ std::vector<std::string> run_arguments(const std::string& seed) {
 
 ProgramEnd run_failing(const std::vector<std::string>& arguments, const fs::path& folder, long at,
                        const std::string& what) {
-    std::vector<std::string> command{TESSERA_PROGRAM};
+    std::vector<std::string> command{tessera_program()};
     command.insert(command.end(), arguments.begin(), arguments.end());
     return run_program(
         command, folder, {},
@@ -50,7 +50,7 @@ ProgramEnd run_failing(const std::vector<std::string>& arguments, const fs::path
 /// How many of its calls concern the disk.
 long disk_calls(const std::vector<std::string>& arguments, const fs::path& folder) {
     const TestFolder log;
-    std::vector<std::string> command{TESSERA_PROGRAM};
+    std::vector<std::string> command{tessera_program()};
     command.insert(command.end(), arguments.begin(), arguments.end());
     const ProgramEnd end =
         run_program(command, folder, {},
@@ -233,7 +233,7 @@ TEST_CASE("runs at once into one folder, a link to elsewhere, leave one run ther
     fs::remove_all(here.path() / "out/run");
     fs::create_directory(here.path() / "elsewhere");
     fs::create_symlink("../elsewhere", here.path() / "out/run");
-    std::string line = std::string(TESSERA_PROGRAM);
+    std::string line = tessera_program();
     for (const std::string& argument : run_arguments("1"))
         line += " " + argument;
     const std::string three_times = line + " & a=$!; " + line + " & b=$!; " + line + " && wait $a && wait $b";
@@ -385,7 +385,7 @@ TEST_CASE(
 TEST_CASE("a summary that cannot be printed is an error, and the results are whole") {
     const TestFolder here;
     const Files expected = files_after(run_arguments("1"), here.path());
-    std::string line = std::string(TESSERA_PROGRAM);
+    std::string line = tessera_program();
     for (const std::string& argument : run_arguments("1"))
         line += " " + argument;
     const ProgramEnd end = run_program({"sh", "-c", line + " > /dev/full"}, here.path());

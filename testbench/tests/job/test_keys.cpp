@@ -32,6 +32,7 @@
 #include "testbench/job/validate_job.h"
 #include "testbench/tests/job/job_cases.h"
 #include "testbench/tests/support/count_members.h"
+#include "testbench/tests/support/source_folder.h"
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -446,7 +447,7 @@ TEST_CASE("the key reference names every key, and testbench/job/README.md ends w
         INFO(key.name);
         CHECK_THAT(text, Contains("| `" + key.name + "` |") && Contains("| " + key.description + " |\n"));
     }
-    const std::string path = TESSERA_SOURCE_DIR "/testbench/job/README.md";
+    const std::filesystem::path path = source_folder() / "testbench/job/README.md";
     std::stringstream file;
     file << std::ifstream(path).rdbuf();
     const std::string readme = file.str();

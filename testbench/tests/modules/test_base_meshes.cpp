@@ -15,6 +15,7 @@
 #include "testbench/tests/support/case_table.h"
 #include "testbench/tests/support/checked_run.h"
 #include "testbench/tests/support/job_settings.h"
+#include "testbench/tests/support/source_folder.h"
 
 // Every height test on base meshes of every kind, in both designs and both modes: closed, the bare recursion's mesh bit for
 // bit, every decision golden's within its bound. What the Rank Test cannot do on a base mesh the setup says.
@@ -120,7 +121,7 @@ MachineSetup setup_on(const Base& base, const std::string& settings) {
     Job job =
         with_settings(timed_job(), "map.source=noise tests.normal=false tests.view=false displacement.scale=0.1 " +
                                        base.settings + ' ' + settings);
-    job.mesh.path = std::string(TESSERA_SOURCE_DIR "/testbench/examples/jobs/") + job.mesh.file;
+    job.mesh.path = (source_folder() / "testbench/examples/jobs" / job.mesh.file).string();
     if (base.mesh == nullptr)
         return setup_of(job);
     const BaseMesh mesh = base.mesh();

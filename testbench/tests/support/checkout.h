@@ -28,7 +28,8 @@ class Checkout {
                               std::filesystem::copy_options::recursive);
         for (const char* const preset : {"release", "debug", "asan"}) {
             std::filesystem::create_directories(root() / "build" / preset / "testbench/commands");
-            std::filesystem::create_symlink(TESSERA_PROGRAM, root() / "build" / preset / "testbench/commands/tessera");
+            std::filesystem::create_symlink(tessera_program(),
+                                            root() / "build" / preset / "testbench/commands/tessera");
         }
     }
 

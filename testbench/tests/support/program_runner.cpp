@@ -109,7 +109,7 @@ Arguments operator+(Arguments a, const Arguments& b) {
 }
 
 ProgramEnd run_tessera(const Arguments& arguments, const fs::path& folder, const ProgramLimits& limits) {
-    return run_program(Arguments{TESSERA_PROGRAM} + arguments, folder, limits);
+    return run_program(Arguments{tessera_program()} + arguments, folder, limits);
 }
 
 ProgramEnd succeed(const Arguments& arguments, const fs::path& folder) {
@@ -128,8 +128,8 @@ std::vector<std::string> lines_of(const std::string& text) {
     return lines;
 }
 
-fs::path source_folder() {
-    return TESSERA_SOURCE_DIR;
+std::string tessera_program() {
+    return TESSERA_PROGRAM;
 }
 
 }  // namespace tessera

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "testbench/tests/support/sanitized.h"
+#include "testbench/tests/support/source_folder.h"
 #include "testbench/tests/support/test_folder.h"
 
 namespace tessera {
@@ -46,7 +47,7 @@ ProgramEnd succeed(const Arguments& arguments, const std::filesystem::path& fold
 
 std::vector<std::string> lines_of(const std::string& text);
 
-/// The project's source folder.
-std::filesystem::path source_folder();
+/// The path of `tessera`.
+std::string tessera_program();
 
 }  // namespace tessera

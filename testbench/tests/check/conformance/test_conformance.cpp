@@ -11,6 +11,7 @@
 #include "testbench/input/mesh/make_base_mesh.h"
 #include "testbench/machine/resolve_job.h"
 #include "testbench/machine/simulation.h"
+#include "testbench/tests/support/source_folder.h"
 
 using namespace tessera;
 
@@ -18,7 +19,7 @@ using namespace tessera;
 // time, as ctest does.
 namespace {
 
-const std::filesystem::path jobs = TESSERA_SOURCE_DIR "/testbench/examples/jobs";
+const std::filesystem::path jobs = source_folder() / "testbench/examples/jobs";
 
 void expect_conformance(const Job& asked, const HeightMap& map) {
     const BaseMesh mesh = make_base_mesh(asked.mesh, (jobs / asked.mesh.file).string());

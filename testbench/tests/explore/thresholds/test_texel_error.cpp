@@ -13,6 +13,7 @@
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/resolve_job.h"
+#include "testbench/tests/support/source_folder.h"
 
 using namespace tessera;
 
@@ -57,7 +58,7 @@ BaseMesh plane_from(const glm::dvec2& first, const HeightMap& map, const Job::Me
 
 /// RMS error at Crater Lake's grid points, m, with a bilinear filter, all edges split down to the map's resolution.
 double crater_lake_rms(const glm::dvec2& first, std::int64_t tex_coord_fraction) {
-    Job job = read_job(TESSERA_SOURCE_DIR "/testbench/examples/jobs/crater_lake_704.toml");
+    Job job = read_job(source_folder() / "testbench/examples/jobs/crater_lake_704.toml");
     resolve_paths(job, {});
     job.hardware.displacement_filter = MapFilter::bilinear;
     job.formats.tex_coord_fraction = tex_coord_fraction;

@@ -10,6 +10,7 @@
 #include "testbench/input/map/stroke_font.h"
 #include "testbench/tests/input/map/map_test_files.h"
 #include "testbench/tests/support/shared_data.h"
+#include "testbench/tests/support/source_folder.h"
 
 using namespace tessera;
 using namespace tessera::map_test;
@@ -65,7 +66,7 @@ TEST_CASE("half donut and ramp agree with the reference maps to one code of 16 b
 }
 
 TEST_CASE("the maps of the project's jobs are those of the shared data") {
-    const std::filesystem::path shared = shared_data("maps"), ours = TESSERA_SOURCE_DIR "/testbench/examples/jobs";
+    const std::filesystem::path shared = shared_data("maps"), ours = source_folder() / "testbench/examples/jobs";
     if (shared.empty())
         return;
     const HeightMap crater = read_height_map(ours / "crater_lake_west.png");
@@ -80,7 +81,7 @@ TEST_CASE("the maps of the project's jobs are those of the shared data") {
 }
 
 TEST_CASE("the maps of the project's jobs hold what ORIGINS.txt says") {
-    const std::filesystem::path ours = TESSERA_SOURCE_DIR "/testbench/examples/jobs";
+    const std::filesystem::path ours = source_folder() / "testbench/examples/jobs";
     const HeightMap crater = read_height_map(ours / "crater_lake_west.png");
     REQUIRE(crater.width == 336);
     REQUIRE(crater.height == 459);

@@ -11,6 +11,7 @@
 #include "testbench/tests/input/mesh/mesh_checks.h"
 #include "testbench/tests/support/refusals.h"
 #include "testbench/tests/support/shared_data.h"
+#include "testbench/tests/support/source_folder.h"
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path teapot_file = fs::path(TESSERA_SOURCE_DIR) / "testbench/examples/jobs/teapot_newell.txt";
+const fs::path teapot_file = source_folder() / "testbench/examples/jobs/teapot_newell.txt";
 
 BezierPatches teapot() {
     return read_bezier_patches(teapot_file.string());

@@ -4,6 +4,7 @@
 #include "testbench/common/error.h"
 #include "testbench/input/surface/surface_file.h"
 #include "testbench/tests/support/refusals.h"
+#include "testbench/tests/support/source_folder.h"
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -38,7 +39,7 @@ std::string nurbs(const std::string& key = "", const std::string& line = "") {
 }  // namespace
 
 TEST_CASE("surface file: the examples are read") {
-    const std::filesystem::path examples = std::filesystem::path(TESSERA_SOURCE_DIR) / "testbench/examples/surfaces";
+    const std::filesystem::path examples = source_folder() / "testbench/examples/surfaces";
     const Surface dome = read_surface(examples / "dome.toml");
     const auto& sphere = std::get<QuadricSurface>(dome.shape);
     CHECK(sphere.quadric.centre == glm::dvec3(0, 0, -0.25));

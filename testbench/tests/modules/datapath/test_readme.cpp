@@ -13,13 +13,14 @@
 #include "modules/datapath/all_intermediates.h"
 #include "modules/datapath/registers.h"
 #include "testbench/tests/support/count_members.h"
+#include "testbench/tests/support/source_folder.h"
 
 using namespace tessera::datapath;
 using tessera::testing::count_members;
 
 namespace {
 
-const std::filesystem::path root = TESSERA_SOURCE_DIR;
+const std::filesystem::path root = source_folder();
 const std::filesystem::path folder = root / "modules/datapath";
 
 std::string text_of(const std::filesystem::path& file) {

@@ -2,6 +2,7 @@
 #include "testbench/job/read_job.h"
 #include "testbench/tests/modules/device/bench.h"
 #include "testbench/tests/support/case_table.h"
+#include "testbench/tests/support/source_folder.h"
 
 // The device writes the triangles that the testbench's rasteriser takes.
 
@@ -145,7 +146,7 @@ const CaseTable<Row> examples{"the device writes the triangles of an example job
                               },
                               [](const Row& row) {
                                   Job job =
-                                      read_job(TESSERA_SOURCE_DIR "/testbench/examples/jobs/" + row.settings + ".toml");
+                                      read_job(source_folder() / "testbench/examples/jobs" / (row.settings + ".toml"));
                                   resolve_paths(job, {});
                                   job.mode = row.timed ? Mode::timed : Mode::functional;
                                   same_as_testbench(row, setup_of(job));

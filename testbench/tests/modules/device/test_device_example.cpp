@@ -3,6 +3,7 @@
 
 #include "modules/device/driver/example.h"
 #include "testbench/tests/modules/device/bench.h"
+#include "testbench/tests/support/source_folder.h"
 
 // The example of modules/device/README.md.
 
@@ -44,7 +45,7 @@ TEST_CASE("the README's example draws three frames, and is the README's") {
 
     const auto text_of = [](const std::string& name) {
         std::stringstream text;
-        text << std::ifstream(TESSERA_SOURCE_DIR "/modules/device/" + name).rdbuf();
+        text << std::ifstream(source_folder() / "modules/device" / name).rdbuf();
         return text.str();
     };
     const std::string example = text_of("driver/example.c");

@@ -5,6 +5,7 @@
 #include "testbench/machine/host_traffic.h"
 #include "testbench/tests/modules/device/bench.h"
 #include "testbench/tests/support/case_table.h"
+#include "testbench/tests/support/source_folder.h"
 
 // What a frame moves over the bus, beside what `tessera run` says the host sends; and a sink that is slow.
 
@@ -89,7 +90,7 @@ TEST_CASE("the default job's bytes on the bus are those of the table in README.m
     CHECK(bench.memory.bytes_written == reference.keys.size() * finished_triangle_bytes);
 
     std::stringstream page;
-    page << std::ifstream(TESSERA_SOURCE_DIR "/modules/device/README.md").rdbuf();
+    page << std::ifstream(source_folder() / "modules/device/README.md").rdbuf();
     for (const std::string& row :
          {fmt::format("| three tables | {} | {} |\n", tables, tables),
           fmt::format("| {} base triangles | {} | {} |\n", setup.base_triangles.size(), mesh, host.base_mesh),

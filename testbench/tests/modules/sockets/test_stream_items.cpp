@@ -9,6 +9,7 @@
 #include "modules/sockets/packed_item.h"
 #include "modules/timing/design.h"
 #include "testbench/common/random.h"
+#include "testbench/tests/support/source_folder.h"
 #include "testbench/tests/support/timed_modules.h"
 
 // The items of the streams: each goes through its packed form and back, and modules/sockets/README.md lists its fields.
@@ -260,7 +261,7 @@ TEST_CASE("a tag tells apart all triangles between Get Triangle and Pass or Tess
 }
 
 TEST_CASE("the streams' README lists every item with its fields") {
-    const std::string path = TESSERA_SOURCE_DIR "/modules/sockets/README.md";
+    const std::filesystem::path path = source_folder() / "modules/sockets/README.md";
     std::stringstream stream;
     stream << std::ifstream(path).rdbuf();
     const std::string document = stream.str();

@@ -9,6 +9,7 @@
 
 #include "testbench/tests/support/case_table.h"
 #include "testbench/tests/support/job_settings.h"
+#include "testbench/tests/support/source_folder.h"
 #include "testbench/tests/support/timed_checks.h"
 
 // Hardware of a design: some units by hand, and what each parameter changes.
@@ -31,7 +32,7 @@ std::map<std::string, UnitArea> area(const std::string& settings = "", std::size
 
 /// "12 x" in the row of a function in the datapath's README.
 unsigned multiplications(const std::string& function) {
-    std::ifstream readme(TESSERA_SOURCE_DIR "/modules/datapath/README.md");
+    std::ifstream readme(source_folder() / "modules/datapath/README.md");
     for (std::string line; std::getline(readme, line);) {
         std::smatch found;
         if (line.rfind("| `" + function + "`", 0) == 0 &&

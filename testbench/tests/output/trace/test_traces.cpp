@@ -553,7 +553,7 @@ TEST_CASE("trace.fst: --fst compresses the waveforms, or says which package is m
     fs::create_directory(here.path() / "tools");
     const auto run = [&] {
         return run_program(
-            {TESSERA_PROGRAM, "run", "--fst", "--set", "tests.generation_limit=2", "--set", "output.folder=out"},
+            {tessera_program(), "run", "--fst", "--set", "tests.generation_limit=2", "--set", "output.folder=out"},
             here.path(), {}, {{"PATH", (here.path() / "tools").string()}});
     };
     const ProgramEnd without = run();

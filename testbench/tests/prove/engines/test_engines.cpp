@@ -10,6 +10,7 @@
 #include "testbench/prove/engines/engine_run.h"
 #include "testbench/tests/support/case_table.h"
 #include "testbench/tests/support/job_settings.h"
+#include "testbench/tests/support/source_folder.h"
 
 // Timed mode by a schedule is timed mode by the clock: all figures, the order of the mesh, every item's cycles. Which of them
 // a run takes. Random designs are compared by tests of their own (testbench/prove/engines).
@@ -62,7 +63,7 @@ const CaseTable designs(
     },
     [](const Row& row) {
         Job job =
-            with_settings(read_job(TESSERA_SOURCE_DIR "/testbench/examples/jobs/" + row.job + ".toml"), row.settings);
+            with_settings(read_job(source_folder() / "testbench/examples/jobs" / (row.job + ".toml")), row.settings);
         validate(job);
         resolve_paths(job, {});
         const Inputs inputs = load_inputs(job);

@@ -15,6 +15,7 @@
 #include "testbench/common/child_process.h"
 #include "testbench/common/error.h"
 #include "testbench/prove/faults/faulty_units.h"
+#include "testbench/tests/support/source_folder.h"
 #include "testbench/tests/support/timed_checks.h"
 
 // Every kind of fault at every place in both modes: who catches it. What nobody catches must have changed nothing.
@@ -281,7 +282,7 @@ std::string table(Mode mode, const std::vector<Place>& places, std::vector<Kind>
 /// The part of testbench/prove/faults/FAULT_COVERAGE.md under a heading. TESSERA_WRITE_FAULT_COVERAGE: written anew
 /// instead.
 void compare_with_document(const std::string& heading, const std::string& found) {
-    const std::string path = TESSERA_SOURCE_DIR "/testbench/prove/faults/FAULT_COVERAGE.md";
+    const std::filesystem::path path = source_folder() / "testbench/prove/faults/FAULT_COVERAGE.md";
     std::stringstream stream;
     stream << std::ifstream(path).rdbuf();
     std::string document = stream.str();

@@ -9,6 +9,7 @@
 
 #include "testbench/common/random.h"
 #include "testbench/prove/fuzz/fuzz_target.h"
+#include "testbench/tests/support/source_folder.h"
 
 using namespace tessera;
 namespace fs = std::filesystem;
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 fs::path corpus() {
-    return fs::path(TESSERA_SOURCE_DIR) / "testbench/prove/fuzz/corpus";
+    return source_folder() / "testbench/prove/fuzz/corpus";
 }
 
 std::vector<fs::path> files_of(const fuzz::FuzzTarget& target) {

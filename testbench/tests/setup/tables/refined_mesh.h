@@ -11,6 +11,7 @@
 #include "testbench/common/random.h"
 #include "testbench/input/map/read_height_map.h"
 #include "testbench/setup/quantised_map.h"
+#include "testbench/tests/support/source_folder.h"
 
 namespace tessera::tables_test {
 
@@ -209,7 +210,7 @@ struct CraterLake {
     double metres = 0;
 
     CraterLake() {
-        HeightMap heights = read_height_map(TESSERA_SOURCE_DIR "/testbench/examples/jobs/crater_lake_west.png");
+        HeightMap heights = read_height_map(source_folder() / "testbench/examples/jobs/crater_lake_west.png");
         const auto [low, high] = std::minmax_element(heights.values.begin(), heights.values.end());
         heights.range_low = static_cast<double>(*low);
         heights.range_high = static_cast<double>(*high);
