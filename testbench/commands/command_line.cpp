@@ -7,10 +7,14 @@
 
 #include "modules/version.h"
 #include "testbench/commands/bake_options.h"
+#include "testbench/commands/compare_run.h"
+#include "testbench/commands/rank_command.h"
 #include "testbench/commands/render_options.h"
+#include "testbench/commands/run_job.h"
 #include "testbench/commands/tune_options.h"
 #include "testbench/commands/widths_options.h"
 #include "testbench/common/error.h"
+#include "testbench/job/document_keys.h"
 
 namespace tessera {
 
@@ -69,8 +73,10 @@ class TraceOptions {
 
 }  // namespace
 
-std::optional<Command> read_command_line(int argc, const char* const* argv) {
+std::function<ExitCode()> read_command_line(int argc, const char* const* argv) {
     Command command;
+    RankOrder rank_order;
+    std::string run_folder;
     std::string data = default_data_folder().lexically_normal().string();
 
     CLI::App app{"tessera: a SystemC model of hardware that renders displacement maps by adaptive tessellation"};
@@ -95,7 +101,7 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     CLI::App* const compare = app.add_subcommand("compare",
                                                  "measure a run's mesh against the displaced surface; writes "
                                                  "error.json and error.txt into its folder");
-    compare->add_option("RUN", command.run_folder, "folder that `tessera run` left")->required();
+    compare->add_option("RUN", run_folder, "folder that `tessera run` left")->required();
     compare->add_option("--data", data, "folder of `data:` paths in its job; default: $TESSERA_DATA");
 
     CLI::App* const render = app.add_subcommand("render", "render a finished run's mesh to PNG or EXR");
@@ -118,13 +124,11 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
     CLI::App* const rank =
         app.add_subcommand("rank", "make a job's Rank Table, and measure the meshes of its thresholds");
     CLI::Option* const rank_job =
-        rank->add_option("JOB", command.rank.job_file, "job file (TOML); default: the half donut");
-    rank->add_option("--output", command.rank.output,
+        rank->add_option("JOB", rank_order.job_file, "job file (TOML); default: the half donut");
+    rank->add_option("--output", rank_order.output,
                      "folder of rank_table.bin (as the memory holds it), rank_table.json and thresholds.csv; default: "
                      "runs/rank");
-    rank->add_option("--set", command.rank.settings, "set one key of the job first")
-        ->take_all()
-        ->allow_extra_args(false);
+    rank->add_option("--set", rank_order.settings, "set one key of the job first")->take_all()->allow_extra_args(false);
     rank->add_option("--data", data, "folder of `data:` paths in the job; default: $TESSERA_DATA");
 
     CLI::App* const widths = app.add_subcommand(
@@ -139,7 +143,7 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
         app.parse(argc, argv);
     } catch (const CLI::Success& success) {
         app.exit(success);
-        return std::nullopt;
+        return {};
     } catch (const CLI::ParseError& error) {
         const std::vector<CLI::App*> verbs = app.get_subcommands();
         throw InputError(fmt::format("{}; see `tessera --help` and `tessera {} --help`", error.what(),
@@ -149,32 +153,28 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
         throw InputError(
             "no command given: use `tessera run`, `tessera compare`, `tessera render`, `tessera bake`, "
             "`tessera tune`, `tessera rank`, `tessera widths` or `tessera keys`; see `tessera --help`");
-    if ((job->count() > 0 && command.job_file.empty()) || (rank_job->count() > 0 && command.rank.job_file.empty()))
+    if ((job->count() > 0 && command.job_file.empty()) || (rank_job->count() > 0 && rank_order.job_file.empty()))
         throw InputError("JOB is empty: name a job file, or leave it out for the default job");
-    command.verb = keys->parsed()      ? Command::Verb::keys
-                   : compare->parsed() ? Command::Verb::compare
-                                       : Command::Verb::run;
-    command.data_folder = data;
-    if (render->parsed()) {
-        command.verb = Command::Verb::render;
-        command.render = render_options.request();
-    }
-    if (bake->parsed()) {
-        command.verb = Command::Verb::bake;
-        command.bake = bake_options.request();
-    }
-    if (tune->parsed()) {
-        command.verb = Command::Verb::tune;
-        command.tune = tune_options.order();
-    }
+    if (keys->parsed())
+        return [] {
+            fmt::print("{}", document_keys());
+            return ExitCode::fine;
+        };
+    if (compare->parsed())
+        return [run_folder, data] { return compare_run(run_folder, data); };
+    if (render->parsed())
+        return [request = render_options.request(), data] { return render_command(request, data); };
+    if (bake->parsed())
+        return [request = bake_options.request(), data] { return bake_command(request, data); };
+    if (tune->parsed())
+        return [order = tune_options.order(), data] { return tune_command(order, data); };
     if (rank->parsed())
-        command.verb = Command::Verb::rank;
-    if (widths->parsed()) {
-        command.verb = Command::Verb::widths;
-        command.widths = widths_options.order();
-    }
+        return [rank_order, data] { return rank_command(rank_order, data); };
+    if (widths->parsed())
+        return [order = widths_options.order(), data] { return widths_command(order, data); };
+    command.data_folder = data;
     traces.apply_to(command);
-    return command;
+    return [command] { return run_job(command); };
 }
 
 }  // namespace tessera

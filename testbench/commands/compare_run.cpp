@@ -12,10 +12,10 @@
 
 namespace tessera {
 
-ExitCode compare_run(const Command& command) {
+ExitCode compare_run(const std::filesystem::path& run_folder, const std::filesystem::path& data_folder) {
     Progress progress;
     progress.show("reading the run", 0);
-    const RecordedRun run = read_run(command.run_folder, command.data_folder);
+    const RecordedRun run = read_run(run_folder, data_folder);
     const BaseMesh base = load_mesh(run.job);
     const HeightMap map = load_map(run.job);
     MeasureLimits limits;

@@ -5,21 +5,12 @@
 #include <cstdlib>
 #include <exception>
 #include <new>
-#include <optional>
 #include <system_error>
 #include <systemc>
 
-#include "testbench/commands/bake_command.h"
 #include "testbench/commands/command_line.h"
-#include "testbench/commands/compare_run.h"
-#include "testbench/commands/rank_command.h"
-#include "testbench/commands/render_command.h"
-#include "testbench/commands/run_job.h"
-#include "testbench/commands/tune_command.h"
-#include "testbench/commands/widths_command.h"
 #include "testbench/common/error.h"
 #include "testbench/common/interruption.h"
-#include "testbench/job/document_keys.h"
 
 namespace {
 
@@ -29,27 +20,6 @@ int failed(tessera::ExitCode code, const char* message) {
     return static_cast<int>(code);
 }
 
-tessera::ExitCode execute(const std::optional<tessera::Command>& command) {
-    if (!command)
-        return tessera::ExitCode::fine;
-    if (command->verb == tessera::Command::Verb::run)
-        return tessera::run_job(*command);
-    if (command->verb == tessera::Command::Verb::render)
-        return tessera::render_command(command->render, command->data_folder);
-    if (command->verb == tessera::Command::Verb::bake)
-        return tessera::bake_command(command->bake, command->data_folder);
-    if (command->verb == tessera::Command::Verb::compare)
-        return tessera::compare_run(*command);
-    if (command->verb == tessera::Command::Verb::tune)
-        return tessera::tune_command(command->tune, command->data_folder);
-    if (command->verb == tessera::Command::Verb::rank)
-        return tessera::rank_command(command->rank, command->data_folder);
-    if (command->verb == tessera::Command::Verb::widths)
-        return tessera::widths_command(command->widths, command->data_folder);
-    fmt::print("{}", tessera::document_keys());
-    return tessera::ExitCode::fine;
-}
-
 }  // namespace
 
 int sc_main(int argc, char** argv) {
@@ -57,7 +27,8 @@ int sc_main(int argc, char** argv) {
     // Reaching a limit stops the simulation; SystemC would report that on standard output.
     sc_core::sc_report_handler::set_actions(sc_core::SC_INFO, sc_core::SC_DO_NOTHING);
     try {
-        const ExitCode code = execute(tessera::read_command_line(argc, argv));
+        const auto command = tessera::read_command_line(argc, argv);
+        const ExitCode code = command ? command() : ExitCode::fine;
         // Output may still be buffered: a full disk may show only now.
         if (std::fflush(stdout) != 0)
             return failed(ExitCode::resource_limit,
