@@ -10,6 +10,7 @@
 #include "modules/datapath/vertex.h"
 #include "testbench/common/random.h"
 #include "testbench/input/map/read_height_map.h"
+#include "testbench/input/mesh/built_in.h"
 #include "testbench/setup/quantised_map.h"
 #include "testbench/tests/support/source_folder.h"
 
@@ -182,6 +183,26 @@ inline QuantisedMap empty_map(std::uint32_t width, std::uint32_t height, Address
     map.geometry = {width, height, u, v};
     map.codes.assign(std::size_t{width} * height, 0);
     return map;
+}
+
+/// The base mesh of mesh.source = "lattice" over the map, as the tables take it.
+inline std::vector<Corners> lattice_triangles(const datapath::MapGeometry& map, std::uint32_t spacing,
+                                              const datapath::Formats& formats) {
+    const BaseMesh mesh =
+        make_lattice({map.width, map.height},
+                     {map.address_u == AddressMode::repeat, map.address_v == AddressMode::repeat}, spacing, 1, 1);
+    const auto place = [&](double t, std::uint32_t side) {
+        return static_cast<std::uint32_t>(std::llround(std::ldexp(t * side, formats.texture.fraction)));
+    };
+    std::vector<Corners> triangles;
+    for (const auto& vertices : mesh.triangles) {
+        Corners& corners = triangles.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k) {
+            const glm::dvec2& texture = mesh.vertices[vertices[k]].texture;
+            corners[k] = {place(texture.x, map.width), place(texture.y, map.height)};
+        }
+    }
+    return triangles;
 }
 
 /// Noise, steps, few spikes or slopes, at full scale or at a few codes.

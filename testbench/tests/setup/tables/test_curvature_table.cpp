@@ -4,7 +4,6 @@
 
 #include "modules/datapath/midpoint.h"
 #include "modules/datapath/triangulate.h"
-#include "testbench/setup/tables/lattice.h"
 #include "testbench/tests/setup/tables/refined_mesh.h"
 
 using namespace tessera;
@@ -127,7 +126,7 @@ TEST_CASE("Cells whose squares lie beyond a clamped map ask for nothing") {
     QuantisedMap map = empty_map(20, 20, AddressMode::clamp, AddressMode::clamp);
     for (std::uint16_t& code : map.codes)
         code = static_cast<std::uint16_t>(random.natural(0, 65535));
-    const auto base = lattice_triangles(lattice_over(map.geometry, 32), formats);
+    const auto base = lattice_triangles(map.geometry, 32, formats);
     const CurvatureTable table = make_curvature_table(map, base, formats);
     CHECK(table.covered.width == 33);
     CHECK(table.covered.height == 33);
@@ -181,7 +180,7 @@ TEST_CASE("Every value that a map can have fits an entry") {
 
 TEST_CASE("Crater Lake from 24 triangles by the Curvature Test, RMS in metres") {
     const CraterLake lake;
-    const auto base = lattice_triangles(lattice_over(lake.map.geometry, 128), formats);
+    const auto base = lattice_triangles(lake.map.geometry, 128, formats);
     const CurvatureTable table = make_curvature_table(lake.map, base, formats);
     const auto mesh_at = [&](std::uint64_t threshold) {
         CurvatureRecursion recursion{lake.map, table, threshold, lake.metres, 30, {}};

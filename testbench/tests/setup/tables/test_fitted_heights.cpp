@@ -2,7 +2,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "testbench/setup/tables/lattice.h"
 #include "testbench/setup/tables/rank_table.h"
 #include "testbench/tests/setup/tables/refined_mesh.h"
 
@@ -54,7 +53,7 @@ TEST_CASE("A mesh whose map is linear within its triangles, but for noise, gets 
         for (std::uint32_t x = 0; x < 65; ++x)
             map.codes[std::size_t{y} * 65 + x] = static_cast<std::uint16_t>(level(x, y) + random.integer32(-500, 500));
     }
-    const auto mesh = lattice_triangles(lattice_over(map.geometry, 32), formats);
+    const auto mesh = lattice_triangles(map.geometry, 32, formats);
     const QuantisedMap fitted = fit_heights(map, mesh, formats);
     for (std::uint32_t y = 0; y < 65; ++y) {
         for (std::uint32_t x = 0; x < 65; ++x) {
@@ -72,7 +71,7 @@ TEST_CASE("No other code under a vertex makes the squared error less") {
         QuantisedMap map = empty_map(20, 17, AddressMode::clamp, AddressMode::clamp);
         for (std::uint16_t& code : map.codes)
             code = static_cast<std::uint16_t>(random.natural(28000, 32000));
-        const auto mesh = lattice_triangles(lattice_over(map.geometry, 8), formats);
+        const auto mesh = lattice_triangles(map.geometry, 8, formats);
         QuantisedMap fitted = fit_heights(map, mesh, formats);
         const double least = squared(errors_of(fitted, map, mesh));
         CHECK(least < squared(errors_of(map, map, mesh)));
@@ -94,8 +93,8 @@ TEST_CASE("Of meshes over the same texels each counts") {
     QuantisedMap map = empty_map(33, 33, AddressMode::clamp, AddressMode::clamp);
     for (std::uint16_t& code : map.codes)
         code = static_cast<std::uint16_t>(random.natural(20000, 40000));
-    const auto coarse = lattice_triangles(lattice_over(map.geometry, 32), formats);
-    const auto fine = lattice_triangles(lattice_over(map.geometry, 16), formats);
+    const auto coarse = lattice_triangles(map.geometry, 32, formats);
+    const auto fine = lattice_triangles(map.geometry, 16, formats);
     auto both = coarse;
     both.insert(both.end(), fine.begin(), fine.end());
     const auto of_both = [&](const QuantisedMap& heights) {
@@ -111,13 +110,13 @@ TEST_CASE("Fitted heights stay codes") {
     map.bits = 10;
     for (std::uint32_t k = 0; k < map.codes.size(); ++k)
         map.codes[k] = k % 17 < 8 ? 0 : 1023;
-    const QuantisedMap fitted = fit_heights(map, lattice_triangles(lattice_over(map.geometry, 16), formats), formats);
+    const QuantisedMap fitted = fit_heights(map, lattice_triangles(map.geometry, 16, formats), formats);
     CHECK(*std::max_element(fitted.codes.begin(), fitted.codes.end()) == 1023);
 }
 
 TEST_CASE("Crater Lake by the Rank Test with fitted heights, RMS in metres") {
     const CraterLake lake;
-    const auto base = lattice_triangles(lattice_over(lake.map.geometry, 128), formats);
+    const auto base = lattice_triangles(lake.map.geometry, 128, formats);
     const RankTables tables = make_rank_tables(lake.map, base, formats, 12, 0);
     const TexelTable table{tables.rank, tables.columns, tables.rows, formats.texture.fraction};
     const auto mesh_at = [&](std::uint32_t threshold) { return mesh_of(base, table, threshold, formats); };

@@ -1,7 +1,6 @@
-#include "testbench/setup/tables/lattice.h"
-
 #include <catch2/catch.hpp>
 
+#include "testbench/input/mesh/built_in.h"
 #include "testbench/setup/tables/rank_table.h"
 #include "testbench/tests/setup/tables/refined_mesh.h"
 
@@ -17,9 +16,7 @@ TEST_CASE("A lattice covers each grid point, with vertices at texel centres, and
         const AddressMode u = random.coin() ? AddressMode::repeat : AddressMode::clamp;
         const std::uint32_t width = u == AddressMode::repeat ? spacing * random.natural(1, 3) : random.natural(1, 100);
         const QuantisedMap map = empty_map(width, random.natural(1, 100), u, AddressMode::clamp);
-        const Lattice lattice = lattice_over(map.geometry, spacing);
-        const auto triangles = lattice_triangles(lattice, formats);
-        REQUIRE(triangles.size() == lattice.triangles());
+        const auto triangles = lattice_triangles(map.geometry, spacing, formats);
         CHECK(count_whole_base_edges(triangles, formats) == 0);
         CHECK(count_cracks(triangles, map.geometry, formats) == 0);
         std::uint64_t outside_a_centre = 0, clockwise = 0;
@@ -41,9 +38,10 @@ TEST_CASE("A lattice covers each grid point, with vertices at texel centres, and
 }
 
 TEST_CASE("Crater Lake takes 3 x 4 quads of 128 texels, the last beyond the map; a period exactly one") {
-    const Lattice lake = lattice_over({336, 459, AddressMode::clamp, AddressMode::clamp}, 128);
-    CHECK(lake.columns == 3);
-    CHECK(lake.rows == 4);
-    CHECK(lattice_over({129, 128, AddressMode::clamp, AddressMode::repeat}, 128).triangles() == 2);
-    CHECK(lattice_over({130, 1, AddressMode::clamp, AddressMode::clamp}, 128).triangles() == 4);
+    CHECK(lattice_quads(336, false, 128) == 3);
+    CHECK(lattice_quads(459, false, 128) == 4);
+    CHECK(lattice_quads(129, false, 128) == 1);
+    CHECK(lattice_quads(128, true, 128) == 1);
+    CHECK(lattice_quads(130, false, 128) == 2);
+    CHECK(lattice_quads(1, false, 128) == 1);
 }

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "modules/datapath/rank_view.h"
-#include "testbench/setup/tables/lattice.h"
 #include "testbench/setup/tables/split_hierarchy.h"
 #include "testbench/tests/setup/tables/refined_mesh.h"
 
@@ -38,7 +37,7 @@ struct RandomCase {
         const AddressMode v = random.coin() ? AddressMode::repeat : AddressMode::clamp;
         const std::uint32_t width = side(u), height = side(v);
         map = random_map(random, width, height, u, v);
-        base = lattice_triangles(lattice_over(map.geometry, spacing), formats);
+        base = lattice_triangles(map.geometry, spacing, formats);
     }
 };
 
@@ -361,7 +360,7 @@ TEST_CASE("Where entries of few bits do not reach, they keep the order and say u
     QuantisedMap map = empty_map(97, 97, AddressMode::clamp, AddressMode::clamp);
     for (std::uint16_t& code : map.codes)
         code = static_cast<std::uint16_t>(random.natural(0, 65535));
-    const auto base = lattice_triangles(lattice_over(map.geometry, 64), formats);
+    const auto base = lattice_triangles(map.geometry, 64, formats);
     const SplitHierarchy hierarchy = make_split_hierarchy(map, base, formats);
     const RankTables tables = make_rank_tables(map, base, formats, 6, 6);
     CHECK(tables.highest_bound_threshold < 63);
@@ -458,7 +457,7 @@ TEST_CASE("Any base mesh is served as far as its edges allow") {
     }
     SECTION("a cylinder twice around the map has the table of one") {
         QuantisedMap around = random_map(random, 32, 20, AddressMode::repeat, AddressMode::clamp);
-        const auto once = lattice_triangles(lattice_over(around.geometry, 16), formats);
+        const auto once = lattice_triangles(around.geometry, 16, formats);
         auto twice = once;
         for (Corners corners : once) {
             for (TexCoord& corner : corners)
@@ -475,7 +474,7 @@ TEST_CASE("Any base mesh is served as far as its edges allow") {
 
 TEST_CASE("Crater Lake from 24 triangles, RMS and largest error in metres") {
     const CraterLake lake;
-    const auto base = lattice_triangles(lattice_over(lake.map.geometry, 128), formats);
+    const auto base = lattice_triangles(lake.map.geometry, 128, formats);
     REQUIRE(base.size() == 24);
     const RankTables tables = make_rank_tables(lake.map, base, formats, 16, 16);
     REQUIRE(tables.least_error == 0);
