@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "testbench/commands/load_job.h"
-#include "testbench/commands/output_folder.h"
 #include "testbench/commands/progress.h"
 #include "testbench/commands/run_files.h"
 #include "testbench/common/atomic_file.h"
@@ -13,6 +11,7 @@
 #include "testbench/input/surface/bake.h"
 #include "testbench/job/dump_job.h"
 #include "testbench/job/job_paths.h"
+#include "testbench/job/read_job.h"
 #include "testbench/job/toml_text.h"
 #include "testbench/job/validate_job.h"
 #include "testbench/machine/inputs.h"
@@ -84,7 +83,7 @@ std::string summary(const BakedMap& map, const EncodedMap& file) {
 ExitCode bake_command(const BakeRequest& request, const fs::path& data_folder) {
     const Surface surface = read_surface(request.surface);
     Job job = base_job(request, surface, data_folder);
-    const fs::path folder = request.output.has_parent_path() ? request.output.parent_path() : fs::path(".");
+    const fs::path folder = folder_of(request.output);
     check_output_folder(folder, "--output");
     const std::string name = request.output.stem().string();
     const fs::path job_file = folder / (name + ".job.toml");

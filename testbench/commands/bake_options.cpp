@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cctype>
 
 #include "testbench/commands/option_values.h"
+#include "testbench/input/map/map_file.h"
 #include "testbench/setup/height_map.h"
 
 namespace tessera {
@@ -14,9 +13,7 @@ namespace tessera {
 namespace {
 
 MapFormat format_of(const std::filesystem::path& output) {
-    std::string ending = output.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string ending = lower_case_extension(output);
     if (ending == ".pgm")
         return MapFormat::pgm;
     if (ending == ".png")

@@ -14,7 +14,7 @@
 #include "testbench/commands/tune_options.h"
 #include "testbench/commands/widths_options.h"
 #include "testbench/common/error.h"
-#include "testbench/job/document_keys.h"
+#include "testbench/job/dump_job.h"
 
 namespace tessera {
 

@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 
-#include "testbench/commands/load_job.h"
-#include "testbench/commands/output_folder.h"
 #include "testbench/commands/progress.h"
 #include "testbench/commands/run_files.h"
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/atomic_set.h"
 #include "testbench/explore/thresholds/rank_curve.h"
+#include "testbench/job/read_job.h"
 #include "testbench/machine/inputs.h"
 
 namespace tessera {

@@ -3,14 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
-#include "testbench/commands/output_folder.h"
+#include "testbench/check/surface_error/measure_error.h"
 #include "testbench/commands/progress.h"
-#include "testbench/commands/run_error.h"
+#include "testbench/commands/run_files.h"
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/atomic_set.h"
+#include "testbench/input/map/map_file.h"
 #include "testbench/job/validate_job.h"
+#include "testbench/machine/inputs.h"
 #include "testbench/output/picture/error_range.h"
 #include "testbench/output/picture/png_writer.h"
 #include "testbench/output/picture/view_picture.h"
@@ -33,19 +34,13 @@ struct Output {
     }
 };
 
-std::string lower_case(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
-
 Output choose_output(const RenderRequest& request) {
     Output output{request.output.empty() ? request.run : request.output, {}, request.exr};
     std::error_code error;
     if (request.output.empty() || fs::is_directory(request.output, error) || !request.output.has_filename() ||
         request.output.extension().empty())
         return output;
-    const std::string ending = lower_case(request.output.extension().string());
+    const std::string ending = lower_case_extension(request.output);
     if (ending != ".png" && ending != ".exr")
         throw InputError(
             fmt::format("--output {}: pictures are written as FILE.png or FILE.exr; to name a new folder, end "
@@ -59,7 +54,7 @@ Output choose_output(const RenderRequest& request) {
             fmt::format("--output {}: does not agree with --exr; name it FILE.exr", request.output.string()));
     if (ending == ".exr" && !output.exr)
         output.exr = ExrSamples::half;
-    output.folder = request.output.has_parent_path() ? request.output.parent_path() : fs::path(".");
+    output.folder = folder_of(request.output);
     output.file = request.output.filename().string();
     return output;
 }
@@ -95,12 +90,17 @@ bool asks_for(const RenderRequest& request, PictureView view) {
     return std::find(request.views.begin(), request.views.end(), view) != request.views.end();
 }
 
-/// The darkest colour stands for --error-scale or, by default, the error exceeded by 1 % of the area: the largest
+/// Measures the run's mesh against the interpolated map, as `tessera compare` does: of a triangle the largest distance
+/// found, either way. About 5 s for 200,000 triangles. The darkest colour stands for --error-scale or, by default, the error exceeded by 1 % of the area: the largest
 /// errors, of a few triangles on a step of the map, would leave no colours for the rest.
 void add_errors(const RecordedRun& run, RenderMesh& mesh, ErrorScale& scale) {
-    RunError error = measure_run_error(run);
-    mesh.triangle_errors = std::move(error.triangles);
-    scale.texel = error.texel;
+    const BaseMesh base = load_mesh(run.job);
+    const HeightMap map = load_map(run.job);
+    const SurfaceError error =
+        measure_surface_error(base, map, DisplacementOf::from(run.job, map), run.mesh, Sampling::interpolated);
+    for (const TriangleError& triangle : error.triangles)
+        mesh.triangle_errors.push_back(std::max(triangle.max, triangle.reference_max));
+    scale.texel = texel_length(base, map);
     scale.beyond = largest_of(mesh.triangle_errors);
     if (scale.largest == 0)
         scale.largest = error_of_most(mesh, 0.99);

@@ -1,8 +1,10 @@
 #include "testbench/commands/run_files.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -34,6 +36,11 @@ bool is_run_file(const std::string& name) {
     return among(run_file_names) || among(pictures);
 }
 
+bool is_there(const fs::path& path) {
+    std::error_code absent;
+    return fs::exists(fs::symlink_status(path, absent));
+}
+
 void take_away_plain(const fs::path& file, AtomicSet& files) {
     std::error_code absent;
     if (fs::is_regular_file(fs::symlink_status(file, absent)))
@@ -52,13 +59,16 @@ std::vector<std::string> names_taken(const fs::path& folder) {
     std::vector<std::string> names(std::begin(run_file_names), std::end(run_file_names));
     const std::vector<std::string> pictures = picture_names();
     names.insert(names.end(), pictures.begin(), pictures.end());
-    names.erase(std::remove_if(names.begin(), names.end(),
-                               [&](const std::string& name) {
-                                   std::error_code absent;
-                                   return !fs::exists(fs::symlink_status(folder / name, absent));
-                               }),
-                names.end());
+    names.erase(
+        std::remove_if(names.begin(), names.end(), [&](const std::string& name) { return !is_there(folder / name); }),
+        names.end());
     return names;
+}
+
+/// Absolute, without a slash at its end.
+fs::path plain(const fs::path& path) {
+    const fs::path absolute = fs::absolute(path).lexically_normal();
+    return absolute.has_filename() ? absolute : absolute.parent_path();
 }
 
 /// Whether a run into `output` owns `folder`: the same folder, or a frame in it.
@@ -79,6 +89,33 @@ fs::path real_place(const fs::path& path) {
 fs::path place_of_name(const fs::path& path) {
     const fs::path absolute = fs::absolute(path).lexically_normal();
     return real_place(absolute.parent_path()) / absolute.filename();
+}
+
+fs::path folder_of(const fs::path& file) {
+    return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+void check_output_folder(const fs::path& folder, const std::string& key) {
+    const auto refuse = [&](const std::string& why) {
+        throw InputError(fmt::format("{} = \"{}\": cannot write there: {}; choose another", key, folder.string(), why));
+    };
+    std::error_code error;
+    fs::path there = plain(folder);
+    while (!is_there(there) && there.has_relative_path())
+        there = there.parent_path();
+    if (!fs::is_directory(there, error))
+        refuse(fmt::format("{} is not a folder", there.string()));
+    if (access(there.c_str(), W_OK | X_OK) != 0)
+        refuse(fmt::format("{}: {}", there.string(), std::generic_category().message(errno)));
+}
+
+void check_folder_of(const fs::path& file, const std::string& option) {
+    const fs::path folder = folder_of(file);
+    std::error_code error;
+    if (!fs::is_directory(folder, error))
+        throw InputError(
+            fmt::format("{} {}: there is no folder {}; make it first", option, file.string(), folder.string()));
+    check_output_folder(folder, option);
 }
 
 void take_away_run(const fs::path& folder, AtomicSet& files) {

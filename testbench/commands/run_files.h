@@ -14,6 +14,16 @@ std::filesystem::path real_place(const std::filesystem::path& path);
 /// The same for a file to be written: a symbolic link of that name is not followed.
 std::filesystem::path place_of_name(const std::filesystem::path& path);
 
+/// Where a file lies: "." if its path names no folder.
+std::filesystem::path folder_of(const std::filesystem::path& file);
+
+/// Checks before a long run that its folder can be written, without creating it. `key` is what names the folder in
+/// messages. Throws InputError.
+void check_output_folder(const std::filesystem::path& folder, const std::string& key = "output.folder");
+
+/// The same for the folder of a file that an option names. The folder must exist.
+void check_folder_of(const std::filesystem::path& file, const std::string& option);
+
 /// Puts `files` in place of everything that an earlier run, of one frame or several, left in `folder`, so that results
 /// of different runs never mix. Other files stay: all of a folder that no run left (its job.toml does not begin with
 /// run_job_heading), names that no run writes, anything but regular files, and a frame's folder that holds more.

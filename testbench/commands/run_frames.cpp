@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "testbench/commands/frame_table.h"
-#include "testbench/commands/output_folder.h"
 #include "testbench/commands/progress.h"
+#include "testbench/commands/run_files.h"
 #include "testbench/commands/summary.h"
 #include "testbench/common/atomic_file.h"
 #include "testbench/common/atomic_set.h"

@@ -8,9 +8,7 @@
 #include <optional>
 #include <string_view>
 
-#include "testbench/commands/load_job.h"
 #include "testbench/commands/option_values.h"
-#include "testbench/commands/output_folder.h"
 #include "testbench/commands/progress.h"
 #include "testbench/commands/run_files.h"
 #include "testbench/common/atomic_file.h"
@@ -21,6 +19,7 @@
 #include "testbench/job/dump_job.h"
 #include "testbench/job/job_choices.h"
 #include "testbench/job/job_paths.h"
+#include "testbench/job/read_job.h"
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/simulation.h"
@@ -178,12 +177,8 @@ TuneRequest request_of(const TuneOrder& order, const fs::path& data_folder, Sear
 
 /// Checks before the work that a file can be written after it.
 void check_output(const std::string& option, const fs::path& file) {
-    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    check_folder_of(file, option);
     std::error_code error;
-    if (!fs::is_directory(folder, error))
-        throw InputError(
-            fmt::format("{} {}: there is no folder {}; make it first", option, file.string(), folder.string()));
-    check_output_folder(folder, option);
     if (fs::is_directory(file, error))
         throw InputError(fmt::format("{} {}: is a folder; name a file", option, file.string()));
 }

@@ -4,8 +4,6 @@
 
 #include <system_error>
 
-#include "testbench/commands/load_job.h"
-#include "testbench/commands/output_folder.h"
 #include "testbench/commands/progress.h"
 #include "testbench/commands/run_files.h"
 #include "testbench/common/atomic_file.h"
@@ -13,6 +11,7 @@
 #include "testbench/explore/widths/widths_report.h"
 #include "testbench/job/job_choices.h"
 #include "testbench/job/nearest_name.h"
+#include "testbench/job/read_job.h"
 #include "testbench/machine/inputs.h"
 
 namespace tessera {
@@ -36,14 +35,11 @@ Output output_of(const WidthsOrder& order) {
         check_output_folder(output.folder, "--output");
         return output;
     }
-    output.folder = wanted.has_parent_path() ? wanted.parent_path() : fs::path(".");
+    output.folder = folder_of(wanted);
     output.csv = wanted;
     output.json = fs::path(wanted).replace_extension(".json");
+    check_folder_of(wanted, "--output");
     std::error_code error;
-    if (!fs::is_directory(output.folder, error))
-        throw InputError(
-            fmt::format("--output {}: there is no folder {}; make it first", wanted.string(), output.folder.string()));
-    check_output_folder(output.folder, "--output");
     for (const fs::path& file : {output.csv, output.json})
         if (fs::is_directory(file, error))
             throw InputError(fmt::format("--output {}: {} is a folder; name a file", wanted.string(), file.string()));

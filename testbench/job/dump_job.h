@@ -21,4 +21,7 @@ std::string dump_job(const Job& job, const std::filesystem::path& run_folder);
 /// The same with only those keys that do not have their defaults, and no comments but `heading`, one line.
 std::string dump_short_job(const Job& job, const std::filesystem::path& folder, const std::string& heading);
 
+/// The reference of all job keys: one Markdown table per table of a job file.
+std::string document_keys();
+
 }  // namespace tessera

@@ -8,7 +8,7 @@ namespace tessera {
 
 namespace {
 
-constexpr std::string_view prefix = "frame_";
+constexpr std::string_view frame_prefix = "frame_";
 
 }  // namespace
 
@@ -24,13 +24,13 @@ Job frame_job(const Job& job, std::int64_t k) {
 }
 
 std::string frame_name(std::int64_t k) {
-    return fmt::format("{}{:03}", prefix, k);
+    return fmt::format("{}{:03}", frame_prefix, k);
 }
 
 bool is_frame_name(std::string_view name) {
-    if (name.size() < prefix.size() + 3 || name.substr(0, prefix.size()) != prefix)
+    if (name.size() < frame_prefix.size() + 3 || name.substr(0, frame_prefix.size()) != frame_prefix)
         return false;
-    return name.find_first_not_of("0123456789", prefix.size()) == std::string_view::npos;
+    return name.find_first_not_of("0123456789", frame_prefix.size()) == std::string_view::npos;
 }
 
 }  // namespace tessera

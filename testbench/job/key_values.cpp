@@ -39,7 +39,7 @@ struct WithUnit {
 };
 
 // Each returns what is wrong, as the end of the sentence "`key` = value ...".
-struct Fault {
+struct FaultOf {
     const Key& key;
 
     std::string number(double value) const {
@@ -163,7 +163,7 @@ std::string wanted_text(const Key& key) {
 }
 
 std::string complaint(const Key& key, const JobValue& value) {
-    const std::string fault = std::visit(Fault{key}, value);
+    const std::string fault = std::visit(FaultOf{key}, value);
     return fault.empty() ? "" : fmt::format("`{}` = {} {}", key.name, printable(toml_value(value)), fault);
 }
 

@@ -16,6 +16,7 @@
 #include "testbench/job/nearest_name.h"
 #include "testbench/job/toml_document.h"
 #include "testbench/job/toml_text.h"
+#include "testbench/job/validate_job.h"
 
 namespace tessera {
 
@@ -328,6 +329,15 @@ void apply_settings(Job& job, const std::vector<std::string>& settings) {
             }
         }
     }
+}
+
+Job load_job(const std::string& file, const std::vector<std::string>& settings,
+             const std::filesystem::path& data_folder) {
+    Job job = file.empty() ? Job{} : read_job(file);
+    apply_settings(job, settings);
+    validate(job);
+    resolve_paths(job, data_folder);
+    return job;
 }
 
 }  // namespace tessera

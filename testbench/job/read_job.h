@@ -25,4 +25,9 @@ void apply_setting(Job& job, std::string_view setting);
 /// Throws what apply_setting throws; the job may then be changed in part.
 void apply_settings(Job& job, const std::vector<std::string>& settings);
 
+/// The job in a file (empty: the default job) with its --set settings, valid, its paths resolved. data_folder: what
+/// `data:` paths begin at. Throws what reading and validating throw.
+Job load_job(const std::string& file, const std::vector<std::string>& settings,
+             const std::filesystem::path& data_folder);
+
 }  // namespace tessera

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <cerrno>
 #include <fstream>
 #include <system_error>
@@ -23,6 +24,14 @@ std::ifstream open_file(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+std::string lower_case_extension(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    for (char& c : extension) {
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+    return extension;
+}
 
 std::uint64_t map_file_size(const std::filesystem::path& path) {
     std::error_code error;

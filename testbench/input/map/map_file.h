@@ -11,6 +11,9 @@ namespace tessera {
 /// at most 96 MiB. EXR and PNG files are read in pieces, without a limit.
 inline constexpr std::uint64_t largest_map_file = 192ULL << 20;
 
+/// ".png" of a file named PICTURE.PNG.
+std::string lower_case_extension(const std::filesystem::path& path);
+
 /// Size of a regular file in bytes. Throws InputError if it does not exist or is not a regular file.
 std::uint64_t map_file_size(const std::filesystem::path& path);
 

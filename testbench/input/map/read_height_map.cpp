@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
 #include <new>
 #include <string_view>
 
@@ -31,14 +30,6 @@ constexpr std::string_view format_name(Format format) {
 
 bool starts_with(std::string_view text, std::string_view start) {
     return text.substr(0, start.size()) == start;
-}
-
-std::string lower_case_extension(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    for (char& c : extension) {
-        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    }
-    return extension;
 }
 
 [[noreturn]] void refuse(const std::filesystem::path& path, std::string_view why) {

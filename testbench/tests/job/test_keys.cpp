@@ -22,7 +22,6 @@
 
 #include "testbench/common/error.h"
 #include "testbench/job/design_preset.h"
-#include "testbench/job/document_keys.h"
 #include "testbench/job/dump_job.h"
 #include "testbench/job/job_choices.h"
 #include "testbench/job/job_keys.h"
