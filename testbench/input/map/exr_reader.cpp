@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <exception>
+#include <limits>
 #include <new>
 #include <string_view>
 #include <vector>
@@ -17,7 +19,6 @@
 #include "testbench/common/error.h"
 #include "testbench/input/map/exr_check.h"
 #include "testbench/input/map/map_file.h"
-#include "testbench/input/map/repair_non_finite.h"
 
 namespace tessera {
 namespace {
@@ -72,6 +73,51 @@ void add_remarks(const std::string& name, Imf::PixelType type, HeightMap& map) {
         map.repairs.push_back(fmt::format("{} texel{} hold{} subnormal numbers (below {:.3g}); kept as they are.",
                                           subnormal, subnormal == 1 ? "" : "s", subnormal == 1 ? "s" : "",
                                           smallest_normal));
+}
+
+/// Makes every value of a floating-point map finite, and sets its range.
+///
+///     NaN, -infinity -> lowest finite value        (usually a hole in a scan or terrain)
+///     +infinity      -> highest finite value
+///
+/// Each kind is counted and reported in `repairs`. range_low, range_high = lowest and highest finite value; equal
+/// for a constant map. Returns false, and leaves the map unchanged, if no value is finite.
+bool repair_non_finite(HeightMap& map) {
+    float low = std::numeric_limits<float>::infinity();
+    float high = -low;
+    for (const float value : map.values) {
+        if (std::isfinite(value)) {
+            low = std::min(low, value);
+            high = std::max(high, value);
+        }
+    }
+    if (!(low <= high)) {
+        return false;
+    }
+    std::int64_t nan_count = 0;
+    std::int64_t plus_count = 0;
+    std::int64_t minus_count = 0;
+    for (float& value : map.values) {
+        if (std::isnan(value)) {
+            ++nan_count;
+            value = low;
+        } else if (std::isinf(value)) {
+            ++(value > 0 ? plus_count : minus_count);
+            value = value > 0 ? high : low;
+        }
+    }
+    const auto say = [&map](std::int64_t count, std::string_view kind, std::string_view which, float value) {
+        if (count > 0) {
+            map.repairs.push_back(fmt::format("{} {} texel{} set to the {} finite value, {}.", count, kind,
+                                              count == 1 ? "" : "s", which, value));
+        }
+    };
+    say(nan_count, "NaN", "lowest", low);
+    say(plus_count, "+infinity", "highest", high);
+    say(minus_count, "-infinity", "lowest", low);
+    map.range_low = static_cast<double>(low);
+    map.range_high = static_cast<double>(high);
+    return true;
 }
 
 HeightMap read_checked(const std::filesystem::path& path, const std::string& wanted) {

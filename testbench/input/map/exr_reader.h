@@ -11,7 +11,7 @@ namespace tessera {
 ///
 /// The map is the data window; the display window is ignored. Of several levels (mip or rip map) the finest is read.
 /// Channel: the named one, else "Y", else "R", else the only one. It may be half, float or uint and keeps its
-/// values; uint is rounded to float (exact up to 2^24). Range: lowest to highest finite value (repair_non_finite.h),
+/// values; uint is rounded to float (exact up to 2^24). Range: lowest to highest finite value,
 /// equal for a constant map. Subnormal numbers are kept and counted.
 ///
 /// Refused: files that check_exr() refuses, a subsampled or missing channel, pixels that cannot be decoded, a map
