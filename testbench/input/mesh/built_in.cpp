@@ -55,25 +55,14 @@ void add_rows(BaseMesh& mesh, std::int64_t columns, std::int64_t first_row, std:
     }
 }
 
-/// Two triangles per quad, for `rows` rows of quads on the first vertices of the mesh.
-void add_quads(BaseMesh& mesh, std::int64_t columns, std::int64_t rows) {
+/// Two triangles per quad, for `rows` rows of quads on the first vertices of the mesh. alternate: diagonals alternate
+/// like the colours of a chessboard.
+void add_quads(BaseMesh& mesh, std::int64_t columns, std::int64_t rows, bool alternate = false) {
     const auto line = static_cast<std::uint32_t>(columns + 1);
     for (std::uint32_t j = 0; j < static_cast<std::uint32_t>(rows); ++j) {
         for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(columns); ++i) {
             const std::uint32_t a = j * line + i, b = a + 1, c = b + line, d = a + line;
-            mesh.triangles.push_back({a, b, c});
-            mesh.triangles.push_back({a, c, d});
-        }
-    }
-}
-
-/// The same with diagonals that alternate like the colours of a chessboard.
-void add_chessboard(BaseMesh& mesh, std::int64_t columns, std::int64_t rows) {
-    const auto line = static_cast<std::uint32_t>(columns + 1);
-    for (std::uint32_t j = 0; j < static_cast<std::uint32_t>(rows); ++j) {
-        for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(columns); ++i) {
-            const std::uint32_t a = j * line + i, b = a + 1, c = b + line, d = a + line;
-            const bool turned = (i + j) % 2 == 1;
+            const bool turned = alternate && (i + j) % 2 == 1;
             mesh.triangles.push_back(turned ? std::array{a, b, d} : std::array{a, b, c});
             mesh.triangles.push_back(turned ? std::array{b, c, d} : std::array{a, c, d});
         }
@@ -134,7 +123,7 @@ BaseMesh make_lattice(const std::array<std::int64_t, 2>& texels, const std::arra
         vertex.normal = {0, 0, 1};
         return vertex;
     });
-    add_chessboard(mesh, columns, rows);
+    add_quads(mesh, columns, rows, true);
     return finished(std::move(mesh));
 }
 

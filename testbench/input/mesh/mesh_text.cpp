@@ -6,7 +6,9 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -16,33 +18,6 @@
 #include "testbench/input/mesh/mesh_limits.h"
 
 namespace tessera {
-namespace {
-
-/// Whether a decimal number outside a double's range is too small rather than too large.
-bool underflows(std::string_view digits) {
-    std::int64_t exponent = 0;
-    const std::size_t e = digits.find_first_of("eE");
-    if (e != std::string_view::npos) {
-        std::string_view tail = digits.substr(e + 1);
-        const bool negative = !tail.empty() && tail.front() == '-';
-        if (!tail.empty() && (tail.front() == '-' || tail.front() == '+')) {
-            tail.remove_prefix(1);
-        }
-        for (char c : tail) {
-            exponent = std::min<std::int64_t>(exponent * 10 + (c - '0'), std::int64_t{1} << 40);
-        }
-        exponent = negative ? -exponent : exponent;
-        digits = digits.substr(0, e);
-    }
-    const std::size_t significant = digits.find_first_of("123456789");
-    if (significant == std::string_view::npos) {
-        return true;  // zero, whatever its exponent
-    }
-    const std::size_t point = std::min(digits.find('.'), digits.size());
-    return exponent + static_cast<std::int64_t>(point) - static_cast<std::int64_t>(significant) < 0;
-}
-
-}  // namespace
 
 std::string quoted(std::string_view token) {
     constexpr std::size_t longest = 40;
@@ -110,7 +85,8 @@ std::optional<double> to_number(std::string_view token) {
         return std::nullopt;
     }
     if (error == std::errc::result_out_of_range) {
-        return underflows(token) ? 0.0 : HUGE_VAL;
+        // 0 or HUGE_VAL: strtod tells which
+        return std::abs(std::strtod(std::string(token).c_str(), nullptr));
     }
     return value;
 }
