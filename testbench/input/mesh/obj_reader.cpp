@@ -38,12 +38,7 @@ class Assembler {
   public:
     Assembler(ObjText text, const std::string& name) : text_(std::move(text)), name_(name) {
         mesh_.repairs = std::move(text_.repairs);
-        std::vector<PositionKey> keys;
-        keys.reserve(text_.positions.size());
-        for (const glm::dvec3& p : text_.positions) {
-            keys.push_back(position_key(p));
-        }
-        same_position_ = first_equal(keys);
+        same_position_ = first_equal(text_.positions, position_key);
     }
 
     BaseMesh assemble() {
@@ -155,12 +150,7 @@ class Assembler {
 
     template <typename Key, typename Drop>
     void drop_repeated(Key key, Drop drop, Tally& dropped) {
-        std::vector<std::array<std::uint64_t, 3>> keys;
-        keys.reserve(triangles_.size());
-        for (const Triangle& t : triangles_) {
-            keys.push_back(key(t));
-        }
-        const std::vector<std::uint32_t> first = first_equal(keys);
+        const std::vector<std::uint32_t> first = first_equal(triangles_, key);
         std::size_t kept = 0;
         std::vector<Triangle> triangles(triangles_.size());
         std::vector<std::size_t> lines(triangles_.size());

@@ -141,12 +141,7 @@ std::vector<BaseVertex> all_vertices(const BezierPatches& patches, std::int64_t 
 
 /// Vertices at one position whose normals differ by rounding only get the normal of the first.
 void share_normals(std::vector<BaseVertex>& vertices) {
-    std::vector<PositionKey> keys;
-    keys.reserve(vertices.size());
-    for (const BaseVertex& vertex : vertices) {
-        keys.push_back(position_key(vertex.position));
-    }
-    const std::vector<std::uint32_t> first = first_equal(keys);
+    const std::vector<std::uint32_t> first = first_at_position(vertices);
     // The distinct normals at a position so far, as a list linked through their vertices.
     std::vector<std::uint32_t> next(vertices.size(), UINT32_MAX);
     for (std::uint32_t i = 0; i < vertices.size(); ++i) {

@@ -194,12 +194,7 @@ void normal_flaws(const BaseMesh& mesh, const std::vector<std::uint32_t>& same_p
 }  // namespace
 
 std::vector<std::string> surface_flaws(const BaseMesh& mesh, std::uint64_t most_steps) {
-    std::vector<PositionKey> keys;
-    keys.reserve(mesh.vertices.size());
-    for (const BaseVertex& vertex : mesh.vertices) {
-        keys.push_back(position_key(vertex.position));
-    }
-    const std::vector<std::uint32_t> same_position = first_equal(keys);
+    const std::vector<std::uint32_t> same_position = first_at_position(mesh.vertices);
     std::vector<std::string> flaws;
     edge_flaws(mesh, same_position, most_steps, flaws);
     normal_flaws(mesh, same_position, flaws);

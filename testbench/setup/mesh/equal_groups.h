@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "testbench/common/distinct_table.h"
+#include "testbench/setup/mesh/base_mesh.h"
 
 namespace tessera {
 
@@ -36,6 +37,21 @@ std::vector<std::uint32_t> first_equal(const std::vector<std::array<std::uint64_
         first.push_back(distinct[number]);
     }
     return first;
+}
+
+/// The same for items that have the keys key_of(item).
+template <class Items, class KeyOf>
+std::vector<std::uint32_t> first_equal(const Items& items, KeyOf key_of) {
+    std::vector<decltype(key_of(*items.begin()))> keys;
+    keys.reserve(items.size());
+    for (const auto& item : items)
+        keys.push_back(key_of(item));
+    return first_equal(keys);
+}
+
+/// The same for vertices by their positions.
+inline std::vector<std::uint32_t> first_at_position(const std::vector<BaseVertex>& vertices) {
+    return first_equal(vertices, [](const BaseVertex& vertex) { return position_key(vertex.position); });
 }
 
 }  // namespace tessera

@@ -9,12 +9,7 @@ namespace tessera {
 
 void complete_smooth_normals(BaseMesh& mesh) {
     constexpr double cancelled = 1e-9;  // relative to the sum of angles; below it, rounding
-    std::vector<PositionKey> keys;
-    keys.reserve(mesh.vertices.size());
-    for (const BaseVertex& vertex : mesh.vertices) {
-        keys.push_back(position_key(vertex.position));
-    }
-    const std::vector<std::uint32_t> group = first_equal(keys);
+    const std::vector<std::uint32_t> group = first_at_position(mesh.vertices);
 
     struct Sum {
         glm::dvec3 direction{0}, first{0};

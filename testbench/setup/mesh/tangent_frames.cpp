@@ -18,13 +18,10 @@ struct FrameSum {
 };
 
 std::vector<std::uint32_t> frame_groups(const BaseMesh& mesh) {
-    std::vector<std::array<std::uint64_t, 6>> keys;
-    keys.reserve(mesh.vertices.size());
-    for (const BaseVertex& vertex : mesh.vertices) {
+    return first_equal(mesh.vertices, [](const BaseVertex& vertex) {
         const PositionKey p = position_key(vertex.position), n = position_key(vertex.normal);
-        keys.push_back({p[0], p[1], p[2], n[0], n[1], n[2]});
-    }
-    return first_equal(keys);
+        return std::array{p[0], p[1], p[2], n[0], n[1], n[2]};
+    });
 }
 
 /// A unit vector perpendicular to n, from the axis least aligned with n.

@@ -20,13 +20,10 @@ class Charts {
   public:
     explicit Charts(const BaseMesh& mesh) : parent_(mesh.vertices.size()) {
         std::iota(parent_.begin(), parent_.end(), 0u);
-        std::vector<std::array<std::uint64_t, 5>> keys;
-        keys.reserve(mesh.vertices.size());
-        for (const BaseVertex& v : mesh.vertices) {
+        const std::vector<std::uint32_t> first = first_equal(mesh.vertices, [](const BaseVertex& v) {
             const PositionKey p = position_key(v.position);
-            keys.push_back({p[0], p[1], p[2], alike_bits(v.texture.x), alike_bits(v.texture.y)});
-        }
-        const std::vector<std::uint32_t> first = first_equal(keys);
+            return std::array{p[0], p[1], p[2], alike_bits(v.texture.x), alike_bits(v.texture.y)};
+        });
         for (std::uint32_t v = 0; v < first.size(); ++v)
             join(v, first[v]);
         for (const auto& triangle : mesh.triangles) {
