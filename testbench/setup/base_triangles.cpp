@@ -43,10 +43,11 @@ BaseMesh with_low_texture(const BaseMesh& mesh, const datapath::MapGeometry& map
 
 }  // namespace
 
-BaseTriangles round_base_triangles(const BaseMesh& original, const ModelScale& model_scale,
-                                   const datapath::Formats& formats, const datapath::MapGeometry& map) {
+void round_base_triangles(const BaseMesh& original, const ModelScale& model_scale, PreparedScene& scene) {
+    const datapath::Formats& formats = scene.registers.formats;
+    const datapath::MapGeometry& map = scene.registers.map;
+    InputSaturations& saturated = scene.input_saturations;
     const BaseMesh mesh = with_low_texture(original, map, formats.texture);
-    BaseTriangles result;
     bool clamped_u = false, clamped_v = false;
     const auto clamps = [&](datapath::AddressMode mode) {
         return mode == datapath::AddressMode::clamp && !mesh.beyond_map;
@@ -60,17 +61,17 @@ BaseTriangles round_base_triangles(const BaseMesh& original, const ModelScale& m
     for (const BaseVertex& base : mesh.vertices) {
         const glm::dvec3 world = model_scale.to_world(base.position);
         datapath::Vertex vertex;
-        vertex.position = {to_format(world.x, formats.position, result.saturated_positions),
-                           to_format(world.y, formats.position, result.saturated_positions),
-                           to_format(world.z, formats.position, result.saturated_positions)};
-        vertex.normal = to_direction(base.normal, formats.normal, result.saturated_directions);
-        vertex.tangent = to_direction(base.tangent, formats.normal, result.saturated_directions);
+        vertex.position = {to_format(world.x, formats.position, saturated.position),
+                           to_format(world.y, formats.position, saturated.position),
+                           to_format(world.z, formats.position, saturated.position)};
+        vertex.normal = to_direction(base.normal, formats.normal, saturated.normal);
+        vertex.tangent = to_direction(base.tangent, formats.normal, saturated.normal);
         vertex.handedness = base.handedness < 0 ? std::int8_t{-1} : std::int8_t{1};
         bool beyond_u = false, beyond_v = false;
         vertex.texture = {
             to_texture(base.texture.x, map.width, clamps(map.address_u), formats.texture, remedy, beyond_u),
             to_texture(base.texture.y, map.height, clamps(map.address_v), formats.texture, remedy, beyond_v)};
-        result.texture_clamped += beyond_u || beyond_v ? 1 : 0;
+        scene.texture_clamped += beyond_u || beyond_v ? 1 : 0;
         clamped_u = clamped_u || beyond_u;
         clamped_v = clamped_v || beyond_v;
         vertices.push_back(vertex);
@@ -83,28 +84,27 @@ BaseTriangles round_base_triangles(const BaseMesh& original, const ModelScale& m
         triangle.vertices = {vertices[corners[0]], vertices[corners[1]], vertices[corners[2]]};
         const auto& v = triangle.vertices;
         if (same(v[0], v[1]) || same(v[1], v[2]) || same(v[2], v[0])) {
-            ++result.dropped;
+            ++scene.base_dropped;
             continue;
         }
-        triangle.base = static_cast<std::uint32_t>(result.triangles.size());
-        result.triangles.push_back(triangle);
+        triangle.base = static_cast<std::uint32_t>(scene.base_triangles.size());
+        scene.base_triangles.push_back(triangle);
     }
-    if (result.triangles.empty())
+    if (scene.base_triangles.empty())
         throw InputError(
             "every base triangle collapses when rounded to the position's and texture coordinate's formats: "
             "use wider formats (formats.position_bits, formats.texture_fraction)");
-    if (result.dropped > 0)
-        result.remarks.push_back(fmt::format(
-            "{} base triangles collapsed when rounded to the hardware's formats and were dropped", result.dropped));
-    if (result.texture_clamped > 0)
-        result.remarks.push_back(
+    if (scene.base_dropped > 0)
+        scene.remarks.push_back(fmt::format(
+            "{} base triangles collapsed when rounded to the hardware's formats and were dropped", scene.base_dropped));
+    if (scene.texture_clamped > 0)
+        scene.remarks.push_back(
             fmt::format("{} base vertices have texture coordinates outside 0..1, and were set to the map's border; if "
                         "they tile, {}",
-                        result.texture_clamped,
+                        scene.texture_clamped,
                         !clamped_v   ? "set map.address_u = \"repeat\""
                         : !clamped_u ? "set map.address_v = \"repeat\""
                                      : "set map.address_u = \"repeat\" and map.address_v = \"repeat\""));
-    return result;
 }
 
 }  // namespace tessera

@@ -43,15 +43,6 @@ void check_registers(const datapath::Registers& registers) {
     });
 }
 
-void take_base_triangles(BaseTriangles&& made, PreparedScene& scene) {
-    scene.base_triangles = std::move(made.triangles);
-    scene.base_dropped = made.dropped;
-    scene.texture_clamped = made.texture_clamped;
-    scene.input_saturations.position = made.saturated_positions;
-    scene.input_saturations.normal = made.saturated_directions;
-    scene.remarks.insert(scene.remarks.end(), made.remarks.begin(), made.remarks.end());
-}
-
 /// World units of a distance's LSB.
 double distance_step(const datapath::Formats& formats) {
     return std::ldexp(1.0, -formats.view_distance.fraction);
@@ -170,7 +161,7 @@ PreparedScene prepare_model(const SceneSettings& settings, const BaseMesh& mesh,
     scene.texel_size = {mesh.texture_scale.mean_u / registers.map.width * scene.scale,
                         mesh.texture_scale.mean_v / registers.map.height * scene.scale};
 
-    take_base_triangles(round_base_triangles(mesh, model_scale, formats, registers.map), scene);
+    round_base_triangles(mesh, model_scale, scene);
     scene.largest_rectangle_sum =
         bound_rectangle_sum(scene.base_triangles, registers.map, formats, scene.map.highest_code());
     formats.summed_height = datapath::Format::make_unsigned(
