@@ -7,34 +7,15 @@
 #include <cstdint>
 #include <string>
 
-#include "testbench/common/error.h"
 #include "testbench/job/job_choices.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/job/toml_text.h"
 #include "testbench/setup/check_settings.h"
+#include "testbench/setup/faults.h"
 
 namespace tessera {
 
 namespace {
-
-class Faults {
-  public:
-    template <typename... Args>
-    void unless(bool fine, fmt::format_string<Args...> format, Args&&... args) {
-        if (!fine) {
-            text_ += (text_.empty() ? "" : "\n") + fmt::format(format, std::forward<Args>(args)...);
-        }
-    }
-
-    void raise() const {
-        if (!text_.empty()) {
-            throw InputError(text_);
-        }
-    }
-
-  private:
-    std::string text_;
-};
 
 void check_ranges(const Job& job, Faults& faults) {
     for (const KeyTable& table : job_tables()) {

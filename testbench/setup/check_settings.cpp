@@ -6,10 +6,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <utility>
 
 #include "modules/datapath/format.h"
-#include "testbench/common/error.h"
+#include "testbench/setup/faults.h"
+#include "testbench/setup/mesh/triangle_geometry.h"
+#include "testbench/setup/unit_vector.h"
 
 namespace tessera {
 
@@ -17,22 +18,8 @@ namespace {
 
 using Vector = std::array<double, 3>;
 
-Vector difference(const Vector& a, const Vector& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-Vector cross(const Vector& a, const Vector& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-double length(const Vector& v) {
-    return std::hypot(v[0], v[1], v[2]);
-}
-
-/// The same direction, the largest component 1: products of what is very short would be 0.
-Vector direction(const Vector& v) {
-    const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
-    return {v[0] / largest, v[1] / largest, v[2] / largest};
+glm::dvec3 vector(const Vector& v) {
+    return {v[0], v[1], v[2]};
 }
 
 /// 1 as "1.0".
@@ -41,44 +28,29 @@ std::string number(double value) {
     return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
 }
 
-std::string text_of(const Vector& v) {
+std::string text_of(const glm::dvec3& v) {
     return fmt::format("[{}, {}, {}]", number(v[0]), number(v[1]), number(v[2]));
 }
 
-class Faults {
-  public:
-    template <typename... Args>
-    void unless(bool fine, fmt::format_string<Args...> format, Args&&... args) {
-        if (!fine)
-            texts.push_back(fmt::format(format, std::forward<Args>(args)...));
-    }
-    void range(const char* name, double value, double least, double most) {
-        if (is_automatic(value))
-            texts.push_back(fmt::format("`{}` is not set, or not a number: set it", name));
-        else
-            unless(value >= least && value <= most, "`{}` = {}: must be {} to {}", name, value, least, most);
-    }
-
-    std::vector<std::string> texts;
-};
-
 void check_camera(const CameraSettings& camera, const FormatSettings& formats, Faults& faults) {
     const bool known = !is_automatic(camera.eye) && !is_automatic(camera.target);
-    const Vector view = difference(camera.target, camera.eye);
-    const double size = std::max(length(camera.eye), length(camera.target));
-    const bool apart = !known || length(view) > 1e-9 * size;
+    const glm::dvec3 eye = vector(camera.eye), target = vector(camera.target), up = vector(camera.up);
+    const glm::dvec3 view = target - eye;
+    const bool apart = !known || safe_length(view) > 1e-9 * std::max(safe_length(eye), safe_length(target));
     faults.unless(apart, "`camera.eye` = {} and `camera.target` = {} are the same point: move one of them",
-                  text_of(camera.eye), text_of(camera.target));
-    const double up = is_automatic(camera.up) ? 1 : length(camera.up);
-    faults.unless(up > 0, "`camera.up` = {} has no direction: give it one, such as [0, 0, 1]", text_of(camera.up));
+                  text_of(eye), text_of(target));
+    const bool upward = is_automatic(camera.up) || safe_length(up) > 0;
+    faults.unless(upward, "`camera.up` = {} has no direction: give it one, such as [0, 0, 1]", text_of(up));
     // Below a sine of 1e-6 the picture's roll would be rounding error.
-    const auto sine = [](const Vector& a, const Vector& b) { return length(cross(a, b)) / (length(a) * length(b)); };
-    const bool parallel =
-        known && !is_automatic(camera.up) && apart && up > 0 && sine(direction(view), direction(camera.up)) <= 1e-6;
+    const auto sine = [](const glm::dvec3& a, const glm::dvec3& b) {
+        return safe_length(glm::cross(a, b)) / (safe_length(a) * safe_length(b));
+    };
+    const bool parallel = known && !is_automatic(camera.up) && apart && upward &&
+                          sine(brought_near_one(view), brought_near_one(up)) <= 1e-6;
     faults.unless(!parallel,
                   "`camera.up` = {} is parallel to the view direction {} (camera.target - camera.eye): turn up by "
                   "a right angle",
-                  text_of(camera.up), text_of(view));
+                  text_of(up), text_of(view));
     const std::int64_t integer_bits = formats.screen_bits - formats.screen_fraction - 1;
     if (integer_bits >= 0) {
         const std::int64_t most = std::int64_t{1} << integer_bits;
@@ -185,8 +157,7 @@ void check_settings(const SceneSettings& settings) {
     check_ranges(settings, faults);
     if (faults.texts.empty())
         faults.texts = setting_faults(settings.camera, settings.formats, settings.tests);
-    if (!faults.texts.empty())
-        throw InputError(fmt::format("{}", fmt::join(faults.texts, "\n")));
+    faults.raise();
 }
 
 }  // namespace tessera

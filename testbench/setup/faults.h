@@ -1,0 +1,36 @@
+#pragma once
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "testbench/common/error.h"
+#include "testbench/setup/scene_settings.h"
+
+namespace tessera {
+
+/// Collects what is wrong with settings, a line each.
+class Faults {
+  public:
+    template <typename... Args>
+    void unless(bool fine, fmt::format_string<Args...> format, Args&&... args) {
+        if (!fine)
+            texts.push_back(fmt::format(format, std::forward<Args>(args)...));
+    }
+    void range(const char* name, double value, double least, double most) {
+        if (is_automatic(value))
+            texts.push_back(fmt::format("`{}` is not set, or not a number: set it", name));
+        else
+            unless(value >= least && value <= most, "`{}` = {}: must be {} to {}", name, value, least, most);
+    }
+    /// Throws one InputError with all of them, if there are any.
+    void raise() const {
+        if (!texts.empty())
+            throw InputError(fmt::format("{}", fmt::join(texts, "\n")));
+    }
+
+    std::vector<std::string> texts;
+};
+
+}  // namespace tessera
