@@ -132,7 +132,6 @@ CurvatureTable make_curvature_table(const QuantisedMap& map, const std::vector<T
     for (int level = datapath::least_curvature_level; level <= highest; ++level) {
         const datapath::CurvatureCells cells = datapath::curvature_cells(level, table.covered);
         const Squares squares(map, std::int64_t{1} << (level - 1));
-        table.levels.push_back({cells.columns, cells.rows, cells.first_entry, level - 1});
         for (std::uint32_t row = 0; row < cells.rows; ++row) {
             for (std::uint32_t column = 0; column < cells.columns; ++column)
                 table.entries.push_back(

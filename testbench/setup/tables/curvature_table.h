@@ -10,14 +10,8 @@ namespace tessera {
 
 /// The Curvature Test's table: a pyramid of cells (modules/datapath/curvature.h).
 struct CurvatureTable {
-    struct Level {
-        std::uint32_t columns = 0, rows = 0;  ///< cells
-        std::uint64_t first_entry = 0;
-        int log2_spacing = 0;  ///< texels from cell to cell
-    };
     datapath::MapGeometry covered;       ///< texels: the map's, more if it clamps and the base mesh reaches beyond it
-    std::vector<Level> levels;           ///< of level 2 and upwards
-    std::vector<std::uint64_t> entries;  ///< packed, 36 bits each; level after level, row by row
+    std::vector<std::uint64_t> entries;  ///< packed, 36 bits each; level after level from 2, row by row
 };
 
 /// For each cell the quadratic of least squared error over a square of 2^l + 1 texels about it, addressed as the map
