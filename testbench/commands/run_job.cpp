@@ -75,14 +75,6 @@ Loaded load(const Job& asked) {
     return loaded;
 }
 
-class Stopwatch {
-  public:
-    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
-  private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
 void write_run_folder(const std::filesystem::path& folder, const Job& job, const MachineSetup& setup,
                       const Simulation& simulation, const MeshCounts& counts, const Checks& checks,
                       Progress& progress) {
@@ -204,11 +196,11 @@ Ending run_once(const Job& asked, const Command& command, const std::string& nam
         golden_run.emplace(setup, *golden_job, received_triangles(setup, *golden_job),
                            static_cast<std::uint64_t>(job.limits.triangles));
 
-    const Stopwatch stopwatch;
+    const auto start = std::chrono::steady_clock::now();
     const std::string stuck = simulation.run();
     if (passes)
         passes->finish();
-    const double seconds = stopwatch.seconds();
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const std::string traces_text = traces ? finish_traces(*traces, command, folder, files) : std::string{};
     if (!stuck.empty()) {
         progress.clear();

@@ -11,6 +11,7 @@
 #include "testbench/common/grouped_digits.h"
 #include "testbench/machine/totals.h"
 #include "testbench/output/report/area.h"
+#include "testbench/output/report/ratio.h"
 #include "testbench/output/report/saturation_figures.h"
 #include "testbench/output/report/timing_report.h"
 
@@ -106,8 +107,7 @@ std::string height_test_text(const MachineSetup& setup) {
 std::string work_rows(const Simulation& simulation, const MeshCounts& mesh) {
     const Totals totals(simulation);
     const std::uint64_t edges = totals.counts.edges_tested;
-    const double tests =
-        mesh.tested_edges() == 0 ? 0 : static_cast<double>(edges) / static_cast<double>(mesh.tested_edges());
+    const double tests = ratio(edges, mesh.tested_edges());
     const Decisions::Evaluated& evaluated = totals.evaluated;
     const bool all = evaluated.normal == edges && evaluated.summed_height == edges;
     return (all ? ""
@@ -123,9 +123,7 @@ std::string work_rows(const Simulation& simulation, const MeshCounts& mesh) {
 
 std::string timing_rows(const Simulation& simulation) {
     const Totals totals(simulation);
-    const auto per = [&](std::uint64_t count) {
-        return count == 0 ? 0.0 : static_cast<double>(simulation.cycles()) / static_cast<double>(count);
-    };
+    const auto per = [&](std::uint64_t count) { return ratio(simulation.cycles(), count); };
     const double period = simulation.setup.design.timing.cycle_picoseconds * 1e-12;
     std::string text =
         row("cycles",
@@ -208,7 +206,7 @@ std::string summary(const MachineSetup& setup, const Simulation& simulation, con
         fmt::format("{} bytes, {} bit entries{}; {} reads, {:.1f} per edge",
                     count(setup.registers.height_table.bytes()), datapath::height_entry_bits(setup.registers.formats),
                     setup.summed_height_bits_chosen && sums ? " (chosen)" : "", count(table_reads),
-                    edges == 0 ? 0.0 : static_cast<double>(table_reads) / static_cast<double>(edges)));
+                    ratio(table_reads, edges)));
     const std::vector<SaturationFigure> saturations = saturation_figures(setup, totals.saturations);
     text += row("saturations", saturations_text(saturations));
     text += checks_rows(checks);

@@ -59,11 +59,12 @@ struct ToToml {
     std::string operator()(bool value) const { return value ? "true" : "false"; }
     std::string operator()(std::int64_t value) const { return std::to_string(value); }
     std::string operator()(double value) const { return toml_number(value); }
-    std::string operator()(const std::array<double, 2>& v) const {
-        return fmt::format("[{}, {}]", toml_number(v[0]), toml_number(v[1]));
-    }
-    std::string operator()(const std::array<double, 3>& v) const {
-        return fmt::format("[{}, {}, {}]", toml_number(v[0]), toml_number(v[1]), toml_number(v[2]));
+    template <std::size_t N>
+    std::string operator()(const std::array<double, N>& values) const {
+        std::string text;
+        for (const double value : values)
+            text += (text.empty() ? "[" : ", ") + toml_number(value);
+        return text + "]";
     }
     std::string operator()(const std::string& value) const { return toml_string(value); }
 };

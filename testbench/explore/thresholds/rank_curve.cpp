@@ -14,10 +14,6 @@ namespace {
 
 constexpr std::uint32_t most_points = 64;
 
-const char* name_of_unit(const ErrorUnit& unit) {
-    return unit.map_units ? "map unit" : "model unit";
-}
-
 double model_units_per_code(const MachineSetup& setup) {
     return std::abs(setup.height_per_code) / setup.scale;
 }
@@ -65,7 +61,7 @@ std::vector<RankPoint> rank_curve(MachineSetup& setup, const Job& job, const Tex
 
 std::string rank_curve_csv(const std::vector<RankPoint>& curve, const ErrorUnit& unit) {
     std::string text =
-        fmt::format("test,register,threshold,promised [{0}],triangles,rms [{0}],largest [{0}]\n", name_of_unit(unit));
+        fmt::format("test,register,threshold,promised [{0}],triangles,rms [{0}],largest [{0}]\n", unit.name());
     for (const RankPoint& point : curve)
         text += fmt::format(
             "{},{},{},{},{},{:.6g},{:.6g}\n", point.bound ? "bound" : "rank", point.register_value, point.threshold,
@@ -76,7 +72,7 @@ std::string rank_curve_csv(const std::vector<RankPoint>& curve, const ErrorUnit&
 
 std::string rank_curve_text(const std::vector<RankPoint>& curve, const ErrorUnit& unit) {
     std::string text = fmt::format("  {:<7}{:>12}{:>12}{:>12}{:>12}{:>12}   errors in {}s\n", "test", "threshold",
-                                   "promised", "triangles", "RMS", "largest", name_of_unit(unit));
+                                   "promised", "triangles", "RMS", "largest", unit.name());
     const RankPoint* before = nullptr;
     for (const RankPoint& point : curve) {
         if (before != nullptr && before->bound == point.bound &&
@@ -104,7 +100,7 @@ std::string rank_table_json(const MachineSetup& setup, const ErrorUnit& unit) {
     json["base_triangles"] = setup.base_triangles.size();
     json["shared_midpoints"] = setup.rank_tables.clashes;
     json["least_error"] = {{"value", setup.rank_tables.least_error * model_units_per_code(setup) / unit.model_units},
-                           {"unit", name_of_unit(unit)}};
+                           {"unit", unit.name()}};
     json["highest_bound_register"] = setup.rank_tables.highest_bound_threshold;
     return json.dump(2) + "\n";
 }

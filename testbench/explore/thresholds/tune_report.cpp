@@ -20,8 +20,7 @@ std::string goal_text(const TuneRequest& request, const ErrorUnit& unit) {
         return fmt::format("the least {} error with at most {} triangles", goal.largest ? "largest" : "RMS",
                            goal.triangles);
     return fmt::format("the fewest triangles with {} error of at most {:.6g} {}s",
-                       goal.largest ? "a largest" : "an RMS", goal.error / unit.model_units,
-                       unit.map_units ? "map unit" : "model unit");
+                       goal.largest ? "a largest" : "an RMS", goal.error / unit.model_units, unit.name());
 }
 
 std::string figures_text(const TunedFigures& figures) {
@@ -134,7 +133,7 @@ std::string tried_csv(const TuneRequest& request, const TuneResult& result, cons
     std::string text = fmt::format(
         "base,height_test,normal_threshold,summed_height_threshold,summed_height_unit,view_threshold,generation_limit,"
         "triangulation,curvature_threshold,mipmap_threshold,rank_threshold,bound_threshold,triangles,rms [{0}],max [{0}]\n",
-        unit.map_units ? "map unit" : "model unit");
+        unit.name());
     for (const TriedPoint& tried : result.tried) {
         const Job::Tests& tests = tried.point.tests;
         const Outcome& outcome = tried.point.outcome;

@@ -26,6 +26,8 @@ struct ErrorUnit {
     double model_units = 1;
     bool map_units = false;
     bool height_field = false;
+
+    const char* name() const { return map_units ? "map unit" : "model unit"; }
 };
 ErrorUnit error_unit(const Job& job, const BaseMesh& base, const HeightMap& map);
 

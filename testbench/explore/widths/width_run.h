@@ -40,9 +40,11 @@ struct WidthRun {
     double position_lsb = 0;  ///< an LSB of the position in model units
 
     std::uint64_t flips_of(Decided decided) const { return flips[static_cast<std::size_t>(decided)]; }
-    double split_flips_percent() const {
-        return edges == 0 ? 0 : 100.0 * static_cast<double>(flips_of(Decided::split)) / static_cast<double>(edges);
+    /// Of the edges.
+    double percent(std::uint64_t flipped) const {
+        return edges == 0 ? 0 : 100.0 * static_cast<double>(flipped) / static_cast<double>(edges);
     }
+    double split_flips_percent() const { return percent(flips_of(Decided::split)); }
 };
 
 /// The datapath on the setup, no simulation: functional mode's results. Throws ResourceError beyond `most_triangles`.

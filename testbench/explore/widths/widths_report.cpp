@@ -13,10 +13,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double percent(std::uint64_t part, std::uint64_t whole) {
-    return whole == 0 ? 0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
-}
-
 std::uint64_t open_places(const InvariantResult& invariants) {
     return invariants.cracks + invariants.t_vertices;
 }
@@ -111,7 +107,7 @@ Json row_json(const WidthRow& row) {
     json["edges_split"] = run.edges_split;
     Json& flips = json["flips"];
     for (std::size_t k = 0; k < decided_names.size(); ++k)
-        flips[decided_names[k]] = {{"edges", run.flips[k]}, {"percent", percent(run.flips[k], run.edges)}};
+        flips[decided_names[k]] = {{"edges", run.flips[k]}, {"percent", run.percent(run.flips[k])}};
     json["diagonals"] = {{"quadrilaterals", run.quadrilaterals}, {"flips", run.diagonal_flips}};
     Json& local = json["local"];
     local["flipped_edges"] = run.conformance.flipped_edges;
@@ -183,7 +179,7 @@ std::string widths_csv(const WidthSweep& sweep) {
             text +=
                 fmt::format(",{},{},{},{}", run.triangles, run.end_to_end.golden_triangles, run.edges, run.edges_split);
             for (const std::uint64_t flips : run.flips)
-                text += fmt::format(",{},{:.6g}", flips, percent(flips, run.edges));
+                text += fmt::format(",{},{:.6g}", flips, run.percent(flips));
             text +=
                 fmt::format(",{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{},{},{},{},{},{},{},{},{}\n",
                             run.conformance.flipped_edges, run.conformance.mismatches, run.positions, run.position_max,
