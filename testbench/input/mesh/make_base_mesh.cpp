@@ -1,5 +1,7 @@
 #include "testbench/input/mesh/make_base_mesh.h"
 
+#include <fmt/core.h>
+
 #include <cstdint>
 
 #include "testbench/common/error.h"
@@ -7,6 +9,7 @@
 #include "testbench/input/mesh/built_in.h"
 #include "testbench/input/mesh/obj_reader.h"
 #include "testbench/input/mesh/run_mesh.h"
+#include "testbench/job/job_choices.h"
 
 namespace tessera {
 
@@ -29,6 +32,12 @@ std::array<std::int64_t, 2> quads_of(const Job::Mesh& mesh) {
 }
 
 BaseMesh make_base_mesh(const Job::Mesh& job, const std::string& file) {
+    if (reads_file(job.source) && file.empty())
+        throw InputError(fmt::format("mesh.file is empty: with mesh.source = \"{}\" it must name {}",
+                                     name_of(job.source),
+                                     job.source == MeshSource::file      ? "an OBJ file"
+                                     : job.source == MeshSource::patches ? "a file of Bezier patches"
+                                                                         : "a run's folder"));
     const std::int64_t columns = quads(job.columns, job.source);
     const std::int64_t rows = quads(job.rows, job.source);
     switch (job.source) {
@@ -41,21 +50,10 @@ BaseMesh make_base_mesh(const Job::Mesh& job, const std::string& file) {
         case MeshSource::lattice:
             throw InputError("mesh.source = \"lattice\" depends on the map (load_mesh)");
         case MeshSource::file:
-            if (file.empty()) {
-                throw InputError("mesh.file is empty: with mesh.source = \"file\" it must name an OBJ file");
-            }
             return read_obj(file);
         case MeshSource::patches:
-            if (file.empty()) {
-                throw InputError(
-                    "mesh.file is empty: with mesh.source = \"patches\" it must name a file of Bezier "
-                    "patches");
-            }
             return make_patch_mesh(read_bezier_patches(file), columns, rows, file);
         case MeshSource::run:
-            if (file.empty()) {
-                throw InputError("mesh.file is empty: with mesh.source = \"run\" it must name a run's folder");
-            }
             return read_run_mesh(file);
     }
     throw InputError("mesh.source is none of plane, cylinder, sphere, file, patches, run");

@@ -11,18 +11,6 @@
 
 namespace tessera {
 
-namespace {
-
-template <class Names>
-std::string listed(const Names& names) {
-    std::string text;
-    for (const std::string& name : names)
-        text += (text.empty() ? "" : ", ") + name;
-    return text;
-}
-
-}  // namespace
-
 TomlFields::TomlFields(const toml::table& table, std::string name, std::string file)
     : table_(table), name_(std::move(name)), file_(std::move(file)) {}
 
@@ -48,7 +36,7 @@ std::string TomlFields::choice(const char* key, const std::vector<std::string>& 
     const auto* const value = node.as_string();
     if (value == nullptr || std::find(choices.begin(), choices.end(), value->get()) == choices.end()) {
         const std::string near = value == nullptr ? "" : nearest_name(value->get(), choices);
-        fail(key, fmt::format("`{}` is {}; expected one of {}{}", key, found_text(node), listed(choices),
+        fail(key, fmt::format("`{}` is {}; expected one of {}{}", key, found_text(node), fmt::join(choices, ", "),
                               near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near)));
     }
     return value->get();
@@ -110,7 +98,7 @@ void TomlFields::finish() const {
         const std::string near = nearest_name(name, {asked_.begin(), asked_.end()});
         fail_at(key.source(), fmt::format("unknown {} `{}`{}; {}", node.is_table() ? "table" : "key", printable(name),
                                           name_.empty() ? "" : fmt::format(" of [{}]", name_),
-                                          near.empty() ? fmt::format("it takes {}", listed(asked_))
+                                          near.empty() ? fmt::format("it takes {}", fmt::join(asked_, ", "))
                                                        : fmt::format("did you mean `{}`?", near)));
     }
 }
