@@ -57,6 +57,14 @@ build() {
     ) 9>"$folder/lock"
 }
 
+# ready PART TARGET...: installs what PART needs and builds the targets in release.
+ready() {
+    "$root/scripts/install" "$1" || return
+    # scripts/test configures the same folder with the tests, which may remain.
+    configured release || configure release -DBUILD_TESTING=OFF -DTESSERA_BENCHMARK=OFF || return
+    build release "${@:2}"
+}
+
 # python_with MODULE...: the path of a Python that has them. Debian's packages need Debian's interpreter, which may not be
 # the first in the path.
 python_with() {

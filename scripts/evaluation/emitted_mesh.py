@@ -15,10 +15,6 @@ class EmittedMesh:
     generation: np.ndarray  # m
     stopped_by: np.ndarray  # m, bits as the file's header explains them
 
-    def texture_areas(self):
-        a, b, c = (self.texture[self.triangles[:, k]] for k in range(3))
-        return 0.5 * np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
-
     def centres(self):
         return self.texture[self.triangles].mean(axis=1)
 
