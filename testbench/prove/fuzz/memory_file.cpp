@@ -1,47 +1,20 @@
 #include "testbench/prove/fuzz/memory_file.h"
 
 #include <sys/mman.h>
-#include <unistd.h>
 
-#include <cerrno>
+#include <fstream>
+#include <stdexcept>
 #include <string>
-#include <system_error>
 
 namespace tessera::fuzz {
 
-namespace {
-
-[[noreturn]] void fail(const char* what) {
-    throw std::system_error(errno, std::generic_category(), what);
-}
-
-}  // namespace
-
-MemoryFile::MemoryFile() : descriptor_(::memfd_create("fuzz", MFD_CLOEXEC)) {
-    if (descriptor_ < 0)
-        fail("memfd_create");
-    path_ = "/proc/self/fd/" + std::to_string(descriptor_);
-}
-
-MemoryFile::~MemoryFile() {
-    ::close(descriptor_);
-}
-
-void MemoryFile::replace(std::string_view bytes) {
-    if (::ftruncate(descriptor_, 0) != 0)
-        fail("ftruncate");
-    for (std::size_t done = 0; done < bytes.size();) {
-        const ssize_t count = ::pwrite(descriptor_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(done));
-        if (count < 0)
-            fail("pwrite");
-        done += static_cast<std::size_t>(count);
-    }
-}
-
 const std::filesystem::path& file_of(std::string_view bytes) {
-    static MemoryFile file;
-    file.replace(bytes);
-    return file.path();
+    static const std::filesystem::path path = "/proc/self/fd/" + std::to_string(::memfd_create("fuzz", MFD_CLOEXEC));
+    std::ofstream file(path, std::ios::binary);
+    file << bytes;
+    if (!file.flush())
+        throw std::runtime_error(path.string() + ": cannot be written");
+    return path;
 }
 
 }  // namespace tessera::fuzz
