@@ -10,20 +10,13 @@
 
 namespace tessera {
 
-namespace {
-
-BaseMesh lattice(const Job& job, const HeightMap& map) {
-    return make_lattice({map.width, map.height},
-                        {job.map.address_u == Addressing::repeat, job.map.address_v == Addressing::repeat},
-                        job.mesh.spacing, job.mesh.width, job.mesh.depth);
-}
-
-}  // namespace
-
 BaseMesh load_mesh(const Job& job) {
     check_mesh_fingerprint(job);
     if (job.mesh.source == MeshSource::lattice) {
-        return lattice(job, load_map(job));
+        const HeightMap map = load_map(job);
+        return make_lattice({map.width, map.height},
+                            {job.map.address_u == Addressing::repeat, job.map.address_v == Addressing::repeat},
+                            job.mesh.spacing, job.mesh.width, job.mesh.depth);
     }
     return make_base_mesh(job.mesh, job.mesh.path.string());
 }

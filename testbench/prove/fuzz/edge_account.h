@@ -22,9 +22,6 @@ class EdgeAccount {
     /// Whether all edges cancel.
     bool balanced() const;
 
-    /// Number of distinct vertices.
-    std::size_t vertices() const { return numbers_.size(); }
-
   private:
     using VertexKey = std::array<std::int32_t, 22>;
     std::uint32_t number_of(const datapath::Vertex& vertex);

@@ -158,7 +158,6 @@ RandomCase make_random_case(std::uint64_t seed) {
         try {
             RandomCase made = draw(random);
             made.seed = seed;
-            made.redrawn = draws;
             validate(made.job);
             settle(random, made);
             // Without a Generation Test a generation may be wider than the wires of a spilled triangle: an error.

@@ -20,8 +20,7 @@ struct RandomCase {
     static constexpr std::uint64_t wanted_edges = 4000;
 
     std::uint64_t seed = 0;
-    int redrawn = 0;  ///< draws that the host refused (a texture coordinate beyond its format, ...)
-    Job job;          ///< mesh.file and map.file are the names write() gives them
+    Job job;  ///< mesh.file and map.file are the names write() gives them
     RandomMesh mesh;
     RandomMap map;
 
