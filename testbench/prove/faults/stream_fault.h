@@ -23,58 +23,27 @@ namespace tessera {
 ///   request_before_end     a second BEGIN_REQ while the consumer withholds END_REQ
 ///   end_request_doubled    the producer gets END_REQ twice
 template <class Payload>
-class StreamFault : public sc_core::sc_module {
+class StreamFault : public sc_core::sc_module,
+                    public tlm::tlm_fw_transport_if<Stream<Payload>>,
+                    public tlm::tlm_bw_transport_if<Stream<Payload>> {
     using Types = Stream<Payload>;
     using Forward = tlm::tlm_fw_transport_if<Types>;
     using Backward = tlm::tlm_bw_transport_if<Types>;
 
-    /// The producer's counterpart. An object within this module, so that who waits for it is told its name.
-    class Entrance : public tlm::tlm_target_socket<32, Types>, public Forward {
-      public:
-        explicit Entrance(StreamFault& fault) : tlm::tlm_target_socket<32, Types>("in"), fault_(fault) {
-            tlm::tlm_target_socket<32, Types>::bind(static_cast<Forward&>(*this));
-        }
-
-      private:
-        tlm::tlm_sync_enum nb_transport_fw(Payload& payload, tlm::tlm_phase& phase, sc_core::sc_time& delay) override {
-            return fault_.forward(payload, phase, delay);
-        }
-        void b_transport(Payload& payload, sc_core::sc_time& delay) override { fault_.pass_on(payload, delay); }
-        bool get_direct_mem_ptr(Payload&, tlm::tlm_dmi&) override { return false; }
-        unsigned transport_dbg(Payload&) override { return 0; }
-
-        StreamFault& fault_;
-    };
-
-    /// The consumer's counterpart.
-    class Exit : public tlm::tlm_initiator_socket<32, Types>, public Backward {
-      public:
-        explicit Exit(StreamFault& fault) : tlm::tlm_initiator_socket<32, Types>("out"), fault_(fault) {
-            tlm::tlm_initiator_socket<32, Types>::bind(static_cast<Backward&>(*this));
-        }
-
-      private:
-        tlm::tlm_sync_enum nb_transport_bw(Payload& payload, tlm::tlm_phase& phase, sc_core::sc_time& delay) override {
-            return fault_.backward(payload, phase, delay);
-        }
-        void invalidate_direct_mem_ptr(sc_dt::uint64, sc_dt::uint64) override {}
-
-        StreamFault& fault_;
-    };
-
   public:
-    Entrance in{*this};
-    Exit out{*this};
+    // Bound to this module itself: a producer finds it by its interface (module_behind), and is told its name.
+    tlm::tlm_target_socket<32, Types> in{"in"};
+    tlm::tlm_initiator_socket<32, Types> out{"out"};
 
     /// `trigger` must outlive it. consumer: whose lack of room is seen.
     StreamFault(const sc_core::sc_module_name& name, FaultTrigger& trigger, const datapath::Formats& formats,
                 int tag_bits, const StreamInput<Payload>& consumer)
-        : sc_module(name), trigger_(trigger), formats_(formats), tag_bits_(tag_bits), consumer_(consumer) {}
+        : sc_module(name), trigger_(trigger), formats_(formats), tag_bits_(tag_bits), consumer_(consumer) {
+        in.bind(static_cast<Forward&>(*this));
+        out.bind(static_cast<Backward&>(*this));
+    }
 
   private:
-    friend class Entrance;
-    friend class Exit;
-
     /// What the consumer is to get in this transaction's place.
     void replace(const Payload& payload) {
         if (held_) {
@@ -101,7 +70,7 @@ class StreamFault : public sc_core::sc_module {
         }
     }
 
-    void pass_on(Payload& payload, sc_core::sc_time& delay) {
+    void b_transport(Payload& payload, sc_core::sc_time& delay) override {
         if (!held_ && !trigger_.strikes()) {
             out->b_transport(payload, delay);
             return;
@@ -111,7 +80,7 @@ class StreamFault : public sc_core::sc_module {
             out->b_transport(copies_.front(), delay);
     }
 
-    tlm::tlm_sync_enum forward(Payload& payload, tlm::tlm_phase& phase, sc_core::sc_time& delay) {
+    tlm::tlm_sync_enum nb_transport_fw(Payload& payload, tlm::tlm_phase& phase, sc_core::sc_time& delay) override {
         switch (trigger_.kind()) {
             case FaultKind::request_before_end:
                 return begin_again(payload, phase, delay);
@@ -171,7 +140,7 @@ class StreamFault : public sc_core::sc_module {
         return true;
     }
 
-    tlm::tlm_sync_enum backward(Payload& payload, tlm::tlm_phase& phase, sc_core::sc_time& delay) {
+    tlm::tlm_sync_enum nb_transport_bw(Payload& payload, tlm::tlm_phase& phase, sc_core::sc_time& delay) override {
         if (copies_.empty() || &payload != &copies_.front()) {
             const tlm::tlm_sync_enum status = in->nb_transport_bw(payload, phase, delay);
             if (&payload == ends_twice_)
@@ -186,6 +155,10 @@ class StreamFault : public sc_core::sc_module {
         }
         return tlm::TLM_ACCEPTED;
     }
+
+    bool get_direct_mem_ptr(Payload&, tlm::tlm_dmi&) override { return false; }
+    unsigned transport_dbg(Payload&) override { return 0; }
+    void invalidate_direct_mem_ptr(sc_dt::uint64, sc_dt::uint64) override {}
 
     FaultTrigger& trigger_;
     datapath::Formats formats_;
