@@ -1,12 +1,10 @@
 #include "testbench/prove/fuzz/datapath_case.h"
 
 #include <algorithm>
-#include <string>
 
-#include "testbench/job/job_keys.h"
 #include "testbench/job/validate_job.h"
 #include "testbench/prove/fuzz/byte_source.h"
-#include "testbench/prove/fuzz/fuzz_target.h"
+#include "testbench/setup/formats.h"
 
 namespace tessera::fuzz {
 
@@ -18,40 +16,25 @@ constexpr std::uint32_t largest_side = 24;    // texels: the tables are rebuilt 
 constexpr std::int64_t most_generations = 4;  // each may multiply the triangles by four
 constexpr std::int64_t most_squares = 2;      // of the patch, along each axis
 
-/// The range of a job's key; looked up once.
-struct FormatRange {
-    explicit FormatRange(const char* name) {
-        const Key* const key = find_key(std::string("formats.") + name);
-        promise(key != nullptr, std::string("there is no key formats.") + name);
-        low = static_cast<std::int64_t>(key->range.low);
-        high = static_cast<std::int64_t>(key->range.high);
-    }
-    std::int64_t low, high;
-};
-
 /// Arbitrary valid formats of a job.
 Job::Formats any_formats(ByteSource& source) {
-    static const FormatRange position_bits("position_bits"), position_fraction("position_fraction"),
-        normal_bits("normal_bits"), normal_fraction("normal_fraction"), texture_integer("texture_integer"),
-        texture_fraction("texture_fraction"), displacement_bits("displacement_bits"),
-        summed_height_bits("summed_height_bits"), screen_bits("screen_bits"), screen_fraction("screen_fraction"),
-        generation_bits("generation_bits");
-    const auto any = [&](const FormatRange& range) { return source.integer(range.low, range.high); };
-    const auto below = [&](const FormatRange& range, std::int64_t bits) {
-        return source.integer(range.low, std::min(range.high, bits - 1));
+    using Limits = FormatLimits;
+    const auto any = [&](const Limits::Range& range) { return source.integer(range.least, range.most); };
+    const auto below = [&](const Limits::Range& range, std::int64_t bits) {
+        return source.integer(range.least, std::min<std::int64_t>(range.most, bits - 1));
     };
     Job::Formats formats;
-    formats.position_bits = any(position_bits);
-    formats.position_fraction = below(position_fraction, formats.position_bits);
-    formats.normal_bits = any(normal_bits);
-    formats.normal_fraction = below(normal_fraction, formats.normal_bits - 1);
-    formats.texture_integer = any(texture_integer);
-    formats.texture_fraction = any(texture_fraction);
-    formats.displacement_bits = any(displacement_bits);
-    formats.summed_height_bits = any(summed_height_bits);
-    formats.screen_bits = any(screen_bits);
-    formats.screen_fraction = below(screen_fraction, formats.screen_bits);
-    formats.generation_bits = any(generation_bits);
+    formats.position_bits = any(Limits::position_bits);
+    formats.position_fraction = below(Limits::position_fraction, formats.position_bits);
+    formats.normal_bits = any(Limits::normal_bits);
+    formats.normal_fraction = below(Limits::normal_fraction, formats.normal_bits - 1);
+    formats.texture_integer = any(Limits::texture_integer);
+    formats.texture_fraction = any(Limits::texture_fraction);
+    formats.displacement_bits = any(Limits::displacement_bits);
+    formats.summed_height_bits = any(Limits::summed_height_bits);
+    formats.screen_bits = any(Limits::screen_bits);
+    formats.screen_fraction = below(Limits::screen_fraction, formats.screen_bits);
+    formats.generation_bits = any(Limits::generation_bits);
     return formats;
 }
 
@@ -63,23 +46,6 @@ void promise_legal(const Job::Formats& formats, std::int64_t generation_limit) {
     job.camera.viewport_width = job.camera.viewport_height = 1;
     job.tests.generation_limit = generation_limit;
     validate(job);
-}
-
-/// The machine's formats, as the host derives them from the job's.
-Formats make_formats(const Job::Formats& job, int view_distance_shift) {
-    const auto bits = [](std::int64_t value) { return static_cast<int>(value); };
-    Formats formats;
-    formats.position = Format::make_signed(bits(job.position_bits), bits(job.position_fraction));
-    formats.view_distance =
-        Format::make_signed(bits(job.position_bits), bits(job.position_fraction) - view_distance_shift);
-    formats.normal = Format::make_signed(bits(job.normal_bits), bits(job.normal_fraction));
-    formats.texture =
-        Format::make_unsigned(bits(job.texture_integer + job.texture_fraction) + 1, bits(job.texture_fraction));
-    formats.displacement = Format::make_unsigned(bits(job.displacement_bits), bits(job.displacement_bits));
-    formats.summed_height = Format::make_unsigned(bits(job.summed_height_bits), 0);
-    formats.screen = Format::make_signed(bits(job.screen_bits), bits(job.screen_fraction));
-    formats.generation_bits = bits(job.generation_bits);
-    return formats;
 }
 
 /// A direction of unit length within the format's rounding.
@@ -148,7 +114,8 @@ Registers any_registers(ByteSource& source) {
         source.integer(0, std::min(most_generations, (std::int64_t{1} << formats.generation_bits) - 1));
     promise_legal(formats, generation_limit);
     Registers registers;
-    registers.formats = make_formats(formats, source.integer32(0, 30));
+    registers.formats = make_formats(formats, MapFilter::nearest);
+    registers.formats.view_distance.fraction -= source.integer32(0, 30);
     registers.map = any_map(source, formats);
     registers.tests = any_tests(source, registers.formats, generation_limit);
     registers.formats.highlight_tag = registers.tests.highlight_test;
