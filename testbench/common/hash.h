@@ -12,6 +12,11 @@ constexpr std::uint64_t mix_hash(std::uint64_t hash, std::uint64_t word) {
     return hash ^ (hash >> 29);
 }
 
+/// Two signed numbers as a word to hash.
+constexpr std::uint64_t hash_word(std::int32_t high, std::int32_t low) {
+    return std::uint64_t{static_cast<std::uint32_t>(high)} << 32 | static_cast<std::uint32_t>(low);
+}
+
 /// The bits of x, with -0 taken as +0: two values are alike when their bits are.
 inline std::uint64_t alike_bits(double x) {
     const double positive_zero = x + 0.0;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "modules/datapath/vertex.h"
+#include "testbench/common/hash.h"
 
 namespace tessera {
 
@@ -45,6 +46,18 @@ struct EmittedTriangle {
                a.culled == b.culled;
     }
 };
+
+/// Of P, P', N' and t.
+inline std::uint64_t hash_of(const EmittedTriangle::Corner& c) {
+    const datapath::Position &p = c.position, &displaced = c.displaced;
+    const datapath::Direction& n = c.displaced_normal;
+    std::uint64_t hash = 0;
+    for (const std::uint64_t word :
+         {hash_word(p.x, p.y), hash_word(p.z, displaced.x), hash_word(displaced.y, displaced.z), hash_word(n.x, n.y),
+          hash_word(0, n.z), std::uint64_t{c.texture.u} << 32 | c.texture.v})
+        hash = mix_hash(hash, word);
+    return hash;
+}
 
 /// All finished triangles of a run, including culled ones.
 struct EmittedMesh {

@@ -14,14 +14,9 @@ namespace tessera {
 namespace {
 
 std::uint64_t hash_of(const EmittedTriangle& triangle) {
-    const auto pair = [](std::uint32_t high, std::uint32_t low) { return std::uint64_t{high} << 32 | low; };
-    const auto bits = [](std::int32_t value) { return static_cast<std::uint32_t>(value); };
     std::uint64_t hash = 0;
-    for (const auto& c : triangle.corners) {
-        hash = mix_hash(hash, pair(c.texture.u, c.texture.v));
-        hash = mix_hash(hash, pair(bits(c.displaced.x), bits(c.displaced.y)));
-        hash = mix_hash(hash, bits(c.displaced.z));
-    }
+    for (const auto& corner : triangle.corners)
+        hash = mix_hash(hash, hash_of(corner));
     return hash;
 }
 

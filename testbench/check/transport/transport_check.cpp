@@ -15,9 +15,7 @@ namespace {
 class Hash {
   public:
     void add(std::uint64_t word) { state_ = mix_hash(state_, word); }
-    void add(std::int32_t high, std::int32_t low) {
-        add(std::uint64_t{static_cast<std::uint32_t>(high)} << 32 | static_cast<std::uint32_t>(low));
-    }
+    void add(std::int32_t high, std::int32_t low) { add(hash_word(high, low)); }
     std::uint64_t value() const { return state_; }
 
   private:

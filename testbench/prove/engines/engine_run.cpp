@@ -42,11 +42,9 @@ std::uint64_t digest_of(const EmittedMesh& mesh, std::size_t machine, std::size_
     for (const EmittedTriangle& triangle : mesh.triangles) {
         if (triangle.base % machines != machine)
             continue;
-        for (const auto& c : triangle.corners)
-            for (const std::int64_t value :
-                 {std::int64_t{c.displaced.x}, std::int64_t{c.displaced.y}, std::int64_t{c.displaced.z},
-                  std::int64_t{c.texture.u}, std::int64_t{c.texture.v}, std::int64_t{triangle.base}})
-                digest = mix_hash(digest, static_cast<std::uint64_t>(value));
+        digest = mix_hash(digest, triangle.base);
+        for (const auto& corner : triangle.corners)
+            digest = mix_hash(digest, hash_of(corner));
     }
     return digest;
 }
