@@ -123,31 +123,23 @@ std::vector<InvariantFigure> invariant_figures(const InvariantResult& r) {
 InvariantResult check_invariants(const EmittedMesh& mesh, const MachineSetup& setup) {
     BareRecursion bare(setup);
     Walk walk{Lineage(setup, bare), EmittedDifference(mesh, setup.base_triangles.size(), setup.registers.formats)};
-    InvariantResult result;
     // A machine's N triangles take fewer than 6 N edges. The datapath's recursion need not end if the mesh is not its
     // own.
     const std::uint64_t most_edges = 24 * mesh.triangles.size() + 3'000'000;
-    result.edges = bare.walk(walk, most_edges);
+    const std::uint64_t edges = bare.walk(walk, most_edges);
     walk.end();
-    result.unfinished = result.edges < most_edges ? 0 : 1;
-    const LineageResult lineage = result.unfinished == 0 ? walk.lineage.finish() : LineageResult{};
+    const bool finished = edges < most_edges;
+    InvariantResult result = finished ? walk.lineage.finish() : InvariantResult{};
     result.triangles = mesh.triangles.size();
+    result.edges = edges;
     result.base_triangles = setup.base_triangles.size();
-    result.base_edges = lineage.base_edges;
-    result.border_base_edges = lineage.border_base_edges;
-    result.non_manifold_base_edges = lineage.non_manifold_base_edges;
-    result.texture_seams = lineage.texture_seams;
-    result.creases = lineage.creases;
-    result.t_vertices = lineage.t_vertices;
-    result.cracks = lineage.cracks;
-    result.inconsistent_vertices = lineage.unlike_vertices;
     result.missing_triangles = walk.difference.missing();
     result.extra_triangles = walk.difference.extra();
     result.differing_triangles = walk.difference.differing();
-    result.open_texture_seam_edges = lineage.open_texture_seam_edges;
-    result.open_crease_edges = lineage.open_crease_edges;
-    result.first_violation = lineage.first_fault.empty() ? walk.difference.first() : lineage.first_fault;
-    if (result.unfinished != 0 && result.first_violation.empty())
+    result.unfinished = finished ? 0 : 1;
+    if (result.first_violation.empty())
+        result.first_violation = walk.difference.first();
+    if (!finished && result.first_violation.empty())
         result.first_violation = fmt::format("the datapath by itself had not finished after {} edges", result.edges);
     judge_triangles(mesh, setup, result);
     return result;

@@ -22,8 +22,8 @@ struct InvariantResult {
     std::uint64_t base_edges = 0;               ///< distinct by P; those of zero length left out
     std::uint64_t border_base_edges = 0;        ///< of one base triangle
     std::uint64_t non_manifold_base_edges = 0;  ///< of more than two
-    std::uint64_t texture_seams = 0;            ///< base edges whose sides differ in t by other than whole periods
-    std::uint64_t creases = 0;                  ///< base edges whose sides agree in t but not in N, T
+    std::uint64_t texture_seams = 0;  ///< base edges whose sides differ in t by other than whole periods: not joined
+    std::uint64_t creases = 0;        ///< base edges whose sides agree in t but not in N, T: not joined
 
     // Violations: none in a correct run.
     std::uint64_t t_vertices = 0;

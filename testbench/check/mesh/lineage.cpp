@@ -16,12 +16,8 @@ using datapath::TrianglePass, datapath::Vertex;
 
 namespace {
 
-std::uint64_t word(std::int32_t high, std::int32_t low) {
-    return std::uint64_t{static_cast<std::uint32_t>(high)} << 32 | static_cast<std::uint32_t>(low);
-}
-
 std::uint64_t hash_of(const datapath::Position& p) {
-    return mix_hash(mix_hash(0, word(p.x, p.y)), word(0, p.z));
+    return mix_hash(mix_hash(0, hash_word(p.x, p.y)), hash_word(0, p.z));
 }
 
 }  // namespace
@@ -49,8 +45,8 @@ bool Lineage::same_texture(const datapath::TexCoord& a, const datapath::TexCoord
 template <class Text>
 void Lineage::fault(std::uint64_t& count, Text&& text) {
     ++count;
-    if (result_.first_fault.empty())
-        result_.first_fault =
+    if (result_.first_violation.empty())
+        result_.first_violation =
             fmt::format("{}: {}", base_ == none ? "base mesh" : fmt::format("base triangle {}", base_), text());
 }
 
@@ -63,9 +59,9 @@ void Lineage::name_base_mesh(BareRecursion& bare) {
     DistinctTable vertex_table, edge_table;
     const auto vertex_hash = [&](const Vertex& v) {
         std::uint64_t hash = hash_of(v.position);
-        for (const std::uint64_t part :
-             {word(v.normal.x, v.normal.y), word(v.normal.z, v.tangent.x), word(v.tangent.y, v.tangent.z),
-              within_period(v.texture.u, period_u_), within_period(v.texture.v, period_v_)})
+        for (const std::uint64_t part : {hash_word(v.normal.x, v.normal.y), hash_word(v.normal.z, v.tangent.x),
+                                         hash_word(v.tangent.y, v.tangent.z), within_period(v.texture.u, period_u_),
+                                         within_period(v.texture.v, period_v_)})
             hash = mix_hash(hash, part);
         return hash;
     };
@@ -138,7 +134,7 @@ void Lineage::meet(Number vertex, const Vertex& seen) {
          seen.displaced == v.displaced && seen.displaced_normal == v.displaced_normal && seen.screen == v.screen))
         return;
     known.unlike = true;
-    fault(result_.unlike_vertices, [&] {
+    fault(result_.inconsistent_vertices, [&] {
         return fmt::format("a vertex differs from one triangle to another: {}; {}", vertex_text(v), vertex_text(seen));
     });
 }
@@ -310,7 +306,7 @@ void Lineage::compare_base_edges() {
     }
 }
 
-LineageResult Lineage::finish() {
+InvariantResult Lineage::finish() {
     judge_patch();
     base_ = none;
     judge(edges_.kept());

@@ -7,24 +7,11 @@
 
 #include "modules/datapath/triangle_pass.h"
 #include "modules/datapath/triangulate.h"
+#include "testbench/check/mesh/invariants.h"
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/machine_setup.h"
 
 namespace tessera {
-
-struct LineageResult {
-    std::uint64_t base_edges = 0;               ///< distinct by P; those of zero length left out
-    std::uint64_t border_base_edges = 0;        ///< of one base triangle
-    std::uint64_t non_manifold_base_edges = 0;  ///< of more than two
-    std::uint64_t texture_seams = 0;            ///< base edges whose sides differ in t: not joined
-    std::uint64_t creases = 0;                  ///< base edges whose sides agree in t, not in N, T: not joined
-    std::uint64_t open_texture_seam_edges = 0;  ///< pieces of them that do not meet, on the finer side
-    std::uint64_t open_crease_edges = 0;        ///< likewise
-    std::uint64_t cracks = 0;                   ///< edges without the triangles they should have
-    std::uint64_t t_vertices = 0;               ///< on an edge that is whole in another triangle
-    std::uint64_t unlike_vertices = 0;          ///< that differ from one triangle to another
-    std::string first_fault;                    ///< empty: none
-};
 
 /// Decides whether a tessellation is closed: a visitor of BareRecursion::walk. It follows each edge from the base edge
 /// it descends from; positions are not compared.
@@ -46,8 +33,8 @@ class Lineage {
     /// `setup` must outlive it; `bare` is of the same.
     Lineage(const MachineSetup& setup, BareRecursion& bare);
 
-    /// After the walk.
-    LineageResult finish();
+    /// After the walk: what it found of base edges and between triangles; the other members stay 0.
+    InvariantResult finish();
 
     using Number = std::uint32_t;  ///< of a vertex or an edge, see Numbered
     /// An edge as a triangle has it.
@@ -131,7 +118,7 @@ class Lineage {
 
     const MachineSetup& setup_;
     std::uint64_t period_u_ = 0, period_v_ = 0;  // in LSB; 0: the axis does not repeat
-    LineageResult result_;
+    InvariantResult result_;
     Numbered<KnownVertex> vertices_;
     Numbered<Edge> edges_;
     std::vector<Way> ways_;         // of the base edges, which are the first of the edges that are kept

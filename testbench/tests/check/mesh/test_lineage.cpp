@@ -43,7 +43,7 @@ MachineSetup round_setup(Addressing address_u) {
     return setup_of(job);
 }
 
-LineageResult check(const MachineSetup& setup) {
+InvariantResult check(const MachineSetup& setup) {
     BareRecursion bare(setup);
     Lineage lineage(setup, bare);
     bare.walk(lineage);
@@ -51,13 +51,13 @@ LineageResult check(const MachineSetup& setup) {
 }
 
 /// What is open, in one number each.
-void require_faults(const LineageResult& result, std::uint64_t cracks, std::uint64_t t_vertices,
+void require_faults(const InvariantResult& result, std::uint64_t cracks, std::uint64_t t_vertices,
                     std::uint64_t unlike_vertices) {
-    INFO(result.first_fault);
+    INFO(result.first_violation);
     CHECK(result.cracks == cracks);
     CHECK(result.t_vertices == t_vertices);
-    CHECK(result.unlike_vertices == unlike_vertices);
-    CHECK(result.first_fault.empty() == (cracks + t_vertices + unlike_vertices == 0));
+    CHECK(result.inconsistent_vertices == unlike_vertices);
+    CHECK(result.first_violation.empty() == (cracks + t_vertices + unlike_vertices == 0));
 }
 
 /// A datapath that does something else to one of its passes, or with one of the children it makes.
@@ -103,8 +103,8 @@ struct Broken {
     }
 };
 
-LineageResult check_broken(const MachineSetup& setup, decltype(Broken::pass) pass,
-                           decltype(Broken::corners) corners = {}) {
+InvariantResult check_broken(const MachineSetup& setup, decltype(Broken::pass) pass,
+                             decltype(Broken::corners) corners = {}) {
     BareRecursion bare(setup);
     Lineage lineage(setup, bare);
     Broken broken{lineage, std::move(pass), std::move(corners)};
@@ -122,7 +122,7 @@ bool is_on_border(const MachineSetup& setup, const TrianglePass& pass, int k) {
 
 TEST_CASE("lineage: a plane closes") {
     const MachineSetup setup = setup_of(small_job());
-    const LineageResult result = check(setup);
+    const InvariantResult result = check(setup);
     require_faults(result, 0, 0, 0);
     CHECK(result.base_edges == 16);
     CHECK(result.border_base_edges == 8);
@@ -152,7 +152,7 @@ TEST_CASE("lineage: any finished triangle left out, doubled or turned over is fo
                     }
                 });
         };
-        const LineageResult missing = with([](Broken&, const TrianglePass&, const Lineage::Note&) {});
+        const InvariantResult missing = with([](Broken&, const TrianglePass&, const Lineage::Note&) {});
         if (!finished)
             continue;
         ++tried;
@@ -178,7 +178,7 @@ TEST_CASE("lineage: an edge split by one triangle alone is a T-vertex, but on th
     for (std::size_t n = 0; n < 600; n += 5)
         for (int k = 0; k < 3; ++k) {
             std::optional<bool> border;
-            const LineageResult result = check_broken(
+            const InvariantResult result = check_broken(
                 setup, [&](Broken& broken, std::size_t number, const TrianglePass& pass, const Lineage::Note& note) {
                     if (number == n && pass.split == 0) {
                         border = is_on_border(setup, pass, k);
@@ -212,7 +212,7 @@ TEST_CASE("lineage: a vertex that differs in anything from one triangle to anoth
     for (const auto& change : changes)
         for (const std::size_t n : {0U, 3U, 40U, 77U}) {
             std::size_t finished = 0;
-            const LineageResult result = check_broken(
+            const InvariantResult result = check_broken(
                 setup, [&](Broken& broken, std::size_t, const TrianglePass& pass, const Lineage::Note& note) {
                     TrianglePass seen = pass;
                     if (pass.split == 0 && finished++ == n)
@@ -220,7 +220,8 @@ TEST_CASE("lineage: a vertex that differs in anything from one triangle to anoth
                     broken.forward(seen, note);
                 });
             require_faults(result, 0, 0, 1);
-            CHECK(result.first_fault.find(": a vertex differs from one triangle to another: P (") != std::string::npos);
+            CHECK(result.first_violation.find(": a vertex differs from one triangle to another: P (") !=
+                  std::string::npos);
         }
 }
 
@@ -228,7 +229,7 @@ TEST_CASE("lineage: a wrong triangulation leaves edges without their triangles")
     const MachineSetup setup = setup_of(small_job());
     SECTION("a child wound the other way") {
         for (const std::size_t n : {0U, 5U, 50U}) {
-            const LineageResult result = check_broken(setup, {}, [&](std::size_t number, auto corners) {
+            const InvariantResult result = check_broken(setup, {}, [&](std::size_t number, auto corners) {
                 if (number == n)
                     std::swap(corners[0], corners[1]);
                 return corners;
@@ -238,7 +239,7 @@ TEST_CASE("lineage: a wrong triangulation leaves edges without their triangles")
     }
     SECTION("a child there twice, the other not at all") {
         std::array<std::uint8_t, 3> first{};
-        const LineageResult result = check_broken(setup, {}, [&](std::size_t number, auto corners) {
+        const InvariantResult result = check_broken(setup, {}, [&](std::size_t number, auto corners) {
             if (number == 0)
                 first = corners;
             return number == 1 ? first : corners;
@@ -246,7 +247,7 @@ TEST_CASE("lineage: a wrong triangulation leaves edges without their triangles")
         CHECK(result.cracks > 2);
     }
     SECTION("a child that has its parent's edge whole, though that is split") {
-        const LineageResult result = check_broken(setup, {}, [&](std::size_t number, auto corners) {
+        const InvariantResult result = check_broken(setup, {}, [&](std::size_t number, auto corners) {
             return number == 0 ? std::array<std::uint8_t, 3>{0, 1, 2} : corners;
         });
         CHECK(result.cracks + result.t_vertices > 2);
@@ -258,11 +259,11 @@ TEST_CASE("lineage: the datapath's own faults between base triangles") {
     // One copy of a shared vertex is of the last generation: its triangles keep their edges whole.
     MachineSetup older = setup;
     older.base_triangles[1].vertices[1].generation = static_cast<std::uint8_t>(setup.registers.tests.generation_limit);
-    const LineageResult result = check(older);
-    CHECK(result.unlike_vertices == 1);
+    const InvariantResult result = check(older);
+    CHECK(result.inconsistent_vertices == 1);
     CHECK(result.t_vertices > 0);
     CHECK(result.cracks > 1);  // the other side's halves
-    CHECK(result.first_fault.find("base triangle ") == 0);
+    CHECK(result.first_violation.find("base triangle ") == 0);
 }
 
 TEST_CASE("lineage: a base triangle that is there twice, and a mesh folded on itself") {
@@ -274,7 +275,7 @@ TEST_CASE("lineage: a base triangle that is there twice, and a mesh folded on it
         other.base = static_cast<std::uint32_t>(once + b);
         setup.base_triangles.push_back(other);
     }
-    LineageResult result = check(setup);
+    InvariantResult result = check(setup);
     require_faults(result, 0, 0, 0);
     CHECK(result.base_edges == 16);
     CHECK(result.border_base_edges == 0);
@@ -291,7 +292,7 @@ TEST_CASE("lineage: a base triangle that is there twice, and a mesh folded on it
 TEST_CASE("lineage: a cylinder's seam") {
     SECTION("closes where the map repeats, and is checked there") {
         const MachineSetup setup = round_setup(Addressing::repeat);
-        const LineageResult result = check(setup);
+        const InvariantResult result = check(setup);
         require_faults(result, 0, 0, 0);
         CHECK(result.base_edges == 24);
         CHECK(result.border_base_edges == 12);
@@ -299,17 +300,17 @@ TEST_CASE("lineage: a cylinder's seam") {
         CHECK(result.open_texture_seam_edges == 0);
 
         const std::uint32_t last = setup.registers.map.width << setup.registers.formats.texture.fraction;
-        const LineageResult open =
+        const InvariantResult open =
             check_broken(setup, [&](Broken& broken, std::size_t, const TrianglePass& pass, const Lineage::Note& note) {
                 TrianglePass seen = pass;
                 for (datapath::Vertex& v : seen.triangle.vertices)
                     v.displaced.x += v.texture.u == last ? 1 : 0;
                 broken.forward(seen, note);
             });
-        CHECK(open.unlike_vertices > 2);
+        CHECK(open.inconsistent_vertices > 2);
     }
     SECTION("in clamp, what is open there is the map's doing") {
-        const LineageResult result = check(round_setup(Addressing::clamp));
+        const InvariantResult result = check(round_setup(Addressing::clamp));
         require_faults(result, 0, 0, 0);
         CHECK(result.base_edges == 24);
         CHECK(result.border_base_edges == 12);
@@ -323,7 +324,7 @@ TEST_CASE("lineage: a cylinder's seam") {
         for (Triangle& base : setup.base_triangles)
             for (datapath::Vertex& v : base.vertices)
                 v.texture.u -= v.texture.u == last ? 9000 : 0;
-        const LineageResult result = check(setup);
+        const InvariantResult result = check(setup);
         require_faults(result, 0, 0, 0);
         CHECK(result.texture_seams == 1);
         CHECK(result.open_texture_seam_edges > 2);
@@ -345,7 +346,7 @@ TEST_CASE("lineage: pieces open along a seam are counted on the finer side") {
     for (const EmittedTriangle& t : mesh.triangles)
         for (std::size_t k = 0; k < 3; ++k)
             pieces += t.base == 0 && diagonal(t.corners[k]) && diagonal(t.corners[(k + 1) % 3]) ? 1U : 0U;
-    const LineageResult result = check(setup);
+    const InvariantResult result = check(setup);
     require_faults(result, 0, 0, 0);
     CHECK(result.texture_seams == 1);
     CHECK(pieces > 1);
@@ -357,7 +358,7 @@ TEST_CASE("lineage: a crease of the base mesh is the input's") {
     for (std::size_t b = 4; b < 8; ++b)
         for (datapath::Vertex& v : setup.base_triangles[b].vertices)
             v.normal = {0, 11585, 11585};
-    const LineageResult result = check(setup);
+    const InvariantResult result = check(setup);
     require_faults(result, 0, 0, 0);
     CHECK(result.creases == 2);
     CHECK(result.open_crease_edges > 4);
