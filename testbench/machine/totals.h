@@ -7,6 +7,12 @@
 
 namespace tessera {
 
+/// Adds these fields of `counts` to those of `sum`.
+template <class Counts, class... Fields>
+void add_fields(Counts& sum, const Counts& counts, Fields... fields) {
+    ((sum.*fields += counts.*fields), ...);
+}
+
 /// The counts of a run, all machines together.
 struct Totals {
     DecidingUnit::Counts counts;

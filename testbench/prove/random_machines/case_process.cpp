@@ -9,16 +9,8 @@
 
 namespace tessera {
 
-namespace {
-
-/// Figures and digest as they lie in memory, then the failure's text.
-struct Header {
-    CaseFigures figures;
-    std::uint64_t mesh_digest;
-};
-static_assert(std::is_trivially_copyable_v<Header>);
-
-}  // namespace
+/// A result as bytes: the figures as they lie in memory, then the failure's text.
+static_assert(std::is_trivially_copyable_v<CaseFigures>);
 
 CaseResult run_case_in_process(const RandomCase& random_case, Mode mode) {
     const ChildEnd end = run_in_child([&] {
@@ -28,20 +20,16 @@ CaseResult run_case_in_process(const RandomCase& random_case, Mode mode) {
         } catch (const std::exception& error) {
             result.failure = error.what();
         }
-        const Header header{result.figures, result.mesh_digest};
-        return std::string(reinterpret_cast<const char*>(&header), sizeof header) + result.failure;
+        return std::string(reinterpret_cast<const char*>(&result.figures), sizeof result.figures) + result.failure;
     });
     CaseResult result;
-    if (!end.failure.empty() || end.told.size() < sizeof(Header)) {
+    if (!end.failure.empty() || end.told.size() < sizeof result.figures) {
         result.figures.runs = 1;
         result.failure = end.failure.empty() ? "ended without a result" : end.failure;
         return result;
     }
-    Header header{};
-    std::memcpy(&header, end.told.data(), sizeof header);
-    result.figures = header.figures;
-    result.mesh_digest = header.mesh_digest;
-    result.failure = end.told.substr(sizeof header);
+    std::memcpy(&result.figures, end.told.data(), sizeof result.figures);
+    result.failure = end.told.substr(sizeof result.figures);
     return result;
 }
 

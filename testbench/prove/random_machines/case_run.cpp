@@ -19,14 +19,8 @@ std::uint64_t digest_of(const EmittedMesh& mesh) {
     std::uint64_t sum = 0;
     for (const EmittedTriangle& triangle : mesh.triangles) {
         std::uint64_t digest = 0;
-        for (const auto& c : triangle.corners)
-            for (const std::int64_t value :
-                 {std::int64_t{c.position.x}, std::int64_t{c.position.y}, std::int64_t{c.position.z},
-                  std::int64_t{c.displaced.x}, std::int64_t{c.displaced.y}, std::int64_t{c.displaced.z},
-                  std::int64_t{c.displaced_normal.x}, std::int64_t{c.displaced_normal.y},
-                  std::int64_t{c.displaced_normal.z}, std::int64_t{c.texture.u}, std::int64_t{c.texture.v},
-                  std::int64_t{c.generation}})
-                digest = mix_hash(digest, static_cast<std::uint64_t>(value));
+        for (const auto& corner : triangle.corners)
+            digest = mix_hash(mix_hash(digest, hash_of(corner)), corner.generation);
         for (const std::int64_t value : {std::int64_t{triangle.base}, std::int64_t{triangle.split_by},
                                          std::int64_t{triangle.stopped_by}, std::int64_t{triangle.culled}})
             digest = mix_hash(digest, static_cast<std::uint64_t>(value));
@@ -38,20 +32,10 @@ std::uint64_t digest_of(const EmittedMesh& mesh) {
 }  // namespace
 
 void CaseFigures::add(const CaseFigures& other) {
-    runs += other.runs;
-    base_triangles += other.base_triangles;
-    triangles += other.triangles;
-    edges += other.edges;
-    cracks += other.cracks;
-    t_vertices += other.t_vertices;
-    other_violations += other.other_violations;
-    collapsed += other.collapsed;
-    turned_over += other.turned_over;
-    open_input_edges += other.open_input_edges;
-    flips += other.flips;
-    mismatches += other.mismatches;
-    spilled += other.spilled;
-    cycles += other.cycles;
+    using F = CaseFigures;
+    add_fields(*this, other, &F::runs, &F::base_triangles, &F::triangles, &F::edges, &F::cracks, &F::t_vertices,
+               &F::other_violations, &F::collapsed, &F::turned_over, &F::open_input_edges, &F::flips, &F::mismatches,
+               &F::spilled, &F::cycles);
 }
 
 CaseResult run_case(const RandomCase& random_case, Mode mode) {
@@ -83,7 +67,6 @@ CaseResult run_case(const RandomCase& random_case, Mode mode) {
     if (conformance.mismatches > 0)
         fail(fmt::format("{} mismatches: {}", conformance.mismatches, conformance.first_mismatch));
 
-    result.mesh_digest = digest_of(mesh);
     const Totals totals(simulation);
     const std::uint64_t passes = totals.counts.passes;
     if (conformance.edges != totals.counts.edges_tested || 3 * passes != invariants.edges)
@@ -110,6 +93,7 @@ CaseResult run_case(const RandomCase& random_case, Mode mode) {
     figures.mismatches = conformance.mismatches;
     figures.spilled = totals.spilled;
     figures.cycles = simulation.cycles();
+    figures.mesh_digest = digest_of(mesh);
     return result;
 }
 

@@ -22,14 +22,14 @@ struct CaseFigures {
     std::uint64_t mismatches = 0;        ///< with the golden model
     std::uint64_t spilled = 0;           ///< triangles that went off chip
     std::uint64_t cycles = 0;
+    std::uint64_t mesh_digest =
+        0;  ///< of one run's emitted triangles, all there is of each, in any order; not added up
 
     void add(const CaseFigures& other);
 };
 
 struct CaseResult {
     CaseFigures figures;
-    /// Of the emitted triangles, all there is of each, in any order.
-    std::uint64_t mesh_digest = 0;
     /// Empty: invariants and conformance hold, and the run ended.
     std::string failure;
 };

@@ -64,7 +64,8 @@ int run_cases(const Order& order) {
         CaseResult timed = run_case_in_process(random_case, Mode::timed);
         all.add(functional.figures);
         all.add(timed.figures);
-        if (functional.failure.empty() && timed.failure.empty() && functional.mesh_digest != timed.mesh_digest)
+        if (functional.failure.empty() && timed.failure.empty() &&
+            functional.figures.mesh_digest != timed.figures.mesh_digest)
             timed.failure = "the two modes leave different meshes";
         if (!functional.failure.empty())
             leave_failure(random_case, Mode::functional, functional.failure, order);
