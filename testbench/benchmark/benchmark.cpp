@@ -207,31 +207,21 @@ int sc_main(int argc, char** argv) {
     simulation.run();
     if (platform)
         platform->draw_frame();
-    benchmark::RegisterBenchmark("golden_model", [&](benchmark::State& state) {
-        tessera::golden_model(state, setup);
-    })->Unit(benchmark::kMillisecond);
-    benchmark::RegisterBenchmark("bare_datapath", [&](benchmark::State& state) {
-        tessera::bare_datapath(state, bare);
-    })->Unit(benchmark::kMillisecond);
-    benchmark::RegisterBenchmark("functional_mode", [&](benchmark::State& state) {
-        tessera::one_frame(state, simulation);
-    })->Unit(benchmark::kMillisecond);
+    const auto add = [](const char* name, auto run) {
+        benchmark::RegisterBenchmark(name, run)->Unit(benchmark::kMillisecond);
+    };
+    const auto add_frames = [&](const char* name, tessera::Simulation& machine) {
+        add(name, [&machine](benchmark::State& state) { tessera::one_frame(state, machine); });
+    };
+    add("golden_model", [&](benchmark::State& state) { tessera::golden_model(state, setup); });
+    add("bare_datapath", [&](benchmark::State& state) { tessera::bare_datapath(state, bare); });
+    add_frames("functional_mode", simulation);
     if (platform)
-        benchmark::RegisterBenchmark("device_functional", [&](benchmark::State& state) {
-            tessera::device_frame(state, *platform);
-        })->Unit(benchmark::kMillisecond);
-    benchmark::RegisterBenchmark("timed_mode", [&](benchmark::State& state) {
-        tessera::one_frame(state, timed_simulation);
-    })->Unit(benchmark::kMillisecond);
-    benchmark::RegisterBenchmark("timed_mode_by_schedule", [&](benchmark::State& state) {
-        tessera::one_frame(state, scheduled_simulation);
-    })->Unit(benchmark::kMillisecond);
-    benchmark::RegisterBenchmark("modern_functional_mode", [&](benchmark::State& state) {
-        tessera::one_frame(state, modern_simulation);
-    })->Unit(benchmark::kMillisecond);
-    benchmark::RegisterBenchmark("modern_timed_mode", [&](benchmark::State& state) {
-        tessera::one_frame(state, modern_timed_simulation);
-    })->Unit(benchmark::kMillisecond);
+        add("device_functional", [&](benchmark::State& state) { tessera::device_frame(state, *platform); });
+    add_frames("timed_mode", timed_simulation);
+    add_frames("timed_mode_by_schedule", scheduled_simulation);
+    add_frames("modern_functional_mode", modern_simulation);
+    add_frames("modern_timed_mode", modern_timed_simulation);
     benchmark::RunSpecifiedBenchmarks();
     return 0;
 }
