@@ -6,7 +6,6 @@
 #include "modules/datapath/curvature.h"
 
 namespace tessera {
-namespace {
 
 golden::AddressMode golden_mode(datapath::AddressMode mode) {
     return mode == datapath::AddressMode::repeat ? golden::AddressMode::repeat : golden::AddressMode::clamp;
@@ -26,7 +25,9 @@ golden::Diagonal golden_diagonal(datapath::Triangulation choice) {
     return golden::Diagonal::shorter;
 }
 
-}  // namespace
+golden::Filter golden_filter(datapath::MapFilter filter) {
+    return filter == datapath::MapFilter::bilinear ? golden::Filter::bilinear : golden::Filter::nearest;
+}
 
 void set_tables(golden::Map& map, const PreparedScene& prepared) {
     if (!prepared.fitted_heights.empty())
@@ -67,10 +68,6 @@ golden::Map golden_map(const MachineSetup& setup) {
     set_tables(map, setup);
     return map;
 }
-
-}  // namespace
-
-namespace {
 
 /// The registers' thresholds are those at D_i + D_j = 1 LSB, golden's those at a mean distance of 1: an octave and the
 /// binary point apart.
@@ -121,8 +118,7 @@ golden::Parameters golden_parameters(const datapath::Registers& registers) {
     result.enabled = {tests.normal_test,    tests.summed_height_test, tests.view_test,
                       tests.tex_coord_test, tests.generation_test,    tests.highlight_test};
     result.diagonal = golden_diagonal(registers.triangulation);
-    result.filter =
-        formats.filter == datapath::MapFilter::bilinear ? golden::Filter::bilinear : golden::Filter::nearest;
+    result.filter = golden_filter(formats.filter);
     result.texel_parts = std::ldexp(1.0, formats.tex_coord_fraction);
 
     const int matrix = datapath::TransformParameters::matrix_fraction;

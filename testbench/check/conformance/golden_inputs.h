@@ -48,6 +48,10 @@ class Dequantise {
     double position_lsb_, normal_lsb_, texture_lsb_, screen_lsb_, view_distance_lsb_;
 };
 
+golden::AddressMode golden_mode(datapath::AddressMode mode);
+golden::Diagonal golden_diagonal(datapath::Triangulation choice);
+golden::Filter golden_filter(datapath::MapFilter filter);
+
 /// What the author gives as the map is given: fitted heights, the Rank or the Curvature Table, the mipmap's filter.
 void set_tables(golden::Map& map, const PreparedScene& prepared);
 

@@ -80,19 +80,11 @@ golden::Scene make_scene(const Job& job, const BaseMesh& mesh, const HeightMap& 
     scene.highlight_angle = tests.highlight_angle;
     scene.highlight_normal_threshold = tests.highlight_normal_threshold;
     scene.enabled = {tests.normal, tests.summed_height, tests.view, tests.tex_coord, tests.generation, tests.highlight};
-    scene.diagonal = job.hardware.triangulation == Triangulation::first           ? golden::Diagonal::first
-                     : job.hardware.triangulation == Triangulation::second        ? golden::Diagonal::second
-                     : job.hardware.triangulation == Triangulation::greatest_rank ? golden::Diagonal::greatest_rank
-                                                                                  : golden::Diagonal::shorter;
-    scene.filter =
-        job.hardware.displacement_filter == MapFilter::bilinear ? golden::Filter::bilinear : golden::Filter::nearest;
+    scene.diagonal = golden_diagonal(job.hardware.triangulation);
+    scene.filter = golden_filter(job.hardware.displacement_filter);
     scene.texel_parts = texel_parts(job.formats, scene.filter);
     scene.light = vector(job.hardware.light);
     return scene;
-}
-
-golden::AddressMode address_mode(Addressing mode) {
-    return mode == Addressing::repeat ? golden::AddressMode::repeat : golden::AddressMode::clamp;
 }
 
 double code_at(std::size_t texel, const HeightMap& map, const golden::Scene& scene) {
@@ -105,8 +97,8 @@ golden::Map make_map(const Job& job, const HeightMap& height_map, const BaseMesh
     codes.reserve(height_map.values.size());
     for (std::size_t texel = 0; texel < height_map.values.size(); ++texel)
         codes.push_back(std::floor(code_at(texel, height_map, scene) + 0.5));
-    golden::Map map(height_map.width, height_map.height, address_mode(job.map.address_u),
-                    address_mode(job.map.address_v), codes);
+    golden::Map map(height_map.width, height_map.height, golden_mode(job.map.address_u), golden_mode(job.map.address_v),
+                    codes);
     map.derive_normals(scale_per_code, texel_size(mesh, height_map, scene.placement.scale));
     return map;
 }

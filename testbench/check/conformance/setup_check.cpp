@@ -40,11 +40,7 @@ class RegisterCheck {
         check_transform();
         check_light();
         flag("triangulation", number(static_cast<int>(registers_.triangulation)),
-             number(static_cast<int>(
-                 job_.hardware.triangulation == Triangulation::first           ? datapath::Triangulation::first
-                 : job_.hardware.triangulation == Triangulation::second        ? datapath::Triangulation::second
-                 : job_.hardware.triangulation == Triangulation::greatest_rank ? datapath::Triangulation::greatest_rank
-                                                                               : datapath::Triangulation::shorter)));
+             number(static_cast<int>(job_.hardware.triangulation)));
         flag("back_face_culling", number(registers_.back_face_culling), number(job_.hardware.culling == Culling::back));
     }
 
