@@ -20,11 +20,7 @@ DisplacementRange displacement_range(const DisplacementSettings& settings, const
 
 ModelScale fit_model(const BaseMesh& mesh, const DisplacementRange& displacement, const Format& position,
                      const std::string& map) {
-    glm::dvec3 low(mesh.vertices.front().position), high(low);
-    for (const BaseVertex& vertex : mesh.vertices) {
-        low = glm::min(low, vertex.position);
-        high = glm::max(high, vertex.position);
-    }
+    const auto [low, high] = bounds_of(mesh.vertices);
     ModelScale result;
     result.centre = (low + high) / 2.0;
     const glm::dvec3 half = (high - low) / 2.0;

@@ -91,6 +91,12 @@ std::optional<double> to_number(std::string_view token) {
     return value;
 }
 
+void require_size(const glm::dvec3& size, const std::string& name) {
+    if (!(std::max({size.x, size.y, size.z}) >= smallest_size))
+        throw InputError(
+            fmt::format("{}: the whole mesh is smaller than {:g} model units: scale it up", name, smallest_size));
+}
+
 std::string read_mesh_text(const std::string& path, std::string_view kind) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(path, error);

@@ -239,16 +239,9 @@ class Assembler {
     }
 
     void project_texture(const std::vector<std::uint32_t>& vertices, const std::string& why) {
-        glm::dvec3 low = mesh_.vertices.front().position, high = low;
-        for (const BaseVertex& vertex : mesh_.vertices) {
-            low = glm::min(low, vertex.position);
-            high = glm::max(high, vertex.position);
-        }
+        const auto [low, high] = bounds_of(mesh_.vertices);
         const glm::dvec3 size = high - low;
-        if (!(std::max({size.x, size.y, size.z}) >= smallest_size)) {
-            throw InputError(
-                fmt::format("{}: the whole mesh is smaller than {:g} model units: scale it up", name_, smallest_size));
-        }
+        require_size(size, name_);
         if (vertices.empty()) {
             return;
         }

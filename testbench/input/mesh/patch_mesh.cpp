@@ -5,6 +5,7 @@
 #include "testbench/common/error.h"
 #include "testbench/input/mesh/bezier_patches.h"
 #include "testbench/input/mesh/mesh_limits.h"
+#include "testbench/input/mesh/mesh_text.h"
 #include "testbench/input/mesh/surface_flaws.h"
 #include "testbench/setup/mesh/equal_groups.h"
 #include "testbench/setup/mesh/smooth_normals.h"
@@ -206,18 +207,10 @@ BaseMesh make_patch_mesh(const BezierPatches& patches, std::int64_t columns, std
         mesh.repairs.push_back(fmt::format(
             "{} triangle(s) of zero area were dropped, as at collapsed borders of patches.", mesh.dropped_degenerate));
     }
-    glm::dvec3 low = mesh.vertices.front().position, high = low;
-    std::size_t without_normal = 0;
-    for (const BaseVertex& vertex : mesh.vertices) {
-        low = glm::min(low, vertex.position);
-        high = glm::max(high, vertex.position);
-        without_normal += vertex.normal == glm::dvec3(0);
-    }
-    const glm::dvec3 size = high - low;
-    if (!(std::max({size.x, size.y, size.z}) >= smallest_size)) {
-        throw InputError(
-            fmt::format("{}: the whole mesh is smaller than {:g} model units: scale it up", name, smallest_size));
-    }
+    const auto [low, high] = bounds_of(mesh.vertices);
+    require_size(high - low, name);
+    const auto without_normal = std::count_if(mesh.vertices.begin(), mesh.vertices.end(),
+                                              [](const BaseVertex& v) { return v.normal == glm::dvec3(0); });
     if (without_normal > 0) {
         mesh.repairs.push_back(
             fmt::format("{} vertices lie on cusps of their patches, which have no normal there: smooth ones "

@@ -6,6 +6,7 @@
 
 #include "testbench/common/error.h"
 #include "testbench/input/mesh/mesh_limits.h"
+#include "testbench/input/mesh/mesh_text.h"
 #include "testbench/input/mesh/surface_flaws.h"
 #include "testbench/run_folder/read_run.h"
 #include "testbench/setup/mesh/equal_groups.h"
@@ -72,18 +73,6 @@ void complete_normals(BaseMesh& mesh) {
     complete_smooth_normals(mesh);
 }
 
-void require_size(const BaseMesh& mesh, const std::string& name) {
-    glm::dvec3 low = mesh.vertices.front().position, high = low;
-    for (const BaseVertex& vertex : mesh.vertices) {
-        low = glm::min(low, vertex.position);
-        high = glm::max(high, vertex.position);
-    }
-    const glm::dvec3 size = high - low;
-    if (!(std::max({size.x, size.y, size.z}) >= smallest_size))
-        throw InputError(
-            fmt::format("{}: the whole mesh is smaller than {:g} model units: scale it up", name, smallest_size));
-}
-
 /// Built-in meshes and patches have up = z, whatever the run's camera; for files and runs, the camera's up is used.
 glm::dvec3 up_of(const Job& job) {
     if (job.mesh.source != MeshSource::file && job.mesh.source != MeshSource::run)
@@ -121,7 +110,8 @@ BaseMesh read_run_mesh(const std::filesystem::path& folder) {
     if (mesh.triangles.empty())
         throw InputError(
             fmt::format("{}: no triangle is left; run a job that leaves some (hardware.culling, camera)", name));
-    require_size(mesh, name);
+    const auto [low, high] = bounds_of(mesh.vertices);
+    require_size(high - low, name);
     complete_normals(mesh);
     for (std::string& flaw : surface_flaws(mesh))
         mesh.repairs.push_back(std::move(flaw));

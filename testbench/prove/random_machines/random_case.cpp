@@ -22,11 +22,9 @@ namespace {
 constexpr int most_draws = 50;
 
 JobContext context_of(const BaseMesh& mesh, const RandomMap& map) {
-    glm::dvec3 low(mesh.vertices.front().position), high(low);
+    const auto [low, high] = bounds_of(mesh.vertices);
     glm::dvec2 texture_low(0), texture_high(0);
     for (const BaseVertex& vertex : mesh.vertices) {
-        low = glm::min(low, vertex.position);
-        high = glm::max(high, vertex.position);
         texture_low = glm::min(texture_low, glm::floor(vertex.texture));
         texture_high = glm::max(texture_high, vertex.texture);
     }

@@ -17,6 +17,16 @@ struct BaseVertex {
     glm::dvec2 texture{0};  ///< u, v as in the file: 0..1 spans the map once; v = 0 is the bottom row
 };
 
+/// The lowest and the highest coordinates of at least one vertex.
+inline std::array<glm::dvec3, 2> bounds_of(const std::vector<BaseVertex>& vertices) {
+    glm::dvec3 low(vertices.front().position), high(low);
+    for (const BaseVertex& vertex : vertices) {
+        low = glm::min(low, vertex.position);
+        high = glm::max(high, vertex.position);
+    }
+    return {low, high};
+}
+
 /// The base triangle mesh p(u,v), triangulated, with normals and tangent frames complete.
 struct BaseMesh {
     std::vector<BaseVertex> vertices;
