@@ -14,12 +14,6 @@ namespace {
 
 constexpr std::int64_t most_cells = std::int64_t{1} << 22;  // per band
 
-/// A triangle over the grid: texel coordinates and heights of its corners.
-struct Facet {
-    std::array<glm::dvec2, 3> texel;
-    std::array<double, 3> height;
-};
-
 /// Rows of a band, and its columns.
 struct Band {
     GridRange columns, rows;
@@ -31,19 +25,16 @@ struct Band {
 
 /// Calls at(x, y, height) for the band's grid points under a triangle, including its border.
 template <class At>
-void cover(const Facet& facet, const Band& band, At&& at) {
-    for_texel_centres(facet.texel, band.columns, band.rows, [&](std::int64_t x, std::int64_t y, const glm::dvec3& b) {
-        at(x, y, b.x * facet.height[0] + b.y * facet.height[1] + b.z * facet.height[2]);
-    });
-}
-
-Facet facet_of(const HeightField& field, const std::array<glm::dvec3, 3>& corners) {
-    Facet facet;
+void cover(const HeightField& field, const std::array<glm::dvec3, 3>& corners, const Band& band, At&& at) {
+    std::array<glm::dvec2, 3> texel;
+    std::array<double, 3> height{};
     for (std::size_t k = 0; k < 3; ++k) {
-        facet.texel[k] = field.texel(corners[k]);
-        facet.height[k] = field.height(corners[k]);
+        texel[k] = field.texel(corners[k]);
+        height[k] = field.height(corners[k]);
     }
-    return facet;
+    for_texel_centres(texel, band.columns, band.rows, [&](std::int64_t x, std::int64_t y, const glm::dvec3& b) {
+        at(x, y, b.x * height[0] + b.y * height[1] + b.z * height[2]);
+    });
 }
 
 }  // namespace
@@ -94,11 +85,7 @@ std::optional<HeightField> find_height_field(const BaseMesh& base, const HeightM
     // Heights are measured along the vertices' normals, on whichever side of the triangle these lie.
     if (glm::dot(field.normal, corner(largest, 0).normal) < 0)
         field.normal = -field.normal;
-    glm::dvec3 low(base.vertices.front().position), high(low);
-    for (const BaseVertex& vertex : base.vertices) {
-        low = glm::min(low, vertex.position);
-        high = glm::max(high, vertex.position);
-    }
+    const auto [low, high] = bounds_of(base.vertices);
     const double size = glm::length(high - low);
     // The first violation is reported, in this order: all positions, all normals, all texture coordinates.
     const auto holds = [&](const char* else_why, const auto& test) {
@@ -164,34 +151,32 @@ VerticalError measure_vertical_error(const HeightField& field, const BaseMesh& b
         errors.assign(static_cast<std::size_t>(width * (band.rows.last - band.rows.first + 1)), outside);
         pixels.assign(view != nullptr ? errors.size() : 0, outside);
         for (const auto& t : base.triangles)
-            cover(facet_of(field,
-                           {base.vertices[t[0]].position, base.vertices[t[1]].position, base.vertices[t[2]].position}),
+            cover(field, {base.vertices[t[0]].position, base.vertices[t[1]].position, base.vertices[t[2]].position},
                   band, [&](std::int64_t x, std::int64_t y, double) { errors[band.index(x, y)] = uncovered; });
         for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {
-            cover(facet_of(field, mesh.corners(mesh.triangles[k])), band,
-                  [&](std::int64_t x, std::int64_t y, double at) {
-                      float& error = errors[band.index(x, y)];
-                      if (error == outside)
-                          return;
-                      const double wanted = displacement.of(static_cast<double>(
-                          map.at(static_cast<int>(addressed(x, map.width, displacement.address_u)),
-                                 static_cast<int>(addressed(y, map.height, displacement.address_v)))));
-                      const double off = std::abs(at - wanted);
-                      error = std::max(error, static_cast<float>(off));
-                      if (off > result.max) {
-                          result.max = off;
-                          result.worst_texel = glm::dvec2(x, y) + 0.5;
-                          result.worst_triangle = k;
-                          result.worst_position = on_plane(x, y) + wanted * field.normal;
-                      }
-                      if (view == nullptr)
-                          return;
-                      const glm::dvec3 below = on_plane(x, y);
-                      if (const auto apart = view->apart(below + wanted * field.normal, below + at * field.normal)) {
-                          float& seen = pixels[band.index(x, y)];
-                          seen = std::max(seen, static_cast<float>(*apart));
-                      }
-                  });
+            cover(field, mesh.corners(mesh.triangles[k]), band, [&](std::int64_t x, std::int64_t y, double at) {
+                float& error = errors[band.index(x, y)];
+                if (error == outside)
+                    return;
+                const double wanted = displacement.of(
+                    static_cast<double>(map.at(static_cast<int>(addressed(x, map.width, displacement.address_u)),
+                                               static_cast<int>(addressed(y, map.height, displacement.address_v)))));
+                const double off = std::abs(at - wanted);
+                error = std::max(error, static_cast<float>(off));
+                if (off > result.max) {
+                    result.max = off;
+                    result.worst_texel = glm::dvec2(x, y) + 0.5;
+                    result.worst_triangle = k;
+                    result.worst_position = on_plane(x, y) + wanted * field.normal;
+                }
+                if (view == nullptr)
+                    return;
+                const glm::dvec3 below = on_plane(x, y);
+                if (const auto apart = view->apart(below + wanted * field.normal, below + at * field.normal)) {
+                    float& seen = pixels[band.index(x, y)];
+                    seen = std::max(seen, static_cast<float>(*apart));
+                }
+            });
         }
         for (const float error : errors) {
             result.grid_points += error == outside ? 0 : 1;

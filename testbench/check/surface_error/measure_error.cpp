@@ -86,11 +86,6 @@ class Measurement {
     }
 
   private:
-    WorstSpot spot(const glm::dvec3& local, const glm::dvec2& texture, std::size_t triangle) const {
-        const RecordedMesh::Triangle& t = mesh_.triangles[triangle];
-        return {frame_.to_model(local), texture, triangle, t.base, t.generation, t.split_by, t.stopped_by};
-    }
-
     /// The largest squared distance and its place; the first of equal ones.
     struct Worst {
         double squared = -1;
@@ -103,6 +98,22 @@ class Measurement {
                 *this = {other, at, t, of};
         }
     };
+
+    void conclude(DirectedError& result, const Worst& worst, double squares, double weights) const {
+        if (worst.squared < 0)
+            return;
+        result.max = std::sqrt(worst.squared) / frame_.scale;
+        // a mesh without area has no weights: its maximum
+        result.rms = weights > 0 ? std::sqrt(squares / weights) / frame_.scale : result.max;
+        const RecordedMesh::Triangle& t = mesh_.triangles[worst.triangle];
+        result.worst = {frame_.to_model(worst.position),
+                        worst.texture,
+                        worst.triangle,
+                        t.base,
+                        t.generation,
+                        t.split_by,
+                        t.stopped_by};
+    }
 
     struct ReferencePart {
         std::vector<double> squares, weights;  // by tile
@@ -151,11 +162,7 @@ class Measurement {
             }
             worst.take(part.worst.squared, part.worst.position, part.worst.texture, part.worst.triangle);
         }
-        if (worst.squared >= 0) {
-            result.max = std::sqrt(worst.squared) / frame_.scale;
-            result.rms = weights > 0 ? std::sqrt(squares / weights) / frame_.scale : result.max;
-            result.worst = spot(worst.position, worst.texture, worst.triangle);
-        }
+        conclude(result, worst, squares, weights);
         return boxes;
     }
 
@@ -194,12 +201,7 @@ class Measurement {
         for (std::size_t k = 0; k < soup_.size(); ++k)
             for (const std::uint32_t vertex : mesh_.triangles[k].vertices)
                 error.triangles[k].max = std::max(error.triangles[k].max, static_cast<float>(error.vertices[vertex]));
-        if (worst.squared >= 0) {
-            result.max = std::sqrt(worst.squared) / frame_.scale;
-            // a mesh without area has no weights: its maximum
-            result.rms = areas > 0 ? std::sqrt(squares / areas) / frame_.scale : result.max;
-            result.worst = spot(worst.position, worst.texture, worst.triangle);
-        }
+        conclude(result, worst, squares, areas);
     }
 
     /// Measures the vertices that triangle k is the first to use, its centroid and its parts.
