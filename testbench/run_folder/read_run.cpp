@@ -72,22 +72,15 @@ RecordedMesh read_mesh(const fs::path& folder, const Job& job) {
 
 }  // namespace
 
-RecordedRun read_run(const fs::path& folder) {
+RecordedRun read_run(const fs::path& folder, const std::optional<fs::path>& data_folder) {
     RecordedRun run;
     run.folder = folder;
     run.job = read_run_job(folder);
-    run.mesh = read_mesh(folder, run.job);
-    require_numbers(folder, run.job);
-    return run;
-}
-
-RecordedRun read_run(const fs::path& folder, const fs::path& data_folder) {
-    RecordedRun run;
-    run.folder = folder;
-    run.job = read_run_job(folder);
-    resolve_paths(run.job, data_folder);
-    find_input("mesh.file", run.job.mesh.file, run.job.mesh.path, run.job);
-    find_input("map.file", run.job.map.file, run.job.map.path, run.job);
+    if (data_folder) {
+        resolve_paths(run.job, *data_folder);
+        find_input("mesh.file", run.job.mesh.file, run.job.mesh.path, run.job);
+        find_input("map.file", run.job.map.file, run.job.map.path, run.job);
+    }
     run.mesh = read_mesh(folder, run.job);
     require_numbers(folder, run.job);
     return run;

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 
 #include "testbench/job/job.h"
 #include "testbench/run_folder/recorded_mesh.h"
@@ -14,14 +15,13 @@ struct RecordedRun {
 };
 
 /// Reads job.toml and mesh.ply of a folder that `tessera run` left. `data_folder`: what `data:` paths begin at; the
-/// job's mesh and map files must exist, but are not read (inputs.h does that).
+/// job's mesh and map files must exist, but are not read (inputs.h does that). None: for the mesh alone, and the job's
+/// files need not exist any more.
 ///
 /// Errors: InputError with file and what to do: no such folder, no job.toml (not a run's folder), a folder of frames, a
 /// job that is not valid, mesh or map no longer where the job says, no mesh.ply (output.ply =
 /// false, or the run got stuck), a mesh.ply that is not one (ply_reader.h).
-RecordedRun read_run(const std::filesystem::path& folder, const std::filesystem::path& data_folder);
-
-/// The same for the mesh alone: the run's own inputs need not exist any more.
-RecordedRun read_run(const std::filesystem::path& folder);
+RecordedRun read_run(const std::filesystem::path& folder,
+                     const std::optional<std::filesystem::path>& data_folder = std::nullopt);
 
 }  // namespace tessera

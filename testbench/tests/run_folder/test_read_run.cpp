@@ -200,7 +200,7 @@ TEST_CASE("a run's folder is read back, with paths that hold from there") {
     CHECK(fs::equivalent(result.job.map.path, here / "map.pgm"));
     CHECK(result.folder == run);
     write_file(run / "job.toml", unresolved);
-    CHECK_THROWS_WITH(read_run(run, {}), Contains("displacement.scale = \"auto\", which no run writes"));
+    CHECK_THROWS_WITH(read_run(run, ""), Contains("displacement.scale = \"auto\", which no run writes"));
 
     fs::remove(here / "map.pgm");
     CHECK_THROWS_WITH(read(), Contains("map.file") && Contains("map.pgm") && Contains("put it back"));
