@@ -1,11 +1,12 @@
 #include "testbench/output/trace/timeline_writer.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
-#include <charconv>
+#include <nlohmann/json.hpp>
 #include <ostream>
 #include <stdexcept>
-#include <utility>
 
 namespace tessera {
 namespace {
@@ -29,6 +30,32 @@ const char* colour_of(std::string_view state) {
     return known != state_colours.end() ? known->name : other_colour;
 }
 
+std::string json_string(std::string_view text) {
+    return nlohmann::json(text).dump();
+}
+
+std::string microseconds(std::uint64_t picoseconds) {
+    std::string text = fmt::format("{}.{:06}", picoseconds / 1'000'000, picoseconds % 1'000'000);
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.')
+        text.pop_back();
+    return text;
+}
+
+/// The member "args" of an interval, with the comma before it; "" if there are none.
+std::string arguments(std::string_view detail, const TimelineWriter::Item* item) {
+    std::string members;
+    if (!detail.empty())
+        members += fmt::format(R"(,"detail":{})", json_string(detail));
+    if (item != nullptr) {
+        members += fmt::format(R"(,"triangle":{})", item->triangle);
+        if (!item->part.empty())
+            members += fmt::format(R"(,"part":{})", json_string(item->part));
+        members += fmt::format(R"(,"base":{})", item->base);
+    }
+    return members.empty() ? "" : fmt::format(R"(,"args":{{{}}})", members.substr(1));
+}
+
 }  // namespace
 
 TimelineWriter::TimelineWriter(std::ostream& out, std::uint64_t cycle_picoseconds, TraceWindow window)
@@ -43,20 +70,10 @@ TimelineWriter::TimelineWriter(std::ostream& out, std::uint64_t cycle_picosecond
 TimelineWriter::Track TimelineWriter::add_track(const std::string& name) {
     check_open();
     const Track track = tracks_++;
-    begin_event("M", "thread_name");
-    buffer_ += ",\"tid\":";
-    write_number(track + 1);
-    buffer_ += ",\"args\":{\"name\":";
-    write_string(name);
-    buffer_ += '}';
-    end_event();
-    begin_event("M", "thread_sort_index");
-    buffer_ += ",\"tid\":";
-    write_number(track + 1);
-    buffer_ += ",\"args\":{\"sort_index\":";
-    write_number(track);
-    buffer_ += '}';
-    end_event();
+    write(fmt::format(R"({{"ph":"M","pid":1,"name":"thread_name","tid":{},"args":{{"name":{}}}}})", track + 1,
+                      json_string(name)));
+    write(fmt::format(R"({{"ph":"M","pid":1,"name":"thread_sort_index","tid":{},"args":{{"sort_index":{}}}}})",
+                      track + 1, track));
     return track;
 }
 
@@ -70,42 +87,9 @@ void TimelineWriter::interval(Track track, const char* state, const char* detail
     end = end <= window_.last ? end : window_.last + 1;
     if (begin >= end)
         return;
-    begin_event("X", state);
-    buffer_ += ",\"tid\":";
-    write_number(track + 1);
-    buffer_ += ",\"ts\":";
-    write_microseconds(begin);
-    buffer_ += ",\"dur\":";
-    write_microseconds(end - begin);
-    buffer_ += ",\"cname\":\"";
-    buffer_ += colour_of(state);
-    buffer_ += '"';
-    if (item != nullptr || *detail != '\0')
-        write_arguments(detail, item);
-    end_event();
-}
-
-void TimelineWriter::write_arguments(std::string_view detail, const Item* item) {
-    const char* before = ",\"args\":{";
-    const auto name = [&](const char* of) {
-        buffer_ += std::exchange(before, ",");
-        buffer_ += of;
-    };
-    if (!detail.empty()) {
-        name("\"detail\":");
-        write_string(detail);
-    }
-    if (item != nullptr) {
-        name("\"triangle\":");
-        write_number(item->triangle);
-        if (!item->part.empty()) {
-            name("\"part\":");
-            write_string(item->part);
-        }
-        name("\"base\":");
-        write_number(item->base);
-    }
-    buffer_ += '}';
+    write(fmt::format(R"({{"ph":"X","pid":1,"name":{},"tid":{},"ts":{},"dur":{},"cname":"{}"{}}})", json_string(state),
+                      track + 1, microseconds(begin * cycle_picoseconds_),
+                      microseconds((end - begin) * cycle_picoseconds_), colour_of(state), arguments(detail, item)));
 }
 
 void TimelineWriter::flow(Track track, FlowStep step, std::uint64_t triangle, std::uint64_t cycle) {
@@ -114,16 +98,10 @@ void TimelineWriter::flow(Track track, FlowStep step, std::uint64_t triangle, st
         throw std::logic_error("TimelineWriter: a flow through no track");
     if (cycle < window_.first || cycle > window_.last)
         return;
-    begin_event(step == FlowStep::begin ? "s" : step == FlowStep::pass ? "t" : "f", "triangle");
-    buffer_ += ",\"cat\":\"triangle\",\"id\":";
-    write_number(triangle);
-    buffer_ += ",\"tid\":";
-    write_number(track + 1);
-    buffer_ += ",\"ts\":";
-    write_time(cycle * cycle_picoseconds_ + cycle_picoseconds_ / 2);
-    if (step == FlowStep::end)
-        buffer_ += ",\"bp\":\"e\"";
-    end_event();
+    const char* const phase = step == FlowStep::begin ? "s" : step == FlowStep::pass ? "t" : "f";
+    write(fmt::format(R"({{"ph":"{}","pid":1,"name":"triangle","cat":"triangle","id":{},"tid":{},"ts":{}{}}})", phase,
+                      triangle, track + 1, microseconds(cycle * cycle_picoseconds_ + cycle_picoseconds_ / 2),
+                      step == FlowStep::end ? R"(,"bp":"e")" : ""));
 }
 
 void TimelineWriter::counter(const char* name, const char* series, std::uint64_t cycle, std::uint64_t value) {
@@ -165,69 +143,17 @@ void TimelineWriter::write_counter(std::string_view name, std::string_view serie
                                    std::uint64_t value) {
     if (cycle > window_.last)
         return;
-    begin_event("C", name);
-    buffer_ += ",\"ts\":";
-    write_microseconds(cycle);
-    buffer_ += ",\"args\":{";
-    write_string(series);
-    buffer_ += ':';
-    write_number(value);
-    buffer_ += '}';
-    end_event();
+    write(fmt::format(R"({{"ph":"C","pid":1,"name":{},"ts":{},"args":{{{}:{}}}}})", json_string(name),
+                      microseconds(cycle * cycle_picoseconds_), json_string(series), value));
 }
 
-void TimelineWriter::begin_event(const char* phase, std::string_view name) {
-    buffer_ += ",\n{\"ph\":\"";
-    buffer_ += phase;
-    buffer_ += "\",\"pid\":1,\"name\":";
-    write_string(name);
-}
-
-void TimelineWriter::end_event() {
-    buffer_ += '}';
+void TimelineWriter::write(std::string_view event) {
+    buffer_ += ",\n";
+    buffer_ += event;
     if (buffer_.size() >= flush_bytes) {
         out_ << buffer_;
         buffer_.clear();
     }
-}
-
-void TimelineWriter::write_string(std::string_view text) {
-    constexpr std::string_view hex = "0123456789abcdef";
-    buffer_ += '"';
-    for (const char c : text) {
-        const auto code = static_cast<unsigned char>(c);
-        if (c == '"' || c == '\\') {
-            buffer_ += '\\';
-            buffer_ += c;
-        } else if (code < 0x20) {
-            buffer_ += "\\u00";
-            buffer_ += hex[code >> 4];
-            buffer_ += hex[code & 15];
-        } else {
-            buffer_ += c;
-        }
-    }
-    buffer_ += '"';
-}
-
-void TimelineWriter::write_number(std::uint64_t number) {
-    std::array<char, 20> digits;
-    buffer_.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr);
-}
-
-/// In microseconds.
-void TimelineWriter::write_time(std::uint64_t picoseconds) {
-    constexpr std::uint64_t microsecond = 1'000'000;
-    write_number(picoseconds / microsecond);
-    std::array<char, 7> digits{'.'};
-    std::size_t used = 0;
-    std::uint64_t rest = picoseconds % microsecond;
-    for (std::size_t place = 6; place > 0; --place, rest /= 10) {
-        digits[place] = static_cast<char>('0' + rest % 10);
-        if (used == 0 && digits[place] != '0')
-            used = place + 1;
-    }
-    buffer_.append(digits.data(), used);
 }
 
 }  // namespace tessera

@@ -60,13 +60,7 @@ class TimelineWriter {
   private:
     void check_open() const;
     void write_counter(std::string_view name, std::string_view series, std::uint64_t cycle, std::uint64_t value);
-    void write_arguments(std::string_view detail, const Item* item);
-    void begin_event(const char* phase, std::string_view name);
-    void end_event();
-    void write_string(std::string_view text);
-    void write_number(std::uint64_t number);
-    void write_microseconds(std::uint64_t cycles) { write_time(cycles * cycle_picoseconds_); }
-    void write_time(std::uint64_t picoseconds);
+    void write(std::string_view event);
 
     std::ostream& out_;
     std::uint64_t cycle_picoseconds_;
