@@ -20,28 +20,7 @@ std::string why_whole(unsigned stopped_by) {
     return text.empty() ? "no edge with Normal Test or Summed Height Test" : text;
 }
 
-class Figures {
-  public:
-    void group(std::string name) { group_ = std::move(name); }
-    template <class Value>
-    void add(const std::string& name, const Value& value, const char* unit, std::string description) {
-        Figure figure{group_, name, {}, unit, std::move(description)};
-        if constexpr (std::is_floating_point_v<Value>)
-            figure.value = value;
-        else if constexpr (std::is_integral_v<Value>)
-            figure.value = static_cast<std::uint64_t>(value);
-        else
-            figure.value = std::string(value);
-        figures_.push_back(std::move(figure));
-    }
-    std::vector<Figure> take() { return std::move(figures_); }
-
-  private:
-    std::string group_;
-    std::vector<Figure> figures_;
-};
-
-void add_direction(Figures& figures, const std::string& name, const char* words, const DirectedError& error,
+void add_direction(FigureGroup& figures, const std::string& name, const char* words, const DirectedError& error,
                    double texel) {
     figures.add(name + "_max", error.max, "model unit", fmt::format("largest distance from {}", words));
     figures.add(name + "_rms", error.rms, "model unit",
@@ -51,8 +30,8 @@ void add_direction(Figures& figures, const std::string& name, const char* words,
     figures.add(name + "_samples", error.samples, "sample", "points measured");
 }
 
-void add_surface(Figures& figures, const char* group, const SurfaceError& error, double texel) {
-    figures.group(group);
+void add_surface(std::vector<Figure>& all, const char* group, const SurfaceError& error, double texel) {
+    FigureGroup figures(all, group);
     add_direction(figures, "reference_to_mesh", "the reference surface to the emitted mesh", error.reference_to_mesh,
                   texel);
     add_direction(figures, "mesh_to_reference", "the emitted mesh to the reference surface", error.mesh_to_reference,
@@ -61,13 +40,13 @@ void add_surface(Figures& figures, const char* group, const SurfaceError& error,
     figures.add("hausdorff_texels", error.hausdorff() / texel, "texel", "the same, in texels");
 }
 
-void add_place(Figures& figures, const glm::dvec3& position) {
+void add_place(FigureGroup& figures, const glm::dvec3& position) {
     figures.add("x", position.x, "model unit", "where, on the surface measured from");
     figures.add("y", position.y, "model unit", "likewise");
     figures.add("z", position.z, "model unit", "likewise");
 }
 
-void add_triangle(Figures& figures, std::uint64_t number, const RecordedMesh::Triangle& triangle) {
+void add_triangle(FigureGroup& figures, std::uint64_t number, const RecordedMesh::Triangle& triangle) {
     figures.add("triangle", number, "-", "the emitted triangle there, by its place in mesh.ply");
     figures.add("base", triangle.base, "-", "its base triangle");
     figures.add("generation", triangle.generation, "-", "its generation");
@@ -82,10 +61,10 @@ void add_triangle(Figures& figures, std::uint64_t number, const RecordedMesh::Tr
                 "for a split");
 }
 
-void add_worst(Figures& figures, const char* group, const RecordedMesh& mesh, const DirectedError& error) {
+void add_worst(std::vector<Figure>& all, const char* group, const RecordedMesh& mesh, const DirectedError& error) {
     if (!error.worst)
         return;
-    figures.group(group);
+    FigureGroup figures(all, group);
     figures.add("distance", error.max, "model unit", "the largest distance");
     add_place(figures, error.worst->position);
     figures.add("s", error.worst->texture.x, "-", "texture coordinate, 0..1 spans the map");
@@ -93,8 +72,8 @@ void add_worst(Figures& figures, const char* group, const RecordedMesh& mesh, co
     add_triangle(figures, error.worst->triangle, mesh.triangles[error.worst->triangle]);
 }
 
-void add_vertical(Figures& figures, const RecordedMesh& mesh, const MeshError& error) {
-    figures.group("vertical");
+void add_vertical(std::vector<Figure>& all, const RecordedMesh& mesh, const MeshError& error) {
+    FigureGroup figures(all, "vertical");
     if (!error.vertical) {
         figures.add("none", error.no_vertical, "-", "why this is no height field");
         return;
@@ -118,12 +97,12 @@ void add_vertical(Figures& figures, const RecordedMesh& mesh, const MeshError& e
     }
     if (vertical.covered == 0)
         return;
-    figures.group("worst_vertical");
-    figures.add("distance", vertical.max, "model unit", "the largest difference");
-    add_place(figures, vertical.worst_position);
-    figures.add("u", vertical.worst_texel.x, "texel", "the grid point");
-    figures.add("v", vertical.worst_texel.y, "texel", "likewise; row 0 is the bottom row");
-    add_triangle(figures, vertical.worst_triangle, mesh.triangles[vertical.worst_triangle]);
+    FigureGroup worst(all, "worst_vertical");
+    worst.add("distance", vertical.max, "model unit", "the largest difference");
+    add_place(worst, vertical.worst_position);
+    worst.add("u", vertical.worst_texel.x, "texel", "the grid point");
+    worst.add("v", vertical.worst_texel.y, "texel", "likewise; row 0 is the bottom row");
+    add_triangle(worst, vertical.worst_triangle, mesh.triangles[vertical.worst_triangle]);
 }
 
 std::string row(const char* name, const std::string& value) {
@@ -177,8 +156,8 @@ std::string surface_rows(const char* name, const SurfaceError& error, double tex
 }  // namespace
 
 std::vector<Figure> error_figures(const RecordedMesh& mesh, const MeshError& error) {
-    Figures figures;
-    figures.group("measurement");
+    std::vector<Figure> all;
+    FigureGroup figures(all, "measurement");
     figures.add("triangles", mesh.triangles.size(), "triangle", "of the emitted mesh, mesh.ply");
     figures.add("texel", error.texel, "model unit",
                 "a texel's length: mean over both axes of its area-weighted mean on the base surface");
@@ -186,12 +165,12 @@ std::vector<Figure> error_figures(const RecordedMesh& mesh, const MeshError& err
                 "samples of the reference along each axis, at least; 4 unless the limit of samples lowered it");
     figures.add("mesh_density", error.mesh_density, "sample/texel",
                 "samples of the emitted mesh along each edge, at least; 1 unless the limit of samples lowered it");
-    add_surface(figures, "interpolated", error.interpolated, error.texel);
-    add_surface(figures, "nearest_texel", error.nearest_texel, error.texel);
-    add_worst(figures, "worst_reference_to_mesh", mesh, error.interpolated.reference_to_mesh);
-    add_worst(figures, "worst_mesh_to_reference", mesh, error.interpolated.mesh_to_reference);
-    add_vertical(figures, mesh, error);
-    return figures.take();
+    add_surface(all, "interpolated", error.interpolated, error.texel);
+    add_surface(all, "nearest_texel", error.nearest_texel, error.texel);
+    add_worst(all, "worst_reference_to_mesh", mesh, error.interpolated.reference_to_mesh);
+    add_worst(all, "worst_mesh_to_reference", mesh, error.interpolated.mesh_to_reference);
+    add_vertical(all, mesh, error);
+    return all;
 }
 
 std::string error_text(const Job& job, const RecordedMesh& mesh, const MeshError& error) {

@@ -20,35 +20,10 @@ namespace tessera {
 
 namespace {
 
-class Collector {
-  public:
-    explicit Collector(std::string group) : group_(std::move(group)) {}
-
-    template <class Value>
-    Collector& add(const char* name, Value value, const char* unit, const char* description) {
-        Figure figure{group_, name, {}, unit, description};
-        if constexpr (std::is_floating_point_v<Value>)
-            figure.value = static_cast<double>(value);
-        else if constexpr (std::is_signed_v<Value>)
-            figure.value = static_cast<std::int64_t>(value);
-        else if constexpr (std::is_arithmetic_v<Value>)
-            figure.value = static_cast<std::uint64_t>(value);
-        else
-            figure.value = std::string(value);
-        figures.push_back(std::move(figure));
-        return *this;
-    }
-
-    std::vector<Figure> figures;
-
-  private:
-    std::string group_;
-};
-
-Collector format_figures(const MachineSetup& setup) {
+void format_figures(std::vector<Figure>& all, const MachineSetup& setup) {
     const datapath::Formats& formats = setup.registers.formats;
     const datapath::Widths widths = datapath::stream_widths(formats);
-    Collector c("formats");
+    FigureGroup c(all, "formats");
     c.add("position_bits", formats.position.bits, "bit", "P, P', one component");
     c.add("position_fraction", formats.position.fraction, "bit", "of which behind the point");
     c.add("model_scale", setup.model_scale.scale, "world/model", "world unit of the machine per unit of the model");
@@ -71,13 +46,12 @@ Collector format_figures(const MachineSetup& setup) {
     c.add("screen_bits", formats.screen.bits, "bit", "P's, x or y");
     c.add("queue_entry", widths.triangle, "bit", "one triangle in the Triangle Queue");
     c.add("lighting_vertex", widths.emitted_vertex, "bit", "one vertex to Lighting");
-    return c;
 }
 
 /// Wires of each stream: one item, its tag included, annotations not.
-Collector stream_figures(const MachineSetup& setup) {
+void stream_figures(std::vector<Figure>& all, const MachineSetup& setup) {
     const int tag = tag_bits(setup.design);
-    Collector c("streams");
+    FigureGroup c(all, "streams");
     c.add("tag", tag, "bit", "identifies a triangle between Get Triangle and Pass or Tessellate");
     StreamItems::for_each([&](auto type) {
         using Item = typename decltype(type)::Item;
@@ -85,25 +59,23 @@ Collector stream_figures(const MachineSetup& setup) {
             return;
         std::string name = DescriptionOf<Item>::Type::name;
         std::replace(name.begin(), name.end(), ' ', '_');
-        c.add(name.c_str(), item_bits<Item>(setup.registers.formats, tag), "bit",
+        c.add(name, item_bits<Item>(setup.registers.formats, tag), "bit",
               "one item of that stream: modules/sockets/README.md");
     });
-    return c;
 }
 
-Collector memory_figures(const char* name, const datapath::TableLayout& table, std::uint64_t reads,
-                         std::uint64_t edges) {
-    Collector c(name);
+void memory_figures(std::vector<Figure>& all, const char* name, const datapath::TableLayout& table, std::uint64_t reads,
+                    std::uint64_t edges) {
+    FigureGroup c(all, name);
     c.add("size", table.bytes(), "byte", "the whole table");
     c.add("entry", table.entry_bytes, "byte", "one entry");
     c.add("reads", reads, "entry", "entries read");
     c.add("bytes_read", reads * table.entry_bytes, "byte", "bytes read");
     c.add("reads_per_edge", ratio(reads, edges), "entry/edge", "entries read per edge tested");
-    return c;
 }
 
-void add_cache_figures(Collector& c, const Simulation& simulation, const std::unique_ptr<TableCache> Pipeline::*cache,
-                       std::uint64_t finished) {
+void cache_figures(std::vector<Figure>& all, const char* name, const Simulation& simulation,
+                   const std::unique_ptr<TableCache> Pipeline::*cache, std::uint64_t finished) {
     std::uint64_t hits = 0, fills = 0, entries = 0, bytes = 0;
     for (const auto& machine : simulation.machines) {
         const TableCache& its = *(machine->pipeline.*cache);
@@ -112,6 +84,7 @@ void add_cache_figures(Collector& c, const Simulation& simulation, const std::un
         entries += its.entries_read();
         bytes += its.bytes_fetched();
     }
+    FigureGroup c(all, name);
     c.add("cache_hits", hits, "entry", "entries whose line was there, or on its way");
     c.add("cache_fills", fills, "line", "lines fetched from off-chip memory");
     c.add("cache_hit_rate", 100 * ratio(hits, entries), "percent", "of entries read");
@@ -119,7 +92,7 @@ void add_cache_figures(Collector& c, const Simulation& simulation, const std::un
     c.add("bytes_fetched_per_triangle", ratio(bytes, finished), "byte/triangle", "per finished triangle");
 }
 
-Collector host_figures(const MachineSetup& setup, std::uint64_t finished, std::uint64_t vertices) {
+void host_figures(std::vector<Figure>& all, const MachineSetup& setup, std::uint64_t finished, std::uint64_t vertices) {
     const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
     const auto bytes = [](std::uint64_t bits) { return (bits + 7) / 8; };
     const HostTraffic traffic = first_frame_traffic(setup);
@@ -127,7 +100,7 @@ Collector host_figures(const MachineSetup& setup, std::uint64_t finished, std::u
     const std::uint64_t tables = traffic.displacement_map + traffic.normal_map + traffic.summed_height_table;
     const std::uint64_t whole = bytes(finished * 3 * widths.finished_vertex);
     const std::uint64_t indexed = bytes(vertices * widths.finished_vertex) + finished * 3 * 4;
-    Collector c("host");
+    FigureGroup c(all, "host");
     c.add("base_triangles", setup.base_triangles.size(), "triangle", "sent to Get Triangle");
     c.add("base_triangles_dropped", setup.base_dropped, "triangle", "collapsed when rounded to the formats");
     c.add("mesh_bytes", base, "byte", "base mesh: three vertices of P, N, T, t per triangle; every frame");
@@ -145,16 +118,15 @@ Collector host_figures(const MachineSetup& setup, std::uint64_t finished, std::u
           "tessellated mesh, indexed, over base mesh, per frame; tables left out");
     c.add("frames_to_pay_for_tables", indexed > base ? ratio(tables, indexed - base) : 0.0, "frame",
           "after so many frames the tables' bytes are saved; 0: never");
-    return c;
 }
 
-Collector area_figures(const Simulation& simulation) {
+void area_figures(std::vector<Figure>& all, const Simulation& simulation) {
     const std::vector<UnitArea> units = area_of(simulation);
-    Collector c("area");
+    FigureGroup c(all, "area");
     const auto add = [&](const UnitArea& unit) {
         const auto part = [&](const char* what, std::uint64_t value, const char* figure_unit, const char* description) {
             if (value > 0)
-                c.add((unit.name + what).c_str(), value, figure_unit, description);
+                c.add(unit.name + what, value, figure_unit, description);
         };
         part("_multipliers", unit.multipliers, "multiplier", "that give a result every initiation interval");
         part("_register_bits", unit.register_bits, "bit", "input buffers, pipeline registers, state");
@@ -164,13 +136,13 @@ Collector area_figures(const Simulation& simulation) {
     for (const UnitArea& unit : units)
         add(unit);
     add(total_area(units));
-    return c;
 }
 
 /// Repeated work of the machine, beside what the mesh needs.
-Collector useful_work_figures(const Totals& totals, const Decisions::Evaluated& evaluated, const MeshCounts& mesh) {
+void useful_work_figures(std::vector<Figure>& all, const Totals& totals, const Decisions::Evaluated& evaluated,
+                         const MeshCounts& mesh) {
     const std::uint64_t made = totals.positions, normals = totals.normals, tested = totals.counts.edges_tested;
-    Collector c("useful_work");
+    FigureGroup c(all, "useful_work");
     c.add("vertices", mesh.vertices, "vertex",
           "distinct vertices of the finished mesh, by t, P' and N', culled triangles included");
     c.add(
@@ -193,10 +165,9 @@ Collector useful_work_figures(const Totals& totals, const Decisions::Evaluated& 
     c.add("summed_height_tests_by_codes", evaluated.summed_height_by_codes, "edge",
           "of these, edges whose rectangles are single texels, with hardware.one_texel_from_map");
     c.add("tests_per_edge", ratio(tested, mesh.tested_edges()), "times", "edge tests per distinct edge");
-    return c;
 }
 
-Collector mesh_figures(const EmittedMesh& mesh) {
+void mesh_figures(std::vector<Figure>& all, const EmittedMesh& mesh) {
     std::array<std::uint64_t, 256> by_generation{};
     std::size_t last = 0;
     for (const EmittedTriangle& triangle : mesh.triangles) {
@@ -205,12 +176,11 @@ Collector mesh_figures(const EmittedMesh& mesh) {
         ++by_generation[generation];
         last = std::max(last, generation);
     }
-    Collector c("mesh");
+    FigureGroup c(all, "mesh");
     c.add("triangles", mesh.triangles.size(), "triangle", "finished, culled ones included");
     for (std::size_t generation = 0; generation <= last; ++generation)
-        c.add(fmt::format("generation_{}", generation).c_str(), by_generation[generation], "triangle",
+        c.add(fmt::format("generation_{}", generation), by_generation[generation], "triangle",
               "finished triangles whose youngest vertex is of this generation");
-    return c;
 }
 
 }  // namespace
@@ -222,11 +192,7 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     const Decisions::Counts& decided = totals.decided;
     const std::uint64_t edges = counts.edges_tested;
     std::vector<Figure> all;
-    const auto take = [&](Collector c) {
-        all.insert(all.end(), std::make_move_iterator(c.figures.begin()), std::make_move_iterator(c.figures.end()));
-    };
-
-    Collector run("run");
+    FigureGroup run(all, "run");
     const bool timed = setup.design.transport == Transport::non_blocking;
     run.add("mode", timed ? "timed" : "functional", "",
             timed ? "timed: non-blocking transport, to the cycle"
@@ -235,26 +201,23 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     run.add("edges_split", counts.edges_split, "edge", "of which split");
     run.add("triangles_finished", counts.finished, "triangle", "left the machine, culled ones included");
     run.add("edges_per_triangle", ratio(edges, counts.finished), "edge/triangle", "edges tested per finished triangle");
-    take(std::move(run));
-    take(format_figures(setup));
-    take(stream_figures(setup));
+    format_figures(all, setup);
+    stream_figures(all, setup);
     Decisions::Evaluated evaluated = totals.evaluated;
     if (!setup.registers.tests.summed_height_test)
         evaluated.summed_height = 0;
-    take(useful_work_figures(totals, evaluated, mesh));
-    take(host_figures(setup, counts.finished, mesh.vertices));
+    useful_work_figures(all, totals, evaluated, mesh);
+    host_figures(all, setup, counts.finished, mesh.vertices);
 
-    Collector get("get_triangle");
+    FigureGroup get(all, "get_triangle");
     get.add("host_triangles", totals.host_triangles, "triangle", "taken from the host");
     get.add("queue_triangles", totals.queue_triangles, "triangle", "taken from the Triangle Queue");
-    take(std::move(get));
 
-    Collector transform("transform");
+    FigureGroup transform(all, "transform");
     transform.add("positions", totals.positions, "vertex", "positions transformed");
     transform.add("normals", totals.normals, "normal", "normals transformed");
-    take(std::move(transform));
 
-    Collector decide("pass_or_tessellate");
+    FigureGroup decide(all, "pass_or_tessellate");
     decide.add("passes", counts.passes, "triangle", "triangles that went through the tests");
     decide.add("normal_passes", counts.normal_passes, "triangle", "went round once more for screen normals");
     decide.add("split_by_normal", decided.split_by_normal, "edge",
@@ -282,34 +245,29 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     decide.add("stopped_by_several", decided.stopped_by_several, "edge",
                "kept whole by two or three of these tests, so that none of them decided");
     decide.add("culled", counts.culled, "triangle", "finished triangles that face away");
-    take(std::move(decide));
 
-    Collector tessellation("tessellation");
+    FigureGroup tessellation(all, "tessellation");
     const auto& made = totals.made_into;
     tessellation.add("made_into_2", made[2], "triangle", "one edge split");
     tessellation.add("made_into_3", made[3], "triangle", "two edges split");
     tessellation.add("made_into_4", made[4], "triangle", "three edges split");
     tessellation.add("passed_unchanged", made[1], "triangle", "finished base triangles on their way to fetch normals");
-    take(std::move(tessellation));
 
-    Collector queue("triangle_queue");
+    FigureGroup queue(all, "triangle_queue");
     queue.add("taken", totals.queued, "triangle", "triangles put in");
     queue.add("high_water_mark", totals.most_queued, "triangle", "most triangles waiting at a time, in one machine");
     queue.add("high_water_bytes",
               (totals.most_queued * datapath::stream_widths(setup.registers.formats).triangle + 7) / 8, "byte",
               "memory that this takes");
-    take(std::move(queue));
 
-    Collector lighting("lighting");
+    FigureGroup lighting(all, "lighting");
     lighting.add("triangles", totals.lit, "triangle", "lit and sent to the rasteriser");
-    take(std::move(lighting));
 
     const auto table = [&](const char* name, const datapath::TableLayout& layout, std::uint64_t reads,
                            const std::unique_ptr<TableCache> Pipeline::*cache) {
-        Collector figures = memory_figures(name, layout, reads, edges);
+        memory_figures(all, name, layout, reads, edges);
         if (simulation.pipeline.*cache != nullptr && timed)
-            add_cache_figures(figures, simulation, cache, counts.finished);
-        take(std::move(figures));
+            cache_figures(all, name, simulation, cache, counts.finished);
     };
     table("displacement_map", setup.registers.displacement_map, totals.displacement_map_reads,
           &Pipeline::displacement_map_cache);
@@ -317,17 +275,14 @@ std::vector<Figure> collect_statistics(const MachineSetup& setup, const Simulati
     table(kind_of(setup.registers.formats.height_test).table, setup.registers.height_table, totals.height_table_reads,
           &Pipeline::height_table_cache);
 
-    Collector saturated("saturations");
+    FigureGroup saturated(all, "saturations");
     for (const SaturationFigure& figure : saturation_figures(setup, totals.saturations))
         saturated.add(figure.name, figure.count, figure.unit, figure.description);
-    take(std::move(saturated));
 
-    take(area_figures(simulation));
-    take(mesh_figures(simulation.monitor.mesh));
-    if (timed) {
-        std::vector<Figure> figures = timing_figures(simulation);
-        all.insert(all.end(), std::make_move_iterator(figures.begin()), std::make_move_iterator(figures.end()));
-    }
+    area_figures(all, simulation);
+    mesh_figures(all, simulation.monitor.mesh);
+    if (timed)
+        timing_figures(all, simulation);
     return all;
 }
 

@@ -1,11 +1,12 @@
 #pragma once
 #include <vector>
 
-#include "testbench/output/report/statistics.h"
+#include "testbench/machine/simulation.h"
+#include "testbench/output/report/figure.h"
 
 namespace tessera {
 
-/// The figures that only timed mode has: cycles, and what each unit and memory did in them.
-std::vector<Figure> timing_figures(const Simulation& simulation);
+/// Appends the figures that only timed mode has: cycles, and what each unit and memory did in them.
+void timing_figures(std::vector<Figure>& all, const Simulation& simulation);
 
 }  // namespace tessera
