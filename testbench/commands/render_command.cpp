@@ -109,12 +109,7 @@ void add_errors(const RecordedRun& run, RenderMesh& mesh, ErrorScale& scale) {
 }
 
 void write(const fs::path& path, const Picture& picture, const std::optional<ExrSamples>& exr) {
-    if (exr) {
-        write_file(path, encode_exr(picture.linear, *exr));
-        return;
-    }
-    const std::vector<std::uint8_t> file = encode_png(picture.image);
-    write_file(path, std::string(file.begin(), file.end()));
+    write_file(path, exr ? encode_exr(picture.linear, *exr) : encode_png(picture.image));
 }
 
 }  // namespace

@@ -29,7 +29,8 @@
 #include "testbench/machine/inputs.h"
 #include "testbench/machine/simulation.h"
 #include "testbench/machine/totals.h"
-#include "testbench/output/picture/render_run.h"
+#include "testbench/output/picture/png_writer.h"
+#include "testbench/output/picture/view_picture.h"
 #include "testbench/output/report/conformance_report.h"
 #include "testbench/output/report/obj_writer.h"
 #include "testbench/output/report/ply_writer.h"
@@ -99,7 +100,9 @@ void write_run_folder(const std::filesystem::path& folder, const Job& job, const
         write_obj(folder / "mesh.obj", simulation.monitor.mesh, units);
     if (job.output.picture) {
         progress.show("picture", 0.9);
-        write_picture(folder / "picture.png", simulation.monitor.mesh, setup, job);
+        const std::vector<Picture> pictures = render_views(make_render_mesh(simulation.monitor.mesh, setup),
+                                                           make_view(job.camera), {PictureView::overview}, {});
+        write_file(folder / "picture.png", encode_png(pictures.front().image));
     }
 }
 

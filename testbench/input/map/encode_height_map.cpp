@@ -59,8 +59,7 @@ EncodedMap encode_height_map(int width, int height, const std::vector<double>& h
         map.bytes = pgm_file(width, height, samples);
     } else {
         // libpng's name for 16-bit grey; no conversion takes place.
-        const std::vector<std::uint8_t> file = encode_png_samples(width, height, PNG_FORMAT_LINEAR_Y, samples.data());
-        map.bytes.assign(file.begin(), file.end());
+        map.bytes = encode_png_samples(width, height, PNG_FORMAT_LINEAR_Y, samples.data());
     }
     return map;
 }

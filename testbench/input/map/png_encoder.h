@@ -1,11 +1,11 @@
 #pragma once
 #include <cstdint>
-#include <vector>
+#include <string>
 
 namespace tessera {
 
 /// Encodes an image as a PNG file: `format` is a PNG_FORMAT_ of libpng's simplified interface, samples are in rows from
 /// the top. No time stamp: the same image gives the same bytes.
-std::vector<std::uint8_t> encode_png_samples(int width, int height, std::uint32_t format, const void* samples);
+std::string encode_png_samples(int width, int height, std::uint32_t format, const void* samples);
 
 }  // namespace tessera

@@ -6,7 +6,7 @@
 
 namespace tessera {
 
-std::vector<std::uint8_t> encode_png(const Image& image) {
+std::string encode_png(const Image& image) {
     return encode_png_samples(image.width, image.height, PNG_FORMAT_RGB, image.bytes.data());
 }
 

@@ -1,6 +1,5 @@
 #pragma once
-#include <cstdint>
-#include <vector>
+#include <string>
 
 #include "testbench/output/picture/image.h"
 
@@ -8,6 +7,6 @@ namespace tessera {
 
 /// The image as a PNG file's bytes: 8-bit RGB, marked sRGB, no time stamp. The same image gives the same
 /// bytes.
-std::vector<std::uint8_t> encode_png(const Image& image);
+std::string encode_png(const Image& image);
 
 }  // namespace tessera

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <string>
 #include <vector>
 
 #include "testbench/common/parallel.h"
@@ -25,7 +26,7 @@ using namespace tessera;
 
 namespace {
 
-std::vector<std::uint8_t> decode(const std::vector<std::uint8_t>& file, png_image& header) {
+std::vector<std::uint8_t> decode(const std::string& file, png_image& header) {
     header = {};
     header.version = PNG_IMAGE_VERSION;
     REQUIRE(png_image_begin_read_from_memory(&header, file.data(), file.size()) != 0);
