@@ -14,16 +14,6 @@ namespace {
 
 constexpr std::size_t packet = 8;
 
-struct ReleaseDevice {
-    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-};
-struct ReleaseScene {
-    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
-struct ReleaseGeometry {
-    void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
-};
-
 void check(RTCDevice device, std::size_t triangles) {
     const RTCError error = rtcGetDeviceError(device);
     if (error == RTC_ERROR_OUT_OF_MEMORY)
@@ -71,25 +61,23 @@ RTCIntersectContext coherent_context() {
 
 }  // namespace
 
-struct RayScene::Handles {
-    std::unique_ptr<RTCDeviceTy, ReleaseDevice> device;
-    std::unique_ptr<RTCSceneTy, ReleaseScene> scene;
-};
-
-RayScene::RayScene(const RenderMesh& mesh) : handles_(std::make_unique<Handles>()) {
-    handles_->device.reset(rtcNewDevice("threads=1"));
-    RTCDevice device = handles_->device.get();
+RayScene::RayScene(const RenderMesh& mesh) {
+    RTCDevice device = rtcNewDevice("threads=1");
     if (!device)
         check(nullptr, mesh.triangles.size());
-    handles_->scene.reset(rtcNewScene(device));
-    RTCScene scene = handles_->scene.get();
+    device_ = {device, rtcReleaseDevice};
+    RTCScene scene = rtcNewScene(device);
+    check(device, mesh.triangles.size());
+    scene_ = {scene, rtcReleaseScene};
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
-    const std::unique_ptr<RTCGeometryTy, ReleaseGeometry> geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    check(device, mesh.triangles.size());
+    const std::shared_ptr<RTCGeometryTy> release(geometry, rtcReleaseGeometry);
     // Copies: Embree reads up to 16 bytes at a buffer's last element, beyond the end of a vector.
     auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
-        geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
-    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
-        geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), mesh.triangles.size()));
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
+    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                   3 * sizeof(unsigned), mesh.triangles.size()));
     check(device, mesh.triangles.size());
     if (!mesh.triangles.empty()) {
         for (const glm::vec3& p : mesh.positions)
@@ -98,13 +86,11 @@ RayScene::RayScene(const RenderMesh& mesh) : handles_(std::make_unique<Handles>(
         for (const RenderMesh::Triangle& triangle : mesh.triangles)
             indices = std::copy(triangle.vertices.begin(), triangle.vertices.end(), indices);
     }
-    rtcCommitGeometry(geometry.get());
-    rtcAttachGeometry(scene, geometry.get());
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
     rtcCommitScene(scene);
     check(device, mesh.triangles.size());
 }
-
-RayScene::~RayScene() = default;
 
 void RayScene::first_hits(const std::vector<Ray>& rays, std::vector<std::uint32_t>& triangles) const {
     triangles.resize(rays.size());
@@ -115,7 +101,7 @@ void RayScene::first_hits(const std::vector<Ray>& rays, std::vector<std::uint32_
             put(rays[first + lane], lane, hits.ray);
             hits.hit.primID[lane] = hits.hit.geomID[lane] = hits.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
         }
-        rtcIntersect8(valid, handles_->scene.get(), &context, &hits);
+        rtcIntersect8(valid, scene_.get(), &context, &hits);
         for (std::size_t lane = 0; lane < count; ++lane)
             triangles[first + lane] =
                 hits.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID ? nothing : hits.hit.primID[lane];
@@ -136,7 +122,7 @@ void RayScene::occlusions(const std::vector<glm::vec3>& origins, const glm::dvec
             rays.org_z[lane] = origin.z;
             rays.tfar[lane] = std::numeric_limits<float>::infinity();
         }
-        rtcOccluded8(valid, handles_->scene.get(), &context, &rays);
+        rtcOccluded8(valid, scene_.get(), &context, &rays);
         for (std::size_t lane = 0; lane < count; ++lane)
             occluded.push_back(rays.tfar[lane] < 0);
     });

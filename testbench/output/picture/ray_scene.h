@@ -7,6 +7,10 @@
 
 #include "testbench/output/picture/render_mesh.h"
 
+// Embree's device and scene.
+struct RTCDeviceTy;
+struct RTCSceneTy;
+
 namespace tessera {
 
 /// From the mesh's origin, not from 0.
@@ -23,7 +27,6 @@ class RayScene {
 
     /// `mesh` must outlive the scene. Throws ResourceError when memory runs out.
     explicit RayScene(const RenderMesh& mesh);
-    ~RayScene();
 
     /// Per ray the first triangle, or nothing. Fast if neighbours in the batch are neighbours in space.
     void first_hits(const std::vector<Ray>& rays, std::vector<std::uint32_t>& triangles) const;
@@ -33,8 +36,8 @@ class RayScene {
                     std::vector<std::uint8_t>& occluded) const;
 
   private:
-    struct Handles;
-    std::unique_ptr<Handles> handles_;
+    std::shared_ptr<RTCDeviceTy> device_;
+    std::shared_ptr<RTCSceneTy> scene_;
 };
 
 }  // namespace tessera
