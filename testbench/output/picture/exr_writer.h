@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "testbench/output/picture/linear_image.h"
+#include "testbench/output/picture/image.h"
 
 namespace tessera {
 

@@ -1,6 +1,5 @@
 #pragma once
 #include "testbench/output/picture/image.h"
-#include "testbench/output/picture/linear_image.h"
 
 namespace tessera {
 

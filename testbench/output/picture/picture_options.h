@@ -30,7 +30,4 @@ struct PictureOptions {
 /// Of a surface, in pixels: what line widths and the legend are given for.
 inline constexpr double usual_width = 800;
 
-/// The line width of these options in pixels: theirs, or what suits the width of a surface `width` pixels wide.
-double line_width(const PictureOptions& options, int width);
-
 }  // namespace tessera

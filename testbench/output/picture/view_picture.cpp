@@ -12,6 +12,14 @@
 namespace tessera {
 namespace {
 
+constexpr double usual_line = 1.1;  // in a surface of usual_width
+
+/// In pixels: the options' own, or what suits a surface `width` pixels wide.
+double line_width(const PictureOptions& options, int width) {
+    // Slower than the picture: a larger one is to show finer triangles, too.
+    return options.line_width > 0 ? options.line_width : usual_line * std::sqrt(std::max(1.0, width / usual_width));
+}
+
 /// A picture's surfaces, side by side, with the legend of the last one below.
 struct Layout {
     std::vector<Style> panels;
