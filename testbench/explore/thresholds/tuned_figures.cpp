@@ -4,7 +4,6 @@
 
 #include "testbench/check/surface_error/measure_error.h"
 #include "testbench/output/report/indexed_mesh.h"
-#include "testbench/output/report/mesh_units.h"
 
 namespace tessera {
 
@@ -20,29 +19,11 @@ ErrorUnit error_unit(const Job& job, const BaseMesh& base, const HeightMap& map)
     return unit;
 }
 
-RecordedMesh recorded_mesh(const EmittedMesh& mesh, const MachineSetup& setup) {
-    const MeshUnits units{setup.registers.formats, setup.registers.map, setup.model_scale.scale,
-                          setup.model_scale.centre};
-    const IndexedMesh indexed = IndexedMesh::from(mesh);
-    RecordedMesh result;
-    for (const IndexedMesh::Vertex& v : indexed.vertices) {
-        const auto& corner = mesh.triangles[v.triangle].corners[v.corner];
-        result.positions.push_back(units.position(corner.displaced));
-        result.normals.push_back(units.normal(corner.displaced_normal));
-        result.textures.push_back(units.texture(corner.texture));
-    }
-    for (const IndexedMesh::Triangle& t : indexed.triangles) {
-        const EmittedTriangle& triangle = mesh.triangles[t.triangle];
-        result.triangles.push_back(
-            {t.vertices, triangle_generation(triangle), triangle.split_by, triangle.stopped_by, triangle.base});
-    }
-    return result;
-}
-
 TunedFigures measure_tuned(const Job& job, const BaseMesh& base, const HeightMap& map, const MachineSetup& setup,
                            const EmittedMesh& mesh) {
     const DisplacementOf displacement = DisplacementOf::from(job, map);
-    const RecordedMesh recorded = recorded_mesh(mesh, setup);
+    const RecordedMesh recorded = recorded_mesh(
+        mesh, {setup.registers.formats, setup.registers.map, setup.model_scale.scale, setup.model_scale.centre});
     TunedFigures figures;
     figures.triangles = recorded.triangles.size();
     figures.unit = "model unit";

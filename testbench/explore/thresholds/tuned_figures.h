@@ -4,7 +4,6 @@
 
 #include "testbench/machine/emitted_mesh.h"
 #include "testbench/machine/machine_setup.h"
-#include "testbench/run_folder/recorded_mesh.h"
 #include "testbench/setup/height_map.h"
 #include "testbench/setup/mesh/base_mesh.h"
 
@@ -30,9 +29,6 @@ struct ErrorUnit {
     const char* name() const { return map_units ? "map unit" : "model unit"; }
 };
 ErrorUnit error_unit(const Job& job, const BaseMesh& base, const HeightMap& map);
-
-/// The mesh as a run's mesh.ply would hold it.
-RecordedMesh recorded_mesh(const EmittedMesh& mesh, const MachineSetup& setup);
 
 /// `mesh` must be sorted as a run sorts it. Throws what measuring throws.
 TunedFigures measure_tuned(const Job& job, const BaseMesh& base, const HeightMap& map, const MachineSetup& setup,

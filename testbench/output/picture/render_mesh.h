@@ -28,12 +28,11 @@ struct RenderMesh {
     std::uint64_t base_triangles = 0;    ///< how many these descend from, for the legend; 0: unknown
 };
 
-/// What a run emitted, without culled triangles, as in mesh.ply: the picture of a run and one rendered from its folder
-/// are the same. Vertices are shared where position and normal agree, in the order of their first use.
-RenderMesh make_render_mesh(const EmittedMesh& mesh, const MachineSetup& setup);
-
-/// The same from a run's mesh.ply: equal in every number if the emitted mesh had the file's order
-/// (EmittedMesh::sort()).
+/// Of a run's mesh.ply. Vertices are shared where position and normal agree, in the order of their first use.
 RenderMesh make_render_mesh(const RecordedMesh& mesh);
+
+/// Of what a run emitted, without culled triangles: equal in every number to that of its mesh.ply if the emitted mesh
+/// has the file's order (EmittedMesh::sort()).
+RenderMesh make_render_mesh(const EmittedMesh& mesh, const MachineSetup& setup);
 
 }  // namespace tessera

@@ -65,4 +65,21 @@ std::uint8_t triangle_generation(const EmittedTriangle& triangle) {
     return std::max({c[0].generation, c[1].generation, c[2].generation});
 }
 
+RecordedMesh recorded_mesh(const EmittedMesh& mesh, const MeshUnits& units) {
+    const IndexedMesh indexed = IndexedMesh::from(mesh);
+    RecordedMesh result;
+    for (const IndexedMesh::Vertex& v : indexed.vertices) {
+        const auto& corner = mesh.triangles[v.triangle].corners[v.corner];
+        result.positions.push_back(units.position(corner.displaced));
+        result.normals.push_back(units.normal(corner.displaced_normal));
+        result.textures.push_back(units.texture(corner.texture));
+    }
+    for (const IndexedMesh::Triangle& t : indexed.triangles) {
+        const EmittedTriangle& triangle = mesh.triangles[t.triangle];
+        result.triangles.push_back(
+            {t.vertices, triangle_generation(triangle), triangle.split_by, triangle.stopped_by, triangle.base});
+    }
+    return result;
+}
+
 }  // namespace tessera

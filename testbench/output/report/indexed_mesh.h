@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "testbench/machine/emitted_mesh.h"
+#include "testbench/output/report/mesh_units.h"
+#include "testbench/run_folder/recorded_mesh.h"
 
 namespace tessera {
 
@@ -30,5 +32,8 @@ struct IndexedMesh {
 
 /// The generation of a triangle: that of its youngest vertex.
 std::uint8_t triangle_generation(const EmittedTriangle& triangle);
+
+/// The mesh as a run's mesh.ply would hold it. ResourceError as above.
+RecordedMesh recorded_mesh(const EmittedMesh& mesh, const MeshUnits& units);
 
 }  // namespace tessera
