@@ -295,15 +295,4 @@ std::vector<Picture> render_pictures(const RenderMesh& mesh, const View& view, c
     return Renderer(mesh, view, styles, linear).run();
 }
 
-std::vector<Image> render_styles(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles) {
-    std::vector<Image> images;
-    for (Picture& picture : render_pictures(mesh, view, styles, false))
-        images.push_back(std::move(picture.image));
-    return images;
-}
-
-Image render(const RenderMesh& mesh, const View& view, const Style& style) {
-    return render_styles(mesh, view, {style}).front();
-}
-
 }  // namespace tessera

@@ -1,7 +1,6 @@
 #pragma once
 #include <vector>
 
-#include "testbench/output/picture/image.h"
 #include "testbench/output/picture/picture.h"
 #include "testbench/output/picture/render_mesh.h"
 #include "testbench/output/picture/style.h"
@@ -9,16 +8,12 @@
 
 namespace tessera {
 
-/// A picture of the mesh: displaced normals interpolated, soft shadows and sky light by rays, 8 samples a pixel.
+/// Pictures of the mesh: displaced normals interpolated, soft shadows and sky light by rays, 8 samples a pixel. Several
+/// styles cost little more than one; the first one's lights and the last one's line width serve all. linear: in linear
+/// light too.
 /// The same input gives the same bytes, whatever the machine's load. Nothing in sight: the background.
-/// Memory beside the mesh: about 100 bytes a triangle, 3 bytes a pixel. Throws ResourceError when it runs out.
-Image render(const RenderMesh& mesh, const View& view, const Style& style);
-
-/// The same view in several styles for little more than the price of one; the first one's lights and the last one's
-/// line width serve all.
-std::vector<Image> render_styles(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles);
-
-/// The same, in linear light too if wanted; 12 bytes a pixel more.
+/// Memory beside the mesh: about 100 bytes a triangle, 3 bytes a pixel of each style, 12 more in linear light. Throws
+/// ResourceError when it runs out.
 std::vector<Picture> render_pictures(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles,
                                      bool linear);
 

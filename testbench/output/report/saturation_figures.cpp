@@ -62,27 +62,26 @@ std::string saturations_text(const std::vector<SaturationFigure>& figures) {
 
 namespace {
 
-std::string sentence(const SaturationFigure& figure, const char* what_then) {
-    return fmt::format("{}: {} {}{} saturated ({}); {}", spoken(figure.name), grouped_digits(figure.count), figure.unit,
-                       figure.count == 1 ? "" : "s", figure.description, what_then);
+/// Of those that saturated and have `what_then`.
+std::vector<std::string> sentences(const std::vector<SaturationFigure>& figures,
+                                   const char* SaturationFigure::*what_then) {
+    std::vector<std::string> result;
+    for (const SaturationFigure& figure : figures)
+        if (figure.count > 0 && figure.*what_then != nullptr)
+            result.push_back(fmt::format("{}: {} {}{} saturated ({}); {}", spoken(figure.name),
+                                         grouped_digits(figure.count), figure.unit, figure.count == 1 ? "" : "s",
+                                         figure.description, figure.*what_then));
+    return result;
 }
 
 }  // namespace
 
 std::vector<std::string> saturation_warnings(const std::vector<SaturationFigure>& figures) {
-    std::vector<std::string> warnings;
-    for (const SaturationFigure& figure : figures)
-        if (figure.count > 0 && figure.remedy != nullptr)
-            warnings.push_back(sentence(figure, figure.remedy));
-    return warnings;
+    return sentences(figures, &SaturationFigure::remedy);
 }
 
 std::vector<std::string> saturation_notes(const std::vector<SaturationFigure>& figures) {
-    std::vector<std::string> notes;
-    for (const SaturationFigure& figure : figures)
-        if (figure.count > 0 && figure.meaning != nullptr)
-            notes.push_back(sentence(figure, figure.meaning));
-    return notes;
+    return sentences(figures, &SaturationFigure::meaning);
 }
 
 }  // namespace tessera

@@ -153,10 +153,6 @@ void Traces::finish() {
         files_->timeline_file->commit();
 }
 
-std::uint64_t Traces::changes() const {
-    return files_->vcd ? files_->vcd->changes() : 0;
-}
-
 std::vector<std::string> Traces::text() const {
     const std::uint64_t cycles = simulation_.cycles();
     const std::string window =

@@ -33,9 +33,6 @@ class Traces {
     /// After the simulation has ended, however it did. Throws like check().
     void finish();
 
-    /// Value changes written, not counting those the file begins with.
-    std::uint64_t changes() const;
-
     /// For the summary: what was written, and of which cycles. One line each.
     std::vector<std::string> text() const;
 

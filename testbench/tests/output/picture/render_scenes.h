@@ -2,8 +2,11 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <utility>
+#include <vector>
 
 #include "testbench/output/picture/image.h"
+#include "testbench/output/picture/render.h"
 #include "testbench/output/picture/render_mesh.h"
 #include "testbench/output/picture/style.h"
 #include "testbench/output/picture/view.h"
@@ -58,6 +61,17 @@ inline View look_down(double distance, int width, int height, double focal) {
     view.centre = glm::dvec2(width, height) / 2.0;
     view.near_plane = 0.01;
     return view;
+}
+
+inline std::vector<Image> render_styles(const RenderMesh& mesh, const View& view, const std::vector<Style>& styles) {
+    std::vector<Image> images;
+    for (Picture& picture : render_pictures(mesh, view, styles, false))
+        images.push_back(std::move(picture.image));
+    return images;
+}
+
+inline Image render(const RenderMesh& mesh, const View& view, const Style& style) {
+    return render_styles(mesh, view, {style}).front();
 }
 
 inline bool is_background(const Image& image) {
