@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace tessera {
 namespace {
@@ -38,19 +39,9 @@ Colour error_colour(double fraction) {
 }
 
 Colour deciding_test_colour(DecidingTest test) {
-    switch (test) {
-        case DecidingTest::normal:
-            return {230, 159, 0};
-        case DecidingTest::summed_height:
-            return {86, 180, 233};
-        case DecidingTest::both:
-            return {0, 158, 115};
-        case DecidingTest::highlight:
-            return {204, 121, 167};
-        case DecidingTest::base:
-            break;
-    }
-    return {214, 214, 210};
+    constexpr Colour colours[] = {{214, 214, 210}, {230, 159, 0}, {86, 180, 233}, {0, 158, 115}, {204, 121, 167}};
+    static_assert(std::size(colours) == deciding_tests);
+    return colours[static_cast<std::size_t>(test)];
 }
 
 Stop stop_of(std::uint8_t stopped_by) {
@@ -69,19 +60,9 @@ Stop stop_of(std::uint8_t stopped_by) {
 }
 
 Colour stop_colour(Stop stop) {
-    switch (stop) {
-        case Stop::view:
-            return {86, 180, 233};
-        case Stop::tex_coord:
-            return {230, 159, 0};
-        case Stop::generation:
-            return {213, 94, 0};
-        case Stop::several:
-            return {204, 121, 167};
-        case Stop::none:
-            break;
-    }
-    return {214, 214, 210};
+    constexpr Colour colours[] = {{214, 214, 210}, {86, 180, 233}, {230, 159, 0}, {213, 94, 0}, {204, 121, 167}};
+    static_assert(std::size(colours) == stops);
+    return colours[static_cast<std::size_t>(stop)];
 }
 
 glm::dvec3 to_linear(const Colour& colour) {

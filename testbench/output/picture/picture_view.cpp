@@ -1,5 +1,7 @@
 #include "testbench/output/picture/picture_view.h"
 
+#include <iterator>
+
 namespace tessera {
 namespace {
 
@@ -8,23 +10,9 @@ constexpr double softer = 0.6;  // light and shadow, where a colour stands for a
 }  // namespace
 
 std::string_view name_of(PictureView view) {
-    switch (view) {
-        case PictureView::overview:
-            return "overview";
-        case PictureView::shaded:
-            return "shaded";
-        case PictureView::wireframe:
-            return "wireframe";
-        case PictureView::generation:
-            return "generation";
-        case PictureView::test:
-            return "test";
-        case PictureView::stopped:
-            return "stopped";
-        case PictureView::error:
-            break;
-    }
-    return "error";
+    constexpr std::string_view names[] = {"overview", "shaded", "wireframe", "generation", "test", "stopped", "error"};
+    static_assert(std::size(names) == std::size(picture_views));
+    return names[static_cast<std::size_t>(view)];
 }
 
 Style style_of(PictureView view) {

@@ -7,17 +7,9 @@
 namespace tessera {
 
 const char* state_name(State state) {
-    switch (state) {
-        case State::starved:
-            return "starved";
-        case State::busy:
-            return "busy";
-        case State::waiting_for_memory:
-            return "waiting for memory";
-        case State::blocked:
-            return "blocked";
-    }
-    return "";
+    constexpr std::array names{"starved", "busy", "waiting for memory", "blocked"};
+    static_assert(names.size() == states);
+    return names.at(static_cast<std::size_t>(state));
 }
 
 namespace {
