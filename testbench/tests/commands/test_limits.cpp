@@ -47,6 +47,7 @@ void check_refused(const ProgramEnd& end, ExitCode code, const std::vector<std::
     INFO(end.text());
     CHECK(end.out.empty());
     CHECK(lines_of(end.err).size() == 1);
+    CHECK(end.err.rfind("tessera: ", 0) == 0);
     CHECK(end.err.size() < 600);
     for (const std::string& word : words)
         CHECK_THAT(end.err, Contains(word));

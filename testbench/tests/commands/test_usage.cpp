@@ -1,4 +1,3 @@
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -73,22 +72,6 @@ TEST_CASE("a setting that is unknown, out of range or no setting is refused") {
     refused({"run", "--set", "map.source=file"}, here.path(), {"map.file"});
     refused({"run", "--set", "camera.eye=[0, 0, 0]", "--set", "camera.target=[0, 0, 0]"}, here.path(),
             {"camera.eye", "camera.target"});
-}
-
-TEST_CASE("a job, mesh or map file that is absent, a folder or a device is refused") {
-    const TestFolder here;
-    refused({"run", "absent.toml"}, here.path(), {"absent.toml"});
-    fs::create_directory(here.path() / "folder");
-    refused({"run", "folder"}, here.path(), {"folder"});
-    refused({"run", "/dev/zero"}, here.path(), {"/dev/zero"});
-    REQUIRE(::mkfifo((here.path() / "pipe").c_str(), 0600) == 0);  // nobody writes: reading would wait for ever
-    for (const std::string table : {"mesh", "map"}) {
-        for (const std::string file : {"absent.file", "folder", "/dev/zero", "pipe"}) {
-            INFO(table << ' ' << file);
-            refused({"run", "--set", table + ".source=file", "--set", table + ".file=" + file}, here.path(), {file});
-        }
-    }
-    refused({"run", "pipe"}, here.path(), {"pipe"});
 }
 
 TEST_CASE("a run folder that cannot be is refused before the work") {

@@ -227,16 +227,6 @@ TEST_CASE("the printed algorithm's endless case, and the generation test that en
     }
 }
 
-TEST_CASE("plane of 18 without the generation test exceeds any bound") {
-    Parameters p;
-    p.scale = 0.25 / 65535;
-    p.normal_threshold = 0.2;
-    p.summed_height_threshold = 5000;
-    p.enabled.view = false;
-    p.enabled.generation = false;
-    CHECK(tessellate(plane_18(), half_donut(0.55, 0.25), p, 100'000, [](const Triangle&) {}).bound_hit);
-}
-
 TEST_CASE("tessellate: the bound is exact, nothing is lost, base triangles keep their order") {
     const Map map = half_donut(0.55, 0.25);
     Parameters p;

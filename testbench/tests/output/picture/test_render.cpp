@@ -211,29 +211,6 @@ TEST_CASE("Lines keep their width at any distance and fade on small triangles") 
     CHECK(Wireframe({glm::dvec3(0), glm::dvec3(0), glm::dvec3(0)}, 1).coverage(0, 0) == 0);
 }
 
-TEST_CASE("Two renderings are identical") {
-    const RenderMesh mesh = make_sphere({0, 0, 0}, 48);
-    PictureOptions options;
-    options.width = 320;
-    const auto overview = [&] {
-        return render_views(mesh, look_down(3, 256, 192, 200), {PictureView::overview}, options).front().image;
-    };
-    const Image first = overview();
-    const Image second = overview();
-    CHECK(first.width == 320);
-    CHECK(first.bytes == second.bytes);
-    CHECK(encode_png(first) == encode_png(second));
-}
-
-TEST_CASE("A style looks the same alone and in company") {
-    const RenderMesh mesh = make_sphere({0, 0, 0}, 24);
-    const View view = look_down(4, 70, 50, 60);
-    Style tests;
-    tests.colour_by = ColourBy::deciding_test;
-    tests.wireframe = true;
-    CHECK(render_styles(mesh, view, {Style{}, tests})[1].bytes == render(mesh, view, tests).bytes);
-}
-
 TEST_CASE("Nothing to see gives the background") {
     const View view = look_down(4, 50, 40, 50);
     CHECK(is_background(render(RenderMesh{}, view, Style{})));
