@@ -18,17 +18,10 @@ struct CraterLakeRun {
     /// Of the mesh with these settings beside; both models' checks have passed.
     CraterLakeRun(const TestFolder& here, const Arguments& settings) {
         const std::string job = (source_folder() / "testbench/examples/jobs/crater_lake_24.toml").string();
-        succeed(Arguments{"run",   job,
-                          "--set", "mesh.source=lattice",
-                          "--set", "mesh.spacing=128",
-                          "--set", "map.range=data",
-                          "--set", "displacement.scale=0.945",
-                          "--set", "tests.normal=false",
-                          "--set", "tests.view=false",
-                          "--set", "tests.generation_limit=15",
-                          "--set", "mode=functional",
-                          "--set", "output.picture=false",
-                          "--set", "output.folder=run"} +
+        succeed(Arguments{"run", job} +
+                    set({"mesh.source=lattice", "mesh.spacing=128", "map.range=data", "displacement.scale=0.945",
+                         "tests.normal=false", "tests.view=false", "tests.generation_limit=15", "mode=functional",
+                         "output.picture=false", "output.folder=run"}) +
                     settings,
                 here.path());
         succeed({"compare", "run"}, here.path());

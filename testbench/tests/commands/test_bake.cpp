@@ -13,25 +13,6 @@ fs::path example(const char* name) {
     return source_folder() / "testbench/examples/surfaces" / name;
 }
 
-ProgramEnd bake(std::vector<std::string> arguments, const fs::path& here, const ProgramLimits& limits = {}) {
-    arguments.insert(arguments.begin(), "bake");
-    return run_tessera(arguments, here, limits);
-}
-
-/// Requires this exit code, one message on standard error with these words, and no new file.
-void refused(const std::vector<std::string>& arguments, const TestFolder& here, const std::vector<std::string>& words) {
-    const std::vector<std::string> before = here.names();
-    const ProgramEnd end = bake(arguments, here.path());
-    INFO(end.text());
-    CHECK(end.exit_code == 2);
-    CHECK(end.signal == 0);
-    CHECK(end.out.empty());
-    CHECK(lines_of(end.err).size() == 1);
-    for (const std::string& word : words)
-        CHECK_THAT(end.err, Contains(word));
-    CHECK(here.names() == before);
-}
-
 }  // namespace
 
 TEST_CASE("bake: the examples in all formats, the same twice, and jobs that run") {
@@ -54,9 +35,7 @@ TEST_CASE("bake: the examples in all formats, the same twice, and jobs that run"
             CHECK(read_all(here.path() / (map + ending)) == once);
             CHECK(read_all(here.path() / (map + ".job.toml")) == job);
         }
-        const ProgramEnd run = run_tessera({"run", map + ".job.toml", "--set", "mode=functional"}, here.path());
-        INFO(run.text());
-        CHECK(run.exit_code == 0);
+        succeed({"run", map + ".job.toml", "--set", "mode=functional"}, here.path());
         CHECK(fs::exists(here.path() / "runs" / map / "mesh.ply"));
     }
 }
@@ -87,9 +66,7 @@ TEST_CASE("bake: the job fits the domain and finds its files from its own folder
         succeed({"bake", "ball.toml", "--mesh", "base/job.toml", "--output", "out/ball.pgm"}, here.path()).out;
     CHECK_THAT(out, Contains("no base triangle"));
     CHECK_THAT(read_all(here.path() / "out/ball.job.toml"), Contains("file = \"../base/square.obj\""));
-    const ProgramEnd run = run_tessera({"run", "out/ball.job.toml"}, here.path());
-    INFO(run.text());
-    CHECK(run.exit_code == 0);
+    succeed({"run", "out/ball.job.toml"}, here.path());
 
     // A patch is the same map over whatever base mesh.
     succeed({"bake", example("hills.toml").string(), "--output", "plain.pgm"}, here.path());
@@ -111,37 +88,38 @@ TEST_CASE("bake: overlapping base triangles are told of") {
 TEST_CASE("bake: hostile arguments are refused in one line") {
     const TestFolder here;
     const std::string dome = example("dome.toml").string();
-    refused({}, here, {"--help"});
-    refused({dome}, here, {"--output"});
-    refused({"", "--output", "a.pgm"}, here, {"SURFACE"});
-    refused({"absent.toml", "--output", "a.pgm"}, here, {"absent.toml: no such surface file"});
-    refused({".", "--output", "a.pgm"}, here, {"is a folder"});
+    refused({"bake"}, here, {"--help"});
+    refused({"bake", dome}, here, {"--output"});
+    refused({"bake", "", "--output", "a.pgm"}, here, {"SURFACE"});
+    refused({"bake", "absent.toml", "--output", "a.pgm"}, here, {"absent.toml: no such surface file"});
+    refused({"bake", ".", "--output", "a.pgm"}, here, {"is a folder"});
     for (const std::string size : {"0x5", "5x0", "256", "x", "5x", "4097x4", "4x4097", "-3x5", "5x5x5", "1e3x5", ""})
-        refused({dome, "--output", "a.pgm", "--size=" + size}, here, {"--size"});
+        refused({"bake", dome, "--output", "a.pgm", "--size=" + size}, here, {"--size"});
     for (const std::string output : {"a.jpg", "a", "", ".pgm/", "folder/"})
-        refused({dome, "--output", output}, here, {"--output"});
-    refused({dome, "--output", "/proc/tessera/a.pgm"}, here, {"--output"});
-    refused({dome, "--output", "a.pgm", "--mesh", ""}, here, {"--mesh"});
-    refused({dome, "--output", "a.pgm", "--mesh", "absent.toml"}, here, {"absent.toml"});
-    refused({dome, "--output", "a.pgm", "--mesh", dome}, here, {"dome.toml:2", "quadric"});
+        refused({"bake", dome, "--output", output}, here, {"--output"});
+    refused({"bake", dome, "--output", "/proc/tessera/a.pgm"}, here, {"--output"});
+    refused({"bake", dome, "--output", "a.pgm", "--mesh", ""}, here, {"--mesh"});
+    refused({"bake", dome, "--output", "a.pgm", "--mesh", "absent.toml"}, here, {"absent.toml"});
+    refused({"bake", dome, "--output", "a.pgm", "--mesh", dome}, here, {"dome.toml:2", "quadric"});
     write_all(here.path() / "far.toml", "[quadric]\nshape = \"sphere\"\nradius = 0.1\ncentre = [9, 0, 0]\n");
-    refused({"far.toml", "--output", "a.pgm"}, here, {"far.toml:1: the quadric is nowhere"});
+    refused({"bake", "far.toml", "--output", "a.pgm"}, here, {"far.toml:1: the quadric is nowhere"});
     write_all(here.path() / "bad.toml", "[bezier]\nheights = [[0, 1], [2, 3]]\nweights = [[1, 1], [1, 0]]\n");
-    refused({"bad.toml", "--output", "a.pgm"}, here, {"bad.toml:3:24:", "`weights`"});
+    refused({"bake", "bad.toml", "--output", "a.pgm"}, here, {"bad.toml:3:24:", "`weights`"});
     for (const char* const name : {"c.job.toml", "d.job.toml"})
         write_all(here.path() / name, read_all(example(name[0] == 'c' ? "dome.toml" : "barrel_base.toml")));
-    refused({"c.job.toml", "--output", "c.pgm"}, here, {"--output c.pgm", "would overwrite c.job.toml"});
-    refused({dome, "--mesh", "d.job.toml", "--output", "./d.pgm"}, here, {"would overwrite d.job.toml"});
+    refused({"bake", "c.job.toml", "--output", "c.pgm"}, here, {"--output c.pgm", "would overwrite c.job.toml"});
+    refused({"bake", dome, "--mesh", "d.job.toml", "--output", "./d.pgm"}, here, {"would overwrite d.job.toml"});
     CHECK(read_all(here.path() / "c.job.toml") == read_all(dome));
     fs::create_directory(here.path() / "b.pgm");
-    refused({dome, "--output", "b.pgm"}, here, {"b.pgm", "folder"});
+    refused({"bake", dome, "--output", "b.pgm"}, here, {"b.pgm", "folder"});
 }
 
 TEST_CASE("bake: a disk that is full ends it with exit code 4 and no map") {
     const TestFolder here;
     ProgramLimits limits;
     limits.file_bytes = 4096;
-    const ProgramEnd end = bake({example("dome.toml").string(), "--output", "new/a.pgm"}, here.path(), limits);
+    const ProgramEnd end =
+        run_tessera({"bake", example("dome.toml").string(), "--output", "new/a.pgm"}, here.path(), limits);
     INFO(end.text());
     CHECK(end.exit_code == 4);
     CHECK_THAT(end.err, Contains("a.pgm"));

@@ -14,16 +14,11 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Runs a job in functional mode, with all checks, and gives its mesh.
-RecordedMesh mesh_of_run(const std::string& job, const std::vector<std::string>& settings, const fs::path& here) {
-    std::vector<std::string> arguments{"run", job};
-    for (const char* const setting :
-         {"mode=functional", "output.picture=false", "output.obj=false", "output.folder=run"})
-        arguments.insert(arguments.end(), {"--set", setting});
-    for (const std::string& setting : settings)
-        arguments.insert(arguments.end(), {"--set", setting});
-    const ProgramEnd end = run_tessera(arguments, here);
-    INFO(end.text());
-    REQUIRE(end.exit_code == 0);
+RecordedMesh mesh_of_run(const std::string& job, const Arguments& settings, const fs::path& here) {
+    succeed(Arguments{"run", job} +
+                set({"mode=functional", "output.picture=false", "output.obj=false", "output.folder=run"}) +
+                set(settings),
+            here);
     return read_ply(here / "run/mesh.ply");
 }
 

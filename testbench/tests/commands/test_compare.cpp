@@ -11,23 +11,16 @@ namespace fs = std::filesystem;
 
 namespace {
 
-void run_job(const fs::path& folder, const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{"run"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    for (const char* const setting : {"mode=functional", "output.picture=false", "output.obj=false",
-                                      "check.golden=false", "check.end_to_end=false"})
-        arguments.insert(arguments.end(), {"--set", setting});
-    const ProgramEnd end = run_tessera(arguments, folder);
-    INFO(end.text());
-    REQUIRE(end.exit_code == 0);
+void run_job(const fs::path& folder, const Arguments& more) {
+    succeed(Arguments{"run"} + more +
+                set({"mode=functional", "output.picture=false", "output.obj=false", "check.golden=false",
+                     "check.end_to_end=false"}),
+            folder);
 }
 
 /// Compares a run; gives error.json, in which every figure must have value, unit and description.
 json compare(const fs::path& folder, const std::string& run) {
-    const ProgramEnd end = run_tessera({"compare", run}, folder);
-    INFO(end.text());
-    REQUIRE(end.exit_code == 0);
-    CHECK(end.err.empty());
+    const ProgramEnd end = succeed({"compare", run}, folder);
     const std::string text = read_all(folder / run / "error.txt");
     CHECK_FALSE(text.empty());
     CHECK(end.out.rfind(text, 0) == 0);
@@ -44,15 +37,6 @@ json compare(const fs::path& folder, const std::string& run) {
 
 double value(const json& error, const char* group, const char* name) {
     return error.at(group).at(name).at("value").get<double>();
-}
-
-std::string refused(const fs::path& folder, const std::vector<std::string>& arguments) {
-    const ProgramEnd end = run_tessera(arguments, folder);
-    INFO(end.text());
-    CHECK(end.exit_code == 2);
-    CHECK(end.out.empty());
-    CHECK(lines_of(end.err).size() == 1);
-    return end.err;
 }
 
 }  // namespace
@@ -137,22 +121,22 @@ TEST_CASE("a run whose triangles were all culled has no mesh to compare") {
 
 TEST_CASE("compare refuses what is no run, and leaves nothing then") {
     const TestFolder here;
-    CHECK_THAT(refused(here.path(), {"compare"}), Contains("RUN") && Contains("--help"));
-    CHECK_THAT(refused(here.path(), {"compare", "a", "b"}), Contains("--help"));
-    CHECK_THAT(refused(here.path(), {"compare", "absent"}), Contains("absent") && Contains("no such folder"));
-    CHECK_THAT(refused(here.path(), {"compare", "."}), Contains("no job.toml"));
+    refused({"compare"}, here.path(), {"RUN", "--help"});
+    refused({"compare", "a", "b"}, here.path(), {"--help"});
+    refused({"compare", "absent"}, here.path(), {"absent", "no such folder"});
+    refused({"compare", "."}, here.path(), {"no job.toml"});
     run_job(here.path(), {"--set", "output.ply=false", "--set", "tests.normal_threshold=1"});
-    CHECK_THAT(refused(here.path(), {"compare", "runs/half_donut"}), Contains("output.ply=true"));
+    refused({"compare", "runs/half_donut"}, here.path(), {"output.ply=true"});
     run_job(here.path(), {"--set", "tests.normal_threshold=1"});
     const fs::path mesh = here.path() / "runs/half_donut/mesh.ply";
     const std::string bytes = read_all(mesh);
     write_all(mesh, bytes.substr(0, bytes.size() - 7));
-    CHECK_THAT(refused(here.path(), {"compare", "runs/half_donut"}), Contains("mesh.ply") && Contains("announces"));
+    refused({"compare", "runs/half_donut"}, here.path(), {"mesh.ply", "announces"});
     // Another job's mesh: of more base triangles than this one has.
     run_job(here.path(),
             {"--set", "tests.normal_threshold=1", "--set", "mesh.columns=9", "--set", "output.folder=runs/other"});
     fs::copy_file(here.path() / "runs/other/mesh.ply", mesh, fs::copy_options::overwrite_existing);
-    CHECK_THAT(refused(here.path(), {"compare", "runs/half_donut"}), Contains("another job"));
+    refused({"compare", "runs/half_donut"}, here.path(), {"another job"});
     CHECK_FALSE(fs::exists(here.path() / "runs/half_donut/error.json"));
     CHECK_FALSE(fs::exists(here.path() / "runs/half_donut/error.txt"));
 }
@@ -160,9 +144,8 @@ TEST_CASE("compare refuses what is no run, and leaves nothing then") {
 TEST_CASE("compare tells Crater Lake's error in metres") {
     const TestFolder here;
     const auto run = [&](const std::string& name, const std::vector<std::string>& more) {
-        std::vector<std::string> arguments{(source_folder() / "testbench/examples/jobs" / (name + ".toml")).string()};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        run_job(here.path(), arguments);
+        run_job(here.path(),
+                Arguments{(source_folder() / "testbench/examples/jobs" / (name + ".toml")).string()} + more);
         return compare(here.path(), "runs/" + name);
     };
     // The grid of 704 triangles itself, without a split.

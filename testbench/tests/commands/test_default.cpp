@@ -9,21 +9,9 @@ using namespace tessera;
 using Catch::Contains;
 namespace fs = std::filesystem;
 
-namespace {
-
-ProgramEnd run_well(const std::vector<std::string>& arguments, const fs::path& folder) {
-    ProgramEnd end = run_tessera(arguments, folder);
-    INFO(end.text());
-    REQUIRE(end.exit_code == 0);
-    REQUIRE(end.err.empty());
-    return end;
-}
-
-}  // namespace
-
 TEST_CASE("the default job leaves a complete run folder whose figures agree") {
     const TestFolder here;
-    const ProgramEnd end = run_well({"run"}, here.path());
+    const ProgramEnd end = succeed({"run"}, here.path());
     CHECK(here.names() == std::vector<std::string>{"runs"});
 
     const fs::path folder = here.path() / "runs/half_donut";
@@ -46,30 +34,11 @@ TEST_CASE("the default job leaves a complete run folder whose figures agree") {
 TEST_CASE("the summary says which test decided, in the statistics' figures") {
     const TestFolder here;
     // 6 edges of one quad, all split, and 24 of their children, which generation 1 stops.
-    const ProgramEnd end = run_well({"run",
-                                     "--set",
-                                     "mode=functional",
-                                     "--set",
-                                     "mesh.columns=1",
-                                     "--set",
-                                     "mesh.rows=1",
-                                     "--set",
-                                     "map.source=noise",
-                                     "--set",
-                                     "map.width=64",
-                                     "--set",
-                                     "map.height=64",
-                                     "--set",
-                                     "tests.normal_threshold=0",
-                                     "--set",
-                                     "tests.summed_height=false",
-                                     "--set",
-                                     "tests.generation_limit=1",
-                                     "--set",
-                                     "output.picture=false",
-                                     "--set",
-                                     "output.folder=out"},
-                                    here.path());
+    const ProgramEnd end = succeed(
+        Arguments{"run"} + set({"mode=functional", "mesh.columns=1", "mesh.rows=1", "map.source=noise", "map.width=64",
+                                "map.height=64", "tests.normal_threshold=0", "tests.summed_height=false",
+                                "tests.generation_limit=1", "output.picture=false", "output.folder=out"}),
+        here.path());
     CHECK_THAT(end.out, Contains("split by                normal alone 6, summed height alone 0, both 0\n"));
     CHECK_THAT(end.out,
                Contains("wanted, but stopped by  view alone 0, tex coord alone 0, generation alone 24, several 0\n"));
@@ -84,10 +53,10 @@ TEST_CASE("the summary says which test decided, in the statistics' figures") {
 TEST_CASE("a map that the mesh's quads do not divide: the run warns, and its remedy helps") {
     const TestFolder here;
     const auto run = [&](const char* side) {
-        return run_well({"run", "--set", "mode=functional", "--set", std::string("map.width=") + side, "--set",
-                         std::string("map.height=") + side, "--set", "check.golden=false", "--set",
-                         "check.end_to_end=false", "--set", "output.picture=false"},
-                        here.path())
+        return succeed(Arguments{"run"} +
+                           set({"mode=functional", std::string("map.width=") + side, std::string("map.height=") + side,
+                                "check.golden=false", "check.end_to_end=false", "output.picture=false"}),
+                       here.path())
             .out;
     };
     CHECK_THAT(run("64"), Contains("warning: ") && Contains("one LSB below a texel's border") &&
@@ -98,16 +67,15 @@ TEST_CASE("a map that the mesh's quads do not divide: the run warns, and its rem
 TEST_CASE("two runs leave identical bytes, and so do the jobs they write down") {
     const TestFolder here;
     // The folder's name is part of the job: the runs keep it and change the folder they start from.
-    const auto run_in = [&](const std::string& name, std::vector<std::string> arguments) {
+    const auto run_in = [&](const std::string& name, const Arguments& arguments) {
         fs::create_directory(here.path() / name);
-        arguments.insert(arguments.begin(), "run");
-        run_well(arguments, here.path() / name);
+        succeed(Arguments{"run"} + arguments, here.path() / name);
         return RunFolder(here.path() / name / "runs/half_donut").files();
     };
     const auto first = run_in("first", {});
     require_same_files(first, run_in("second", {}));
 
-    const std::string dump = run_well({"run", "--dump-config"}, here.path()).out;
+    const std::string dump = succeed({"run", "--dump-config"}, here.path()).out;
     write_all(here.path() / "dump.toml", dump);
     CHECK_THAT(dump, Contains("eye = \"auto\"") && Contains("scale = \"auto\""));
     CHECK(automatic_key(parse_job(first.at("job.toml"), "job.toml")).empty());
@@ -117,7 +85,7 @@ TEST_CASE("two runs leave identical bytes, and so do the jobs they write down") 
     auto stated = run_in("file", {(source_folder() / "testbench/examples/jobs/half_donut.toml").string()});
     stated["job.toml"] = first.at("job.toml");
     require_same_files(first, stated);
-    CHECK(run_well({"run", (here.path() / "dump.toml").string(), "--dump-config"}, here.path()).out == dump);
+    CHECK(succeed({"run", (here.path() / "dump.toml").string(), "--dump-config"}, here.path()).out == dump);
 }
 
 TEST_CASE("a job that reads files runs again from its run folder") {
@@ -130,13 +98,13 @@ TEST_CASE("a job that reads files runs again from its run folder") {
               "[mesh]\nsource = \"file\"\nfile = \"square.obj\"\n"
               "[map]\nsource = \"file\"\nfile = \"bump.pgm\"\n"
               "[tests]\ngeneration_limit = 4\ntex_coord = false\n[output]\nfolder = \"out\"\n");
-    run_well({"run", "inputs/job.toml"}, here.path());
+    succeed({"run", "inputs/job.toml"}, here.path());
     const auto first = RunFolder(here.path() / "out").files();
     fs::copy(here.path() / "out", here.path() / "again");
 
     SECTION("from anywhere") {
         fs::create_directory(here.path() / "elsewhere");
-        run_well({"run", "../out/job.toml", "--set", "output.folder=../out"}, here.path() / "elsewhere");
+        succeed({"run", "../out/job.toml", "--set", "output.folder=../out"}, here.path() / "elsewhere");
         auto second = RunFolder(here.path() / "out").files();
         // the folder's name is what was set
         CHECK_THAT(second.at("job.toml"), Contains("folder = \"../out\""));
@@ -144,26 +112,21 @@ TEST_CASE("a job that reads files runs again from its run folder") {
         require_same_files(first, second);
     }
     SECTION("with paths set on the command line, from there") {
-        run_well({"run", "--set", "mesh.source=file", "--set", "mesh.file=inputs/square.obj", "--set",
-                  "map.source=file", "--set", "map.file=inputs/bump.pgm", "--set", "tests.generation_limit=4", "--set",
-                  "tests.tex_coord=false", "--set", "output.folder=out"},
-                 here.path());
+        succeed(Arguments{"run"} + set({"mesh.source=file", "mesh.file=inputs/square.obj", "map.source=file",
+                                        "map.file=inputs/bump.pgm", "tests.generation_limit=4", "tests.tex_coord=false",
+                                        "output.folder=out"}),
+                here.path());
         require_same_files(first, RunFolder(here.path() / "out").files());
     }
 }
 
 TEST_CASE("a run replaces what an earlier one left in its folder") {
     const TestFolder here;
-    const std::vector<std::string> small{"--set", "output.folder=out", "--set", "tests.generation_limit=2"};
-    const auto with = [&](std::vector<std::string> more) {
-        more.insert(more.begin(), "run");
-        more.insert(more.end(), small.begin(), small.end());
-        return more;
-    };
-    run_well(with({"--set", "output.obj=true"}), here.path());
+    const Arguments small = Arguments{"run"} + set({"output.folder=out", "tests.generation_limit=2"});
+    succeed(small + set({"output.obj=true"}), here.path());
     CHECK(fs::exists(here.path() / "out/mesh.obj"));
     write_all(here.path() / "out/notes.txt", "mine");
-    run_well(with({"--set", "output.ply=false", "--set", "output.picture=false"}), here.path());
+    succeed(small + set({"output.ply=false", "output.picture=false"}), here.path());
     // A mesh of another job beside this one's statistics would be believed.
     CHECK_FALSE(fs::exists(here.path() / "out/mesh.ply"));
     CHECK_FALSE(fs::exists(here.path() / "out/mesh.obj"));

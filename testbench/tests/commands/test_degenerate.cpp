@@ -16,10 +16,8 @@ struct Attempt {
 
     explicit Attempt(const std::vector<std::string>& settings) {
         // A picture takes ten times as long as all the rest.
-        std::vector<std::string> arguments{"run", "--set", "output.folder=out", "--set", "output.picture=false"};
-        for (const std::string& setting : settings)
-            arguments.insert(arguments.end(), {"--set", setting});
-        end = run_tessera(arguments, here.path());
+        end = run_tessera(Arguments{"run"} + set({"output.folder=out", "output.picture=false"}) + set(settings),
+                          here.path());
     }
 
     /// Requires a run that went well.

@@ -12,18 +12,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-ProgramEnd run(const fs::path& folder, const std::vector<std::string>& settings,
-               const std::string& mode = "functional") {
-    std::vector<std::string> arguments{"run", "--set", "mode=" + mode, "--set", "output.picture=false"};
-    for (const std::string& setting : settings)
-        arguments.insert(arguments.end(), {"--set", setting});
-    return run_tessera(arguments, folder);
-}
-
-void require_fine(const ProgramEnd& end) {
-    INFO(end.text());
-    REQUIRE(end.exit_code == 0);
-    CHECK(end.err.empty());
+Arguments run_of(const Arguments& settings, const std::string& mode = "functional") {
+    return Arguments{"run", "--set", "mode=" + mode, "--set", "output.picture=false"} + set(settings);
 }
 
 /// One camera for all frames and the plain runs beside them.
@@ -80,7 +70,7 @@ std::vector<std::string> names_in(const fs::path& folder) {
 TEST_CASE("a frame is, byte for byte, the plain run of its scale") {
     const TestFolder here;
     const std::string mode = GENERATE("functional", "timed");
-    require_fine(run(here.path(), frames(3), mode));
+    succeed(run_of(frames(3), mode), here.path());
     CHECK(names_in(here.path() / "out") == three_frames);
     const char* const scales[] = {"0", "0.125", "0.25"};
     for (int k = 0; k < 3; ++k) {
@@ -91,11 +81,11 @@ TEST_CASE("a frame is, byte for byte, the plain run of its scale") {
         const TestFolder elsewhere;
         std::vector<std::string> plain = small;
         plain.insert(plain.end(), {std::string("displacement.scale=") + scales[k], "output.folder=" + name});
-        require_fine(run(elsewhere.path(), plain, mode));
+        succeed(run_of(plain, mode), elsewhere.path());
         require_same_files(frame.files(), RunFolder(elsewhere.path() / name).files());
 
         const auto before = frame.files();
-        require_fine(run_tessera({"run", name + "/job.toml"}, here.path()));
+        succeed({"run", name + "/job.toml"}, here.path());
         require_same_files(before, RunFolder(here.path() / name).files());
     }
     CHECK(names_in(here.path() / "out") == three_frames);
@@ -103,8 +93,7 @@ TEST_CASE("a frame is, byte for byte, the plain run of its scale") {
 
 TEST_CASE("frames grow out of a flat one, and the table says what they cost") {
     const TestFolder here;
-    const ProgramEnd end = run(here.path(), frames(3), "timed");
-    require_fine(end);
+    const ProgramEnd end = succeed(run_of(frames(3), "timed"), here.path());
     for (const glm::dvec3& position : read_ply(here.path() / "out/frame_000/mesh.ply").positions)
         REQUIRE(position.z == 0);
     const Table table = read_table(here.path() / "out/frames.csv");
@@ -134,10 +123,10 @@ TEST_CASE("frames grow out of a flat one, and the table says what they cost") {
 
 TEST_CASE("frames are the same twice, and from the job they leave") {
     const TestFolder here;
-    require_fine(run(here.path(), frames(2)));
+    succeed(run_of(frames(2)), here.path());
     const auto once = RunFolder(here.path() / "out/frame_001").files();
     const std::string table = read_all(here.path() / "out/frames.csv"), job = read_all(here.path() / "out/job.toml");
-    require_fine(run_tessera({"run", "out/job.toml"}, here.path()));
+    succeed({"run", "out/job.toml"}, here.path());
     require_same_files(once, RunFolder(here.path() / "out/frame_001").files());
     CHECK(read_all(here.path() / "out/frames.csv") == table);
     CHECK(read_all(here.path() / "out/job.toml") == job);
@@ -146,23 +135,24 @@ TEST_CASE("frames are the same twice, and from the job they leave") {
 TEST_CASE("a frame that fails ends the run with its exit code and its name") {
     const TestFolder here;
     SECTION("a limit") {
-        const ProgramEnd end = run(here.path(), frames(3, {"limits.triangles=600"}));
+        const ProgramEnd end = run_tessera(run_of(frames(3, {"limits.triangles=600"})), here.path());
         INFO(end.text());
         CHECK(end.exit_code == 4);
         CHECK_THAT(end.err, Contains("limits.triangles") && Contains("frame_001") && Contains("1 of 3"));
         CHECK(names_in(here.path() / "out") == std::vector<std::string>{"frame_000"});
     }
     SECTION("a deadlock") {
-        const ProgramEnd end =
-            run(here.path(), frames(3, {"hardware.queue_capacity=20", "hardware.queue_overflow=stall"}), "timed");
+        const ProgramEnd end = run_tessera(
+            run_of(frames(3, {"hardware.queue_capacity=20", "hardware.queue_overflow=stall"}), "timed"), here.path());
         INFO(end.text());
         CHECK(end.exit_code == 3);
         CHECK_THAT(end.err, Contains("deadlock") && Contains("frame_00"));
         CHECK_FALSE(fs::exists(here.path() / "out/frames.csv"));
     }
     SECTION("a check: all frames are there, and the failing ones are named") {
-        const ProgramEnd end = run(
-            here.path(), frames(3, {"formats.normal_bits=7", "formats.normal_fraction=5", "check.allowed_flips=0"}));
+        const ProgramEnd end = run_tessera(
+            run_of(frames(3, {"formats.normal_bits=7", "formats.normal_fraction=5", "check.allowed_flips=0"})),
+            here.path());
         INFO(end.text());
         CHECK(end.exit_code == 1);
         CHECK_THAT(end.err, Contains("frame_002") && Contains("conformance.txt") && !Contains("frame_000"));
@@ -185,10 +175,10 @@ TEST_CASE("frames of which the first fails leave the earlier run as it was") {
     const TestFolder here;
     std::vector<std::string> plain = small;
     plain.emplace_back("output.folder=out");
-    require_fine(run(here.path(), plain));
+    succeed(run_of(plain), here.path());
     const std::vector<std::string> names = names_in(here.path() / "out");
     const std::string mesh = read_all(here.path() / "out/mesh.ply");
-    const ProgramEnd end = run(here.path(), frames(3, {"limits.triangles=20"}));
+    const ProgramEnd end = run_tessera(run_of(frames(3, {"limits.triangles=20"})), here.path());
     INFO(end.text());
     CHECK(end.exit_code == 4);
     CHECK_THAT(end.err, Contains("0 of 3"));
@@ -217,29 +207,23 @@ TEST_CASE("a signal to the process of all frames ends the frame's too, and a lin
 
 TEST_CASE("frames that cannot be are refused before the first, and what was there stays") {
     const TestFolder here;
-    require_fine(run(here.path(), frames(2)));
+    succeed(run_of(frames(2)), here.path());
     const std::string table = read_all(here.path() / "out/frames.csv");
-    const auto refused = [&](const std::vector<std::string>& settings) {
-        const ProgramEnd end = run(here.path(), settings);
-        INFO(end.text());
-        CHECK(end.exit_code == 2);
-        CHECK(end.out.empty());
-        CHECK(lines_of(end.err).size() == 1);
-        return end.err;
-    };
+    const auto frames_refused = [&](const Arguments& settings) { return refused(run_of(settings), here.path()); };
     // Frame 0 could be; the displacement of the next leaves the mesh too few steps.
-    CHECK_THAT(
-        refused(frames(3, {"displacement.scale=1e6", "formats.position_bits=16", "formats.position_fraction=0"})),
-        Contains("frame_001 (displacement.scale = 500000)"));
-    CHECK_THAT(refused(frames(3, {"map.source=file", "map.file=absent.pgm"})), Contains("absent.pgm"));
-    CHECK_THAT(refused(frames(0)), Contains("frames.count") && Contains("1 .. 1000"));
-    CHECK_THAT(refused({"frames.cuont=3"}), Contains("did you mean `frames.count`?"));
+    CHECK_THAT(frames_refused(
+                   frames(3, {"displacement.scale=1e6", "formats.position_bits=16", "formats.position_fraction=0"})),
+               Contains("frame_001 (displacement.scale = 500000)"));
+    CHECK_THAT(frames_refused(frames(3, {"map.source=file", "map.file=absent.pgm"})), Contains("absent.pgm"));
+    CHECK_THAT(frames_refused(frames(0)), Contains("frames.count") && Contains("1 .. 1000"));
+    CHECK_THAT(frames_refused({"frames.cuont=3"}), Contains("did you mean `frames.count`?"));
     write_all(here.path() / "job.toml", "[frames]\ncount = 3\nfirst_skale = 0.1\n");
     const ProgramEnd end = run_tessera({"run", "job.toml"}, here.path());
     CHECK(end.exit_code == 2);
     CHECK_THAT(end.err, Contains("job.toml:3:") && Contains("first_scale"));
-    CHECK_THAT(refused(frames(3, {"mesh.source=run", "mesh.file=out/frame_001"})), Contains("its own base mesh"));
-    CHECK_THAT(refused({"mesh.source=run", "mesh.file=out"}), Contains("out/frame_000"));
+    CHECK_THAT(frames_refused(frames(3, {"mesh.source=run", "mesh.file=out/frame_001"})),
+               Contains("its own base mesh"));
+    CHECK_THAT(frames_refused({"mesh.source=run", "mesh.file=out"}), Contains("out/frame_000"));
     CHECK(read_all(here.path() / "out/frames.csv") == table);
     CHECK(fs::exists(here.path() / "out/frame_001/mesh.ply"));
 }
@@ -247,12 +231,12 @@ TEST_CASE("frames that cannot be are refused before the first, and what was ther
 TEST_CASE("what another run left in the folder does not stay beside the new one") {
     const TestFolder here;
     const fs::path out = here.path() / "out";
-    require_fine(run(here.path(), frames(5)));
+    succeed(run_of(frames(5)), here.path());
     write_all(out / "frame_004/notes.txt", "mine");
     fs::create_directory(out / "frame_100");
     write_all(out / "frame_100/picture.png", "mine, and no run's");
 
-    require_fine(run(here.path(), frames(3)));
+    succeed(run_of(frames(3)), here.path());
     std::vector<std::string> expected = three_frames;
     expected.insert(expected.begin() + 3, {"frame_004", "frame_100"});
     CHECK(names_in(out) == expected);
@@ -263,12 +247,12 @@ TEST_CASE("what another run left in the folder does not stay beside the new one"
 
     std::vector<std::string> plain = small;
     plain.emplace_back("output.folder=out");
-    require_fine(run(here.path(), plain));
+    succeed(run_of(plain), here.path());
     const std::vector<std::string> names = names_in(out);
     for (const std::string& name : names)
         CHECK(name.rfind("frame", 0) != 0);
     CHECK(std::count(names.begin(), names.end(), "mesh.ply") == 1);
 
-    require_fine(run(here.path(), frames(3)));
+    succeed(run_of(frames(3)), here.path());
     CHECK(names_in(out) == three_frames);
 }

@@ -13,22 +13,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::vector<std::string> run_with(const std::vector<std::string>& settings) {
-    std::vector<std::string> arguments{"run", "--set", "output.folder=out"};
-    for (const std::string& setting : settings) {
-        arguments.emplace_back("--set");
-        arguments.push_back(setting);
-    }
-    return arguments;
+Arguments run_with(const Arguments& settings) {
+    return Arguments{"run", "--set", "output.folder=out"} + set(settings);
 }
 
 }  // namespace
 
 TEST_CASE("highlight run: consistent, and every file names the test") {
     const TestFolder here;
-    const ProgramEnd end = run_tessera(run_with({"tests.highlight=true", "output.obj=true"}), here.path());
-    INFO(end.text());
-    REQUIRE(end.exit_code == 0);
+    const ProgramEnd end = succeed(run_with({"tests.highlight=true", "output.obj=true"}), here.path());
     CHECK_THAT(end.out, Contains("highlight alone") && Contains("all checks passed"));
     const RunFolder run(here.path() / "out");
     require_consistent(run);
@@ -42,16 +35,10 @@ TEST_CASE("highlight run: consistent, and every file names the test") {
     const auto queue_entry = run.count("formats", "queue_entry");
 
     // its pictures and its error can be had from the folder
-    const ProgramEnd picture = run_tessera({"render", "out", "--view", "test", "--size", "320"}, here.path());
-    INFO(picture.text());
-    CHECK(picture.exit_code == 0);
-    const ProgramEnd error = run_tessera({"compare", "out"}, here.path());
-    INFO(error.text());
-    CHECK(error.exit_code == 0);
+    succeed({"render", "out", "--view", "test", "--size", "320"}, here.path());
+    succeed({"compare", "out"}, here.path());
 
-    const ProgramEnd without = run_tessera(run_with({}), here.path());
-    INFO(without.text());
-    REQUIRE(without.exit_code == 0);
+    const ProgramEnd without = succeed(run_with({}), here.path());
     CHECK_THAT(without.out, !Contains("ighlight"));
     const RunFolder plain(here.path() / "out");
     require_consistent(plain);
@@ -66,12 +53,10 @@ TEST_CASE("highlight run: consistent, and every file names the test") {
 TEST_CASE("highlight run: functional and timed mode, with a queue that spills, leave the same mesh") {
     const TestFolder here;
     const auto mesh_of = [&](const std::vector<std::string>& more) {
-        std::vector<std::string> settings{"tests.highlight=true", "map.width=64", "map.height=64",
-                                          "output.picture=false", "output.obj=true"};
-        settings.insert(settings.end(), more.begin(), more.end());
-        const ProgramEnd end = run_tessera(run_with(settings), here.path());
-        INFO(end.text());
-        REQUIRE(end.exit_code == 0);
+        succeed(run_with({"tests.highlight=true", "map.width=64", "map.height=64", "output.picture=false",
+                          "output.obj=true"}) +
+                    set(more),
+                here.path());
         const auto files = RunFolder(here.path() / "out").files();
         return files.at("mesh.ply") + files.at("mesh.obj");
     };
@@ -85,12 +70,10 @@ TEST_CASE("highlight run: functional and timed mode, with a queue that spills, l
 TEST_CASE("highlight run: to the cycle a Normal Test as much longer") {
     const TestFolder here;
     const auto levels_of = [&](const std::vector<std::string>& more) {
-        std::vector<std::string> settings{"map.width=64", "map.height=64", "output.picture=false",
-                                          "timing.summed_height_table_ports=12", "tests.highlight_normal_threshold=2"};
-        settings.insert(settings.end(), more.begin(), more.end());
-        const ProgramEnd end = run_tessera(run_with(settings), here.path());
-        INFO(end.text());
-        REQUIRE(end.exit_code == 0);
+        succeed(run_with({"map.width=64", "map.height=64", "output.picture=false",
+                          "timing.summed_height_table_ports=12", "tests.highlight_normal_threshold=2"}) +
+                    set(more),
+                here.path());
         const RunFolder run(here.path() / "out");
         return std::to_string(run.count("timing", "cycles")) + "\n" + run.files().at("queue_levels.csv");
     };
@@ -105,11 +88,9 @@ TEST_CASE("highlight run: to the cycle a Normal Test as much longer") {
 TEST_CASE("highlight run: waveforms have its bit only in a design that has it") {
     const TestFolder here;
     const auto waveforms = [&](const std::string& highlight) {
-        const ProgramEnd end = run_tessera(run_with({"tests.highlight=" + highlight, "tests.generation_limit=3",
-                                                     "output.vcd=true", "output.picture=false"}),
-                                           here.path());
-        INFO(end.text());
-        REQUIRE(end.exit_code == 0);
+        succeed(run_with({"tests.highlight=" + highlight, "tests.generation_limit=3", "output.vcd=true",
+                          "output.picture=false"}),
+                here.path());
         return read_all(here.path() / "out/trace.vcd");
     };
     CHECK_THAT(waveforms("true"), Contains(" highlight $end") && Contains(" highlight [2:0] $end"));

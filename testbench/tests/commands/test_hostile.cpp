@@ -24,10 +24,8 @@ std::vector<fs::path> files_in(const fs::path& folder) {
 /// One file through the program. Good: exit code 0. Bad: one message that names it, and no trace. Nothing else.
 void try_file(const fs::path& file, const std::string& table, const std::vector<std::string>& settings) {
     const TestFolder here;
-    std::vector<std::string> arguments{"run"};
-    for (const std::string& setting : settings)
-        arguments.insert(arguments.end(), {"--set", setting});
-    arguments.insert(arguments.end(), {"--set", table + ".source=file", "--set", table + ".file=" + file.string()});
+    const Arguments arguments =
+        Arguments{"run"} + set(settings) + set({table + ".source=file", table + ".file=" + file.string()});
     const unsigned cpu_seconds = sanitized ? 200 : 20;
     const ProgramEnd end = run_tessera(arguments, here.path(), {cpu_seconds, 300});
 
@@ -110,12 +108,9 @@ TEST_CASE("what was mended in mesh and map is said and written down") {
               "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
               "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\nf 1/1 2/2 2/2\n");
     write_all(here.path() / "map.png", "P2 2 2 7\n0 1 2 3\n");
-    const ProgramEnd end = run_tessera({"run", "--set", "mesh.source=file", "--set", "mesh.file=flat.obj", "--set",
-                                        "map.source=file", "--set", "map.file=map.png", "--set", "output.folder=out"},
-                                       here.path());
-    INFO(end.text());
-    REQUIRE(end.exit_code == 0);
-    CHECK(end.err.empty());
+    const ProgramEnd end = succeed(Arguments{"run"} + set({"mesh.source=file", "mesh.file=flat.obj", "map.source=file",
+                                                           "map.file=map.png", "output.folder=out"}),
+                                   here.path());
     CHECK_THAT(end.out, Contains("note: mesh: "));
     CHECK_THAT(end.out, Contains("note: map: "));
     const RunFolder run(here.path() / "out");

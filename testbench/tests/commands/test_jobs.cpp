@@ -35,10 +35,7 @@ void check_result(const JobResult& expected, const fs::path& folder) {
 void run_job_well(const std::string& name) {
     const fs::path job = source_folder() / "testbench/examples/jobs" / (name + ".toml");
     const TestFolder here;
-    const ProgramEnd end = run_tessera({"run", job.string()}, here.path());
-    INFO(end.text());
-    REQUIRE(end.exit_code == 0);
-    CHECK(end.err.empty());
+    const ProgramEnd end = succeed({"run", job.string()}, here.path());
     CHECK_THAT(end.out, Contains("all checks passed"));
     // The paper's 30 quads do not divide the scan's 512 texels.
     CHECK((end.out.find("texel's border") != std::string::npos) == (name == "head"));
@@ -162,14 +159,11 @@ TEST_CASE("the data folder can be elsewhere") {
     const TestFolder here;
     fs::create_directories(here.path() / "data/maps");
     write_all(here.path() / "data/maps/dot.pgm", "P2 1 1 9\n5\n");
-    const std::vector<std::string> job{
-        "run", "--set", "map.source=file", "--set", "map.file=data:maps/dot.pgm", "--set", "output.folder=out"};
-    std::vector<std::string> with_option = job;
-    with_option.insert(with_option.end(), {"--data", "data"});
-    CHECK(run_tessera(with_option, here.path()).exit_code == 0);
+    const Arguments job =
+        Arguments{"run"} + set({"map.source=file", "map.file=data:maps/dot.pgm", "output.folder=out"});
+    CHECK(run_tessera(job + Arguments{"--data", "data"}, here.path()).exit_code == 0);
 
-    std::vector<std::string> command{tessera_program()};
-    command.insert(command.end(), job.begin(), job.end());
+    const Arguments command = Arguments{tessera_program()} + job;
     CHECK(run_program(command, here.path(), {}, {{"TESSERA_DATA", (here.path() / "data").string()}}).exit_code == 0);
 
     const ProgramEnd absent = run_program(command, here.path(), {}, {{"TESSERA_DATA", "absent"}});

@@ -23,13 +23,11 @@ constexpr double most_mebibytes = 256;
 constexpr unsigned soon = sanitized ? 100 : 10;  // seconds of processor time
 
 ProgramEnd run_with(const std::vector<std::string>& settings, const fs::path& folder, unsigned cpu_seconds = soon) {
-    std::vector<std::string> arguments{"run"};
-    for (const char* const setting :
-         {"mode=functional", "output.folder=out", "output.picture=false", "tests.generation_limit=1"})
-        arguments.insert(arguments.end(), {"--set", setting});
-    for (const std::string& setting : settings)
-        arguments.insert(arguments.end(), {"--set", setting});
-    return run_tessera(arguments, folder, {cpu_seconds, 500});
+    return run_tessera(
+        Arguments{"run"} +
+            set({"mode=functional", "output.folder=out", "output.picture=false", "tests.generation_limit=1"}) +
+            set(settings),
+        folder, {cpu_seconds, 500});
 }
 
 void check_ended(const ProgramEnd& end, ExitCode code) {

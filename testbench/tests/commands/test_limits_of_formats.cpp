@@ -14,12 +14,8 @@ namespace {
 
 const Arguments small{"map.width=16", "map.height=16", "tests.generation_limit=2", "output.picture=false"};
 
-ProgramEnd run_with(const Arguments& settings, const fs::path& folder) {
-    Arguments arguments{"run", "--set", "output.folder=out"};
-    for (const Arguments& some : {small, settings})
-        for (const std::string& setting : some)
-            arguments.insert(arguments.end(), {"--set", setting});
-    return run_tessera(arguments, folder);
+Arguments run_of(const Arguments& settings) {
+    return Arguments{"run", "--set", "output.folder=out"} + set(small) + set(settings);
 }
 
 /// The numbers of [timing] at one end of their ranges, but for those named.
@@ -36,10 +32,7 @@ Arguments timing_at(bool highest, const Arguments& others) {
 
 void expect_run(const Arguments& settings) {
     const TestFolder here;
-    const ProgramEnd end = run_with(settings, here.path());
-    INFO(end.text());
-    REQUIRE(end.exit_code == 0);
-    CHECK(end.err.empty());
+    succeed(run_of(settings), here.path());
     require_consistent(RunFolder(here.path() / "out"));
 }
 
@@ -55,7 +48,7 @@ TEST_CASE("limits: every number of the timing at its highest ends in a message o
         Arguments settings = timing_at(true, {});
         settings.emplace_back(std::string("mode=") + mode);
         settings.emplace_back("limits.cycles_without_progress=2147483647");
-        const ProgramEnd end = run_with(settings, here.path());
+        const ProgramEnd end = run_tessera(run_of(settings), here.path());
         INFO(end.text());
         CHECK((end.exit_code == 0 || end.exit_code == 3 || end.exit_code == 4));
         if (end.exit_code == 0)
@@ -70,23 +63,14 @@ TEST_CASE("limits: a base mesh without a triangle is refused with its file's nam
     write_all(here.path() / "points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
     write_all(here.path() / "flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
     write_all(here.path() / "empty.obj", "");
-    for (const char* const file : {"points.obj", "flat.obj", "empty.obj"}) {
-        const ProgramEnd end = run_with({"mesh.source=file", std::string("mesh.file=") + file}, here.path());
-        INFO(end.text());
-        CHECK(end.exit_code == 2);
-        CHECK(end.out.empty());
-        CHECK(lines_of(end.err).size() == 1);
-        CHECK_THAT(end.err, Contains(file));
-        CHECK_FALSE(fs::exists(here.path() / "out"));
-    }
+    for (const char* const file : {"points.obj", "flat.obj", "empty.obj"})
+        refused(run_of({"mesh.source=file", std::string("mesh.file=") + file}), here, {file});
 }
 
 TEST_CASE("limits: a view distance whose format has fewer than no fraction bits is told as it is") {
     const TestFolder here;
-    const ProgramEnd end =
-        run_with({"formats.position_bits=12", "formats.position_fraction=0", "camera.eye=[0, -30, 30]"}, here.path());
-    INFO(end.text());
-    REQUIRE(end.exit_code == 0);
+    succeed(run_of({"formats.position_bits=12", "formats.position_fraction=0", "camera.eye=[0, -30, 30]"}),
+            here.path());
     const RunFolder run(here.path() / "out");
     const auto fraction = run.statistics.at("formats").at("view_distance_fraction").at("value");
     CHECK(fraction < 0);
@@ -97,9 +81,7 @@ TEST_CASE("limits: a view distance whose format has fewer than no fraction bits 
 TEST_CASE("limits: directions as short as a number can be are directions") {
     const TestFolder here;
     const auto mesh_of = [&](const std::string& up, const std::string& light) {
-        const ProgramEnd end = run_with({"camera.up=" + up, "hardware.light=" + light}, here.path());
-        INFO(end.text());
-        REQUIRE(end.exit_code == 0);
+        succeed(run_of({"camera.up=" + up, "hardware.light=" + light}), here.path());
         return read_all(here.path() / "out/mesh.ply");
     };
     CHECK(mesh_of("[0, 0, 5e-324]", "[0, 0, 5e-324]") == mesh_of("[0, 0, 1]", "[0, 0, 1]"));
@@ -107,21 +89,15 @@ TEST_CASE("limits: directions as short as a number can be are directions") {
 
 TEST_CASE("limits: a saturation that no width helps is noted, not warned of") {
     const TestFolder here;
-    const ProgramEnd end = run_with(
-        {"map.source=constant", "camera.eye=[0, -3, 0]", "camera.target=[0, 0, 0]", "hardware.light=[0, 0, 1]"},
+    const ProgramEnd end = succeed(
+        run_of({"map.source=constant", "camera.eye=[0, -3, 0]", "camera.target=[0, 0, 0]", "hardware.light=[0, 0, 1]"}),
         here.path());
-    INFO(end.text());
-    CHECK(end.exit_code == 0);
     CHECK_THAT(end.out, Contains("note: intensity: ") && Contains("no key widens") && !Contains("warning: "));
 }
 
 TEST_CASE("limits: a threshold below its register's step is refused before the work") {
     const TestFolder here;
-    const ProgramEnd end = run_with({"tests.highlight=true", "tests.highlight_normal_threshold=1e-5"}, here.path());
-    INFO(end.text());
-    CHECK(end.exit_code == 2);
-    CHECK(lines_of(end.err).size() == 1);
-    CHECK_THAT(end.err, Contains("tests.highlight_normal_threshold = 1e-05") && Contains("6.103515625e-05") &&
-                            Contains("formats.normal_fraction"));
+    refused(run_of({"tests.highlight=true", "tests.highlight_normal_threshold=1e-5"}), here.path(),
+            {"tests.highlight_normal_threshold = 1e-05", "6.103515625e-05", "formats.normal_fraction"});
     CHECK(here.names().empty());
 }

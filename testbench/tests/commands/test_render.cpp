@@ -12,18 +12,12 @@ namespace fs = std::filesystem;
 namespace {
 
 /// A small run in here/run: a second or less.
-void make_run(const fs::path& here, const std::vector<std::string>& settings = {}) {
-    std::vector<std::string> arguments{"run"};
-    std::vector<std::string> all{"mode=functional", "check.golden=false", "check.end_to_end=false", "output.obj=false",
-                                 "map.width=64",    "map.height=64",      "output.folder=run"};
-    all.insert(all.end(), settings.begin(), settings.end());
-    for (const std::string& setting : all) {
-        arguments.push_back("--set");
-        arguments.push_back(setting);
-    }
-    const ProgramEnd end = run_tessera(arguments, here);
-    INFO(end.text());
-    REQUIRE(end.exit_code == 0);
+void make_run(const fs::path& here, const Arguments& settings = {}) {
+    succeed(Arguments{"run"} +
+                set({"mode=functional", "check.golden=false", "check.end_to_end=false", "output.obj=false",
+                     "map.width=64", "map.height=64", "output.folder=run"}) +
+                set(settings),
+            here);
 }
 
 struct Pixels {
@@ -41,29 +35,8 @@ Pixels read_png(const fs::path& path) {
     return pixels;
 }
 
-std::string rendered(std::vector<std::string> arguments, const fs::path& here) {
-    arguments.insert(arguments.begin(), "render");
-    const ProgramEnd end = run_tessera(arguments, here);
-    INFO(end.text());
-    REQUIRE(end.exit_code == 0);
-    CHECK(end.err.empty());
-    return end.out;
-}
-
-/// Requires this exit code, one message on standard error with these words, and no new file.
-void refused(std::vector<std::string> arguments, const TestFolder& here, const std::vector<std::string>& words,
-             int exit_code = 2) {
-    const std::vector<std::string> before = here.names();
-    arguments.insert(arguments.begin(), "render");
-    const ProgramEnd end = run_tessera(arguments, here.path());
-    INFO(end.text());
-    CHECK(end.exit_code == exit_code);
-    CHECK(end.signal == 0);
-    CHECK(end.out.empty());
-    CHECK(lines_of(end.err).size() == 1);
-    for (const std::string& word : words)
-        CHECK_THAT(end.err, Contains(word));
-    CHECK(here.names() == before);
+std::string rendered(const Arguments& arguments, const fs::path& here) {
+    return succeed(Arguments{"render"} + arguments, here).out;
 }
 
 bool all_background(const Pixels& pixels) {
@@ -185,52 +158,52 @@ TEST_CASE("render: hostile arguments are refused in one line") {
     make_run(here.path());
     for (const std::string size : {"0", "0x0", "1x1", "100000x1", "63x64", "64x16385", "-5x100", "x", "64x", "x64",
                                    "64x64x64", "1e3", "99999999999x99999999999"})
-        refused({"run", "--size=" + size}, here, {"--size", "64", "16384"});
-    refused({"run", "--size", "16384x16384"}, here, {"--size", "33554432"});
-    refused({"run", "--size", "16384"}, here, {"--size", "33554432"});
-    refused({"run", "--eye", "1", "1", "1", "--target", "1", "1", "1"}, here, {"--eye", "camera.target"});
-    refused({"run", "--eye", "0", "0", "3", "--target", "0", "0", "0", "--up", "0", "0", "-2"}, here,
+        refused({"render", "run", "--size=" + size}, here, {"--size", "64", "16384"});
+    refused({"render", "run", "--size", "16384x16384"}, here, {"--size", "33554432"});
+    refused({"render", "run", "--size", "16384"}, here, {"--size", "33554432"});
+    refused({"render", "run", "--eye", "1", "1", "1", "--target", "1", "1", "1"}, here, {"--eye", "camera.target"});
+    refused({"render", "run", "--eye", "0", "0", "3", "--target", "0", "0", "0", "--up", "0", "0", "-2"}, here,
             {"--up", "parallel"});
-    refused({"run", "--up", "0", "0", "0"}, here, {"--up", "no direction"});
-    refused({"run", "--eye", "nan", "0", "0"}, here, {"--eye", "camera.eye"});
-    refused({"run", "--eye", "1", "2"}, here, {"--eye"});
-    refused({"run", "--eye", "1", "2", "east"}, here, {"--eye"});
-    refused({"run", "--field-of-view", "180"}, here, {"camera.field_of_view", "180"});
-    refused({"run", "--field-of-view", "0"}, here, {"camera.field_of_view"});
-    refused({"run", "--zoom", "0.5", "1.5", "2"}, here, {"--zoom", "1.5"});
-    refused({"run", "--zoom", "0.5", "0.5", "0"}, here, {"--zoom", "10000"});
-    refused({"run", "--zoom", "0.5", "0.5", "nan"}, here, {"--zoom"});
-    refused({"run", "--zoom", "0.5", "0.5"}, here, {"--zoom"});
-    refused({"run", "--line-width", "0"}, here, {"--line-width", "0.1", "50"});
-    refused({"run", "--line-width", "nan"}, here, {"--line-width"});
-    refused({"run", "--error-scale", "0"}, here, {"--error-scale"});
-    refused({"run", "--error-scale", "0.5"}, here, {"--error-scale 0.5", "--view error"});
-    refused({"run", "--view", "test,wireframe", "--error-scale", "0.5"}, here, {"--view error"});
-    refused({"run", "--view", "shadow"}, here, {"shadow", "shaded"});
-    refused({"run", "--view", ""}, here, {"--view"});
-    refused({"run", "--exr", "double"}, here, {"--exr", "half"});
+    refused({"render", "run", "--up", "0", "0", "0"}, here, {"--up", "no direction"});
+    refused({"render", "run", "--eye", "nan", "0", "0"}, here, {"--eye", "camera.eye"});
+    refused({"render", "run", "--eye", "1", "2"}, here, {"--eye"});
+    refused({"render", "run", "--eye", "1", "2", "east"}, here, {"--eye"});
+    refused({"render", "run", "--field-of-view", "180"}, here, {"camera.field_of_view", "180"});
+    refused({"render", "run", "--field-of-view", "0"}, here, {"camera.field_of_view"});
+    refused({"render", "run", "--zoom", "0.5", "1.5", "2"}, here, {"--zoom", "1.5"});
+    refused({"render", "run", "--zoom", "0.5", "0.5", "0"}, here, {"--zoom", "10000"});
+    refused({"render", "run", "--zoom", "0.5", "0.5", "nan"}, here, {"--zoom"});
+    refused({"render", "run", "--zoom", "0.5", "0.5"}, here, {"--zoom"});
+    refused({"render", "run", "--line-width", "0"}, here, {"--line-width", "0.1", "50"});
+    refused({"render", "run", "--line-width", "nan"}, here, {"--line-width"});
+    refused({"render", "run", "--error-scale", "0"}, here, {"--error-scale"});
+    refused({"render", "run", "--error-scale", "0.5"}, here, {"--error-scale 0.5", "--view error"});
+    refused({"render", "run", "--view", "test,wireframe", "--error-scale", "0.5"}, here, {"--view error"});
+    refused({"render", "run", "--view", "shadow"}, here, {"shadow", "shaded"});
+    refused({"render", "run", "--view", ""}, here, {"--view"});
+    refused({"render", "run", "--exr", "double"}, here, {"--exr", "half"});
 }
 
 TEST_CASE("render: folders that are no runs, and outputs that cannot be") {
     const TestFolder here;
-    refused({}, here, {"--help"});
-    refused({""}, here, {"RUN"});
-    refused({"absent"}, here, {"absent"});
+    refused({"render"}, here, {"--help"});
+    refused({"render", ""}, here, {"RUN"});
+    refused({"render", "absent"}, here, {"absent"});
     make_run(here.path());
     fs::create_directory(here.path() / "empty");
-    refused({"empty"}, here, {"empty", "job.toml"});
+    refused({"render", "empty"}, here, {"empty", "job.toml"});
     write_all(here.path() / "file", "mine");
-    refused({"file"}, here, {"file"});
-    refused({"run", "--output", ""}, here, {"--output"});
-    refused({"run", "--output", "a.jpg"}, here, {"a.jpg", ".png", ".exr"});
-    refused({"run", "--output", "file/a.png"}, here, {"--output", "file"});
-    refused({"run", "--output", "file"}, here, {"--output", "file"});
-    refused({"run", "--output", "/proc/tessera/a.png"}, here, {"--output", "/proc"});
-    refused({"run", "--output", "a.png", "--exr", "half"}, here, {"a.png", "--exr"});
-    refused({"run", "--view", "shaded,test", "--output", "a.png"}, here, {"a.png", "folder"});
+    refused({"render", "file"}, here, {"file"});
+    refused({"render", "run", "--output", ""}, here, {"--output"});
+    refused({"render", "run", "--output", "a.jpg"}, here, {"a.jpg", ".png", ".exr"});
+    refused({"render", "run", "--output", "file/a.png"}, here, {"--output", "file"});
+    refused({"render", "run", "--output", "file"}, here, {"--output", "file"});
+    refused({"render", "run", "--output", "/proc/tessera/a.png"}, here, {"--output", "/proc"});
+    refused({"render", "run", "--output", "a.png", "--exr", "half"}, here, {"a.png", "--exr"});
+    refused({"render", "run", "--view", "shaded,test", "--output", "a.png"}, here, {"a.png", "folder"});
     CHECK(read_all(here.path() / "file") == "mine");
     fs::remove(here.path() / "run/mesh.ply");
-    refused({"run"}, here, {"mesh.ply"});
+    refused({"render", "run"}, here, {"mesh.ply"});
 }
 
 TEST_CASE("render: a disk that is full ends it with exit code 4 and no picture") {

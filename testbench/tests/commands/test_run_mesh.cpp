@@ -12,34 +12,17 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::vector<std::string> arguments_of(const std::vector<std::string>& settings) {
-    std::vector<std::string> arguments{"run"};
-    for (const std::string& setting : settings)
-        arguments.insert(arguments.end(), {"--set", setting});
-    for (const char* const setting : {"mode=functional", "output.picture=false"})
-        arguments.insert(arguments.end(), {"--set", setting});
-    return arguments;
+Arguments arguments_of(const Arguments& settings) {
+    return Arguments{"run"} + set(settings) + set({"mode=functional", "output.picture=false"});
 }
 
 /// Runs to the end, checked in all that any run must satisfy; gives what it left.
 RunFolder run(const fs::path& folder, const std::string& name, std::vector<std::string> settings) {
     settings.push_back("output.folder=runs/" + name);
-    const ProgramEnd end = run_tessera(arguments_of(settings), folder);
-    INFO(end.text());
-    REQUIRE(end.exit_code == 0);
-    CHECK(end.err.empty());
+    succeed(arguments_of(settings), folder);
     RunFolder left(folder / "runs" / name);
     require_consistent(left);
     return left;
-}
-
-std::string refused(const fs::path& folder, const std::vector<std::string>& settings) {
-    const ProgramEnd end = run_tessera(arguments_of(settings), folder);
-    INFO(end.text());
-    CHECK(end.exit_code == 2);
-    CHECK(end.out.empty());
-    CHECK(lines_of(end.err).size() == 1);
-    return end.err;
 }
 
 std::vector<std::string> on(const std::string& base, std::vector<std::string> settings) {
@@ -150,9 +133,7 @@ TEST_CASE("a run on a run is the same twice, and from its own folder") {
     const auto once = run(here.path(), "second", settings).files();
     require_same_files(once, run(here.path(), "second", settings).files());
     CHECK_THAT(once.at("job.toml"), Contains("file = \"../first\"") && Contains("source = \"run\""));
-    const ProgramEnd end = run_tessera({"run", "runs/second/job.toml"}, here.path());
-    INFO(end.text());
-    REQUIRE(end.exit_code == 0);
+    succeed({"run", "runs/second/job.toml"}, here.path());
     require_same_files(once, RunFolder(here.path() / "runs/second").files());
 }
 
@@ -181,11 +162,8 @@ TEST_CASE("compare and render read a run on a run, and the first run's own input
         on("first", {"map.source=noise", "displacement.scale=0.02", "map.width=32", "map.height=32",
                      "tests.view_threshold=12"}));
     for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
-             {"compare", "runs/second"}, {"render", "runs/second", "--view", "error", "--size", "200"}}) {
-        const ProgramEnd end = run_tessera(arguments, here.path());
-        INFO(end.text());
-        CHECK(end.exit_code == 0);
-    }
+             {"compare", "runs/second"}, {"render", "runs/second", "--view", "error", "--size", "200"}})
+        succeed(arguments, here.path());
     const auto error = nlohmann::json::parse(read_all(here.path() / "runs/second/error.json"));
     // A base mesh made otherwise than the run's would be off by the first map's height.
     CHECK(error.at("interpolated").at("mesh_to_reference_max").at("value").get<double>() < 0.06);
@@ -201,22 +179,19 @@ TEST_CASE("compare and render read a run on a run, and the first run's own input
 
 TEST_CASE("a base mesh that is no finished run's is refused with what it is") {
     const TestFolder here;
-    CHECK_THAT(refused(here.path(), {"mesh.source=run"}), Contains("mesh.file") && Contains("folder of a run"));
-    CHECK_THAT(refused(here.path(), on("absent", {})), Contains("runs/absent: no such folder"));
+    refused(arguments_of({"mesh.source=run"}), here.path(), {"mesh.file", "folder of a run"});
+    refused(arguments_of(on("absent", {})), here.path(), {"runs/absent: no such folder"});
     fs::create_directories(here.path() / "runs/empty");
-    CHECK_THAT(refused(here.path(), on("empty", {})),
-               Contains("mesh.file") && Contains("runs/empty") && Contains("interrupted"));
+    refused(arguments_of(on("empty", {})), here.path(), {"mesh.file", "runs/empty", "interrupted"});
     write_all(here.path() / "runs/empty/job.toml", "");
-    CHECK_THAT(refused(here.path(), on("empty", {})), Contains("left no mesh") && Contains("interrupted"));
+    refused(arguments_of(on("empty", {})), here.path(), {"left no mesh", "interrupted"});
     run(here.path(), "first", {"tests.generation_limit=1"});
-    CHECK_THAT(refused(here.path(), on("first/mesh.ply", {})), Contains("name the folder"));
-    CHECK_THAT(refused(here.path(), on("first", {"output.folder=runs/first/"})),
-               Contains("output.folder") && Contains("its own base mesh"));
+    refused(arguments_of(on("first/mesh.ply", {})), here.path(), {"name the folder"});
+    refused(arguments_of(on("first", {"output.folder=runs/first/"})), here.path(),
+            {"output.folder", "its own base mesh"});
     CHECK(fs::exists(here.path() / "runs/first/mesh.ply"));
-    const ProgramEnd end = run_tessera(
-        arguments_of({"output.ply=false", "tests.generation_limit=1", "output.folder=runs/first"}), here.path());
-    REQUIRE(end.exit_code == 0);
-    CHECK_THAT(refused(here.path(), on("first", {})), Contains("--set output.ply=true"));
+    succeed(arguments_of({"output.ply=false", "tests.generation_limit=1", "output.folder=runs/first"}), here.path());
+    refused(arguments_of(on("first", {})), here.path(), {"--set output.ply=true"});
 }
 
 TEST_CASE("a run takes away neither the mesh file nor the map file that it reads") {
@@ -224,21 +199,18 @@ TEST_CASE("a run takes away neither the mesh file nor the map file that it reads
     run(here.path(), "first", {"tests.generation_limit=1", "output.obj=true"});
     const std::string mesh = read_all(here.path() / "runs/first/mesh.obj");
     for (const char* const frames : {"frames.count=1", "frames.count=2"}) {
-        CHECK_THAT(refused(here.path(),
-                           {"mesh.source=file", "mesh.file=runs/first/mesh.obj", "output.folder=runs/first", frames}),
-                   Contains("its own base mesh") && Contains("mesh.obj"));
-        CHECK_THAT(refused(here.path(),
-                           {"map.source=file", "map.file=runs/first/picture.png", "output.folder=runs/first", frames}),
-                   Contains("its own map") && Contains("picture.png"));
+        refused(arguments_of({"mesh.source=file", "mesh.file=runs/first/mesh.obj", "output.folder=runs/first", frames}),
+                here.path(), {"its own base mesh", "mesh.obj"});
+        refused(
+            arguments_of({"map.source=file", "map.file=runs/first/picture.png", "output.folder=runs/first", frames}),
+            here.path(), {"its own map", "picture.png"});
     }
     CHECK(read_all(here.path() / "runs/first/mesh.obj") == mesh);
     // A file of another name may lie there.
     fs::copy(here.path() / "runs/first/mesh.obj", here.path() / "runs/first/base.obj");
-    const ProgramEnd end = run_tessera(arguments_of({"mesh.source=file", "mesh.file=runs/first/base.obj",
-                                                     "tests.generation_limit=1", "output.folder=runs/first"}),
-                                       here.path());
-    INFO(end.text());
-    CHECK(end.exit_code == 0);
+    succeed(arguments_of({"mesh.source=file", "mesh.file=runs/first/base.obj", "tests.generation_limit=1",
+                          "output.folder=runs/first"}),
+            here.path());
     CHECK(fs::exists(here.path() / "runs/first/base.obj"));
 }
 
@@ -259,14 +231,10 @@ TEST_CASE("a run that is cut short in its folder leaves the job and the mesh of 
 
 TEST_CASE("the teapot's donuts take a second map") {
     const TestFolder here;
-    const auto teapot = [&](const std::string& name, std::vector<std::string> settings) {
-        std::vector<std::string> arguments = arguments_of(settings);
-        arguments.insert(arguments.begin() + 1, (source_folder() / "testbench/examples/jobs/teapot.toml").string());
-        arguments.insert(arguments.end(), {"--set", "output.folder=runs/" + name, "--set", "check.end_to_end=false",
-                                           "--set", "output.obj=false"});
-        const ProgramEnd end = run_tessera(arguments, here.path());
-        INFO(end.text());
-        REQUIRE(end.exit_code == 0);
+    const auto teapot = [&](const std::string& name, const Arguments& settings) {
+        succeed(arguments_of(settings) + Arguments{(source_folder() / "testbench/examples/jobs/teapot.toml").string()} +
+                    set({"output.folder=runs/" + name, "check.end_to_end=false", "output.obj=false"}),
+                here.path());
         return RunFolder(here.path() / "runs" / name);
     };
     const RunFolder first = teapot("first", {});

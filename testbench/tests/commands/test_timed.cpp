@@ -13,21 +13,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::vector<std::string> timed_run(const std::string& folder, const std::vector<std::string>& settings) {
-    std::vector<std::string> arguments{"run", "--set", "output.folder=" + folder};
-    for (const std::string& setting : settings) {
-        arguments.emplace_back("--set");
-        arguments.push_back(setting);
-    }
-    return arguments;
+Arguments timed_run(const std::string& folder, const Arguments& settings) {
+    return Arguments{"run", "--set", "output.folder=" + folder} + set(settings);
 }
 
-const std::vector<std::string> small{"map.width=64", "map.height=64", "output.picture=false"};
-
-std::vector<std::string> with(std::vector<std::string> settings, const std::vector<std::string>& more) {
-    settings.insert(settings.end(), more.begin(), more.end());
-    return settings;
-}
+const Arguments small{"map.width=64", "map.height=64", "output.picture=false"};
 
 }  // namespace
 
@@ -52,15 +42,12 @@ TEST_CASE("timed run: no progress within the bound ends with exit code 3") {
 
 TEST_CASE("timed run: to be slow is no livelock") {
     const TestFolder here;
-    const std::vector<std::string> tiny{"tests.generation_limit=1", "output.picture=false", "check.end_to_end=false"};
+    const Arguments tiny{"tests.generation_limit=1", "output.picture=false", "check.end_to_end=false"};
     for (const std::vector<std::string>& slow : std::vector<std::vector<std::string>>{
              {"timing.transform_latency=1000000", "limits.cycles_without_progress=1000"},
              {"timing.stalls_per_mille=1000", "timing.stalls_longest=1000000"},
-             {"timing.lighting_latency=2000", "limits.cycles_without_progress=1000"}}) {
-        const ProgramEnd end = run_tessera(timed_run("out", with(tiny, slow)), here.path());
-        INFO(end.text());
-        CHECK(end.exit_code == 0);
-    }
+             {"timing.lighting_latency=2000", "limits.cycles_without_progress=1000"}})
+        succeed(timed_run("out", tiny + slow), here.path());
 }
 
 TEST_CASE("timed run: off-chip memory that is full ends with exit code 4 and names the key") {
@@ -80,14 +67,8 @@ TEST_CASE("timed run: off-chip memory that is full ends with exit code 4 and nam
 TEST_CASE("timed run: a window or units to trace without a trace are refused") {
     const TestFolder here;
     for (const std::vector<std::string>& option :
-         std::vector<std::vector<std::string>>{{"--trace", "5:50"}, {"--trace-units", "queue"}}) {
-        std::vector<std::string> arguments = timed_run("out", {});
-        arguments.insert(arguments.end(), option.begin(), option.end());
-        const ProgramEnd end = run_tessera(arguments, here.path());
-        INFO(end.text());
-        CHECK(end.exit_code == 2);
-        CHECK_THAT(end.err, Contains(option[0]) && Contains("--vcd") && Contains("--timeline"));
-    }
+         std::vector<std::vector<std::string>>{{"--trace", "5:50"}, {"--trace-units", "queue"}})
+        refused(timed_run("out", {}) + option, here.path(), {option[0], "--vcd", "--timeline"});
 }
 
 TEST_CASE("timed run: a queue that may not overflow ends with exit code 4 and names the key") {
@@ -101,13 +82,11 @@ TEST_CASE("timed run: a queue that may not overflow ends with exit code 4 and na
 
 TEST_CASE("timed run: the same job twice leaves the same bytes") {
     const TestFolder here;
-    const std::vector<std::string> settings =
-        with(small, {"hardware.queue_capacity=8", "hardware.tests_units=3", "timing.stalls_per_mille=200"});
+    const Arguments settings =
+        small + Arguments{"hardware.queue_capacity=8", "hardware.tests_units=3", "timing.stalls_per_mille=200"};
     for (const char* const folder : {"a", "b"}) {
         fs::create_directories(here.path() / folder);
-        const ProgramEnd end = run_tessera(timed_run("out", settings), here.path() / folder);
-        INFO(end.text());
-        REQUIRE(end.exit_code == 0);
+        const ProgramEnd end = succeed(timed_run("out", settings), here.path() / folder);
         CHECK_THAT(end.out, Contains("all checks passed"));
     }
     const RunFolder a(here.path() / "a/out"), b(here.path() / "b/out");
@@ -117,10 +96,8 @@ TEST_CASE("timed run: the same job twice leaves the same bytes") {
 
 TEST_CASE("timed run: the mesh files are functional mode's, byte for byte, stalls or not") {
     const TestFolder here;
-    const auto mesh_of = [&](const std::string& folder, const std::vector<std::string>& settings) {
-        const ProgramEnd end = run_tessera(timed_run(folder, with(small, settings)), here.path());
-        INFO(end.text());
-        REQUIRE(end.exit_code == 0);
+    const auto mesh_of = [&](const std::string& folder, const Arguments& settings) {
+        succeed(timed_run(folder, small + settings), here.path());
         auto files = RunFolder(here.path() / folder).files();
         return files.at("mesh.ply");
     };

@@ -14,15 +14,6 @@ namespace {
 
 const Arguments small_map{"--set", "map.width=64", "--set", "map.height=64"};
 
-std::string refused(const Arguments& arguments, const fs::path& folder) {
-    const ProgramEnd end = run_tessera(arguments, folder);
-    INFO(end.text());
-    CHECK(end.exit_code == 2);
-    CHECK(end.out.empty());
-    CHECK(lines_of(end.err).size() == 1);
-    return end.err;
-}
-
 /// Runs the tuned job and compares it: error.json must have the tuner's figures to the last bit.
 void check_by_run_and_compare(const fs::path& folder, const std::string& name) {
     const Json tuned = read_json(folder / (name + ".json"));

@@ -10,25 +10,6 @@ using namespace tessera;
 using Catch::Contains;
 namespace fs = std::filesystem;
 
-namespace {
-
-/// Requires exit code 2, one message on standard error with these words, and no trace; gives the message.
-std::string refused(const std::vector<std::string>& arguments, const fs::path& folder,
-                    const std::vector<std::string>& words) {
-    const ProgramEnd end = run_tessera(arguments, folder);
-    INFO(end.text());
-    CHECK(end.exit_code == 2);
-    CHECK(end.out.empty());
-    CHECK(lines_of(end.err).size() == 1);
-    CHECK(end.err.rfind("tessera: ", 0) == 0);
-    for (const std::string& word : words)
-        CHECK_THAT(end.err, Contains(word));
-    CHECK_FALSE(fs::exists(folder / "runs"));
-    return end.err;
-}
-
-}  // namespace
-
 TEST_CASE("wrong usage is refused in one line that says how to find help") {
     const TestFolder here;
     for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{{},
@@ -38,56 +19,56 @@ TEST_CASE("wrong usage is refused in one line that says how to find help") {
                                                                                            {"run", "--data"},
                                                                                            {"keys", "--all"},
                                                                                            {"run", "a", "b"}})
-        refused(arguments, here.path(), {"--help"});
-    refused({"rum"}, here.path(), {"rum"});
-    refused({"run", "--verbose"}, here.path(), {"--verbose"});
-    refused({"run", ""}, here.path(), {"JOB", "empty"});
+        refused(arguments, here, {"--help"});
+    refused({"rum"}, here, {"rum"});
+    refused({"run", "--verbose"}, here, {"--verbose"});
+    refused({"run", ""}, here, {"JOB", "empty"});
     CHECK(here.names().empty());
 }
 
 TEST_CASE("a mistyped key is refused with file, line and what was meant") {
     const TestFolder here;
     write_all(here.path() / "job.toml", "[tests]\nnormal = true\nview_treshold = 2\n");
-    refused({"run", "job.toml"}, here.path(), {"job.toml:3:", "view_treshold", "view_threshold"});
+    refused({"run", "job.toml"}, here, {"job.toml:3:", "view_treshold", "view_threshold"});
     write_all(here.path() / "job.toml", "[test]\nnormal = true\n");
-    refused({"run", "job.toml"}, here.path(), {"job.toml:1:", "test", "tests"});
+    refused({"run", "job.toml"}, here, {"job.toml:1:", "test", "tests"});
     write_all(here.path() / "job.toml", "[tests]\nview_threshold = \"near\"\n");
-    refused({"run", "job.toml"}, here.path(), {"job.toml:2:", "view_threshold", "a number"});
+    refused({"run", "job.toml"}, here, {"job.toml:2:", "view_threshold", "a number"});
     write_all(here.path() / "job.toml", "[tests\n");
-    refused({"run", "job.toml"}, here.path(), {"job.toml:1:"});
+    refused({"run", "job.toml"}, here, {"job.toml:1:"});
     // also where the job would only be printed
-    refused({"run", "job.toml", "--dump-config"}, here.path(), {"job.toml:1:"});
+    refused({"run", "job.toml", "--dump-config"}, here, {"job.toml:1:"});
 }
 
 TEST_CASE("a setting that is unknown, out of range or no setting is refused") {
     const TestFolder here;
-    refused({"run", "--set", "tests.view_treshold=2"}, here.path(), {"tests.view_treshold", "tests.view_threshold"});
-    refused({"run", "--set", "nonsense=2"}, here.path(), {"nonsense", "tessera keys"});
-    refused({"run", "--set", "tests.view_threshold"}, here.path(), {"tests.view_threshold"});
-    refused({"run", "--set", "tests.view_threshold=-1"}, here.path(), {"tests.view_threshold", "-1"});
-    refused({"run", "--set", "tests.view_threshold=nan"}, here.path(), {"tests.view_threshold", "nan"});
-    refused({"run", "--set", "map.width=0"}, here.path(), {"map.width", "0"});
-    refused({"run", "--set", "map.width=4097"}, here.path(), {"map.width", "4097", "4096"});
-    refused({"run", "--set", "output.folder="}, here.path(), {"output.folder"});
-    refused({"run", "--set", "map.source=file"}, here.path(), {"map.file"});
-    refused({"run", "--set", "camera.eye=[0, 0, 0]", "--set", "camera.target=[0, 0, 0]"}, here.path(),
+    refused({"run", "--set", "tests.view_treshold=2"}, here, {"tests.view_treshold", "tests.view_threshold"});
+    refused({"run", "--set", "nonsense=2"}, here, {"nonsense", "tessera keys"});
+    refused({"run", "--set", "tests.view_threshold"}, here, {"tests.view_threshold"});
+    refused({"run", "--set", "tests.view_threshold=-1"}, here, {"tests.view_threshold", "-1"});
+    refused({"run", "--set", "tests.view_threshold=nan"}, here, {"tests.view_threshold", "nan"});
+    refused({"run", "--set", "map.width=0"}, here, {"map.width", "0"});
+    refused({"run", "--set", "map.width=4097"}, here, {"map.width", "4097", "4096"});
+    refused({"run", "--set", "output.folder="}, here, {"output.folder"});
+    refused({"run", "--set", "map.source=file"}, here, {"map.file"});
+    refused({"run", "--set", "camera.eye=[0, 0, 0]", "--set", "camera.target=[0, 0, 0]"}, here,
             {"camera.eye", "camera.target"});
 }
 
 TEST_CASE("a run folder that cannot be is refused before the work") {
     const TestFolder here;
     write_all(here.path() / "file", "mine");
-    refused({"run", "--set", "output.folder=file"}, here.path(), {"output.folder", "file"});
-    refused({"run", "--set", "output.folder=file/below"}, here.path(), {"output.folder", "file"});
+    refused({"run", "--set", "output.folder=file"}, here, {"output.folder", "file"});
+    refused({"run", "--set", "output.folder=file/below"}, here, {"output.folder", "file"});
     CHECK(read_all(here.path() / "file") == "mine");
-    refused({"run", "--set", "output.folder=/proc/tessera"}, here.path(), {"output.folder", "/proc"});
+    refused({"run", "--set", "output.folder=/proc/tessera"}, here, {"output.folder", "/proc"});
     fs::create_symlink("nowhere", here.path() / "dangling");
-    refused({"run", "--set", "output.folder=dangling"}, here.path(), {"output.folder", "dangling"});
+    refused({"run", "--set", "output.folder=dangling"}, here, {"output.folder", "dangling"});
     if (::geteuid() != 0) {  // root may write anywhere
         fs::create_directory(here.path() / "locked");
         fs::permissions(here.path() / "locked", fs::perms::owner_read | fs::perms::owner_exec);
-        refused({"run", "--set", "output.folder=locked"}, here.path(), {"output.folder", "locked", "ermission"});
-        refused({"run", "--set", "output.folder=locked/below"}, here.path(), {"output.folder", "locked"});
+        refused({"run", "--set", "output.folder=locked"}, here, {"output.folder", "locked", "ermission"});
+        refused({"run", "--set", "output.folder=locked/below"}, here, {"output.folder", "locked"});
     }
     fs::create_directories(here.path() / "taken/mesh.ply");
     const ProgramEnd end =
@@ -147,12 +128,9 @@ TEST_CASE("a stated limit ends a run with exit code 4, one message and no trace"
 
 TEST_CASE("the largest map runs") {
     const TestFolder here;
-    const ProgramEnd end =
-        run_tessera({"run", "--set", "map.source=noise", "--set", "map.width=4096", "--set", "map.height=4096", "--set",
-                     "tests.normal_threshold=1", "--set", "tests.generation_limit=6", "--set", "output.folder=out"},
-                    here.path());
-    INFO(end.text());
-    REQUIRE(end.exit_code == 0);
+    succeed(Arguments{"run"} + set({"map.source=noise", "map.width=4096", "map.height=4096", "tests.normal_threshold=1",
+                                    "tests.generation_limit=6", "output.folder=out"}),
+            here.path());
     const RunFolder run(here.path() / "out");
     require_consistent(run);
     CHECK(run.count("displacement_map", "size") == std::uint64_t{4096} * 4096 * 2);

@@ -29,31 +29,24 @@ bool is_unfinished(const std::string& name) {
 }
 
 /// A run small enough to be made some hundred times, with every file there is but the picture, which takes long.
-std::vector<std::string> run_arguments(const std::string& seed) {
-    std::vector<std::string> arguments{"run", "--vcd", "--timeline"};
-    for (const char* const setting : {"map.width=16", "map.height=16", "map.source=noise", "tests.generation_limit=3",
-                                      "output.picture=false", "output.trace_to=3000", "output.folder=out/run"})
-        arguments.insert(arguments.end(), {"--set", setting});
-    arguments.insert(arguments.end(), {"--set", "map.seed=" + seed});
-    return arguments;
+Arguments run_arguments(const std::string& seed) {
+    return Arguments{"run", "--vcd", "--timeline"} +
+           set({"map.width=16", "map.height=16", "map.source=noise", "tests.generation_limit=3", "output.picture=false",
+                "output.trace_to=3000", "output.folder=out/run", "map.seed=" + seed});
 }
 
 ProgramEnd run_failing(const std::vector<std::string>& arguments, const fs::path& folder, long at,
                        const std::string& what) {
-    std::vector<std::string> command{tessera_program()};
-    command.insert(command.end(), arguments.begin(), arguments.end());
     return run_program(
-        command, folder, {},
+        Arguments{tessera_program()} + arguments, folder, {},
         {{"LD_PRELOAD", TESSERA_FAILING_DISK}, {"TESSERA_FAILING_DISK", std::to_string(at) + ":" + what}});
 }
 
 /// How many of its calls concern the disk.
 long disk_calls(const std::vector<std::string>& arguments, const fs::path& folder) {
     const TestFolder log;
-    std::vector<std::string> command{tessera_program()};
-    command.insert(command.end(), arguments.begin(), arguments.end());
     const ProgramEnd end =
-        run_program(command, folder, {},
+        run_program(Arguments{tessera_program()} + arguments, folder, {},
                     {{"LD_PRELOAD", TESSERA_FAILING_DISK}, {"TESSERA_DISK_LOG", (log.path() / "calls").string()}});
     INFO(end.text());
     REQUIRE(end.exit_code == 0);
@@ -160,31 +153,24 @@ TEST_CASE("a folder that is not for a run is refused") {
     const TestFolder here;
     for (const char* const folder : {"mine", "runs/frame_001"})
         fs::create_directories(here.path() / "work/deep" / folder);
-    const auto refused = [&](const std::string& folder, const std::vector<std::string>& more = {}) {
-        std::vector<std::string> arguments{"run"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        arguments.insert(arguments.end(), {"--set", "output.folder=" + folder, "--set", "map.width=16"});
-        const ProgramEnd end = run_tessera(arguments, here.path() / "work/deep");
-        INFO(end.text());
-        CHECK(end.exit_code == 2);
-        CHECK(lines_of(end.err).size() == 1);
-        CHECK_THAT(end.err, Contains("output.folder = \"" + folder + "\""));
-        return end.err;
+    const auto folder_refused = [&](const std::string& folder, const Arguments& more = {}) {
+        return refused(Arguments{"run"} + more + set({"output.folder=" + folder, "map.width=16"}),
+                       here.path() / "work/deep", {"output.folder = \"" + folder + "\""});
     };
     for (const std::string& folder : {std::string("/"), std::string(".."), std::string("../.."), here.path().string()})
-        CHECK_THAT(refused(folder), Contains("holds the working folder"));
+        CHECK_THAT(folder_refused(folder), Contains("holds the working folder"));
 
     write_all(here.path() / "work/deep/runs/frame_001/mesh.ply", "mine");
-    CHECK_THAT(refused("runs", {"--set", "frames.count=2"}), Contains("runs/frame_001/mesh.ply"));
+    CHECK_THAT(folder_refused("runs", {"--set", "frames.count=2"}), Contains("runs/frame_001/mesh.ply"));
 
     // The default job, every key with its value: what --dump-config gave is no run's.
     const ProgramEnd dumped = run_tessera({"run", "--dump-config"}, here.path());
     write_all(here.path() / "work/deep/mine/job.toml", dumped.out);
-    CHECK_THAT(refused("mine", {"mine/job.toml"}), Contains("mine/job.toml"));
+    CHECK_THAT(folder_refused("mine", {"mine/job.toml"}), Contains("mine/job.toml"));
     CHECK(read_all(here.path() / "work/deep/mine/job.toml") == dumped.out);
     write_all(here.path() / "work/deep/mine/picture.png", "mine");
     for (const std::vector<std::string>& job : {std::vector<std::string>{}, {"mine/job.toml"}})
-        CHECK_THAT(refused("mine", job), Contains("mine/job.toml"));
+        CHECK_THAT(folder_refused("mine", job), Contains("mine/job.toml"));
     CHECK(read_all(here.path() / "work/deep/mine/job.toml") == dumped.out);
     CHECK(read_all(here.path() / "work/deep/mine/picture.png") == "mine");
 }
@@ -256,12 +242,8 @@ TEST_CASE("an input whose name lies in the output folder stays, wherever it lead
     files_after(run_arguments("1"), here.path());
     write_all(here.path() / "map.pgm", "P2 2 2 9\n0 9 5 1\n");
     fs::create_symlink(here.path() / "map.pgm", here.path() / "out/run/picture.png");
-    std::vector<std::string> arguments = run_arguments("1");
-    arguments.insert(arguments.end(), {"--set", "map.source=file", "--set", "map.file=out/run/picture.png"});
-    const ProgramEnd end = run_tessera(arguments, here.path());
-    INFO(end.text());
-    CHECK(end.exit_code == 2);
-    CHECK_THAT(end.err, Contains("would remove its own map"));
+    refused(run_arguments("1") + set({"map.source=file", "map.file=out/run/picture.png"}), here.path(),
+            {"would remove its own map"});
     CHECK(fs::is_symlink(here.path() / "out/run/picture.png"));
 }
 
@@ -345,11 +327,8 @@ TEST_CASE("what cannot be taken away or replaced leaves the earlier run as it wa
 
 TEST_CASE("an interrupted run says how far it was") {
     const TestFolder here;
-    std::vector<std::string> arguments{"run",   "--vcd",
-                                       "--set", "map.width=512",
-                                       "--set", "map.height=512",
-                                       "--set", "output.trace_to=10000000",
-                                       "--set", "output.folder=out/run"};
+    const Arguments arguments = Arguments{"run", "--vcd"} + set({"map.width=512", "map.height=512",
+                                                                 "output.trace_to=10000000", "output.folder=out/run"});
     const ProgramEnd end = run_failing(arguments, here.path(), 12, "SIGINT");
     INFO(end.text());
     CHECK(end.signal == SIGINT);
@@ -372,9 +351,7 @@ TEST_CASE(
               "out/tuned.toml"}}) {
         INFO(arguments[0]);
         files_after(run, here.path());
-        const ProgramEnd end = run_tessera(arguments, here.path());
-        INFO(end.text());
-        REQUIRE(end.exit_code == 0);
+        succeed(arguments, here.path());
         const Files after = files_in(here.path() / "out");
         REQUIRE(after.size() > before.size());
         for (const char* const what : {"full", "SIGTERM"})

@@ -108,6 +108,13 @@ Arguments operator+(Arguments a, const Arguments& b) {
     return a;
 }
 
+Arguments set(const Arguments& settings) {
+    Arguments arguments;
+    for (const std::string& setting : settings)
+        arguments.insert(arguments.end(), {"--set", setting});
+    return arguments;
+}
+
 ProgramEnd run_tessera(const Arguments& arguments, const fs::path& folder, const ProgramLimits& limits) {
     return run_program(Arguments{tessera_program()} + arguments, folder, limits);
 }
@@ -118,6 +125,26 @@ ProgramEnd succeed(const Arguments& arguments, const fs::path& folder) {
     REQUIRE(end.exit_code == 0);
     CHECK(end.err.empty());
     return end;
+}
+
+std::string refused(const Arguments& arguments, const fs::path& folder, const std::vector<std::string>& words,
+                    int exit_code) {
+    const ProgramEnd end = run_tessera(arguments, folder);
+    INFO(end.text());
+    CHECK(end.exit_code == exit_code);
+    CHECK(end.signal == 0);
+    CHECK(end.out.empty());
+    CHECK(lines_of(end.err).size() == 1);
+    CHECK(end.err.rfind("tessera: ", 0) == 0);
+    for (const std::string& word : words)
+        CHECK_THAT(end.err, Catch::Contains(word));
+    return end.err;
+}
+
+void refused(const Arguments& arguments, const TestFolder& here, const std::vector<std::string>& words) {
+    const std::vector<std::string> before = here.names();
+    refused(arguments, here.path(), words);
+    CHECK(here.names() == before);
 }
 
 std::vector<std::string> lines_of(const std::string& text) {

@@ -38,12 +38,22 @@ ProgramEnd run_program(const std::vector<std::string>& command, const std::files
 using Arguments = std::vector<std::string>;
 Arguments operator+(Arguments a, const Arguments& b);
 
+/// --set before each of these.
+Arguments set(const Arguments& settings);
+
 /// The same for `tessera` with these arguments.
 ProgramEnd run_tessera(const Arguments& arguments, const std::filesystem::path& folder,
                        const ProgramLimits& limits = {});
 
 /// The same; requires exit code 0 and an empty standard error.
 ProgramEnd succeed(const Arguments& arguments, const std::filesystem::path& folder);
+
+/// The same; requires this exit code and a message of one line with these words alone; gives the message.
+std::string refused(const Arguments& arguments, const std::filesystem::path& folder,
+                    const std::vector<std::string>& words = {}, int exit_code = 2);
+
+/// The same; requires that nothing was added to the folder or taken from it.
+void refused(const Arguments& arguments, const TestFolder& here, const std::vector<std::string>& words);
 
 std::vector<std::string> lines_of(const std::string& text);
 

@@ -18,15 +18,12 @@ namespace {
 constexpr std::uint64_t period = 5;  // ns a cycle, VCD time unit 1 ns
 
 /// A timed run of a smaller half donut into the folder "out", with these arguments besides.
-ProgramEnd run_small(const TestFolder& here, const std::vector<std::string>& more, const ProgramLimits& limits = {}) {
-    std::vector<std::string> arguments{"run", "--set", "tests.generation_limit=4", "--set", "output.folder=out"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_tessera(arguments, here.path(), limits);
+Arguments small_run(const Arguments& more) {
+    return Arguments{"run", "--set", "tests.generation_limit=4", "--set", "output.folder=out"} + more;
 }
 
-void require_fine(const ProgramEnd& end) {
-    INFO(end.text());
-    REQUIRE(end.exit_code == 0);
+ProgramEnd run_small(const TestFolder& here, const Arguments& more) {
+    return succeed(small_run(more), here.path());
 }
 
 nlohmann::json statistics_of(const TestFolder& here) {
@@ -88,11 +85,11 @@ struct Timeline {
 
 TEST_CASE("tracing changes nothing but its own files, and those are the same every time") {
     const TestFolder here;
-    require_fine(run_small(here, {}));
+    run_small(here, {});
     const std::map<std::string, std::string> plain = RunFolder(here.path() / "out").files();
-    require_fine(run_small(here, {"--vcd", "--timeline"}));
+    run_small(here, {"--vcd", "--timeline"});
     const std::map<std::string, std::string> traced = RunFolder(here.path() / "out").files();
-    require_fine(run_small(here, {"--vcd", "--timeline"}));
+    run_small(here, {"--vcd", "--timeline"});
     require_same_files(traced, RunFolder(here.path() / "out").files());
     CHECK(traced.size() == plain.size() + 2);
     for (const auto& [name, content] : plain) {
@@ -100,9 +97,9 @@ TEST_CASE("tracing changes nothing but its own files, and those are the same eve
         if (name != "job.toml")  // which says that traces were asked for
             CHECK((content == traced.at(name)));
     }
-    require_fine(run_small(here, {"--timeline"}));
+    run_small(here, {"--timeline"});
     CHECK_FALSE(fs::exists(here.path() / "out/trace.vcd"));
-    require_fine(run_small(here, {}));
+    run_small(here, {});
     require_same_files(plain, RunFolder(here.path() / "out").files());
 }
 
@@ -113,9 +110,7 @@ TEST_CASE("a window shows the cycles it names, with the values they have in the 
         GENERATE(std::vector<std::string>{},
                  std::vector<std::string>{"--set", "timing.stalls_per_mille=200", "--set", "hardware.tests_units=3"});
     const auto trace = [&](std::vector<std::string> arguments) {
-        arguments.insert(arguments.end(), design.begin(), design.end());
-        const ProgramEnd end = run_small(here, arguments);
-        require_fine(end);
+        const ProgramEnd end = run_small(here, arguments + design);
         CHECK_THAT(end.out, Contains("trace.vcd"));
         return VcdFile(here.path() / "out/trace.vcd");
     };
@@ -156,7 +151,6 @@ TEST_CASE("a window shows the cycles it names, with the values they have in the 
 TEST_CASE("a window that the run does not reach shows how the run ends") {
     const TestFolder here;
     const ProgramEnd end = run_small(here, {"--vcd", "--timeline", "--trace", "1000000:1000010"});
-    require_fine(end);
     CHECK_THAT(end.out, Contains("before cycle 1000000"));
     const VcdFile vcd(here.path() / "out/trace.vcd");
     CHECK(vcd.begin == vcd.end);
@@ -166,7 +160,7 @@ TEST_CASE("a window that the run does not reach shows how the run ends") {
 
 TEST_CASE("waveforms count what the statistics count") {
     const TestFolder here;
-    require_fine(run_small(here, {"--vcd", "--trace", "0:1000000", "--set", "timing.summed_height_table_ports=4"}));
+    run_small(here, {"--vcd", "--trace", "0:1000000", "--set", "timing.summed_height_table_ports=4"});
     const VcdFile vcd(here.path() / "out/trace.vcd");
     const nlohmann::json statistics = statistics_of(here);
     const auto high = [&](const std::string& name) { return vcd["tessera." + name].high_cycles(period, vcd.end); };
@@ -198,14 +192,12 @@ TEST_CASE("every read request can be counted in the waveforms") {
     const std::string ports = GENERATE("1", "2", "4");
     const std::string banks = GENERATE("1", "2", "4");
     INFO(ports << " ports, " << banks << " banks");
-    std::vector<std::string> arguments{"--vcd", "--trace", "0:1000000"};
+    Arguments settings;
     for (const char* const table : {"displacement_map", "normal_map", "summed_height_table"}) {
-        for (const auto& [key, value] : {std::pair{"_ports=", ports}, std::pair{"_banks=", banks}}) {
-            arguments.emplace_back("--set");
-            arguments.push_back("timing." + std::string(table) + key + value);
-        }
+        settings.push_back("timing." + std::string(table) + "_ports=" + ports);
+        settings.push_back("timing." + std::string(table) + "_banks=" + banks);
     }
-    require_fine(run_small(here, arguments));
+    run_small(here, Arguments{"--vcd", "--trace", "0:1000000"} + set(settings));
     const VcdFile vcd(here.path() / "out/trace.vcd");
     const nlohmann::json statistics = statistics_of(here);
     // What the signal counted; each change is one more, or several more in one cycle.
@@ -237,8 +229,8 @@ TEST_CASE("every read request can be counted in the waveforms") {
 TEST_CASE("waveforms show what each test compares, and with what") {
     const TestFolder here;
     const std::string unit = GENERATE("sum", "area");
-    require_fine(run_small(here, {"--vcd", "--trace", "0:1000000", "--set", "tests.summed_height_unit=" + unit, "--set",
-                                  "tests.summed_height_threshold=" + std::string(unit == "sum" ? "1" : "0.01")}));
+    run_small(here, {"--vcd", "--trace", "0:1000000", "--set", "tests.summed_height_unit=" + unit, "--set",
+                     "tests.summed_height_threshold=" + std::string(unit == "sum" ? "1" : "0.01")});
     const VcdFile vcd(here.path() / "out/trace.vcd");
     const auto signal = [&](const std::string& test, const std::string& name) -> const VcdFile::Signal& {
         return vcd["tessera.tessellation_tests_0." + test + "." + name];
@@ -306,7 +298,7 @@ TEST_CASE("waveforms show what each test compares, and with what") {
 
 TEST_CASE("waveforms of off-chip memory show what a queue of four triangles spills and gets back") {
     const TestFolder here;
-    require_fine(run_small(here, {"--vcd", "--trace", "0:1000000", "--set", "hardware.queue_capacity=4"}));
+    run_small(here, {"--vcd", "--trace", "0:1000000", "--set", "hardware.queue_capacity=4"});
     const VcdFile vcd(here.path() / "out/trace.vcd");
     const nlohmann::json statistics = statistics_of(here);
     const auto& of_memory = [&](const std::string& name) -> const VcdFile::Signal& {
@@ -327,8 +319,7 @@ TEST_CASE("waveforms of off-chip memory show what a queue of four triangles spil
 
     // A window that begins when memory has been at work begins with the request it served last.
     const std::uint64_t middle = of_memory("address").changes[addresses.size()].first / period + 1;
-    require_fine(run_small(
-        here, {"--vcd", "--trace", std::to_string(middle) + ":1000000", "--set", "hardware.queue_capacity=4"}));
+    run_small(here, {"--vcd", "--trace", std::to_string(middle) + ":1000000", "--set", "hardware.queue_capacity=4"});
     const VcdFile rest(here.path() / "out/trace.vcd");
     for (const char* name : {"address", "write", "bytes_written"})
         CHECK(rest["tessera.off_chip_memory." + std::string(name)].initial == of_memory(name).at(middle * period));
@@ -336,7 +327,7 @@ TEST_CASE("waveforms of off-chip memory show what a queue of four triangles spil
 
 TEST_CASE("only the units named are traced") {
     const TestFolder here;
-    require_fine(run_small(here, {"--vcd", "--trace-units", "normal,  triangle_queue"}));
+    run_small(here, {"--vcd", "--trace-units", "normal,  triangle_queue"});
     for (const auto& [name, signal] : VcdFile(here.path() / "out/trace.vcd").signals) {
         INFO(name);
         CHECK((name == "tessera.passes_under_way" || name == "tessera.clock.cycle" ||
@@ -349,7 +340,7 @@ TEST_CASE("the timeline's stretches tile the window and agree with the statistic
     const TestFolder here;
     const auto [first, last] = GENERATE(std::pair<std::uint64_t, std::uint64_t>{0, 1000000},
                                         std::pair<std::uint64_t, std::uint64_t>{500, 2000});
-    require_fine(run_small(here, {"--timeline", "--trace", std::to_string(first) + ":" + std::to_string(last)}));
+    run_small(here, {"--timeline", "--trace", std::to_string(first) + ":" + std::to_string(last)});
     const nlohmann::json timeline = nlohmann::json::parse(read_all(here.path() / "out/timeline.json"));
     const nlohmann::json statistics = statistics_of(here);
     const std::uint64_t cycles = count(statistics, "timing", "cycles");
@@ -403,9 +394,7 @@ TEST_CASE("a triangle can be followed through the timeline") {
                  std::vector<std::string>{"--set", "timing.stalls_per_mille=200", "--set", "hardware.tests_units=3"},
                  std::vector<std::string>{"--set", "hardware.culling=back", "--set", "displacement.scale=0.6"});
     const bool whole = GENERATE(true, false);
-    std::vector<std::string> arguments{"--timeline", "--trace", whole ? "0:1000000" : "500:2000"};
-    arguments.insert(arguments.end(), design.begin(), design.end());
-    require_fine(run_small(here, arguments));
+    run_small(here, Arguments{"--timeline", "--trace", whole ? "0:1000000" : "500:2000"} + design);
     const Timeline timeline(here.path() / "out/timeline.json");
     const nlohmann::json statistics = statistics_of(here);
 
@@ -485,8 +474,8 @@ TEST_CASE("a deadlock leaves its traces, and nothing of a run before it") {
     const TestFolder here;
     const std::vector<std::string> stall{
         "--set", "hardware.queue_capacity=4", "--set", "hardware.queue_overflow=stall", "--vcd", "--timeline"};
-    require_fine(run_small(here, {}));
-    const ProgramEnd end = run_small(here, stall);
+    run_small(here, {});
+    const ProgramEnd end = run_tessera(small_run(stall), here.path());
     INFO(end.text());
     REQUIRE(end.exit_code == 3);
     CHECK_THAT(end.err, Contains("trace.vcd") && Contains("timeline.json") && Contains("out"));
@@ -502,24 +491,14 @@ TEST_CASE("a deadlock leaves its traces, and nothing of a run before it") {
 
 TEST_CASE("traces that cannot be are refused, and leave nothing") {
     const TestFolder here;
-    const auto refused = [&](const std::vector<std::string>& arguments, const std::vector<std::string>& words) {
-        std::vector<std::string> all{"run", "--set", "output.folder=out/of/it"};
-        all.insert(all.end(), arguments.begin(), arguments.end());
-        const ProgramEnd end = run_tessera(all, here.path());
-        INFO(end.text());
-        CHECK(end.exit_code == 2);
-        CHECK(end.out.empty());
-        CHECK(lines_of(end.err).size() == 1);
-        for (const std::string& word : words)
-            CHECK_THAT(end.err, Contains(word));
-        CHECK(here.names().empty());
+    const auto trace_refused = [&](const Arguments& arguments, const std::vector<std::string>& words) {
+        refused(Arguments{"run", "--set", "output.folder=out/of/it"} + arguments, here, words);
     };
     for (const auto& [option, key] : std::vector<std::pair<std::string, std::string>>{
              {"--vcd", "output.vcd"}, {"--timeline", "output.timeline"}, {"--fst", "output.vcd"}})
-        refused({option, "--set", "mode=functional"}, {key, "mode = \"timed\""});
-    const auto refused_timed = [&](std::vector<std::string> arguments, const std::vector<std::string>& words) {
-        arguments.insert(arguments.begin(), "--vcd");
-        refused(arguments, words);
+        trace_refused({option, "--set", "mode=functional"}, {key, "mode = \"timed\""});
+    const auto refused_timed = [&](const Arguments& arguments, const std::vector<std::string>& words) {
+        trace_refused(Arguments{"--vcd"} + arguments, words);
     };
     refused_timed({"--trace", "20:10"}, {"output.trace_from", "20", "output.trace_to", "10"});
     refused_timed({"--trace", "20"}, {"--trace 20", "FROM:TO"});
@@ -532,14 +511,15 @@ TEST_CASE("traces that cannot be are refused, and leave nothing") {
 
 TEST_CASE("a limit that ends a traced run leaves no trace") {
     const TestFolder here;
-    const ProgramEnd end = run_small(here, {"--vcd", "--timeline", "--set", "limits.triangles=100"});
+    const ProgramEnd end =
+        run_tessera(small_run({"--vcd", "--timeline", "--set", "limits.triangles=100"}), here.path());
     INFO(end.text());
     CHECK(end.exit_code == 4);
     CHECK(here.names().empty());
 
     ProgramLimits limits;
     limits.file_bytes = 2'000'000;
-    const ProgramEnd full = run_small(here, {"--vcd", "--trace", "0:1000000"}, limits);
+    const ProgramEnd full = run_tessera(small_run({"--vcd", "--trace", "0:1000000"}), here.path(), limits);
     INFO(full.text());
     CHECK(full.signal == 0);
     CHECK(full.exit_code == 4);
@@ -552,12 +532,14 @@ TEST_CASE("trace.fst: --fst compresses the waveforms, or says which package is m
     const TestFolder here;
     fs::create_directory(here.path() / "tools");
     const auto run = [&] {
-        return run_program(
+        ProgramEnd end = run_program(
             {tessera_program(), "run", "--fst", "--set", "tests.generation_limit=2", "--set", "output.folder=out"},
             here.path(), {}, {{"PATH", (here.path() / "tools").string()}});
+        INFO(end.text());
+        REQUIRE(end.exit_code == 0);
+        return end;
     };
     const ProgramEnd without = run();
-    require_fine(without);
     CHECK_THAT(without.out, Contains("package gtkwave"));
     CHECK(fs::exists(here.path() / "out/trace.vcd"));
     CHECK_FALSE(fs::exists(here.path() / "out/trace.fst"));
@@ -570,12 +552,11 @@ TEST_CASE("trace.fst: --fst compresses the waveforms, or says which package is m
         "#!/bin/sh\nread line < \"$1\" && echo \"$line\" > \"$2\"\n"
         "while read key value; do if [ $key = SigBlk: ]; then echo $value > blocked; fi; done "
         "< /proc/self/status\n");
-    require_fine(run());
+    run();
     CHECK(read_all(here.path() / "out/trace.fst") == "$version tessera $end\n");
     CHECK(read_all(here.path() / "blocked") == "0000000000000000\n");  // Ctrl-C ends it too
     make_tool("#!/bin/sh\nexit 1\n");
     const ProgramEnd failed = run();
-    require_fine(failed);
     CHECK_THAT(failed.out, Contains("vcd2fst failed"));
     CHECK_FALSE(fs::exists(here.path() / "out/trace.fst"));
 }

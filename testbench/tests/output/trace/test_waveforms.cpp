@@ -62,15 +62,13 @@ std::vector<std::pair<std::string, unsigned>> signals_in(const fs::path& save_fi
 TEST_CASE("every signal a save file shows is in the default job's waveforms and changes, but for thresholds") {
     const TestFolder here;
     const auto traced = [&](const std::string& design) {
-        const ProgramEnd end =
-            run_tessera({"run", "--vcd", "--set", "output.folder=" + design.substr(design.find('=') + 1), "--set",
-                         "check.golden=false", "--set", "check.end_to_end=false", "--set", "output.picture=false",
-                         "--set", "tests.normal_threshold=0.125", "--set", "tests.view_threshold=5", "--set",
-                         "tests.generation_limit=7", "--set", "hardware." + design},
-                        here.path());
-        INFO(end.text());
-        REQUIRE(end.exit_code == 0);
-        return VcdFile(here.path() / design.substr(design.find('=') + 1) / "trace.vcd");
+        const std::string folder = design.substr(design.find('=') + 1);
+        succeed(Arguments{"run", "--vcd"} +
+                    set({"output.folder=" + folder, "check.golden=false", "check.end_to_end=false",
+                         "output.picture=false", "tests.normal_threshold=0.125", "tests.view_threshold=5",
+                         "tests.generation_limit=7", "hardware." + design}),
+                here.path());
+        return VcdFile(here.path() / folder / "trace.vcd");
     };
     const VcdFile paper = traced("design=paper"), cheap_first = traced("test_order=cheap_first"),
                   modern = traced("design=modern");
