@@ -163,6 +163,11 @@ inline void set_places(tessera_driver& driver, const FramePlaces& places) {
     REQUIRE(tessera_set_ring(&driver, places.ring, places.ring_size) == 0);
 }
 
+inline void set_frame(tessera_driver& driver, const MachineSetup& setup, const FramePlaces& places) {
+    set_machine(driver, setup.registers);
+    set_places(driver, places);
+}
+
 inline void pop_all(tessera_driver& driver, LitKeys& keys) {
     std::uint32_t count = 0;
     REQUIRE(tessera_ring_count(&driver, &count) == TESSERA_OK);
@@ -197,6 +202,14 @@ inline void expect_same(const LitKeys& found, const LitKeys& expected) {
     CHECK(found.size() == expected.size());
     CHECK((found == expected));  // not to be printed
 }
+
+/// A row of a CaseTable: a mode, and settings of the job besides.
+struct BenchMode {
+    std::string name;
+    bool timed;
+    std::string settings = "";
+    bool approximately_timed = false;  ///< the processor
+};
 
 /// The default job, smaller, in either mode.
 inline Job small_job(bool timed, const std::string& settings = "") {

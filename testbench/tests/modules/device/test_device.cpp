@@ -47,8 +47,7 @@ void same_as_testbench(const Row& row, const MachineSetup& setup) {
     LitKeys found;
     bench.cpu.program = [&](Processor&) {
         tessera_driver& driver = bench.init();
-        set_machine(driver, setup.registers);
-        set_places(driver, places);
+        set_frame(driver, setup, places);
         found = run_frame(driver);
         std::int64_t sent = 0;
         CHECK(tessera_get(&driver, TESSERA_REGISTER_TRIANGLES_SENT, &sent) == TESSERA_OK);

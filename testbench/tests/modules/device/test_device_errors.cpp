@@ -9,12 +9,7 @@ using namespace tessera::testing;
 
 namespace {
 
-struct Mode {
-    std::string name;
-    bool timed;
-};
-
-MachineSetup setup_for(const Mode& mode, const std::string& settings = "") {
+MachineSetup setup_for(const BenchMode& mode, const std::string& settings = "") {
     return setup_of(small_job(mode.timed, settings));
 }
 
@@ -43,10 +38,10 @@ const std::vector<Refusal> refusals{
     {TESSERA_REGISTER_SUMMED_HEIGHT_TABLE_ADDRESS, -8, DeviceError::bad_address},
 };
 
-const CaseTable<Mode> refused_frames{
+const CaseTable<BenchMode> refused_frames{
     "a frame with a wrong register is refused, changes nothing, and the next one is right: ",
     {{"functional", false}, {"timed", true}},
-    [](const Mode& mode) {
+    [](const BenchMode& mode) {
         const MachineSetup setup = setup_for(mode);
         Reference reference("reference", setup);
         Bench bench({formats_of(setup)}, design_of(setup));
@@ -56,8 +51,7 @@ const CaseTable<Mode> refused_frames{
             tessera_driver& driver = bench.init();
             for (const Refusal& refusal : refusals) {
                 INFO(tessera_register_name(refusal.number) << " = " << refusal.value);
-                set_machine(driver, setup.registers);
-                set_places(driver, places);
+                set_frame(driver, setup, places);
                 REQUIRE(tessera_set(&driver, refusal.number, refusal.value) == TESSERA_OK);
                 CHECK(tessera_start(&driver) == static_cast<int>(refusal.error));
                 std::uint64_t address = 0;
@@ -72,8 +66,7 @@ const CaseTable<Mode> refused_frames{
             }
             CHECK((bench.memory.reads == 0 && bench.memory.writes == 0));
             // with the unit `area` the same threshold is too large, and the greatest is not
-            set_machine(driver, setup.registers);
-            set_places(driver, places);
+            set_frame(driver, setup, places);
             REQUIRE(tessera_set(&driver, TESSERA_REGISTER_TESTS_SUMMED_HEIGHT_UNIT, 1) == 0);
             REQUIRE(tessera_set(&driver, TESSERA_REGISTER_TESTS_SUMMED_HEIGHT_THRESHOLD, (1 << 18) + 1) == 0);
             CHECK(tessera_start(&driver) == static_cast<int>(DeviceError::bad_value));
@@ -84,10 +77,10 @@ const CaseTable<Mode> refused_frames{
         expect_same(found, reference.keys);
     }};
 
-const CaseTable<Mode> stopped_frames{
+const CaseTable<BenchMode> stopped_frames{
     "a bus error stops the frame: nothing more is written, the cause is there, and the next one is right: ",
     {{"functional", false}, {"timed", true}},
-    [](const Mode& mode) {
+    [](const BenchMode& mode) {
         const MachineSetup setup = setup_for(mode);
         Reference reference("reference", setup);
         Bench bench({formats_of(setup)}, design_of(setup));
@@ -110,8 +103,7 @@ const CaseTable<Mode> stopped_frames{
         LitKeys found;
         bench.cpu.program = [&](Processor& cpu) {
             tessera_driver& driver = bench.init();
-            set_machine(driver, setup.registers);
-            set_places(driver, places);
+            set_frame(driver, setup, places);
             for (const Failing& its : failing) {
                 INFO(its.what);
                 bench.memory.failing_from = bench.memory.failing_to = its.at;
@@ -136,17 +128,16 @@ const CaseTable<Mode> stopped_frames{
         expect_same(found, reference.keys);
     }};
 
-const CaseTable<Mode> bad_triangles{
+const CaseTable<BenchMode> bad_triangles{
     "a base triangle beyond its formats stops the frame: ",
     {{"functional", false}, {"timed", true}},
-    [](const Mode& mode) {
+    [](const BenchMode& mode) {
         const MachineSetup setup = setup_for(mode);
         Bench bench({formats_of(setup)}, design_of(setup));
         const FramePlaces places = bench.place(setup, 5000);
         bench.cpu.program = [&](Processor&) {
             tessera_driver& driver = bench.init();
-            set_machine(driver, setup.registers);
-            set_places(driver, places);
+            set_frame(driver, setup, places);
             for (const unsigned word : {3u, 9u, 10u, 35u}) {
                 const std::uint64_t record = places.triangles + 5 * base_triangle_bytes;
                 unsigned char* const at = &bench.memory.bytes[record + 4 * word - bench.memory.base];
@@ -166,10 +157,10 @@ const CaseTable<Mode> bad_triangles{
         bench.run();
     }};
 
-const CaseTable<Mode> endless{
+const CaseTable<BenchMode> endless{
     "a frame that splits without end is stopped when the queue is full, or by a reset: ",
     {{"functional", false}, {"timed", true}},
-    [](const Mode& mode) {
+    [](const BenchMode& mode) {
         const std::string off_chip =
             "hardware.queue_capacity=64 hardware.off_chip_triangles=400 tests.generation_limit=2 ";
         const MachineSetup setup = setup_for(mode, off_chip);
@@ -180,8 +171,7 @@ const CaseTable<Mode> endless{
         bench.cpu.program = [&](Processor& cpu) {
             tessera_driver& driver = bench.init();
             for (const bool by_reset : {false, true}) {
-                set_machine(driver, setup.registers);
-                set_places(driver, places);
+                set_frame(driver, setup, places);
                 for (const tessera_register test :
                      {TESSERA_REGISTER_TESTS_VIEW_TEST, TESSERA_REGISTER_TESTS_TEX_COORD_TEST,
                       TESSERA_REGISTER_TESTS_GENERATION_TEST, TESSERA_REGISTER_TESTS_NORMAL_THRESHOLD,
@@ -197,23 +187,21 @@ const CaseTable<Mode> endless{
                     CHECK(tessera_wait(&driver, 1000000) == static_cast<int>(DeviceError::queue_full));
                 }
             }
-            set_machine(driver, setup.registers);
-            set_places(driver, places);
+            set_frame(driver, setup, places);
             found = run_frame(driver);
         };
         bench.run();
         expect_same(found, reference.keys);
     }};
 
-const CaseTable<Mode> halted_clock{
-    "a machine whose clock halts ends the frame with its error: ", {{"timed", true}}, [](const Mode& mode) {
+const CaseTable<BenchMode> halted_clock{
+    "a machine whose clock halts ends the frame with its error: ", {{"timed", true}}, [](const BenchMode& mode) {
         const MachineSetup setup = setup_for(mode);
         Bench bench({formats_of(setup)}, design_of(setup));
         const FramePlaces places = bench.place(setup, 5000);
         bench.cpu.program = [&](Processor& cpu) {
             tessera_driver& driver = bench.init();
-            set_machine(driver, setup.registers);
-            set_places(driver, places);
+            set_frame(driver, setup, places);
             REQUIRE(tessera_start(&driver) == TESSERA_OK);
             cpu.pass(sc_core::sc_time(20, sc_core::SC_US));
             bench.devices[0]->pipeline().clock.halt();
@@ -298,8 +286,7 @@ TEST_CASE("while a frame is under way only reset, interrupts and the read index 
     const FramePlaces places = bench.place(setup, 10);
     bench.cpu.program = [&](Processor& cpu) {
         tessera_driver& driver = bench.init();
-        set_machine(driver, setup.registers);
-        set_places(driver, places);
+        set_frame(driver, setup, places);
         REQUIRE(tessera_start(&driver) == TESSERA_OK);
         for (const DeviceRegister& r : register_map(formats_of(setup), {64, 64})) {
             INFO(r.name);

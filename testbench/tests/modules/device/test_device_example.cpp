@@ -1,9 +1,7 @@
-#include <fstream>
-#include <sstream>
-
 #include "modules/device/driver/example.h"
 #include "testbench/tests/modules/device/bench.h"
 #include "testbench/tests/support/source_folder.h"
+#include "testbench/tests/support/test_folder.h"
 
 // The example of modules/device/README.md.
 
@@ -43,13 +41,9 @@ TEST_CASE("the README's example draws three frames, and is the README's") {
         expect_same(found[k], references[k]->keys);
     CHECK(found[0] != found[1]);
 
-    const auto text_of = [](const std::string& name) {
-        std::stringstream text;
-        text << std::ifstream(source_folder() / "modules/device" / name).rdbuf();
-        return text.str();
-    };
-    const std::string example = text_of("driver/example.c");
+    const std::filesystem::path folder = source_folder() / "modules/device";
+    const std::string example = read_all(folder / "driver/example.c");
     const std::size_t begin = example.find("/* Three frames");
     REQUIRE(begin != std::string::npos);
-    CHECK_THAT(text_of("README.md"), Catch::Contains("```c\n" + example.substr(begin) + "```\n"));
+    CHECK_THAT(read_all(folder / "README.md"), Catch::Contains("```c\n" + example.substr(begin) + "```\n"));
 }

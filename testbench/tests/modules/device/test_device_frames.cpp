@@ -9,14 +9,8 @@ using namespace tessera::testing;
 
 namespace {
 
-struct Mode {
-    std::string name;
-    bool timed;
-    std::string settings;
-};
-
-const Mode functional{"functional", false, ""};
-const Mode timed{"timed", true, ""};
+const BenchMode functional{"functional", false};
+const BenchMode timed{"timed", true};
 
 /// Setups, what the testbench makes of them, and a bench of devices.
 struct Frames {
@@ -25,7 +19,7 @@ struct Frames {
     std::unique_ptr<Bench> bench;
     std::vector<FramePlaces> places;
 
-    Frames(const Mode& mode, const std::vector<std::string>& settings, std::size_t devices = 1,
+    Frames(const BenchMode& mode, const std::vector<std::string>& settings, std::size_t devices = 1,
            std::uint32_t ring_size = 50) {
         for (const std::string& its : settings)
             setups.push_back(setup_of(small_job(mode.timed, mode.settings + ' ' + its)));
@@ -36,10 +30,7 @@ struct Frames {
         for (const MachineSetup& setup : setups)
             places.push_back(bench->place(setup, ring_size));
     }
-    void set(tessera_driver& driver, std::size_t frame) {
-        set_machine(driver, setups[frame].registers);
-        set_places(driver, places[frame]);
-    }
+    void set(tessera_driver& driver, std::size_t frame) { set_frame(driver, setups[frame], places[frame]); }
 };
 
 const std::vector<std::string> several{
@@ -51,35 +42,38 @@ const std::vector<std::string> several{
     "map.source=noise map.width=9 map.height=5 tests.normal=false tests.generation_limit=4",
     ""};
 
-const CaseTable<Mode> frames_in_a_row{"several frames in a row, with other thresholds, scales, maps and cameras: ",
-                                      {functional,
-                                       timed,
-                                       {"timed, tables behind caches", true,
-                                        "timing.summed_height_table_cache_bytes=512 timing.normal_map_cache_bytes=512 "
-                                        "timing.displacement_map_cache_bytes=512"},
-                                       {"timed, modern design", true, "hardware.design=modern"}},
-                                      [](const Mode& mode) {
-                                          Frames frames(mode, several);
-                                          std::vector<LitKeys> found(several.size());
-                                          frames.bench->cpu.program = [&](Processor&) {
-                                              tessera_driver& driver = frames.bench->init();
-                                              for (std::size_t k = 0; k < several.size(); ++k) {
-                                                  frames.set(driver, k);
-                                                  found[k] = run_frame(driver);
-                                              }
-                                          };
-                                          frames.bench->run();
-                                          for (std::size_t k = 0; k < several.size(); ++k) {
-                                              INFO("frame " << k);
-                                              CHECK(found[k].size() > 20);
-                                              expect_same(found[k], frames.references[k]->keys);
-                                          }
-                                          CHECK(found[0] != found[1]);
-                                          CHECK(found[1] != found[2]);
-                                      }};
+const CaseTable<BenchMode> frames_in_a_row{
+    "several frames in a row, with other thresholds, scales, maps and cameras: ",
+    {functional,
+     timed,
+     {"timed, tables behind caches", true,
+      "timing.summed_height_table_cache_bytes=512 timing.normal_map_cache_bytes=512 "
+      "timing.displacement_map_cache_bytes=512"},
+     {"timed, modern design", true, "hardware.design=modern"}},
+    [](const BenchMode& mode) {
+        Frames frames(mode, several);
+        std::vector<LitKeys> found(several.size());
+        frames.bench->cpu.program = [&](Processor&) {
+            tessera_driver& driver = frames.bench->init();
+            for (std::size_t k = 0; k < several.size(); ++k) {
+                frames.set(driver, k);
+                found[k] = run_frame(driver);
+            }
+        };
+        frames.bench->run();
+        for (std::size_t k = 0; k < several.size(); ++k) {
+            INFO("frame " << k);
+            CHECK(found[k].size() > 20);
+            expect_same(found[k], frames.references[k]->keys);
+        }
+        CHECK(found[0] != found[1]);
+        CHECK(found[1] != found[2]);
+    }};
 
-const CaseTable<Mode> without_fetch{
-    "tables that are not fetched again are those of the frame before: ", {functional, timed}, [](const Mode& mode) {
+const CaseTable<BenchMode> without_fetch{
+    "tables that are not fetched again are those of the frame before: ",
+    {functional, timed},
+    [](const BenchMode& mode) {
         Frames frames(mode, {"", "tests.normal_threshold=0.3"});
         LitKeys found;
         unsigned reads = 0, reads_again = 0;
@@ -111,77 +105,80 @@ void expect_reset(tessera_driver& driver, const datapath::Registers& initial) {
     }
 }
 
-const CaseTable<Mode> resets{"a reset at any moment of a frame, and the next frame is right: ",
-                             {functional,
-                              timed,
-                              {"timed, spilling", true, "hardware.queue_capacity=8"},
-                              {"timed, modern design", true, "hardware.design=modern"}},
-                             [](const Mode& mode) {
-                                 Frames frames(mode, {""}, 1, 20);
-                                 Bench& bench = *frames.bench;
-                                 const datapath::Registers initial = formats_of(frames.setups[0]);
-                                 std::vector<LitKeys> found;
-                                 bench.cpu.program = [&](Processor& cpu) {
-                                     tessera_driver& driver = bench.init();
-                                     for (unsigned k = 0; k < 24; ++k) {
-                                         INFO("reset " << k);
-                                         frames.set(driver, 0);
-                                         // nobody reads the ring, so that the frame does not end by itself
-                                         REQUIRE(tessera_start(&driver) == TESSERA_OK);
-                                         cpu.pass(sc_core::sc_time(40 << (k / 2), sc_core::SC_NS));
-                                         std::uint32_t status = 0;
-                                         REQUIRE(tessera_status(&driver, &status) == TESSERA_OK);
-                                         CHECK(status == status_busy);
-                                         if (k % 2 == 0) {
-                                             CHECK(tessera_reset(&driver, 10000) == TESSERA_OK);
-                                         } else {
-                                             bench.reset.write(true);
-                                             cpu.pass(sc_core::sc_time(10, sc_core::SC_US));
-                                             CHECK(tessera_start(&driver) < TESSERA_OK);  // held
-                                             bench.reset.write(false);
-                                             CHECK(tessera_wait(&driver, 10000) == TESSERA_OK);
-                                         }
-                                         const unsigned writes = bench.memory.writes;
-                                         expect_reset(driver, initial);
-                                         CHECK(bench.memory.writes == writes);
-                                         if (k % 6 < 2) {
-                                             frames.set(driver, 0);
-                                             found.push_back(run_frame(driver));
-                                         }
-                                     }
-                                 };
-                                 bench.run();
-                                 CHECK(found.size() == 8);
-                                 for (const LitKeys& keys : found)
-                                     expect_same(keys, frames.references[0]->keys);
-                             }};
+const CaseTable<BenchMode> resets{"a reset at any moment of a frame, and the next frame is right: ",
+                                  {functional,
+                                   timed,
+                                   {"timed, spilling", true, "hardware.queue_capacity=8"},
+                                   {"timed, modern design", true, "hardware.design=modern"}},
+                                  [](const BenchMode& mode) {
+                                      Frames frames(mode, {""}, 1, 20);
+                                      Bench& bench = *frames.bench;
+                                      const datapath::Registers initial = formats_of(frames.setups[0]);
+                                      std::vector<LitKeys> found;
+                                      bench.cpu.program = [&](Processor& cpu) {
+                                          tessera_driver& driver = bench.init();
+                                          for (unsigned k = 0; k < 24; ++k) {
+                                              INFO("reset " << k);
+                                              frames.set(driver, 0);
+                                              // nobody reads the ring, so that the frame does not end by itself
+                                              REQUIRE(tessera_start(&driver) == TESSERA_OK);
+                                              cpu.pass(sc_core::sc_time(40 << (k / 2), sc_core::SC_NS));
+                                              std::uint32_t status = 0;
+                                              REQUIRE(tessera_status(&driver, &status) == TESSERA_OK);
+                                              CHECK(status == status_busy);
+                                              if (k % 2 == 0) {
+                                                  CHECK(tessera_reset(&driver, 10000) == TESSERA_OK);
+                                              } else {
+                                                  bench.reset.write(true);
+                                                  cpu.pass(sc_core::sc_time(10, sc_core::SC_US));
+                                                  CHECK(tessera_start(&driver) < TESSERA_OK);  // held
+                                                  bench.reset.write(false);
+                                                  CHECK(tessera_wait(&driver, 10000) == TESSERA_OK);
+                                              }
+                                              const unsigned writes = bench.memory.writes;
+                                              expect_reset(driver, initial);
+                                              CHECK(bench.memory.writes == writes);
+                                              if (k % 6 < 2) {
+                                                  frames.set(driver, 0);
+                                                  found.push_back(run_frame(driver));
+                                              }
+                                          }
+                                      };
+                                      bench.run();
+                                      CHECK(found.size() == 8);
+                                      for (const LitKeys& keys : found)
+                                          expect_same(keys, frames.references[0]->keys);
+                                  }};
 
-const CaseTable<Mode> two{"two devices on one bus, at the same time: ", {functional, timed}, [](const Mode& mode) {
-                              Frames frames(mode, {"", "map.source=noise displacement.scale=0.1"}, 2, 30);
-                              std::array<LitKeys, 2> found;
-                              frames.bench->cpu.program = [&](Processor&) {
-                                  std::array<bool, 2> busy{true, true};
-                                  for (std::size_t k = 0; k < 2; ++k)
-                                      frames.set(frames.bench->init(k), k);
-                                  for (std::size_t k = 0; k < 2; ++k)
-                                      REQUIRE(tessera_start(&frames.bench->drivers[k]) == TESSERA_OK);
-                                  CHECK((frames.bench->devices[0]->busy() && frames.bench->devices[1]->busy()));
-                                  while (busy[0] || busy[1]) {
-                                      for (std::size_t k = 0; k < 2; ++k) {
-                                          const int result = tessera_wait(&frames.bench->drivers[k], 1);
-                                          REQUIRE((result == TESSERA_OK || result == TESSERA_TIMEOUT));
-                                          busy[k] = result == TESSERA_TIMEOUT;
-                                          pop_all(frames.bench->drivers[k], found[k]);
-                                      }
-                                  }
-                              };
-                              frames.bench->run();
-                              for (std::size_t k = 0; k < 2; ++k)
-                                  expect_same(found[k], frames.references[k]->keys);
-                          }};
+const CaseTable<BenchMode> two{
+    "two devices on one bus, at the same time: ", {functional, timed}, [](const BenchMode& mode) {
+        Frames frames(mode, {"", "map.source=noise displacement.scale=0.1"}, 2, 30);
+        std::array<LitKeys, 2> found;
+        frames.bench->cpu.program = [&](Processor&) {
+            std::array<bool, 2> busy{true, true};
+            for (std::size_t k = 0; k < 2; ++k)
+                frames.set(frames.bench->init(k), k);
+            for (std::size_t k = 0; k < 2; ++k)
+                REQUIRE(tessera_start(&frames.bench->drivers[k]) == TESSERA_OK);
+            CHECK((frames.bench->devices[0]->busy() && frames.bench->devices[1]->busy()));
+            while (busy[0] || busy[1]) {
+                for (std::size_t k = 0; k < 2; ++k) {
+                    const int result = tessera_wait(&frames.bench->drivers[k], 1);
+                    REQUIRE((result == TESSERA_OK || result == TESSERA_TIMEOUT));
+                    busy[k] = result == TESSERA_TIMEOUT;
+                    pop_all(frames.bench->drivers[k], found[k]);
+                }
+            }
+        };
+        frames.bench->run();
+        for (std::size_t k = 0; k < 2; ++k)
+            expect_same(found[k], frames.references[k]->keys);
+    }};
 
-const CaseTable<Mode> interrupts{
-    "the interrupt is high from a frame's end until it is acknowledged: ", {functional, timed}, [](const Mode& mode) {
+const CaseTable<BenchMode> interrupts{
+    "the interrupt is high from a frame's end until it is acknowledged: ",
+    {functional, timed},
+    [](const BenchMode& mode) {
         Frames frames(mode, {""}, 1, 5000);
         Bench& bench = *frames.bench;
         LitKeys found;
@@ -218,8 +215,8 @@ const CaseTable<Mode> interrupts{
         expect_same(found, frames.references[0]->keys);
     }};
 
-const CaseTable<Mode> empty_frame{
-    "a frame of no triangles is done at once: ", {functional, timed}, [](const Mode& mode) {
+const CaseTable<BenchMode> empty_frame{
+    "a frame of no triangles is done at once: ", {functional, timed}, [](const BenchMode& mode) {
         Frames frames(mode, {""});
         frames.bench->cpu.program = [&](Processor&) {
             tessera_driver& driver = frames.bench->init();
@@ -235,7 +232,7 @@ const CaseTable<Mode> empty_frame{
 namespace {
 
 /// A frame that the processor sleeps through. Returns the longest delay with which the device called the memory.
-sc_core::sc_time longest_delay(const Mode& mode) {
+sc_core::sc_time longest_delay(const BenchMode& mode) {
     tlm::tlm_global_quantum::instance().set(sc_core::sc_time(500, sc_core::SC_NS));
     Frames frames(mode, {""}, 1, 5000);
     frames.bench->cpu.program = [&](Processor& cpu) {

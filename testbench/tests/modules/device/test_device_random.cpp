@@ -12,13 +12,6 @@ using namespace tessera::testing;
 
 namespace {
 
-struct Mode {
-    std::string name;
-    bool timed;
-    bool approximately_timed = false;
-    std::string settings = "";
-};
-
 const char* const modern =
     "hardware.design=modern hardware.displacement_filter=bilinear hardware.one_texel_from_map=true formats.displacement_bits=5 formats.normal_bits=11 "
     "formats.normal_fraction=9 formats.position_bits=24 formats.position_fraction=12 tests.highlight=true";
@@ -36,7 +29,7 @@ class Dice : public Random {
     bool one_in(std::uint64_t times) { return below(times) == 0; }
 };
 
-MachineSetup limited_setup(const Mode& mode) {
+MachineSetup limited_setup(const BenchMode& mode) {
     return setup_of(
         small_job(mode.timed, "hardware.queue_capacity=32 hardware.off_chip_triangles=2000 " + mode.settings));
 }
@@ -83,14 +76,14 @@ void watch_ring(Bench& bench) {
     };
 }
 
-const CaseTable<Mode> random_accesses{
+const CaseTable<BenchMode> random_accesses{
     "random register accesses: ",
     {{"functional", false},
      {"timed", true},
-     {"timed, approximately timed processor", true, true},
-     {"functional, modern design, narrow formats", false, false, modern},
-     {"timed, modern design, narrow formats", true, false, modern}},
-    [](const Mode& mode) {
+     {"timed, approximately timed processor", true, "", true},
+     {"functional, modern design, narrow formats", false, modern},
+     {"timed, modern design, narrow formats", true, modern}},
+    [](const BenchMode& mode) {
         const std::uint64_t count = from_environment("TESSERA_DEVICE_ACCESSES", 100000);
         const MachineSetup setup = limited_setup(mode);
         Reference reference("reference", setup);
@@ -106,8 +99,7 @@ const CaseTable<Mode> random_accesses{
             cpu.approximately_timed = mode.approximately_timed;
             for (std::uint64_t k = 0; k < count; ++k) {
                 if (k % 100 == 0 && !bench.devices[0]->busy()) {  // so that some frames begin
-                    set_machine(driver, setup.registers);
-                    set_places(driver, places);
+                    set_frame(driver, setup, places);
                 }
                 std::vector<unsigned char> data(4 * (dice.one_in(3) ? dice.below(40) : 1) +
                                                 (dice.one_in(8) ? dice.below(4) : 0) + 4);
@@ -136,8 +128,7 @@ const CaseTable<Mode> random_accesses{
             CHECK(tessera_reset(&driver, 1000000) == TESSERA_OK);
             cpu.keeper.sync();
             bench.memory.bytes = image;  // a random ring may have lain over it
-            set_machine(driver, setup.registers);
-            set_places(driver, places);
+            set_frame(driver, setup, places);
             found = run_frame(driver);
         };
         bench.run();
@@ -147,10 +138,10 @@ const CaseTable<Mode> random_accesses{
         expect_same(found, reference.keys);
     }};
 
-const CaseTable<Mode> random_addresses{
+const CaseTable<BenchMode> random_addresses{
     "random DMA addresses, counts and map sizes: ",
-    {{"functional", false}, {"timed", true}, {"timed, modern design, narrow formats", true, false, modern}},
-    [](const Mode& mode) {
+    {{"functional", false}, {"timed", true}, {"timed, modern design, narrow formats", true, modern}},
+    [](const BenchMode& mode) {
         const std::uint64_t count = from_environment("TESSERA_DEVICE_FRAMES", 300);
         const MachineSetup setup = limited_setup(mode);
         Reference reference("reference", setup);

@@ -26,8 +26,7 @@ void expect_frames(double resolution, sc_core::sc_time_unit unit) {
         REQUIRE(cpu.read32(Router::registers, value) == 0);
         cpu.keeper.sync();
         access = sc_core::sc_time_stamp() - before;
-        set_machine(driver, setup.registers);
-        set_places(driver, places);
+        set_frame(driver, setup, places);
         found = run_frame(driver);
     };
     bench.run();

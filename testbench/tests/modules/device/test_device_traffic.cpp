@@ -1,11 +1,10 @@
 #include <fmt/format.h>
-#include <fstream>
-#include <sstream>
 
 #include "testbench/machine/host_traffic.h"
 #include "testbench/tests/modules/device/bench.h"
 #include "testbench/tests/support/case_table.h"
 #include "testbench/tests/support/source_folder.h"
+#include "testbench/tests/support/test_folder.h"
 
 // What a frame moves over the bus, beside what `tessera run` says the host sends; and a sink that is slow.
 
@@ -39,15 +38,10 @@ struct WaitingSink : sc_core::sc_module {
     StreamInput<datapath::Triangle> unused_{"unused"};  // the host sends triangles itself
 };
 
-struct Mode {
-    std::string name;
-    bool timed;
-};
-
-const CaseTable<Mode> waiting_sink{
+const CaseTable<BenchMode> waiting_sink{
     "a sink that waits takes its triangles from a buffer: ",
     {{"functional", false}, {"timed", true}},
-    [](const Mode& mode) {
+    [](const BenchMode& mode) {
         const MachineSetup setup = setup_of(small_job(mode.timed));
         Reference reference("reference", setup);
         Pipeline pipeline("pipeline", setup.registers, setup.design);
@@ -76,8 +70,7 @@ TEST_CASE("the default job's bytes on the bus are those of the table in README.m
     const FramePlaces places = bench.place(setup, 20'000);
     bench.cpu.program = [&](Processor& cpu) {
         tessera_driver& driver = bench.init();
-        set_machine(driver, setup.registers);
-        set_places(driver, places);
+        set_frame(driver, setup, places);
         REQUIRE(tessera_enable_interrupts(&driver, 1) == TESSERA_OK);
         REQUIRE(tessera_start(&driver) == TESSERA_OK);
         cpu.wait_for_interrupt();
@@ -89,11 +82,10 @@ TEST_CASE("the default job's bytes on the bus are those of the table in README.m
     CHECK(bench.memory.bytes_read == tables + mesh);
     CHECK(bench.memory.bytes_written == reference.keys.size() * finished_triangle_bytes);
 
-    std::stringstream page;
-    page << std::ifstream(source_folder() / "modules/device/README.md").rdbuf();
+    const std::string page = read_all(source_folder() / "modules/device/README.md");
     for (const std::string& row :
          {fmt::format("| three tables | {} | {} |\n", tables, tables),
           fmt::format("| {} base triangles | {} | {} |\n", setup.base_triangles.size(), mesh, host.base_mesh),
           fmt::format("| {} finished triangles | {} | - |\n", reference.keys.size(), bench.memory.bytes_written)})
-        CHECK_THAT(page.str(), Catch::Contains(row));
+        CHECK_THAT(page, Catch::Contains(row));
 }
