@@ -1,15 +1,18 @@
 #pragma once
+#include <catch2/catch.hpp>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <systemc>
 #include <utility>
 #include <vector>
 
+#include "modules/sockets/memory_port.h"
 #include "modules/sockets/stream_input.h"
 #include "modules/sockets/stream_output.h"
 #include "modules/timing/cycle_scheduler.h"
 
-/// Drivers and sinks for testing a single unit.
+/// Drivers, sinks and filled tables for testing a single unit.
 namespace tessera::testing {
 
 /// Offers items one after another, each when the previous one has been accepted and its own gap has passed.
@@ -142,6 +145,19 @@ std::string error_of(Action action) {
         return report.get_msg();
     }
     return {};
+}
+
+/// Writes a table's entries, row by row, past the clock.
+inline void fill_table(MemoryPort& port, const datapath::TableLayout& table,
+                       const std::vector<std::uint64_t>& entries) {
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+        std::vector<unsigned char> bytes;
+        for (std::uint32_t byte = 0; byte < table.entry_bytes; ++byte)
+            bytes.push_back(static_cast<unsigned char>(entries[k] >> (8 * byte)));
+        MemoryRequest request{
+            tlm::TLM_WRITE_COMMAND, 1, table.entry_bytes, {table.base + k * table.entry_bytes}, bytes.data()};
+        REQUIRE(port.socket->transport_dbg(request) == bytes.size());
+    }
 }
 
 }  // namespace tessera::testing

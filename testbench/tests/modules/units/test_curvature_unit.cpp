@@ -71,19 +71,9 @@ struct Bench : sc_core::sc_module {
         unit->displacement_map->bind(*map);
         unit->table.bind(*table);
     }
-    static void fill(MemoryPort& port, const datapath::TableLayout& layout, const std::vector<std::uint64_t>& entries) {
-        for (std::size_t k = 0; k < entries.size(); ++k) {
-            std::vector<unsigned char> bytes;
-            for (std::uint32_t byte = 0; byte < layout.entry_bytes; ++byte)
-                bytes.push_back(static_cast<unsigned char>(entries[k] >> (8 * byte)));
-            MemoryRequest request{
-                tlm::TLM_WRITE_COMMAND, 1, layout.entry_bytes, {layout.base + k * layout.entry_bytes}, bytes.data()};
-            REQUIRE(port.socket->transport_dbg(request) == bytes.size());
-        }
-    }
     void start_of_simulation() override {
-        fill(*unit->displacement_map, registers.displacement_map, codes);
-        fill(unit->table, registers.height_table, cells);
+        fill_table(*unit->displacement_map, registers.displacement_map, codes);
+        fill_table(unit->table, registers.height_table, cells);
     }
 
     datapath::TexCoord near(const datapath::TexCoord& t, std::uint32_t reach) {

@@ -73,18 +73,8 @@ struct Bench {
     }
 
     void fill_memory() {
-        const std::uint64_t entry = datapath::pack_normal(up, registers.formats.normal.bits);
-        for (std::uint32_t x = 0; x < 4; ++x) {
-            std::vector<unsigned char> bytes;
-            for (std::uint32_t k = 0; k < registers.normal_map.entry_bytes; ++k)
-                bytes.push_back(static_cast<unsigned char>(entry >> (8 * k)));
-            MemoryRequest request{tlm::TLM_WRITE_COMMAND,
-                                  1,
-                                  registers.normal_map.entry_bytes,
-                                  {registers.normal_map.address(x, 0)},
-                                  bytes.data()};
-            REQUIRE(unit.normal_map.socket->transport_dbg(request) == bytes.size());
-        }
+        fill_table(unit.normal_map, registers.normal_map,
+                   std::vector<std::uint64_t>(4, datapath::pack_normal(up, registers.formats.normal.bits)));
     }
 
     /// Timed: one edge after another, and the cycles in which they come out.

@@ -95,16 +95,6 @@ struct Bench {
         port.bind(*made);
         return made;
     }
-    static void fill(MemoryPort& port, const datapath::TableLayout& table, const std::vector<std::uint64_t>& entries) {
-        for (std::uint32_t texel = 0; texel < entries.size(); ++texel) {
-            std::vector<unsigned char> bytes;
-            for (std::uint32_t k = 0; k < table.entry_bytes; ++k)
-                bytes.push_back(static_cast<unsigned char>(entries[texel] >> (8 * k)));
-            MemoryRequest request{
-                tlm::TLM_WRITE_COMMAND, 1, table.entry_bytes, {table.address(texel % 5, texel / 5)}, bytes.data()};
-            REQUIRE(port.socket->transport_dbg(request) == bytes.size());
-        }
-    }
     /// Those around t, found by their places instead of addresses.
     std::vector<std::uint64_t> around(const datapath::TexCoord& t, const std::vector<std::uint64_t>& map) const {
         std::vector<std::uint64_t> entries;
@@ -156,9 +146,9 @@ const CaseTable displaced("a bilinear filter in Displace Vertex, ", rows, [](con
     }
     AtStart fill("fill");
     fill.run = [&] {
-        Bench::fill(unit.displacement_map, bench.registers.displacement_map, bench.codes);
+        fill_table(unit.displacement_map, bench.registers.displacement_map, bench.codes);
         if (row.families)
-            Bench::fill(*unit.normal_map, bench.registers.normal_map, bench.normals);
+            fill_table(*unit.normal_map, bench.registers.normal_map, bench.normals);
     };
     sc_core::sc_start();
 
@@ -215,7 +205,7 @@ const CaseTable tested("a bilinear filter in the Normal Test, ", rows, [](const 
         driver.items.push_back(edge);
     }
     AtStart fill("fill");
-    fill.run = [&] { Bench::fill(unit.normal_map, bench.registers.normal_map, bench.normals); };
+    fill.run = [&] { fill_table(unit.normal_map, bench.registers.normal_map, bench.normals); };
     sc_core::sc_start();
 
     REQUIRE(sink.items.size() == items);
