@@ -97,8 +97,10 @@ inline double code_at(const QuantisedMap& map, const TexCoord& t, int fraction) 
     return map.code(within(t.u >> fraction, g.width, g.address_u), within(t.v >> fraction, g.height, g.address_v));
 }
 
-/// The vertical error at every grid point, in codes; of a point in several triangles the largest.
-inline std::vector<double> vertical_errors(const QuantisedMap& map, const std::vector<Corners>& mesh, int fraction) {
+/// The vertical error at every grid point, in codes; of a point in several triangles the largest. heights: of the
+/// vertices; null: the map's.
+inline std::vector<double> vertical_errors(const QuantisedMap& map, const std::vector<Corners>& mesh, int fraction,
+                                           const QuantisedMap* heights = nullptr) {
     const datapath::MapGeometry& g = map.geometry;
     std::vector<double> errors(map.codes.size(), 0);
     const double texel = std::ldexp(1.0, fraction);
@@ -107,7 +109,7 @@ inline std::vector<double> vertical_errors(const QuantisedMap& map, const std::v
         for (std::size_t k = 0; k < 3; ++k) {
             x[k] = t[k].u / texel - 0.5;
             y[k] = t[k].v / texel - 0.5;
-            z[k] = code_at(map, t[k], fraction);
+            z[k] = code_at(heights != nullptr ? *heights : map, t[k], fraction);
         }
         const double area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
         if (area == 0)

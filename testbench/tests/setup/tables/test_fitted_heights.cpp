@@ -12,28 +12,9 @@ namespace {
 
 const datapath::Formats formats;
 
-/// The mesh's vertical error at every grid point, with codes from `heights` and errors against `map`.
+/// With codes from `heights`, against `map`.
 std::vector<double> errors_of(const QuantisedMap& heights, const QuantisedMap& map, const std::vector<Corners>& mesh) {
-    std::vector<double> errors(map.codes.size(), 0);
-    const int fraction = formats.texture.fraction;
-    for (const Corners& t : mesh) {
-        const auto texel = [&](std::uint32_t coordinate) { return std::ldexp(coordinate, -fraction) - 0.5; };
-        const double ax = texel(t[0].u), ay = texel(t[0].v), bx = texel(t[1].u) - ax, by = texel(t[1].v) - ay;
-        const double cx = texel(t[2].u) - ax, cy = texel(t[2].v) - ay, area = bx * cy - cx * by;
-        const double a = code_at(heights, t[0], fraction), b = code_at(heights, t[1], fraction) - a;
-        const double c = code_at(heights, t[2], fraction) - a;
-        for (int y = static_cast<int>(ay + std::min({0.0, by, cy})); y <= ay + std::max({0.0, by, cy}); ++y) {
-            for (int x = static_cast<int>(ax + std::min({0.0, bx, cx})); x <= ax + std::max({0.0, bx, cx}); ++x) {
-                const double s = ((x - ax) * cy - cx * (y - ay)) / area, r = (bx * (y - ay) - (x - ax) * by) / area;
-                const auto column = static_cast<std::uint32_t>(x), row = static_cast<std::uint32_t>(y);
-                if (s < 0 || r < 0 || s + r > 1 || column >= map.geometry.width || row >= map.geometry.height)
-                    continue;
-                errors[std::size_t{row} * map.geometry.width + column] =
-                    std::abs(a + s * b + r * c - map.code(column, row));
-            }
-        }
-    }
-    return errors;
+    return vertical_errors(map, mesh, formats.texture.fraction, &heights);
 }
 
 double squared(const std::vector<double>& errors) {
