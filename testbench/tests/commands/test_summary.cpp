@@ -187,8 +187,7 @@ TEST_CASE("summary: a timed run of one triangle") {
     job.map.source = MapSource::constant;
     MachineSetup setup = setup_of(job);
     setup.base_triangles.resize(1);
-    Simulation simulation(setup, 1000);
-    run_timed(simulation);
+    TimedRun simulation(setup);
     const std::string text = summary(setup, simulation, {3, 0, 3}, {}, 1);
     INFO(text);
     CHECK(value_of(text, "triangles") == "1 base -> 1 finished");
@@ -211,11 +210,9 @@ TEST_CASE("summary: a timed run of one triangle") {
 TEST_CASE("summary: a queue that spills") {
     Job job = full_split_job(1, 1);
     job.hardware.queue_capacity = 2;
-    const MachineSetup setup = setup_of(job);
-    Simulation simulation(setup, 1000);
-    run_timed(simulation);
+    TimedRun simulation(setup_of(job));
     const TriangleQueue& queue = simulation.pipeline.triangle_queue;
     REQUIRE(queue.spilled() > 0);
-    CHECK(value_of(summary(setup, simulation, {}, {}, 1), "spilled") ==
+    CHECK(value_of(summary(simulation.setup, simulation, {}, {}, 1), "spilled") ==
           std::to_string(queue.spilled()) + " triangles, at most 2 on chip");
 }

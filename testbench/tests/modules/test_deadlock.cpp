@@ -62,9 +62,7 @@ TEST_CASE("a full queue that stalls is a deadlock, told unit by unit") {
 }
 
 TEST_CASE("the same queue that spills is none") {
-    const MachineSetup setup = setup_of(full_queue_job(Overflow::spill));
-    Simulation simulation(setup, 1'000'000, 1'000'000);
-    run_timed(simulation);
+    TimedRun simulation(setup_of(full_queue_job(Overflow::spill)), 1'000'000);
     CHECK(simulation.pipeline.triangle_queue.spilled() > 0);
 }
 
@@ -107,18 +105,14 @@ TEST_CASE("a machine that works and decides nothing within the bound is a livelo
 TEST_CASE("a machine that waits for a million cycles is none") {
     Job job = one_quad_job();
     job.timing.stalls = {1, 1000, 1'000'000};
-    const MachineSetup setup = setup_of(job);
-    Simulation simulation(setup, 1'000'000, 500);
-    run_timed(simulation);
+    TimedRun simulation(setup_of(job), 500);
     CHECK(simulation.cycles() > 1'000'000);
 }
 
 // First in first out: all of a generation is decided before any of the next, so the first triangle is lit after
 // 18 * (1 + 4 + 16 + 64) passes of 36 cycles.
 TEST_CASE("a triangle decided is progress, though none is lit for long") {
-    const MachineSetup setup = setup_of(full_split_job(3, 4));
-    Simulation simulation(setup, 1'000'000, 1000);
-    run_timed(simulation);
+    TimedRun simulation(setup_of(full_split_job(3, 4)), 1000);
     CHECK(simulation.cycles() > 1530 * 36);
 }
 
@@ -127,16 +121,13 @@ TEST_CASE("a triangle decided is progress, though none is lit for long") {
 TEST_CASE("a triangle lit is progress, though none is decided any more") {
     MachineSetup setup = setup_of(full_split_job(2, 2));
     setup.design.timing.lighting = {4, 500, 128};
-    Simulation simulation(setup, 1'000'000, 100);
-    run_timed(simulation);
+    TimedRun simulation(setup, 100);
     CHECK(simulation.rasteriser.triangles() == 128);
     CHECK(simulation.cycles() > 127 * 500);
 }
 
 TEST_CASE("the bound on progress does not end a run that just keeps it") {
-    const MachineSetup setup = one_triangle();
-    Simulation simulation(setup, 1'000'000, 46);
-    run_timed(simulation);
+    TimedRun simulation(one_triangle(), 46);
 }
 
 namespace {

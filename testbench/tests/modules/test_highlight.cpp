@@ -74,9 +74,7 @@ const CaseTable cycles(
         {"300 cycles for it", "timing.highlight_test_latency=300", 342 + 38 + 1},
     },
     [](const Timed& row) {
-        const MachineSetup setup = one_triangle(with_settings(with_highlight(one_quad_job()), row.settings));
-        Simulation simulation(setup, 1000);
-        run_timed(simulation);
+        TimedRun simulation(one_triangle(with_settings(with_highlight(one_quad_job()), row.settings)));
         CHECK(simulation.cycles() == row.cycles);
     });
 
@@ -87,9 +85,7 @@ const CaseTable cycles(
 TEST_CASE("Highlight Test: the paper's design is as fast with it") {
     Job job = with_highlight(full_split_job(3, 4));
     job.tests.highlight_normal_threshold = 0;
-    const MachineSetup setup = setup_of(job);
-    Simulation simulation(setup, 1'000'000);
-    run_timed(simulation);
+    TimedRun simulation(setup_of(job));
     CHECK(simulation.pipeline.pass_or_tessellate.counts().passes == 6138);
     CHECK(simulation.decisions.counts().split_in_highlight > 50);
     CHECK(simulation.cycles() == 5 + 3 + 36 * 6138 + 9);

@@ -100,10 +100,8 @@ const CaseTable derived(
          42 + 38 + 1},
     },
     [](const Row& row) {
-        const MachineSetup setup = one_triangle(with_settings(one_quad_job(), row.settings));
-        Simulation simulation(setup, 1000);
-        run_timed(simulation);
-        CHECK(derived_cycles(setup.design.timing) == row.cycles);
+        TimedRun simulation(one_triangle(with_settings(one_quad_job(), row.settings)));
+        CHECK(derived_cycles(simulation.setup.design.timing) == row.cycles);
         CHECK(simulation.cycles() == row.cycles);
         CHECK(simulation.rasteriser.triangles() == 1);
     });
@@ -136,11 +134,9 @@ const CaseTable designs(
          49 + 40 + 1},
     },
     [](const Row& row) {
-        const MachineSetup setup = one_triangle(with_settings(one_quad_job(), row.settings));
-        Simulation simulation(setup, 1000);
-        run_timed(simulation);
+        TimedRun simulation(one_triangle(with_settings(one_quad_job(), row.settings)));
         CHECK(simulation.cycles() == row.cycles);
-        const bool three_units = setup.design.tests_units == 3;  // which read six corners, not three
+        const bool three_units = simulation.setup.design.tests_units == 3;  // which read six corners, not three
         CHECK(simulation.pipeline.normal_map.transactions() == (three_units ? 6 : 3) + 3);
     });
 
@@ -170,9 +166,7 @@ const CaseTable families(
     },
     [](const Row& row) {
         const bool splits = row.settings.find("noise") != std::string::npos;
-        const MachineSetup setup = one_triangle(with_settings(one_quad_job(), row.settings));
-        Simulation simulation(setup, 1000);
-        run_timed(simulation);
+        TimedRun simulation(one_triangle(with_settings(one_quad_job(), row.settings)));
         CHECK(simulation.cycles() == row.cycles);
         CHECK(simulation.rasteriser.triangles() == (splits ? 4 : 1));
         CHECK(simulation.pipeline.edges_tested() == (splits ? 12 : 3));
@@ -229,17 +223,15 @@ TEST_CASE("the paper's design: latency, interval and buffer of every unit and me
 // J = max(71, 68 + 4 + 13, 68 + 11 + 9 + 17, 70 + 6) = 105,
 // then 8 + 10 + 12 + 3 + 2 + 5 + 11 + 40 + 8 + 14 = 113.
 TEST_CASE("one triangle, every latency another") {
-    const MachineSetup setup = one_triangle(with_settings(
+    TimedRun simulation(one_triangle(with_settings(
         one_quad_job(),
         "timing.get_triangle_latency=3 timing.calculate_new_p_latency=5 timing.displacement_map_latency=7 "
         "timing.displace_vertex_latency=11 timing.transform_latency=40 timing.calculate_new_u_latency=2 "
         "timing.normal_map_latency=4 timing.normal_test_latency=13 timing.summed_height_table_latency=9 "
         "timing.summed_height_test_latency=17 timing.view_test_latency=6 timing.tex_coord_test_latency=3 "
         "timing.pass_or_tessellate_latency=8 timing.tessellation_latency=10 "
-        "timing.triangle_queue_latency=12 timing.lighting_latency=14"));
-    Simulation simulation(setup, 1000);
-    run_timed(simulation);
-    CHECK(derived_cycles(setup.design.timing) == 105 + 113 + 1);
+        "timing.triangle_queue_latency=12 timing.lighting_latency=14")));
+    CHECK(derived_cycles(simulation.setup.design.timing) == 105 + 113 + 1);
     CHECK(simulation.cycles() == 105 + 113 + 1);
 
     // and each unit keeps each item for its own latency, on the way or beside it
@@ -262,9 +254,7 @@ TEST_CASE("one triangle, every latency another") {
 
 // Normals only take part in the second round: three parts, read nothing, and skip the tests. Six parts in the first.
 TEST_CASE("one triangle: its parts and reads") {
-    const MachineSetup setup = one_triangle();
-    Simulation simulation(setup, 1000);
-    run_timed(simulation);
+    TimedRun simulation(one_triangle());
     const Pipeline& p = simulation.pipeline;
     CHECK(p.get_triangle.parts_sent() == 9);
     CHECK(p.displacement_map.transactions() == 6);
@@ -286,9 +276,7 @@ TEST_CASE("one triangle: its parts and reads") {
 
 // What a triangle's stages take cannot depend on the clock's period.
 TEST_CASE("one triangle: cycles do not depend on the clock's period, time does") {
-    const MachineSetup setup = one_triangle(with_settings(one_quad_job(), "timing.clock_period=1234"));
-    Simulation simulation(setup, 1000);
-    run_timed(simulation);
+    TimedRun simulation(one_triangle(with_settings(one_quad_job(), "timing.clock_period=1234")));
     CHECK(simulation.cycles() == 86);
     CHECK(sc_core::sc_time_stamp().value() == 85 * 1234);
 }

@@ -41,18 +41,20 @@ MachineSetup full_split(const std::string& settings = "") {
     return setup_of(with_settings(full_split_job(3, 4), settings));
 }
 
-void run_full_split(Simulation& simulation) {
-    run_timed(simulation);
-    const Pipeline& p = simulation.pipeline;
-    REQUIRE(p.pass_or_tessellate.counts().passes == passes);
-    REQUIRE(p.pass_or_tessellate.counts().finished == finished);
-    REQUIRE(p.get_triangle.parts_sent() == parts);
-    // No rectangle wraps: four entries each.
-    const HeightTestKind& kind = kind_of(p.registers().formats.height_test);
-    const Decisions::Evaluated& evaluated = simulation.decisions.evaluated();
-    REQUIRE(p.height_table.transactions() ==
-            kind.requests * (kind.rectangles ? 4 : 1) * (evaluated.summed_height - evaluated.summed_height_by_codes));
-}
+struct FullSplitRun : TimedRun {
+    explicit FullSplitRun(const std::string& settings = "") : FullSplitRun(full_split(settings)) {}
+    explicit FullSplitRun(MachineSetup its_setup) : TimedRun(std::move(its_setup)) {
+        REQUIRE(pipeline.pass_or_tessellate.counts().passes == passes);
+        REQUIRE(pipeline.pass_or_tessellate.counts().finished == finished);
+        REQUIRE(pipeline.get_triangle.parts_sent() == parts);
+        // No rectangle wraps: four entries each.
+        const HeightTestKind& kind = kind_of(pipeline.registers().formats.height_test);
+        const Decisions::Evaluated& evaluated = decisions.evaluated();
+        REQUIRE(pipeline.height_table.transactions() ==
+                kind.requests * (kind.rectangles ? 4 : 1) *
+                    (evaluated.summed_height - evaluated.summed_height_by_codes));
+    }
+};
 
 void require_sole_bottleneck(const Simulation& simulation, const Unit* unit) {
     CHECK(find_bottleneck(simulation.pipeline, simulation.cycles()).first.units == std::vector<const Unit*>{unit});
@@ -141,9 +143,7 @@ const CaseTable rates(
          100 * (parts - 1), 100 * parts + 1000, "get_triangle", 100 * parts, true},
     },
     [](const Bound& row) {
-        const MachineSetup setup = full_split(row.settings);
-        Simulation simulation(setup, 1'000'000);
-        run_full_split(simulation);
+        FullSplitRun simulation(row.settings);
         CHECK(simulation.cycles() >= row.least);
         CHECK(simulation.cycles() <= row.most);
         const Pipeline& p = simulation.pipeline;
@@ -153,7 +153,7 @@ const CaseTable rates(
         if (&unit == &p.height_table)
             CHECK(unit.activity().cycles_in(State::busy) == row.occupied);
         if (&unit == &p.transform)  // ceil(20 / 8) register stages in each
-            CHECK(unit.activity().high_water_mark() == 3 * setup.design.transform_pipelines);
+            CHECK(unit.activity().high_water_mark() == 3 * simulation.setup.design.transform_pipelines);
         if (row.sole_bottleneck)
             require_sole_bottleneck(simulation, &unit);
     });
@@ -164,9 +164,7 @@ const CaseTable rates(
 // first triangle's third edge comes in cycle 32 (test_one_triangle.cpp), 3 after the first two's 24 entries
 // have been read in 5 to 28. From then on the next triangle's edges wait when one is through.
 TEST_CASE("the paper's design is bound by the Summed Height Table: 36 cycles a pass") {
-    const MachineSetup setup = full_split();
-    Simulation simulation(setup, 1'000'000);
-    run_full_split(simulation);
+    FullSplitRun simulation;
     const Pipeline& p = simulation.pipeline;
     CHECK(simulation.cycles() == fill + 3 + 36 * passes + drain);
     CHECK(p.height_table.activity().cycles_in(State::busy) == 36 * passes);
@@ -180,18 +178,14 @@ TEST_CASE("the paper's design is bound by the Summed Height Table: 36 cycles a p
 }
 
 TEST_CASE("half donut, the paper's design: 36 cycles a pass") {
-    const MachineSetup setup = setup_of(timed_job());
-    Simulation simulation(setup, 1'000'000);
-    run_timed(simulation);
+    TimedRun simulation(setup_of(timed_job()));
     const std::uint64_t its_passes = simulation.pipeline.pass_or_tessellate.counts().passes;
     CHECK(its_passes > 10'000);
     CHECK(simulation.cycles() == fill + 3 + 36 * its_passes + drain);
 }
 
 TEST_CASE("two machines of the paper's design: half the passes each, in half the cycles") {
-    const MachineSetup setup = full_split("hardware.machines=2");
-    Simulation simulation(setup, 1'000'000);
-    run_timed(simulation);
+    TimedRun simulation(full_split("hardware.machines=2"));
     REQUIRE(simulation.machines.size() == 2);
     for (const auto& machine : simulation.machines) {
         CHECK(machine->host.sent() == base / 2);
@@ -213,45 +207,35 @@ TEST_CASE("two machines of the paper's design: half the passes each, in half the
 // Four banks instead: a rectangle's corners lie in banks as they fall, so no better than four ports, and with one port
 // each no worse than one.
 TEST_CASE("four banks of the Summed Height Table are between one port and four") {
-    const MachineSetup setup = full_split("timing.summed_height_table_banks=4");
-    Simulation simulation(setup, 1'000'000);
-    run_full_split(simulation);
+    FullSplitRun simulation("timing.summed_height_table_banks=4");
     CHECK(simulation.cycles() > fill + 9 * passes + drain);
     CHECK(simulation.cycles() < fill + 3 + 36 * passes + drain);
 }
 
 // Without conflicts eight banks would give an edge's 12 entries in 1.5 cycles, a pass's in 4.5; four ports take 9.
 TEST_CASE("eight banks entry by entry: more than eight cycles a pass") {
-    const MachineSetup setup = full_split("timing.summed_height_table_banks=8");
-    Simulation simulation(setup, 1'000'000);
-    run_full_split(simulation);
+    FullSplitRun simulation("timing.summed_height_table_banks=8");
     CHECK(simulation.cycles() > 8 * passes);
     CHECK(simulation.cycles() < 9 * passes);
 }
 
 TEST_CASE("eight exclusive-or banks, the rectangles of four edges at a time: less than seven cycles a pass") {
-    const MachineSetup setup = full_split(
+    FullSplitRun simulation(
         "timing.summed_height_table_banks=8 timing.summed_height_table_interleave=xor "
         "timing.summed_height_table_window=12");
-    Simulation simulation(setup, 1'000'000);
-    run_full_split(simulation);
     CHECK(2 * simulation.cycles() > 9 * passes);
     CHECK(simulation.cycles() < 7 * passes);
 }
 
 TEST_CASE("Get Triangle of latency 200 binds: 200 cycles a pass") {
-    const MachineSetup setup = full_split("timing.get_triangle_latency=200");
-    Simulation simulation(setup, 1'000'000);
-    run_full_split(simulation);
+    FullSplitRun simulation("timing.get_triangle_latency=200");
     CHECK(simulation.cycles() >= 200 * passes);
     require_sole_bottleneck(simulation, &simulation.pipeline.get_triangle);
 }
 
 // Eight triangles may be under way at the join, so one a 400 / 8 cycles at most, where the tests take nine.
 TEST_CASE("a Transform of latency 400 is what the join waits for") {
-    const MachineSetup setup = full_split("timing.summed_height_table_ports=4 timing.transform_latency=400");
-    Simulation simulation(setup, 1'000'000);
-    run_full_split(simulation);
+    FullSplitRun simulation("timing.summed_height_table_ports=4 timing.transform_latency=400");
     const Pipeline& p = simulation.pipeline;
     std::uint64_t for_transform = 0;
     for (const Activity::Share& share : p.pass_or_tessellate.activity().shares())
@@ -264,8 +248,7 @@ TEST_CASE("a Transform of latency 400 is what the join waits for") {
 TEST_CASE("banks in conflict are a bottleneck though their ports idle") {
     MachineSetup setup = full_split();
     setup.design.timing.summed_height_table.banks = setup.registers.height_table.columns;
-    Simulation simulation(setup, 1'000'000);
-    run_full_split(simulation);
+    FullSplitRun simulation(setup);
     const TableMemory& table = simulation.pipeline.height_table;
     CHECK(table.slots_taken() < table.slots_per_cycle() * simulation.cycles() / 5);
     CHECK(simulation.cycles() > 10 * passes);
@@ -274,11 +257,9 @@ TEST_CASE("banks in conflict are a bottleneck though their ports idle") {
 }
 
 TEST_CASE("an interval that lasts is no lack of work") {
-    const MachineSetup setup = full_split(
+    FullSplitRun simulation(
         "timing.displace_vertex_latency=1 timing.displace_vertex_interval=100 "
         "timing.pass_or_tessellate_interval=50");
-    Simulation simulation(setup, 1'000'000);
-    run_full_split(simulation);
     const Pipeline& p = simulation.pipeline;
     CHECK(p.displace_vertex.activity().cycles_in(State::busy) +
               p.displace_vertex.activity().cycles_in(State::waiting_for_memory) >
@@ -289,9 +270,7 @@ TEST_CASE("an interval that lasts is no lack of work") {
 // Little's law, exactly: where nothing is ever held up, what is in a unit, summed over all cycles, is items
 // times latency: mean occupancy = throughput * latency.
 TEST_CASE("mean occupancy is throughput times latency in units that are never blocked") {
-    const MachineSetup setup = full_split();
-    Simulation simulation(setup, 1'000'000);
-    run_full_split(simulation);
+    FullSplitRun simulation;
     const Pipeline& p = simulation.pipeline;
     const auto expect = [](const Unit& unit, std::uint64_t item_cycles) {
         INFO(unit.name());
@@ -311,9 +290,7 @@ TEST_CASE("mean occupancy is throughput times latency in units that are never bl
 }
 
 TEST_CASE("a second frame takes the same cycles again") {
-    const MachineSetup setup = full_split();
-    Simulation simulation(setup, 1'000'000);
-    run_full_split(simulation);
+    FullSplitRun simulation;
     const std::uint64_t first = simulation.cycles();
     simulation.host.send_again();
     REQUIRE(simulation.run().empty());

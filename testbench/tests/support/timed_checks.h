@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "testbench/check/transport/conservation.h"
 #include "testbench/machine/inputs.h"
@@ -106,24 +107,27 @@ inline void require_conservation(const Simulation& simulation) {
         INFO(equation.name);
         CHECK(equation.left == equation.right);
     }
-    for (const auto& machine : simulation.machines) {
-        const Pipeline& p = machine->pipeline;
-        const auto& made = p.tessellation.made_into();
-        const std::uint64_t untested = p.family_tessellation != nullptr ? p.get_triangle.host_triangles() : 0;
-        CHECK(p.tessellation.activity().items_in() == untested + made[1] + made[2] + made[3] + made[4]);
-        const Decisions::Evaluated& evaluated = machine->decisions.evaluated();
-        const datapath::Registers& registers = simulation.setup.registers;
-        const HeightTestKind& height_test = kind_of(registers.formats.height_test);
-        const std::uint64_t requests =
-            height_test.requests * (evaluated.summed_height - evaluated.summed_height_by_codes - evaluated.off_lattice);
-        if (!height_test.rectangles)
-            CHECK(p.height_table_reads() == (registers.tests.summed_height_test ? requests : 0));
-        else if (registers.tests.summed_height_test)
-            CHECK(p.height_table_reads() >= 4 * requests);
-    }
+}
+
+/// What Tessellation and the height test of a timed machine receive.
+inline void require_timed_conservation(const Simulation& simulation, const HostedMachine& machine) {
+    const Pipeline& p = machine.pipeline;
+    const auto& made = p.tessellation.made_into();
+    const std::uint64_t untested = p.family_tessellation != nullptr ? p.get_triangle.host_triangles() : 0;
+    CHECK(p.tessellation.activity().items_in() == untested + made[1] + made[2] + made[3] + made[4]);
+    const Decisions::Evaluated& evaluated = machine.decisions.evaluated();
+    const datapath::Registers& registers = simulation.setup.registers;
+    const HeightTestKind& height_test = kind_of(registers.formats.height_test);
+    const std::uint64_t requests =
+        height_test.requests * (evaluated.summed_height - evaluated.summed_height_by_codes - evaluated.off_lattice);
+    if (!height_test.rectangles)
+        CHECK(p.height_table_reads() == (registers.tests.summed_height_test ? requests : 0));
+    else if (registers.tests.summed_height_test)
+        CHECK(p.height_table_reads() >= 4 * requests);
 }
 
 inline void require_timed_identities(const Simulation& simulation, const HostedMachine& machine) {
+    require_timed_conservation(simulation, machine);
     const Pipeline& p = machine.pipeline;
     for (const Unit* unit : p.units()) {
         require_cycles_add_up(*unit, simulation.cycles());
@@ -160,6 +164,18 @@ inline void run_timed(Simulation& simulation) {
     require_timed_identities(simulation);
 }
 
+struct KeptSetup {
+    MachineSetup kept;
+};
+
+/// A simulation that has run to its end, checked like that. It keeps its setup.
+struct TimedRun : private KeptSetup, Simulation {
+    explicit TimedRun(MachineSetup its_setup, std::uint64_t cycles_without_progress = 0)
+        : KeptSetup{std::move(its_setup)}, Simulation(kept, 1'000'000, cycles_without_progress) {
+        run_timed(*this);
+    }
+};
+
 /// In either mode, to its end.
 inline void run_to_the_end(Simulation& simulation) {
     if (simulation.setup.design.transport == Transport::non_blocking) {
@@ -168,6 +184,7 @@ inline void run_to_the_end(Simulation& simulation) {
     }
     REQUIRE(simulation.run().empty());
     CHECK(simulation.pipeline.idle());
+    require_conservation(simulation);
 }
 
 }  // namespace tessera::testing

@@ -153,9 +153,7 @@ TEST_CASE("conservation: the sides of every equation, functional mode, by hand")
 }
 
 TEST_CASE("conservation: the sides of every equation, timed mode, by hand") {
-    const MachineSetup setup = two_triangles_split_once();
-    Simulation simulation(setup, 1000);
-    run_timed(simulation);
+    TimedRun simulation(two_triangles_split_once());
     CHECK(sides_of(simulation) == two_triangles_timed());
 }
 
@@ -168,8 +166,7 @@ TEST_CASE("conservation: triangles sent round for normals, and culled ones") {
     MachineSetup setup = setup_of(job);
     setup.base_triangles.resize(1);
     std::swap(setup.base_triangles[0].vertices[1], setup.base_triangles[0].vertices[2]);  // turned away
-    Simulation simulation(setup, 1000);
-    run_timed(simulation);
+    TimedRun simulation(setup);
     const Equations sides = sides_of(simulation);
     CHECK(sides.at("triangles taken by get_triangle = decided") == Sides{2, 2});
     CHECK(sides.at("triangles sent round for normals = decided for normals") == Sides{1, 1});
@@ -179,9 +176,7 @@ TEST_CASE("conservation: triangles sent round for normals, and culled ones") {
 }
 
 TEST_CASE("conservation: an item too many in a unit breaks its equation and no other") {
-    const MachineSetup setup = two_triangles_split_once();
-    Simulation simulation(setup, 1000);
-    run_timed(simulation);
+    TimedRun simulation(two_triangles_split_once());
     Pipeline& p = simulation.pipeline;
     TessellationTests& tests = p.tessellation_tests[0];
     const std::pair<Unit*, const char*> units[] = {
@@ -209,9 +204,7 @@ TEST_CASE("conservation: an item too many in a unit breaks its equation and no o
 }
 
 TEST_CASE("conservation: an item too many on a stream") {
-    const MachineSetup setup = two_triangles_split_once();
-    Simulation simulation(setup, 1000);
-    run_timed(simulation);
+    TimedRun simulation(two_triangles_split_once());
     Pipeline& p = simulation.pipeline;
     auto point = part_of_it<ScreenPoint>(first_edge_part);
     auto corner = part_of_it<ScreenCorner>(0);
@@ -237,11 +230,9 @@ TEST_CASE("conservation: an item too many on a stream") {
 }
 
 TEST_CASE("conservation: a read too many") {
-    const MachineSetup setup = two_triangles_split_once();
-    Simulation simulation(setup, 1000);
-    run_timed(simulation);
+    TimedRun simulation(two_triangles_split_once());
     Pipeline& p = simulation.pipeline;
-    const datapath::Registers& r = setup.registers;
+    const datapath::Registers& r = simulation.setup.registers;
     sc_core::sc_time delay;
     expect_change("displacement map", simulation,
                   [&] { p.displace_vertex.displacement_map.read(r.displacement_map.base, delay); },
@@ -271,8 +262,7 @@ TEST_CASE("conservation: each side of the displacement map has its own requests 
     MachineSetup setup = setup_of(with_settings(full_split_job(1, 1),
                                                 "hardware.height_test=curvature map.width=2 map.height=2 "
                                                 "tests.tex_coord=false"));  // edges of two texels at most
-    Simulation simulation(setup, 1000);
-    run_timed(simulation);
+    TimedRun simulation(setup);
     Pipeline& p = simulation.pipeline;
     const Equations sides = sides_of(simulation);
     CHECK(sides.at("reads of displacement_map = vertices, midpoints and texels") == Sides{36 + 90, 36 + 90});
@@ -303,9 +293,7 @@ TEST_CASE("conservation: each side of the displacement map has its own requests 
 
 // By blocking transport, which does the whole work at once.
 TEST_CASE("conservation: a vertex transformed, and triangles decided, too many") {
-    const MachineSetup setup = two_triangles_split_once();
-    Simulation simulation(setup, 1000);
-    run_timed(simulation);
+    TimedRun simulation(two_triangles_split_once());
     Pipeline& p = simulation.pipeline;
 
     TakenTriangle taken = known_triangle();

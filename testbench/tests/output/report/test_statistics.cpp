@@ -77,9 +77,7 @@ EmittedTriangle::Corner corner(std::uint32_t u, std::uint32_t v, std::int32_t z,
 TEST_CASE("statistics: two triangles split once, by hand") {
     Job job = full_split_job(1, 1);
     job.map.width = job.map.height = 8;
-    const MachineSetup setup = setup_of(job);
-    Simulation simulation(setup, 1000);
-    run_timed(simulation);
+    TimedRun simulation(setup_of(job));
     const Figures f = figures_of(simulation);
     CHECK(f.words.at("run.mode") == "timed");
     f.require_all(
@@ -105,7 +103,7 @@ TEST_CASE("statistics: two triangles split once, by hand") {
     f.require("triangle_queue", {{"taken", 8}});
     f.require_all("lighting", {{"triangles", 8}});
     // a byte or two a code; three components of 16 bits; 9 x 9 sums
-    const std::uint64_t sum = setup.registers.height_table.entry_bytes;
+    const std::uint64_t sum = simulation.setup.registers.height_table.entry_bytes;
     // one a cycle of each table; 16 + 24 + 51 + 12
     f.require("area", {{"transform_multipliers", 24},
                        {"transform_register_bits", 300 + 20 * 381},
@@ -125,7 +123,7 @@ TEST_CASE("statistics: two triangles split once, by hand") {
     f.require_all("mesh", {{"triangles", 8}, {"generation_0", 0}, {"generation_1", 8}});
 
     // the widths have tests of their own
-    const datapath::Widths widths = datapath::stream_widths(setup.registers.formats);
+    const datapath::Widths widths = datapath::stream_widths(simulation.setup.registers.formats);
     const auto bytes = [](std::uint64_t bits) { return static_cast<double>((bits + 7) / 8); };
     const double tables = 8 * 8 * 2 + 8 * 8 * 6 + 81.0 * static_cast<double>(sum);
     const double base = bytes(6 * widths.base_vertex), whole = bytes(9 * widths.finished_vertex) + 8 * 3 * 4;
@@ -141,7 +139,7 @@ TEST_CASE("statistics: two triangles split once, by hand") {
                            {"bandwidth_saving", whole / base},
                            {"frames_to_pay_for_tables", tables / (whole - base)}});
     f.require("formats", {{"queue_entry", widths.triangle}, {"lighting_vertex", widths.emitted_vertex}});
-    const datapath::Formats& formats = setup.registers.formats;
+    const datapath::Formats& formats = simulation.setup.registers.formats;
     f.require("streams",
               {{"tag", 6},
                {"triangle", widths.triangle},
@@ -201,9 +199,7 @@ TEST_CASE("statistics: what every test stopped stands in the emitted triangle, t
 // Second round: taken in 50, three normals, which read nothing, in Displace Vertex from 52, in Transform from
 // 58; joined in 80, lit in 81, out in 85.
 TEST_CASE("statistics: one triangle's cycles, unit by unit, by hand") {
-    const MachineSetup setup = one_triangle();
-    Simulation simulation(setup, 1000);
-    run_timed(simulation);
+    TimedRun simulation(one_triangle());
     const Figures f = figures_of(simulation);
     f.require_all("timing", {{"cycles", 86},
                              {"clock_period", 5000},
@@ -279,9 +275,7 @@ TEST_CASE("statistics: one triangle's cycles, unit by unit, by hand") {
 TEST_CASE("statistics: what is spilled comes back, in whole records") {
     Job job = full_split_job(1, 2);
     job.hardware.queue_capacity = 2;
-    const MachineSetup setup = setup_of(job);
-    Simulation simulation(setup, 1000);
-    run_timed(simulation);
+    TimedRun simulation(setup_of(job));
     const double spilled = static_cast<double>(simulation.pipeline.triangle_queue.spilled());
     REQUIRE(spilled > 0);
     // 1572 bits a triangle

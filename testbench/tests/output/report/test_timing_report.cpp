@@ -232,8 +232,7 @@ TEST_CASE("timing.txt of one triangle: latency binds") {
     job.map.source = MapSource::constant;
     MachineSetup setup = setup_of(job);
     setup.base_triangles.resize(1);
-    Simulation simulation(setup, 1000);
-    run_timed(simulation);
+    TimedRun simulation(setup);
     const std::string text = timing_text(simulation);
     CHECK_THAT(text, StartsWith("86 cycles. "));
     CHECK_THAT(text, Contains(timing_tables(simulation.pipeline, 86)));
@@ -251,8 +250,7 @@ TEST_CASE("timing.txt of two machines: a table of each, and the bottleneck of th
     job.hardware.machines = 2;
     MachineSetup setup = setup_of(job);
     setup.base_triangles.resize(1);
-    Simulation simulation(setup, 1000);
-    run_timed(simulation);
+    TimedRun simulation(setup);
     const HostedMachine &first = *simulation.machines[0], &second = *simulation.machines[1];
     CHECK(&simulation.last_machine() == &first);
     CHECK(second.pipeline.get_triangle.host_triangles() == 0);
