@@ -9,26 +9,16 @@
 #include <string>
 #include <vector>
 
-#include "testbench/common/error.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/job/read_job.h"
+#include "testbench/tests/support/refusals.h"
 #include "testbench/tests/support/test_folder.h"
 
 /// Job files, values for their keys, and the messages they end in, for the job's tests.
 namespace tessera::testing {
 
-template <typename Action>
-std::string error_of(Action action) {
-    try {
-        action();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
-}
-
 inline std::string parse_error_of(const std::string& text) {
-    return error_of([&] { parse_job(text, "job.toml"); });
+    return input_error_of([&] { parse_job(text, "job.toml"); });
 }
 
 inline std::vector<Key> all_keys() {

@@ -232,7 +232,7 @@ TEST_CASE("a random setting sets its key or is an InputError") {
         const std::string value =
             *rc::gen::container<std::string>(rc::gen::elementOf(std::string("[]{}=.,\"'#\n\t 01-+e_:tru")));
         Job job;
-        const std::string error = error_of([&] { apply_setting(job, key.name + "=" + value); });
+        const std::string error = input_error_of([&] { apply_setting(job, key.name + "=" + value); });
         if (!error.empty()) {
             RC_ASSERT(error.rfind("--set " + key.name, 0) == 0);
             RC_ASSERT(same_settings(job, Job{}));

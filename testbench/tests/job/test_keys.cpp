@@ -43,7 +43,7 @@ namespace fs = std::filesystem;
 namespace {
 
 std::string set_error_of(const std::string& setting) {
-    return error_of([&] {
+    return input_error_of([&] {
         Job job;
         apply_setting(job, setting);
     });

@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 namespace {
 
 std::string validate_error_of(const Job& job) {
-    return error_of([&] { validate(job); });
+    return input_error_of([&] { validate(job); });
 }
 
 void expect_whole(const std::string& input, const std::string& message) {
@@ -180,7 +180,7 @@ TEST_CASE("TOML's own errors carry file, line and column") {
 
 TEST_CASE("files that are no job files") {
     const TestFolder folder;
-    const auto read_error = [](const fs::path& path) { return error_of([&] { read_job(path); }); };
+    const auto read_error = [](const fs::path& path) { return input_error_of([&] { read_job(path); }); };
     CHECK_THAT(read_error(folder.path() / "none.toml"), Contains("none.toml: no such job file"));
     CHECK_THAT(read_error(folder.path() / "none" / "none.toml"), Contains("no such job file"));
     CHECK_THAT(read_error(folder.path()), Contains("is a folder"));

@@ -8,11 +8,14 @@
 #include "testbench/job/read_job.h"
 #include "testbench/job/validate_job.h"
 #include "testbench/machine/inputs.h"
+#include "testbench/tests/support/job_settings.h"
+#include "testbench/tests/support/refusals.h"
 
 // Every key of a job at the ends of its range, beyond them, and at what no number should be: a message that
 // names it, or a mesh like any other.
 
 using namespace tessera;
+using namespace tessera::testing;
 
 namespace {
 
@@ -97,12 +100,7 @@ TEST_CASE("limits: every number of a job, at and beyond its range, is refused by
                 INFO(setting);
                 ++tried;
                 Job job = small_job();
-                std::string message;
-                try {
-                    apply_setting(job, setting);
-                } catch (const InputError& error) {
-                    message = error.what();
-                }
+                const std::string message = input_error_of([&] { apply_setting(job, setting); });
                 const bool fits = in_range(key, extreme.value);
                 CHECK(message.empty() == fits);
                 if (!fits) {
@@ -122,58 +120,32 @@ TEST_CASE("limits: every number of a job, at and beyond its range, is refused by
     CHECK(ran > 100);
 }
 
-namespace {
-
-/// Settings of a job, and what its refusal must say.
-struct Refused {
-    std::vector<const char*> settings;
-    std::vector<const char*> says;
-};
-
-void expect(const Refused& row, const std::string& message) {
-    CAPTURE(row.settings, message);
-    CHECK_FALSE(message.empty());
-    for (const char* const part : row.says)
-        CHECK_THAT(message, Catch::Contains(part));
-}
-
-}  // namespace
-
 TEST_CASE("limits: cameras that see nothing sensible are refused with both keys' names") {
-    const Refused rows[] = {
-        {{"camera.eye=[1, 2, 3]", "camera.target=[1, 2, 3]"}, {"`camera.eye`", "`camera.target`", "same point"}},
-        {{"camera.eye=[1e6, 1e6, 1e6]", "camera.target=[1e6, 1e6, 999999.9999999]"}, {"same point"}},
-        {{"camera.eye=[0, 0, 3]", "camera.target=[0, 0, 0]", "camera.up=[0, 0, 1]"}, {"`camera.up`", "parallel"}},
-        {{"camera.eye=[0, 0, 3]", "camera.target=[0, 0, 0]", "camera.up=[0, 0, -5]"}, {"parallel"}},
-        {{"camera.up=[0, 0, 0]"}, {"`camera.up`", "no direction"}},
-        {{"hardware.light=[0, 0, 0]"}, {"`hardware.light`"}},
-    };
-    for (const Refused& row : rows) {
-        Job job = small_job();
-        for (const char* const setting : row.settings)
-            apply_setting(job, setting);
-        expect(row, outcome_of(job));
-    }
+    expect_refusals(
+        {
+            {"camera.eye=[1,2,3] camera.target=[1,2,3]", {"`camera.eye`", "`camera.target`", "same point"}},
+            {"camera.eye=[1e6,1e6,1e6] camera.target=[1e6,1e6,999999.9999999]", {"same point"}},
+            {"camera.eye=[0,0,3] camera.target=[0,0,0] camera.up=[0,0,1]", {"`camera.up`", "parallel"}},
+            {"camera.eye=[0,0,3] camera.target=[0,0,0] camera.up=[0,0,-5]", {"parallel"}},
+            {"camera.up=[0,0,0]", {"`camera.up`", "no direction"}},
+            {"hardware.light=[0,0,0]", {"`hardware.light`"}},
+        },
+        [](const std::string& settings) { return outcome_of(with_settings(small_job(), settings)); });
 }
 
 TEST_CASE("limits: a near plane that is not in front and angles that are none are out of range") {
-    const Refused rows[] = {
-        {{"camera.near_plane=0"}, {"camera.near_plane", "range"}},
-        {{"camera.near_plane=-0.1"}, {"camera.near_plane"}},
-        {{"camera.field_of_view=0"}, {"camera.field_of_view", "0.1 .. 179"}},
-        {{"camera.field_of_view=180"}, {"camera.field_of_view"}},
-        {{"camera.viewport_width=0"}, {"camera.viewport_width"}},
-        {{"camera.eye=[0, nan, 0]"}, {"camera.eye", "not a finite number"}},
-        {{"displacement.scale=inf"}, {"displacement.scale"}},
-    };
-    for (const Refused& row : rows) {
-        Job job;
-        std::string message;
-        try {
-            apply_setting(job, row.settings[0]);
-        } catch (const InputError& error) {
-            message = error.what();
-        }
-        expect(row, message);
-    }
+    expect_refusals(
+        {
+            {"camera.near_plane=0", {"camera.near_plane", "range"}},
+            {"camera.near_plane=-0.1", {"camera.near_plane"}},
+            {"camera.field_of_view=0", {"camera.field_of_view", "0.1 .. 179"}},
+            {"camera.field_of_view=180", {"camera.field_of_view"}},
+            {"camera.viewport_width=0", {"camera.viewport_width"}},
+            {"camera.eye=[0, nan, 0]", {"camera.eye", "not a finite number"}},
+            {"displacement.scale=inf", {"displacement.scale"}},
+        },
+        [](const std::string& setting) {
+            Job job;
+            return input_error_of([&] { apply_setting(job, setting); });
+        });
 }

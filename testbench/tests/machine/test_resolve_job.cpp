@@ -4,13 +4,13 @@
 #include <glm/glm.hpp>
 
 #include "testbench/check/conformance/golden_job.h"
-#include "testbench/common/error.h"
 #include "testbench/input/map/built_in_maps.h"
 #include "testbench/input/mesh/built_in.h"
 #include "testbench/input/mesh/obj_reader.h"
 #include "testbench/job/job_keys.h"
 #include "testbench/machine/machine_setup.h"
 #include "testbench/machine/resolve_job.h"
+#include "testbench/tests/support/refusals.h"
 
 // What a job leaves to the program, by values derived by hand.
 
@@ -199,12 +199,7 @@ TEST_CASE("what is set of a camera stays, and the rest follows from it") {
 
 TEST_CASE("a model beyond what a camera can be set to is refused with what to do") {
     const auto refusal = [](const BaseMesh& mesh) {
-        try {
-            resolve_job(Job{}, mesh, map_of(0, 1));
-            return std::string("not refused");
-        } catch (const InputError& error) {
-            return std::string(error.what());
-        }
+        return testing::input_error_of([&] { resolve_job(Job{}, mesh, map_of(0, 1)); });
     };
     CHECK_THAT(
         refusal(make_sphere(8, 4, 1e20)),

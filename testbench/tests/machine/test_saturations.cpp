@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "testbench/common/error.h"
 #include "testbench/output/report/saturation_figures.h"
 #include "testbench/tests/modules/datapath/datapath_reference.h"
 #include "testbench/tests/support/bare_mesh.h"
@@ -287,13 +286,8 @@ TEST_CASE("saturations: what the host rounds is counted too") {
 }
 
 TEST_CASE("a threshold that its register cannot tell from 0 is refused with the register's step") {
-    const auto error_of = [](const std::string& settings) -> std::string {
-        try {
-            setup_of(with_settings({}, settings));
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return {};
+    const auto error_of = [](const std::string& settings) {
+        return input_error_of([&] { setup_of(with_settings({}, settings)); });
     };
     expect_refusals(
         {

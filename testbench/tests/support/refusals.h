@@ -4,7 +4,20 @@
 #include <string>
 #include <vector>
 
+#include "testbench/common/error.h"
+
 namespace tessera::testing {
+
+/// The message of the InputError that the action ends in; empty where there is none.
+template <class Action>
+std::string input_error_of(Action action) {
+    try {
+        action();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
 
 /// What a user wrote, and all that the message must say; nothing: it is accepted.
 struct Refusal {

@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include "testbench/check/surface_error/height_field.h"
-#include "testbench/common/error.h"
 #include "testbench/explore/thresholds/rank_curve.h"
 #include "testbench/explore/thresholds/threshold_level.h"
 #include "testbench/explore/thresholds/tune.h"
@@ -17,6 +16,7 @@
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/inputs.h"
 #include "testbench/setup/thresholds.h"
+#include "testbench/tests/support/refusals.h"
 
 using namespace tessera;
 using Catch::Contains;
@@ -469,14 +469,7 @@ TEST_CASE("a lattice has its inner vertices at texel centres and covers the map"
 
 TEST_CASE("goals that cannot be met end in what can be had") {
     TuneRequest request = request_for(small_job());
-    const auto refused = [&] {
-        try {
-            tuned(request);
-        } catch (const InputError& error) {
-            return std::string(error.what());
-        }
-        return std::string();
-    };
+    const auto refused = [&] { return testing::input_error_of([&] { tuned(request); }); };
     request.goal.triangles = 17;
     CHECK_THAT(refused(), Contains("--triangles 17") && Contains("18 triangles"));
     Job finest = request.job;

@@ -4,12 +4,12 @@
 #include <vector>
 
 #include "testbench/check/mesh/invariants.h"
-#include "testbench/common/error.h"
 #include "testbench/input/map/built_in_maps.h"
 #include "testbench/input/mesh/built_in.h"
 #include "testbench/machine/bare_recursion.h"
 #include "testbench/machine/resolve_job.h"
 #include "testbench/setup/mesh/whole_periods.h"
+#include "testbench/tests/support/refusals.h"
 
 // Texture coordinates that tile: brought down by whole periods, without a change to the mesh that comes of it.
 
@@ -147,12 +147,7 @@ TEST_CASE("triangles shifted by themselves decide as those of one chart, and no 
 namespace {
 
 std::string refusal(const Job& job, const BaseMesh& base, const HeightMap& map) {
-    try {
-        make_setup(resolve_job(job, base, map).job, base, map);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return {};
+    return testing::input_error_of([&] { make_setup(resolve_job(job, base, map).job, base, map); });
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "testbench/common/error.h"
 #include "testbench/input/surface/surface_file.h"
 #include "testbench/tests/support/refusals.h"
 #include "testbench/tests/support/source_folder.h"
@@ -14,12 +13,7 @@ using Catch::Matchers::Equals;
 namespace {
 
 std::string error_of(const std::string& text) {
-    try {
-        parse_surface(text, "s.toml");
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
+    return input_error_of([&] { parse_surface(text, "s.toml"); });
 }
 
 std::string quadric(const std::string& keys) {

@@ -16,10 +16,10 @@
 #include <tiny_obj_loader.h>
 
 #include "testbench/common/atomic_file.h"
-#include "testbench/common/error.h"
 #include "testbench/output/report/obj_writer.h"
 #include "testbench/output/report/ply_writer.h"
 #include "testbench/tests/support/emitted_mesh_maker.h"
+#include "testbench/tests/support/refusals.h"
 #include "testbench/tests/support/test_folder.h"
 
 namespace tessera {
@@ -393,13 +393,8 @@ TEST_CASE("a full disk leaves nothing, and says so") {
 TEST_CASE("a place that cannot be written is bad input") {
     const TestFolder folder;
     write_file(folder / "file", "here");
-    const auto message_of = [](const fs::path& path) -> std::string {
-        try {
-            write_file(path, "x");
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return "no error";
+    const auto message_of = [](const fs::path& path) {
+        return testing::input_error_of([&] { write_file(path, "x"); });
     };
     const auto require_message = [&](const fs::path& path, const std::string& reason) {
         CHECK(message_of(path) == path.string() + ": cannot write: " + reason);
