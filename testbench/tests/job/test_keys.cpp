@@ -7,11 +7,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -31,7 +28,7 @@
 #include "testbench/job/validate_job.h"
 #include "testbench/tests/job/job_cases.h"
 #include "testbench/tests/support/count_members.h"
-#include "testbench/tests/support/source_folder.h"
+#include "testbench/tests/support/expect_section.h"
 
 using namespace tessera;
 using namespace tessera::testing;
@@ -446,17 +443,5 @@ TEST_CASE("the key reference names every key, and testbench/job/README.md ends w
         INFO(key.name);
         CHECK_THAT(text, Contains("| `" + key.name + "` |") && Contains("| " + key.description + " |\n"));
     }
-    const std::filesystem::path path = source_folder() / "testbench/job/README.md";
-    std::stringstream file;
-    file << std::ifstream(path).rdbuf();
-    const std::string readme = file.str();
-    const std::string heading = "`tessera keys` prints this table.\n\n";
-    const std::size_t begin = readme.find(heading);
-    REQUIRE(begin != std::string::npos);
-    if (std::getenv("TESSERA_WRITE_KEYS") != nullptr) {
-        std::ofstream(path) << readme.substr(0, begin) + heading + text;
-        return;
-    }
-    INFO(path << " says something else; TESSERA_WRITE_KEYS=1 has the test write it");
-    CHECK((readme.substr(begin + heading.size()) == text));  // not to be printed
+    expect_section("testbench/job/README.md", "`tessera keys` prints this table.\n\n", text, "TESSERA_WRITE_KEYS");
 }

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <regex>
@@ -14,21 +13,20 @@
 #include "modules/datapath/registers.h"
 #include "testbench/tests/support/count_members.h"
 #include "testbench/tests/support/source_folder.h"
+#include "testbench/tests/support/test_folder.h"
 
 using namespace tessera::datapath;
 using tessera::testing::count_members;
 
 namespace {
 
-const std::filesystem::path root = source_folder();
+const std::filesystem::path root = tessera::source_folder();
 const std::filesystem::path folder = root / "modules/datapath";
 
 std::string text_of(const std::filesystem::path& file) {
-    std::ifstream stream(file);
-    std::ostringstream text;
-    text << stream.rdbuf();
-    REQUIRE_FALSE(text.str().empty());
-    return text.str();
+    std::string text = tessera::read_all(file);
+    REQUIRE_FALSE(text.empty());
+    return text;
 }
 
 /// The cells of each row of a Markdown table below `heading`, up to the next heading.

@@ -1,7 +1,4 @@
 #include <catch2/catch.hpp>
-#include <cstdlib>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -9,7 +6,7 @@
 #include "modules/sockets/packed_item.h"
 #include "modules/timing/design.h"
 #include "testbench/common/random.h"
-#include "testbench/tests/support/source_folder.h"
+#include "testbench/tests/support/expect_section.h"
 #include "testbench/tests/support/timed_modules.h"
 
 // The items of the streams: each goes through its packed form and back, and modules/sockets/README.md lists its fields.
@@ -261,20 +258,8 @@ TEST_CASE("a tag tells apart all triangles between Get Triangle and Pass or Tess
 }
 
 TEST_CASE("the streams' README lists every item with its fields") {
-    const std::filesystem::path path = source_folder() / "modules/sockets/README.md";
-    std::stringstream stream;
-    stream << std::ifstream(path).rdbuf();
-    const std::string document = stream.str();
-    const std::string heading = "## Items\n\n";
-    const std::size_t begin = document.find(heading);
-    REQUIRE(begin != std::string::npos);
     std::string found;
     StreamItems::for_each([&](auto type) { found += table_of<typename decltype(type)::Item>(); });
     found.pop_back();
-    if (std::getenv("TESSERA_WRITE_STREAMS") != nullptr) {
-        std::ofstream(path) << document.substr(0, begin) + heading + found;
-        return;
-    }
-    INFO("modules/sockets/README.md says something else; TESSERA_WRITE_STREAMS=1 has the test write it");
-    CHECK(document.substr(begin + heading.size()) == found);
+    testing::expect_section("modules/sockets/README.md", "## Items\n\n", found, "TESSERA_WRITE_STREAMS");
 }

@@ -1,7 +1,5 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cstdlib>
-#include <fstream>
 #include <functional>
 #include <optional>
 #include <sstream>
@@ -15,7 +13,7 @@
 #include "testbench/common/child_process.h"
 #include "testbench/common/error.h"
 #include "testbench/prove/faults/faulty_units.h"
-#include "testbench/tests/support/source_folder.h"
+#include "testbench/tests/support/expect_section.h"
 #include "testbench/tests/support/timed_checks.h"
 
 // Every kind of fault at every place in both modes: who catches it. What nobody catches must have changed nothing.
@@ -279,24 +277,10 @@ std::string table(Mode mode, const std::vector<Place>& places, std::vector<Kind>
     return text;
 }
 
-/// The part of testbench/prove/faults/FAULT_COVERAGE.md under a heading. TESSERA_WRITE_FAULT_COVERAGE: written anew
-/// instead.
+/// The part of testbench/prove/faults/FAULT_COVERAGE.md under a heading.
 void compare_with_document(const std::string& heading, const std::string& found) {
-    const std::filesystem::path path = source_folder() / "testbench/prove/faults/FAULT_COVERAGE.md";
-    std::stringstream stream;
-    stream << std::ifstream(path).rdbuf();
-    std::string document = stream.str();
-    const std::size_t begin = document.find("## " + heading + "\n\n");
-    REQUIRE(begin != std::string::npos);
-    const std::size_t from = begin + heading.size() + 5;
-    const std::size_t to = std::min(document.find("\n\n", from), document.size() - 1) + 1;
-    if (std::getenv("TESSERA_WRITE_FAULT_COVERAGE") != nullptr) {
-        document.replace(from, to - from, found);
-        std::ofstream(path) << document;
-        return;
-    }
-    INFO(path << " says something else; TESSERA_WRITE_FAULT_COVERAGE=1 has the test write it");
-    CHECK(document.substr(from, to - from) == found);
+    testing::expect_section("testbench/prove/faults/FAULT_COVERAGE.md", "## " + heading + "\n\n", found,
+                            "TESSERA_WRITE_FAULT_COVERAGE", testing::SectionEnd::empty_line);
 }
 
 }  // namespace

@@ -1,0 +1,34 @@
+#pragma once
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <string>
+
+#include "testbench/tests/support/source_folder.h"
+#include "testbench/tests/support/test_folder.h"
+
+namespace tessera::testing {
+
+enum class SectionEnd { of_document, empty_line };
+
+/// A document, named from the source folder, has this text below a heading. With the environment variable the test
+/// writes the text there instead.
+inline void expect_section(const std::string& name, const std::string& heading, const std::string& text,
+                           const std::string& variable, SectionEnd end = SectionEnd::of_document) {
+    const std::filesystem::path path = source_folder() / name;
+    std::string document = read_all(path);
+    const std::size_t begin = document.find(heading);
+    REQUIRE(begin != std::string::npos);
+    const std::size_t from = begin + heading.size();
+    const std::size_t to = end == SectionEnd::of_document
+                               ? document.size()
+                               : std::min(document.find("\n\n", from), document.size() - 1) + 1;
+    if (std::getenv(variable.c_str()) != nullptr) {
+        write_all(path, document.replace(from, to - from, text));
+        return;
+    }
+    INFO(path << " says something else; " << variable << "=1 has the test write it");
+    CHECK((document.substr(from, to - from) == text));  // not to be printed
+}
+
+}  // namespace tessera::testing
