@@ -1,5 +1,5 @@
 #pragma once
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <string>
 #include <utility>
@@ -26,8 +26,11 @@ class Faults {
     }
     /// Throws one InputError with all of them, if there are any.
     void raise() const {
-        if (!texts.empty())
-            throw InputError(fmt::format("{}", fmt::join(texts, "\n")));
+        std::string all;
+        for (const std::string& text : texts)
+            all += (all.empty() ? "" : "\n") + text;
+        if (!all.empty())
+            throw InputError(all);
     }
 
     std::vector<std::string> texts;
