@@ -9,9 +9,8 @@ namespace tessera::golden {
 namespace {
 
 std::int64_t address(std::int64_t texel, std::int64_t size, AddressMode mode) {
-    if (mode == AddressMode::clamp) {
+    if (mode == AddressMode::clamp)
         return std::clamp<std::int64_t>(texel, 0, size - 1);
-    }
     const std::int64_t remainder = texel % size;
     return remainder < 0 ? remainder + size : remainder;
 }
@@ -27,19 +26,16 @@ std::int64_t first_texel(double centre, std::int64_t length, std::int64_t size, 
 
 // The arguments are checked here, before the summed-area table is built from them.
 std::vector<std::uint32_t> checked(int width, int height, const std::vector<double>& codes) {
-    if (width < 1 || height < 1 || codes.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
+    if (width < 1 || height < 1 || codes.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
         throw std::invalid_argument("golden map: size and number of codes do not agree");
-    }
     double sum = 0;
     for (const double code : codes) {
-        if (!(code >= 0 && code < 0x1p32) || code != std::floor(code)) {
+        if (!(code >= 0 && code < 0x1p32) || code != std::floor(code))
             throw std::invalid_argument("golden map: codes must be integers from 0 to 2^32 - 1");
-        }
         sum += code;
     }
-    if (!(sum < 0x1p52)) {
+    if (!(sum < 0x1p52))
         throw std::invalid_argument("golden map: the sum of all codes must stay below 2^52");
-    }
     return {codes.begin(), codes.end()};
 }
 
@@ -71,24 +67,20 @@ std::array<Map::Part, 4> Map::around(const glm::dvec2& t) const {
 }
 
 double Map::code(const glm::dvec2& t, Filter filter) const {
-    if (filter == Filter::nearest) {
+    if (filter == Filter::nearest)
         return code(texel(t));
-    }
     double sum = 0;
-    for (const Part& part : around(t)) {
+    for (const Part& part : around(t))
         sum += part.weight * code(part.texel);
-    }
     return sum;
 }
 
 glm::dvec3 Map::normal(const glm::dvec2& t, Filter filter) const {
-    if (filter == Filter::nearest) {
+    if (filter == Filter::nearest)
         return normal(texel(t));
-    }
     glm::dvec3 sum(0);
-    for (const Part& part : around(t)) {
+    for (const Part& part : around(t))
         sum += part.weight * normal(part.texel);
-    }
     return sum;
 }
 
@@ -120,16 +112,14 @@ glm::dvec3 Map::normal(std::size_t texel) const {
 }
 
 void Map::set_normals(std::vector<glm::dvec3> normals) {
-    if (normals.size() != codes_.size()) {
+    if (normals.size() != codes_.size())
         throw std::invalid_argument("golden map: normal map and displacement map differ in size");
-    }
     normals_ = std::move(normals);
 }
 
 void Map::set_heights(std::vector<double> heights) {
-    if (heights.size() != codes_.size()) {
+    if (heights.size() != codes_.size())
         throw std::invalid_argument("golden map: heights and codes differ in number");
-    }
     heights_ = std::move(heights);
 }
 
@@ -179,9 +169,8 @@ void Map::make_mipmap(MipmapFilter filter) {
             const double texels = static_cast<double>((right - left) * (top - bottom));
             level.push_back(filter == MipmapFilter::maximum ? highest : std::floor(sum / texels + 0.5));
         }
-        if (columns == 1 && rows == 1) {
+        if (columns == 1 && rows == 1)
             return;
-        }
     }
 }
 

@@ -39,9 +39,8 @@ void measure_curvature(const Vertex& i, const Vertex& j, const Vertex& m, const 
     const glm::dvec2 d = i.texture - j.texture;
     const double longer = std::max(std::abs(d.x), std::abs(d.y));
     int level = 1;
-    while (longer > std::exp2(level)) {
+    while (longer > std::exp2(level))
         ++level;
-    }
     const double length = std::exp2(level);
     if (level == 1) {
         const auto code = [&](const Vertex& v) { return map.code(map.texel(v.texture)); };
@@ -63,26 +62,23 @@ double mipmap_deviation(const Vertex& i, const Vertex& j, const Vertex& m, const
     const double half = std::max(d.x, d.y) / 2;
     const int highest = static_cast<int>(map.mipmap().size()) - 1;
     int level = 0;
-    while (level < highest && std::exp2(level + 1) <= half) {
+    while (level < highest && std::exp2(level + 1) <= half)
         ++level;
-    }
     const auto height = [&](const Vertex& v) { return map.mipmap_height(v.texture, level); };
     return std::abs(height(m) - (height(i) + height(j)) / 2);
 }
 
 bool asks_by_rank(const Map::Rank& rank, const Vertex& i, const Vertex& j, const Parameters& parameters) {
-    if (parameters.rank_view == RankView::none) {
+    if (parameters.rank_view == RankView::none)
         return rank.rank > parameters.rank_threshold || rank.bound > parameters.bound_threshold;
-    }
     const double distance = (i.distance + j.distance) / 2, half_step = parameters.distance_step / 2;
     const double octaves = parameters.rank_view == RankView::per_pixel ? 1 : 0.5;
     const double seen_from = level(std::max(distance, half_step));
     const bool ranked = rank.rank > 0 && std::ldexp(rank.rank, 16 - parameters.rank_bits) >
                                              parameters.rank_threshold + std::floor(octaves * seen_from);
     const double radius = std::ldexp(8 + rank.radius % 8, rank.radius / 8) * half_step;
-    if (ranked || rank.bound == 0 || (i.w + j.w) / 2 + radius < 0) {
+    if (ranked || rank.bound == 0 || (i.w + j.w) / 2 + radius < 0)
         return ranked;
-    }
     const double nearest = distance - radius;
     return nearest <= 0 || std::ldexp(rank.bound, 16 - parameters.bound_bits) >
                                parameters.bound_threshold + std::floor(level(nearest) / 2);
@@ -90,9 +86,8 @@ bool asks_by_rank(const Map::Rank& rank, const Vertex& i, const Vertex& j, const
 
 // Section 4.3. The near-plane rule is expressed by an infinite length.
 double view_length(const Vertex& i, const Vertex& j) {
-    if (i.in_front && j.in_front) {
+    if (i.in_front && j.in_front)
         return std::abs(i.screen.x - j.screen.x) + std::abs(i.screen.y - j.screen.y);
-    }
     const double infinity = std::numeric_limits<double>::infinity();
     return i.in_front || j.in_front ? infinity : -infinity;
 }
@@ -142,9 +137,8 @@ Insertion insert_vertex(const Vertex& i, const Vertex& j, const Map& map, const 
     // Usually both ends have the same handedness. On a mixed edge the minimum keeps the result commutative.
     v.handedness = std::min(i.handedness, j.handedness);
     v.texture = (i.texture + j.texture) / 2.0;
-    if (parameters.texture_step > 0) {
+    if (parameters.texture_step > 0)
         v.texture = glm::floor(v.texture / parameters.texture_step) * parameters.texture_step;
-    }
     v.generation = std::max(i.generation, j.generation) + 1;
     result.mean_normal_length = normal.length;
     result.mean_tangent_length = tangent.length;
@@ -213,19 +207,15 @@ EdgeEvaluation evaluate_edge(const Vertex& i, const Vertex& j, const Map& map, c
 
 Subdivision subdivide(const std::array<bool, 3>& split, const std::array<Vertex, 6>& vertices, Diagonal diagonal) {
     const int splits = int{split[0]} + int{split[1]} + int{split[2]};
-    if (splits == 0) {
+    if (splits == 0)
         return {1, {{{0, 1, 2}}}};
-    }
-    if (splits == 3) {
+    if (splits == 3)
         return {4, {{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}}};
-    }
     if (splits == 1) {
-        if (split[0]) {
+        if (split[0])
             return {2, {{{0, 3, 2}, {3, 1, 2}}}};
-        }
-        if (split[1]) {
+        if (split[1])
             return {2, {{{0, 1, 4}, {0, 4, 2}}}};
-        }
         return {2, {{{0, 1, 5}, {5, 1, 2}}}};
     }
     std::array<int, 3> corner{};
@@ -247,9 +237,8 @@ Subdivision subdivide(const std::array<bool, 3>& split, const std::array<Vertex,
     const bool from_first =
         diagonal == Diagonal::first ||
         (diagonal == Diagonal::shorter && length(q[0], q[2]) * (1 - diagonal_margin) <= length(q[1], q[3]));
-    if (from_first) {
+    if (from_first)
         return {3, {{corner, {q[0], q[1], q[2]}, {q[0], q[2], q[3]}}}};
-    }
     return {3, {{corner, {q[0], q[1], q[3]}, {q[1], q[2], q[3]}}}};
 }
 
@@ -266,9 +255,8 @@ std::array<bool, 3> edge_to_cut(const std::array<bool, 3>& ask, const std::array
             best_length = length;
         }
     }
-    if (best < 3) {
+    if (best < 3)
         cut[best] = true;
-    }
     return cut;
 }
 
@@ -283,9 +271,8 @@ Tessellation tessellate(const std::vector<std::array<Vertex, 3>>& base, const Ma
     for (std::size_t index = base.size(); index-- > 0;) {
         Triangle& t = waiting.emplace_back();
         t.base_index = index;
-        for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t k = 0; k < 3; ++k)
             t.vertices[k] = complete_base_vertex(base[index][k], map, parameters);
-        }
     }
     while (!waiting.empty()) {
         if (result.triangles_emitted + waiting.size() > bound) {
@@ -305,9 +292,8 @@ Tessellation tessellate(const std::vector<std::array<Vertex, 3>>& base, const Ma
             vertices[3 + edge] = e.inserted.vertex;
         }
         result.edges_evaluated += 3;
-        if (parameters.diagonal == Diagonal::greatest_rank) {
+        if (parameters.diagonal == Diagonal::greatest_rank)
             split = edge_to_cut(split, t.vertices, order);
-        }
 
         const Subdivision pieces = subdivide(split, vertices, parameters.diagonal);
         if (pieces.count == 1) {

@@ -15,9 +15,8 @@ glm::dvec4 row_about(const glm::dvec3& eye, const glm::dvec3& direction) {
 
 // log2(value) + offset, with so many of `bits` bits in front of the point, within them.
 double on_log_scale(double value, double offset, int integer_bits, int bits) {
-    if (bits == 0 || value <= 0) {
+    if (bits == 0 || value <= 0)
         return 0;
-    }
     return std::clamp(std::ldexp(std::log2(value) + offset, bits - integer_bits), 0.0, std::ldexp(1.0, bits) - 1);
 }
 

@@ -38,9 +38,8 @@ class SummedAreaTable {
 
   private:
     std::uint64_t prefix(std::int64_t x, std::int64_t y) const {
-        if (x >= 0 && x <= width_ && y >= 0 && y <= height_) {
+        if (x >= 0 && x <= width_ && y >= 0 && y <= height_)
             return table_[index(x, y)];
-        }
         const std::int64_t column = floor_modulo(x, width_), row = floor_modulo(y, height_);
         const auto periods_x = static_cast<std::uint64_t>((x - column) / width_);
         const auto periods_y = static_cast<std::uint64_t>((y - row) / height_);

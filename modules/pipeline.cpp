@@ -205,10 +205,9 @@ void Pipeline::attach() {
     units_.insert(units_.end(), {&pass_or_tessellate, &tessellation, &triangle_queue, &lighting});
     units_.insert(units_.end(), tables.begin(), tables.end());
     units_.push_back(&off_chip_memory);
-    for (const auto* cache : {&displacement_map_cache, &normal_map_cache, &height_table_cache}) {
+    for (const auto* cache : {&displacement_map_cache, &normal_map_cache, &height_table_cache})
         if (*cache != nullptr)
             caches_.push_back(cache->get());
-    }
     units_.insert(units_.end(), caches_.begin(), caches_.end());
     clock.attach(off_chip_memory);
     for (Unit* table : tables)
@@ -273,19 +272,17 @@ std::size_t Pipeline::most_ahead_of_parts() const {
 
 std::uint64_t Pipeline::displacement_map_reads() const {
     std::uint64_t reads = displace_vertex.displacement_map.reads();
-    for (const TessellationTests& tests : tessellation_tests) {
+    for (const TessellationTests& tests : tessellation_tests)
         if (tests.height_test.displacement_map)
             reads += tests.height_test.displacement_map->reads();
-    }
     return reads;
 }
 
 std::uint64_t Pipeline::normal_map_reads() const {
     std::uint64_t reads = displace_vertex.normal_map ? displace_vertex.normal_map->reads() : 0;
-    for (const TessellationTests& tests : tessellation_tests) {
+    for (const TessellationTests& tests : tessellation_tests)
         for (const NormalTest* normal_test : tests.normal_tests())
             reads += normal_test->normal_map.reads();
-    }
     return reads;
 }
 
@@ -299,10 +296,9 @@ std::uint64_t Pipeline::height_table_reads() const {
 datapath::Saturations Pipeline::saturations() const {
     datapath::Saturations all = displace_vertex.saturations();
     all += transform.saturations();
-    for (const TessellationTests& tests : tessellation_tests) {
+    for (const TessellationTests& tests : tessellation_tests)
         for (const NormalTest* normal_test : tests.normal_tests())
             all += normal_test->saturations();
-    }
     all += tessellation.saturations();
     all += lighting.saturations();
     return all;

@@ -64,14 +64,10 @@ class UnitFactory {
         const datapath::HeightTest kind = context.registers.formats.height_test;
         const char* const name = kind_of(kind).unit;
         switch (kind) {
-            case datapath::HeightTest::rank:
-                return rank_test(name, context);
-            case datapath::HeightTest::curvature:
-                return curvature_test(name, context);
-            case datapath::HeightTest::mipmap:
-                return mipmap_test(name, context);
-            case datapath::HeightTest::summed_height:
-                break;
+            case datapath::HeightTest::rank: return rank_test(name, context);
+            case datapath::HeightTest::curvature: return curvature_test(name, context);
+            case datapath::HeightTest::mipmap: return mipmap_test(name, context);
+            case datapath::HeightTest::summed_height: break;
         }
         return summed_height_test(name, context);
     }

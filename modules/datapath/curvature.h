@@ -154,12 +154,11 @@ template <class Visit>
 constexpr void curvature_reads(const TexCoord& i, const TexCoord& j, const TexCoord& ij, const Registers& r,
                                Visit&& visit) {
     const int level = curvature_level(i, j, r.formats);
-    if (level < least_curvature_level) {
+    if (level < least_curvature_level)
         for (const TexCoord& t : {i, j, ij})
             visit(texel_address(t, r.displacement_map, r.map, r.formats));
-    } else {
+    else
         visit(curvature_address(ij, level, r.height_table.base, covered_texels(r), r.formats));
-    }
 }
 
 /// The measure, of what was read.

@@ -31,17 +31,15 @@ constexpr FamilyEdges family_edges(const ChildIndices& indices, std::uint8_t ope
     const auto number_of = [&](std::uint8_t i, std::uint8_t j) -> std::uint8_t {
         if (i < 3 && j < 3 && (open >> i & 1u) == 0)
             return FamilyEdges::whole;
-        for (unsigned k = 0; k < family.count; ++k) {
+        for (unsigned k = 0; k < family.count; ++k)
             if (family.edges[k].i == j && family.edges[k].j == i)
                 return static_cast<std::uint8_t>(k);
-        }
         family.edges[family.count] = {i, j};
         return static_cast<std::uint8_t>(family.count++);
     };
-    for (std::size_t c = 0; c < static_cast<std::size_t>(indices.count); ++c) {
+    for (std::size_t c = 0; c < static_cast<std::size_t>(indices.count); ++c)
         for (std::size_t e = 0; e < 3; ++e)
             family.of_child[c][e] = number_of(indices.children[c][e], indices.children[c][(e + 1) % 3]);
-    }
     return family;
 }
 

@@ -66,12 +66,9 @@ constexpr int height_entry_bits(const Formats& formats) {
         case HeightTest::rank:
             return formats.rank_bits + formats.bound_bits +
                    (formats.distances && formats.bound_bits > 0 ? radius_bits : 0);
-        case HeightTest::curvature:
-            return curvature_entry_bits;
-        case HeightTest::mipmap:
-            return formats.displacement.bits;
-        case HeightTest::summed_height:
-            break;
+        case HeightTest::curvature: return curvature_entry_bits;
+        case HeightTest::mipmap: return formats.displacement.bits;
+        case HeightTest::summed_height: break;
     }
     return formats.summed_height.bits;
 }

@@ -29,10 +29,9 @@ constexpr int signed_bits(int exponent) {
 /// The first intermediate that does not fit the model's integer; null if all fit.
 template <class Widths>
 constexpr const char* first_too_wide(const Widths& widths) {
-    for (const Width& width : widths.all()) {
+    for (const Width& width : widths.all())
         if (width.bits > width.most)
             return width.name;
-    }
     return nullptr;
 }
 

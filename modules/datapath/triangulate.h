@@ -46,18 +46,12 @@ constexpr std::array<std::uint8_t, 4> remaining_quadrilateral(int whole_edge) {
 /// `second_diagonal` selects the quadrilateral's diagonal from its second vertex. Winding order is kept.
 constexpr ChildIndices triangulate(unsigned split, bool second_diagonal) {
     switch (split) {
-        case 0:
-            return {{{{0, 1, 2}}}, 1};
-        case 1:
-            return {{{{0, 3, 2}, {3, 1, 2}}}, 2};
-        case 2:
-            return {{{{0, 1, 4}, {0, 4, 2}}}, 2};
-        case 4:
-            return {{{{0, 1, 5}, {5, 1, 2}}}, 2};
-        case 7:
-            return {{{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}}, 4};
-        default:
-            break;
+        case 0: return {{{{0, 1, 2}}}, 1};
+        case 1: return {{{{0, 3, 2}, {3, 1, 2}}}, 2};
+        case 2: return {{{{0, 1, 4}, {0, 4, 2}}}, 2};
+        case 4: return {{{{0, 1, 5}, {5, 1, 2}}}, 2};
+        case 7: return {{{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}}, 4};
+        default: break;
     }
     const int whole_edge = split == 6 ? 0 : (split == 5 ? 1 : 2);
     const auto q = remaining_quadrilateral(whole_edge);

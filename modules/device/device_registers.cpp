@@ -43,10 +43,9 @@ tlm::tlm_response_status Device::access(tlm::tlm_generic_payload& payload, const
     if (first >= register_bytes || length > register_bytes - first)
         return tlm::TLM_ADDRESS_ERROR_RESPONSE;
     unsigned char* const data = payload.get_data_ptr();
-    for (unsigned k = 0; k < length; k += 4) {
+    for (unsigned k = 0; k < length; k += 4)
         if (file_.find(first + k) == nullptr)
             return tlm::TLM_ADDRESS_ERROR_RESPONSE;
-    }
     if (payload.is_write()) {
         for (unsigned k = 0; k < length; k += 4) {
             const tlm::tlm_response_status refused = may_write(first + k, datapath::load_word(data + k));
@@ -79,28 +78,18 @@ tlm::tlm_response_status Device::may_write(std::uint64_t offset, std::uint32_t w
 
 std::uint32_t Device::read(std::uint32_t offset) const {
     switch (offset) {
-        case offset::control:
-            return 0;
-        case offset::status:
-            return status_;
-        case offset::interrupt:
-            return pending_interrupts_;
-        case offset::error:
-            return static_cast<std::uint32_t>(failure_.error);
-        case offset::error_address:
-            return static_cast<std::uint32_t>(failure_.address);
-        case offset::error_address + 4:
-            return static_cast<std::uint32_t>(failure_.address >> 32);
-        case offset::triangles_sent:
-            return triangles_sent_;
+        case offset::control: return 0;
+        case offset::status: return status_;
+        case offset::interrupt: return pending_interrupts_;
+        case offset::error: return static_cast<std::uint32_t>(failure_.error);
+        case offset::error_address: return static_cast<std::uint32_t>(failure_.address);
+        case offset::error_address + 4: return static_cast<std::uint32_t>(failure_.address >> 32);
+        case offset::triangles_sent: return triangles_sent_;
         case offset::triangles_finished:
             return static_cast<std::uint32_t>(pipeline_.pass_or_tessellate.counts().finished - finished_before_);
-        case offset::ring_write_index:
-            return write_index_;
-        case offset::ring_read_index:
-            return read_index_;
-        default:
-            return file_.word(offset);
+        case offset::ring_write_index: return write_index_;
+        case offset::ring_read_index: return read_index_;
+        default: return file_.word(offset);
     }
 }
 
@@ -124,8 +113,7 @@ void Device::write(std::uint32_t offset, std::uint32_t word, const sc_core::sc_t
             read_index_ = word;
             ring_read_.notify(sc_core::SC_ZERO_TIME);
             break;
-        default:
-            file_.set_word(offset, word);
+        default: file_.set_word(offset, word);
     }
 }
 
@@ -190,10 +178,9 @@ Device::Failure Device::check_transfers(const datapath::Registers& machine) cons
              Transfer{offset::summed_height_table_address, (tables & 4) != 0 ? machine.height_table.bytes() : 0},
              Transfer{offset::triangles_address, file_.value(offset::triangles_count) * base_triangle_bytes},
              Transfer{offset::ring_address, size * finished_triangle_bytes},
-         }) {
+         })
         if (!is_transfer(file_.value(transfer.address), transfer.bytes))
             return {DeviceError::bad_address, transfer.address};
-    }
     return {};
 }
 

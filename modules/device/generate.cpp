@@ -35,14 +35,10 @@ std::string hex(std::uint64_t value, int digits) {
 
 const char* access_name(RegisterAccess access) {
     switch (access) {
-        case RegisterAccess::read_only:
-            return "ro";
-        case RegisterAccess::read_write:
-            return "rw";
-        case RegisterAccess::command:
-            return "command";
-        case RegisterAccess::write_one_to_clear:
-            return "w1c";
+        case RegisterAccess::read_only: return "ro";
+        case RegisterAccess::read_write: return "rw";
+        case RegisterAccess::command: return "command";
+        case RegisterAccess::write_one_to_clear: return "w1c";
     }
     return "";
 }
@@ -82,10 +78,9 @@ std::vector<DeviceRegister> documented_registers() {
     std::vector<DeviceRegister> all;
     for (std::size_t kind = 1; kind < height_test_kinds.size(); ++kind) {  // each has the paper's registers
         registers.formats.height_test = static_cast<datapath::HeightTest>(kind);
-        for (DeviceRegister& made : register_map(registers, {})) {
+        for (DeviceRegister& made : register_map(registers, {}))
             if (std::none_of(all.begin(), all.end(), [&](const DeviceRegister& r) { return r.name == made.name; }))
                 all.push_back(std::move(made));
-        }
     }
     return all;
 }

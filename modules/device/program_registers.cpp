@@ -29,11 +29,10 @@ int program_registers(const tessera_platform& platform, const datapath::Register
     for (const DeviceRegister& r : map) {
         if (r.offset < offset::machine || r.access != RegisterAccess::read_write)
             continue;
-        for (int word = 0; word < r.words; ++word) {
+        for (int word = 0; word < r.words; ++word)
             if (platform.write32(platform.context, r.offset + 4 * static_cast<std::uint32_t>(word),
                                  static_cast<std::uint32_t>(r.reset >> 32 * word)) != 0)
                 return TESSERA_BUS;
-        }
     }
     return TESSERA_OK;
 }

@@ -90,14 +90,12 @@ constexpr void write_base_triangle(const datapath::Triangle& triangle, unsigned 
 constexpr bool fits_formats(const datapath::Vertex& v, const datapath::Formats& f) {
     const std::int64_t one = std::int64_t{1} << f.normal.fraction;
     const std::uint64_t most_texels = std::uint64_t{1} << (f.texture.bits - 1);
-    for (const std::int64_t p : {v.position.x, v.position.y, v.position.z}) {
+    for (const std::int64_t p : {v.position.x, v.position.y, v.position.z})
         if (p < f.position.lowest || p > f.position.highest)
             return false;
-    }
-    for (const std::int64_t n : {v.normal.x, v.normal.y, v.normal.z, v.tangent.x, v.tangent.y, v.tangent.z}) {
+    for (const std::int64_t n : {v.normal.x, v.normal.y, v.normal.z, v.tangent.x, v.tangent.y, v.tangent.z})
         if (n < -one || n > one)
             return false;
-    }
     return v.texture.u <= most_texels && v.texture.v <= most_texels && (v.handedness == 1 || v.handedness == -1);
 }
 

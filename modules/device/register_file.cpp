@@ -10,10 +10,9 @@ namespace tessera {
 RegisterFile::RegisterFile(const datapath::Registers& reset, const LargestMap& largest)
     : reset_(reset), map_(register_map(reset, largest)), values_(map_.size()) {
     places_.fill(-1);
-    for (std::size_t k = 0; k < map_.size(); ++k) {
+    for (std::size_t k = 0; k < map_.size(); ++k)
         for (int word = 0; word < map_[k].words; ++word)
             places_[map_[k].offset / 4 + static_cast<std::size_t>(word)] = static_cast<int>(k);
-    }
     this->reset();
 }
 

@@ -53,10 +53,9 @@ class LineCache {
     Line* allocate(std::uint64_t number) {
         Line* const set = set_of(number);
         Line* victim = nullptr;
-        for (Line* line = set; line != set + ways_; ++line) {
+        for (Line* line = set; line != set + ways_; ++line)
             if (line->state != State::filling && (victim == nullptr || line->used < victim->used))
                 victim = line;
-        }
         if (victim == nullptr)
             return nullptr;
         victim->state = State::filling;

@@ -45,17 +45,10 @@ class Storage {
     /// A table's entry without a call of memcpy: of 2, 4 or 6 bytes by default.
     static void copy(unsigned char* to, const unsigned char* from, std::size_t length) {
         switch (length) {
-            case 2:
-                std::memcpy(to, from, 2);
-                break;
-            case 4:
-                std::memcpy(to, from, 4);
-                break;
-            case 6:
-                std::memcpy(to, from, 6);
-                break;
-            default:
-                std::memcpy(to, from, length);
+            case 2: std::memcpy(to, from, 2); break;
+            case 4: std::memcpy(to, from, 4); break;
+            case 6: std::memcpy(to, from, 6); break;
+            default: std::memcpy(to, from, length);
         }
     }
 

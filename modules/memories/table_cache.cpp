@@ -94,10 +94,9 @@ void TableCache::take_fills(std::uint64_t cycle) {
             Gather& gather = gathers_.at(k);
             if (gather.answered)
                 continue;
-            for (unsigned entry = 0; entry < gather.looked_up; ++entry) {
+            for (unsigned entry = 0; entry < gather.looked_up; ++entry)
                 if ((gather.come >> entry & 1u) == 0 && line_number(gather.request->address[entry]) == line.number)
                     take_entry(gather, entry, line);
-            }
         }
         look_up();
     }

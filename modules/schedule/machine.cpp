@@ -312,14 +312,10 @@ void Machine::observe(Unit unit, ItemObserver* observer) {
 
 const Table& Machine::table(Unit memory) const {
     switch (memory) {
-        case displacement_map:
-            return displacement_map_;
-        case displacement_map_for_tests:
-            return displacement_map_for_tests_;
-        case normal_map:
-            return normal_map_;
-        default:
-            return height_table_;
+        case displacement_map: return displacement_map_;
+        case displacement_map_for_tests: return displacement_map_for_tests_;
+        case normal_map: return normal_map_;
+        default: return height_table_;
     }
 }
 

@@ -63,10 +63,9 @@ class Fork {
 
     /// The first consumer that has not taken its offer; null: none.
     const sc_core::sc_object* blocked_by() const {
-        for (std::size_t k = 0; k < count_; ++k) {
+        for (std::size_t k = 0; k < count_; ++k)
             if (const sc_core::sc_object* consumer = to_[k]->blocked_by())
                 return consumer;
-        }
         return nullptr;
     }
 

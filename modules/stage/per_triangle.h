@@ -19,10 +19,9 @@ class PerTriangle {
 
     /// Null: no state for this triangle.
     State* find(Tag tag) {
-        for (std::size_t k = 0; k < entries_.size(); ++k) {
+        for (std::size_t k = 0; k < entries_.size(); ++k)
             if (entries_.at(k).tag == tag)
                 return &entries_.at(k).state;
-        }
         return nullptr;
     }
     const State* find(Tag tag) const { return const_cast<PerTriangle*>(this)->find(tag); }

@@ -135,10 +135,9 @@ Out Stage<In, Out>::read_and_process(const In& item, sc_core::sc_time& delay) {
         for (unsigned request = 0, entry = 0; request < needed.requests();) {
             const unsigned port = needed.port(request);
             MemoryPort::Burst burst(*machinery_->ports[port], delay);
-            for (; request < needed.requests() && needed.port(request) == port; ++request) {
+            for (; request < needed.requests() && needed.port(request) == port; ++request)
                 for (const unsigned end = entry + needed.count(request); entry < end; ++entry)
                     entries[entry] = burst.read(needed.addresses()[entry]);
-            }
         }
     }
     return process(item, entries);
@@ -233,10 +232,9 @@ template <class In, class Out>
 template <class Figure>
 std::uint64_t Stage<In, Out>::over_ports(Figure figure) const {
     std::uint64_t sum = 0;
-    for (const MemoryPort* port : machinery_->ports) {
+    for (const MemoryPort* port : machinery_->ports)
         if (port != nullptr)
             sum += static_cast<std::uint64_t>(figure(*port));
-    }
     return sum;
 }
 

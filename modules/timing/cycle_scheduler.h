@@ -60,10 +60,9 @@ class CycleProcess {
         step();
     }
     void admit() {
-        for (CycleInput* input = first_input_; input != nullptr; input = input->next_) {
+        for (CycleInput* input = first_input_; input != nullptr; input = input->next_)
             if (input->waiting_)
                 input->admit();
-        }
     }
 
     CycleInput* first_input_ = nullptr;

@@ -37,62 +37,49 @@ enum class TestOrder {
 
 constexpr std::string_view name_of(Transport value) {
     switch (value) {
-        case Transport::blocking:
-            return "functional";
-        case Transport::non_blocking:
-            return "timed";
+        case Transport::blocking: return "functional";
+        case Transport::non_blocking: return "timed";
     }
     return {};
 }
 
 constexpr std::string_view name_of(TriangleOrder value) {
     switch (value) {
-        case TriangleOrder::fifo:
-            return "fifo";
-        case TriangleOrder::lifo:
-            return "lifo";
+        case TriangleOrder::fifo: return "fifo";
+        case TriangleOrder::lifo: return "lifo";
     }
     return {};
 }
 
 constexpr std::string_view name_of(QueueOverflow value) {
     switch (value) {
-        case QueueOverflow::spill:
-            return "spill";
-        case QueueOverflow::stall:
-            return "stall";
-        case QueueOverflow::error:
-            return "error";
+        case QueueOverflow::spill: return "spill";
+        case QueueOverflow::stall: return "stall";
+        case QueueOverflow::error: return "error";
     }
     return {};
 }
 
 constexpr std::string_view name_of(Work value) {
     switch (value) {
-        case Work::triangle:
-            return "triangle";
-        case Work::family:
-            return "family";
+        case Work::triangle: return "triangle";
+        case Work::family: return "family";
     }
     return {};
 }
 
 constexpr std::string_view name_of(TestOrder value) {
     switch (value) {
-        case TestOrder::parallel:
-            return "parallel";
-        case TestOrder::cheap_first:
-            return "cheap_first";
+        case TestOrder::parallel: return "parallel";
+        case TestOrder::cheap_first: return "cheap_first";
     }
     return {};
 }
 
 constexpr std::string_view name_of(Interleave value) {
     switch (value) {
-        case Interleave::entry:
-            return "entry";
-        case Interleave::exclusive_or:
-            return "xor";
+        case Interleave::entry: return "entry";
+        case Interleave::exclusive_or: return "xor";
     }
     return {};
 }

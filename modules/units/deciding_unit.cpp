@@ -26,11 +26,10 @@ void DecidingUnit::decide_edges(datapath::TrianglePass& pass) {
             ++counts_.edges_tested;
         if (pass.told == datapath::Told::all && !(edge.texture == pass.new_vertex[k].texture))
             SC_REPORT_ERROR("tessera/pass_or_tessellate", "the two branches disagree on the midpoint of an edge");
-        if (datapath::split_decision(edge.tests)) {
+        if (datapath::split_decision(edge.tests))
             asked |= 1u << k;
-        } else if ((edge.tests & datapath::requesting_tests) != 0) {
+        else if ((edge.tests & datapath::requesting_tests) != 0)
             stopped_by |= ~edge.tests & datapath::gating_tests;
-        }
     }
     const unsigned split = datapath::edges_to_split(asked, registers_.triangulation, pass);
     counts_.edges_split += static_cast<unsigned>(__builtin_popcount(split));

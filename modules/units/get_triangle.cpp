@@ -188,10 +188,9 @@ bool GetTriangle::send_parts(Branch<Item>& branch, std::uint64_t cycle) {
 const sc_core::sc_object* GetTriangle::blocked_by() const {
     if (!to_calculate_new_p.free())
         return to_calculate_new_p.consumer();
-    for (const StreamOutput<TestOperands>& output : to_tessellation_tests) {
+    for (const StreamOutput<TestOperands>& output : to_tessellation_tests)
         if (!output.free())
             return output.consumer();
-    }
     return to_join.free() ? nullptr : to_join.consumer();
 }
 

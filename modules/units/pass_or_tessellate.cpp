@@ -160,12 +160,9 @@ bool PassOrTessellate::take_parts(std::uint64_t cycle) {
 
 bool PassOrTessellate::deliver(Decided& next) {
     switch (next.way) {
-        case Way::tessellation:
-            return to_tessellation.deliver(next.to_tessellation);
-        case Way::lighting:
-            return to_lighting.deliver(next.to_lighting);
-        case Way::dropped:
-            break;
+        case Way::tessellation: return to_tessellation.deliver(next.to_tessellation);
+        case Way::lighting: return to_lighting.deliver(next.to_lighting);
+        case Way::dropped: break;
     }
     return true;
 }
@@ -212,10 +209,9 @@ void PassOrTessellate::step() {
 /// The branch that alone delays the oldest triangle; null if both, or neither, still owe parts.
 const sc_core::sc_object* PassOrTessellate::late_branch() const {
     if (incomplete_.empty()) {
-        for (const StreamInput<TestedEdge>& input : from_tessellation_tests) {
+        for (const StreamInput<TestedEdge>& input : from_tessellation_tests)
             if (!input.empty())
                 return transform_;
-        }
         return nullptr;
     }
     const Incomplete& first = incomplete_.oldest();

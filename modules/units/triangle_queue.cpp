@@ -124,10 +124,8 @@ bool TriangleQueue::put(const datapath::Triangle& triangle) {
             overflowed_ = true;
             clock_.halt();
             return false;
-        case QueueOverflow::stall:
-            return false;
-        case QueueOverflow::spill:
-            break;
+        case QueueOverflow::stall: return false;
+        case QueueOverflow::spill: break;
     }
     if (off_chip_ == design_.off_chip_triangles) {
         off_chip_memory_full_ = true;

@@ -164,10 +164,9 @@ class Platform {
 
 void device_frame(benchmark::State& state, Platform& platform) {
     const std::uint64_t before = platform.edges_tested();
-    for (auto _ : state) {
+    for (auto _ : state)
         if (!platform.draw_frame())
             state.SkipWithError("the device refused the frame");
-    }
     report(state, platform.edges_tested() - before, platform.triangles());
 }
 

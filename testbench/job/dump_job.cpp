@@ -20,11 +20,9 @@ std::string facts(const Key& key) {
 Job moved_to(const std::filesystem::path& folder, const Job& job) {
     Job moved = job;
     for (const KeyTable& table : job_tables()) {
-        for (const Key& key : table.keys) {
-            if (key.kind == KeyKind::file) {
+        for (const Key& key : table.keys)
+            if (key.kind == KeyKind::file)
                 set_value(moved, key, rebase_path(std::get<std::string>(key.get(job)), job.folder, folder));
-            }
-        }
     }
     return moved;
 }
@@ -34,9 +32,8 @@ Job moved_to(const std::filesystem::path& folder, const Job& job) {
 std::string dump_job(const Job& job) {
     std::string out = fmt::format("{}\n", dumped_job_heading);
     for (const KeyTable& table : job_tables()) {
-        if (!table.name.empty()) {
+        if (!table.name.empty())
             out += fmt::format("\n# {}\n[{}]\n", table.description, table.name);
-        }
         for (const Key& key : table.keys) {
             out += fmt::format("\n# {}\n# {}\n{} = {}\n", key.description, facts(key), key.leaf(),
                                toml_value(key.get(job)));
@@ -60,13 +57,11 @@ std::string dump_short_job(const Job& job, const std::filesystem::path& folder, 
         for (const Key& key : table.keys) {
             const std::string value = toml_value(key.get(moved));
             const bool is_preset = key.name == "hardware.design";
-            if (value != toml_value(is_preset ? default_of(key) : key.get(preset))) {
+            if (value != toml_value(is_preset ? default_of(key) : key.get(preset)))
                 keys += fmt::format("{} = {}\n", key.leaf(), value);
-            }
         }
-        if (!keys.empty()) {
+        if (!keys.empty())
             out += (table.name.empty() ? "" : fmt::format("\n[{}]\n", table.name)) + keys;
-        }
     }
     return out;
 }

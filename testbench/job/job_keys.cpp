@@ -39,22 +39,20 @@ KeyRange auto_or(KeyRange range) {
 template <typename T>
 JobValue value_or_auto(const T& value, const KeyRange& range) {
     if constexpr (std::is_floating_point_v<T> || std::is_same_v<T, std::array<double, 3>>) {
-        if (range.or_auto && is_automatic(value)) {
+        if (range.or_auto && is_automatic(value))
             return std::string(auto_word);
-        }
     }
     return value;
 }
 
 template <typename T>
 T from_value(const JobValue& value) {
-    if constexpr (std::is_same_v<T, double>) {
+    if constexpr (std::is_same_v<T, double>)
         return std::holds_alternative<double>(value) ? std::get<double>(value) : automatic;
-    } else if constexpr (std::is_same_v<T, std::array<double, 3>>) {
+    else if constexpr (std::is_same_v<T, std::array<double, 3>>)
         return std::holds_alternative<T>(value) ? std::get<T>(value) : automatic_vector;
-    } else {
+    else
         return std::get<T>(value);
-    }
 }
 
 /// In the order of MapRange::Kind.
@@ -90,9 +88,8 @@ class TableWriter {
         key.choices = {range_names.begin(), range_names.end()};
         key.get = [select = select_, member](const Job& job) -> JobValue {
             const MapRange& it = select(job).*member;
-            if (it.kind == MapRange::Kind::given) {
+            if (it.kind == MapRange::Kind::given)
                 return std::array<double, 2>{it.low, it.high};
-            }
             return std::string(range_names.at(static_cast<std::size_t>(it.kind)));
         };
         key.set = [select = select_, member](Job& job, const JobValue& value) {
@@ -367,21 +364,17 @@ const std::vector<KeyTable>& job_tables() {
 
 const Key* find_key(std::string_view name) {
     for (const KeyTable& table : job_tables()) {
-        for (const Key& key : table.keys) {
-            if (key.name == name) {
+        for (const Key& key : table.keys)
+            if (key.name == name)
                 return &key;
-            }
-        }
     }
     return nullptr;
 }
 
 const KeyTable* find_table(std::string_view name) {
-    for (const KeyTable& table : job_tables()) {
-        if (table.name == name) {
+    for (const KeyTable& table : job_tables())
+        if (table.name == name)
             return &table;
-        }
-    }
     return nullptr;
 }
 
@@ -391,11 +384,9 @@ JobValue default_of(const Key& key) {
 
 std::string automatic_key(const Job& job) {
     for (const KeyTable& table : job_tables()) {
-        for (const Key& key : table.keys) {
-            if (key.range.or_auto && key.get(job) == JobValue(std::string(auto_word))) {
+        for (const Key& key : table.keys)
+            if (key.range.or_auto && key.get(job) == JobValue(std::string(auto_word)))
                 return key.name;
-            }
-        }
     }
     return {};
 }
@@ -404,9 +395,8 @@ bool same_settings(const Job& a, const Job& b) {
     for (const KeyTable& table : job_tables()) {
         for (const Key& key : table.keys) {
             // As text, so that -0.0 differs from 0.0.
-            if (toml_value(key.get(a)) != toml_value(key.get(b))) {
+            if (toml_value(key.get(a)) != toml_value(key.get(b)))
                 return false;
-            }
         }
     }
     return true;

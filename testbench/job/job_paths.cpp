@@ -29,12 +29,10 @@ std::filesystem::path canonical_folder(const std::filesystem::path& folder) {
 /// The path to open; empty for an empty text.
 std::filesystem::path resolve_path(const std::string& text, const std::filesystem::path& job_folder,
                                    const std::filesystem::path& data_folder) {
-    if (text.empty()) {
+    if (text.empty())
         return {};
-    }
-    if (!is_data_path(text)) {
+    if (!is_data_path(text))
         return job_folder / text;
-    }
     const std::filesystem::path inside = text.substr(data_prefix.size());
     if (inside.empty() || inside.is_absolute() || std::count(inside.begin(), inside.end(), "..") > 0) {
         throw InputError(fmt::format(
@@ -54,14 +52,12 @@ void resolve_paths(Job& job, const std::filesystem::path& data_folder) {
 std::string rebase_path(const std::string& text, const std::filesystem::path& from_folder,
                         const std::filesystem::path& to_folder) {
     const std::filesystem::path path = text;
-    if (text.empty() || is_data_path(text) || path.is_absolute()) {
+    if (text.empty() || is_data_path(text) || path.is_absolute())
         return text;
-    }
     const std::filesystem::path from = canonical_folder(from_folder);
     const std::filesystem::path to = canonical_folder(to_folder);
-    if (from == to) {
+    if (from == to)
         return text;
-    }
     // The file itself may be a link; only its folder is resolved, so that its name stays.
     const std::filesystem::path file = canonical_folder((from / path).parent_path()) / path.filename();
     return file.lexically_relative(to).generic_string();

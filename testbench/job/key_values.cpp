@@ -43,32 +43,26 @@ struct FaultOf {
     const Key& key;
 
     std::string number(double value) const {
-        if (!std::isfinite(value)) {
+        if (!std::isfinite(value))
             return "is not a finite number; the range is " + WithUnit{key}(range_numbers(key));
-        }
         return in_range(key.range, value) ? "" : "is out of range; the range is " + WithUnit{key}(range_numbers(key));
     }
 
     std::string text(const std::string& value) const {
-        if (key.kind == KeyKind::choice || key.kind == KeyKind::span) {
+        if (key.kind == KeyKind::choice || key.kind == KeyKind::span)
             return choice(value);
-        }
-        if (value.size() > longest_text) {
+        if (value.size() > longest_text)
             return fmt::format("has {} bytes; the limit is {}", value.size(), longest_text);
-        }
-        if (value.find('\0') != std::string::npos || !is_utf8(value)) {
+        if (value.find('\0') != std::string::npos || !is_utf8(value))
             return "is not UTF-8 text without NUL";
-        }
-        if (key.kind == KeyKind::folder && value.empty()) {
+        if (key.kind == KeyKind::folder && value.empty())
             return "is empty; name a folder";
-        }
         return "";
     }
 
     std::string choice(const std::string& value) const {
-        if (std::find(key.choices.begin(), key.choices.end(), value) != key.choices.end()) {
+        if (std::find(key.choices.begin(), key.choices.end(), value) != key.choices.end())
             return "";
-        }
         const std::string near = nearest_name(value, {key.choices.begin(), key.choices.end()});
         return "is not a choice; the choices are " + joined(key.choices) +
                (key.kind == KeyKind::span ? ", or two numbers [low, high]" : "") +
@@ -81,33 +75,26 @@ struct FaultOf {
     }
     std::string operator()(double value) const { return key.kind == KeyKind::number ? number(value) : wrong_kind(); }
     std::string operator()(const std::array<double, 2>& value) const {
-        if (key.kind != KeyKind::span) {
+        if (key.kind != KeyKind::span)
             return wrong_kind();
-        }
-        for (const double end : value) {
-            if (std::string fault = number(end); !fault.empty()) {
+        for (const double end : value)
+            if (std::string fault = number(end); !fault.empty())
                 return fault;
-            }
-        }
         return value[0] < value[1] ? "" : "has its low end not below its high end";
     }
     std::string operator()(const std::array<double, 3>& value) const {
-        if (key.kind != KeyKind::vector) {
+        if (key.kind != KeyKind::vector)
             return wrong_kind();
-        }
-        for (const double component : value) {
-            if (std::string fault = number(component); !fault.empty()) {
+        for (const double component : value)
+            if (std::string fault = number(component); !fault.empty())
                 return fault;
-            }
-        }
         return "";
     }
     std::string operator()(const std::string& value) const {
         const bool textual = key.kind == KeyKind::choice || key.kind == KeyKind::span || key.kind == KeyKind::text ||
                              key.kind == KeyKind::file || key.kind == KeyKind::folder;
-        if (key.range.or_auto && value == auto_word) {
+        if (key.range.or_auto && value == auto_word)
             return "";
-        }
         return textual ? text(value) : wrong_kind();
     }
 
@@ -118,46 +105,33 @@ struct FaultOf {
 
 std::string range_text(const Key& key) {
     switch (key.kind) {
-        case KeyKind::flag:
-            return "true, false";
+        case KeyKind::flag: return "true, false";
         case KeyKind::integer:
-        case KeyKind::number:
-            return auto_text(key) + range_numbers(key);
-        case KeyKind::vector:
-            return auto_text(key) + "[x, y, z], each " + range_numbers(key);
-        case KeyKind::span:
-            return joined(key.choices) + " or [low, high], each " + range_numbers(key);
-        case KeyKind::choice:
-            return joined(key.choices);
-        case KeyKind::text:
-            return "text";
-        case KeyKind::file:
-            return "path from the job's folder, or data:path";
-        case KeyKind::folder:
-            return "path from the current directory";
+        case KeyKind::number: return auto_text(key) + range_numbers(key);
+        case KeyKind::vector: return auto_text(key) + "[x, y, z], each " + range_numbers(key);
+        case KeyKind::span: return joined(key.choices) + " or [low, high], each " + range_numbers(key);
+        case KeyKind::choice: return joined(key.choices);
+        case KeyKind::text: return "text";
+        case KeyKind::file: return "path from the job's folder, or data:path";
+        case KeyKind::folder: return "path from the current directory";
     }
     return "";
 }
 
 std::string wanted_text(const Key& key) {
     switch (key.kind) {
-        case KeyKind::flag:
-            return "true or false";
-        case KeyKind::integer:
-            return "an integer, " + WithUnit{key}(range_numbers(key));
-        case KeyKind::number:
-            return auto_text(key) + "a number, " + WithUnit{key}(range_numbers(key));
+        case KeyKind::flag: return "true or false";
+        case KeyKind::integer: return "an integer, " + WithUnit{key}(range_numbers(key));
+        case KeyKind::number: return auto_text(key) + "a number, " + WithUnit{key}(range_numbers(key));
         case KeyKind::vector:
             return auto_text(key) + "three numbers, " + WithUnit{key}("[x, y, z], each " + range_numbers(key));
         case KeyKind::span:
             return "one of " + joined(key.choices) + ", or two numbers, " +
                    WithUnit{key}("[low, high], each " + range_numbers(key));
-        case KeyKind::choice:
-            return "one of " + joined(key.choices);
+        case KeyKind::choice: return "one of " + joined(key.choices);
         case KeyKind::text:
         case KeyKind::file:
-        case KeyKind::folder:
-            return "a string: " + range_text(key);
+        case KeyKind::folder: return "a string: " + range_text(key);
     }
     return "";
 }
@@ -168,9 +142,8 @@ std::string complaint(const Key& key, const JobValue& value) {
 }
 
 void set_value(Job& job, const Key& key, const JobValue& value) {
-    if (const std::string fault = complaint(key, value); !fault.empty()) {
+    if (const std::string fault = complaint(key, value); !fault.empty())
         throw InputError(fault);
-    }
     key.set(job, value);
 }
 

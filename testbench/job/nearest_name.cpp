@@ -31,9 +31,8 @@ std::string_view last_part(std::string_view name) {
 
 std::string nearest_name(std::string_view mistyped, const std::vector<std::string>& names) {
     constexpr std::size_t longest = 64;  // nothing longer is near a key, and the distance would take long
-    if (mistyped.size() > longest) {
+    if (mistyped.size() > longest)
         return {};
-    }
     std::string best;
     std::size_t best_distance = std::max<std::size_t>(2, mistyped.size() / 4) + 1;
     for (const std::string& name : names) {

@@ -39,29 +39,25 @@ Fault fault_at(const toml::source_region& where, std::string text, std::string u
 std::vector<std::string> all_names() {
     std::vector<std::string> names;
     for (const KeyTable& table : job_tables()) {
-        if (!table.name.empty()) {
+        if (!table.name.empty())
             names.push_back(table.name);
-        }
-        for (const Key& key : table.keys) {
+        for (const Key& key : table.keys)
             names.push_back(key.name);
-        }
     }
     return names;
 }
 
 std::string keys_text(const KeyTable& table) {
     std::string text;
-    for (const Key& key : table.keys) {
+    for (const Key& key : table.keys)
         text += fmt::format("{}{}", text.empty() ? "" : ", ", key.leaf());
-    }
     return text;
 }
 
 std::string suggestion(std::string_view unknown_name) {
     const std::string near = nearest_name(unknown_name, all_names());
-    if (near.empty()) {
+    if (near.empty())
         return "; `tessera keys` lists them all";
-    }
     const KeyTable* group = find_table(near);
     const bool within_another = unknown_name.find('.') != std::string_view::npos;
     return group != nullptr && within_another
@@ -74,14 +70,12 @@ template <std::size_t Size>
 std::optional<std::array<double, Size>> to_numbers(const toml::node& node) {
     const toml::array* array = node.as_array();
     std::array<double, Size> vector{};
-    if (array == nullptr || array->size() != vector.size()) {
+    if (array == nullptr || array->size() != vector.size())
         return {};
-    }
     for (std::size_t i = 0; i < vector.size(); ++i) {
         const std::optional<double> number = to_number((*array)[i]);
-        if (!number) {
+        if (!number)
             return {};
-        }
         vector[i] = *number;
     }
     return vector;
@@ -95,25 +89,18 @@ std::optional<JobValue> optional_value(const std::optional<T>& value) {
 /// Nothing if the node's type does not fit the key's kind.
 std::optional<JobValue> to_value(const toml::node& node, const Key& key) {
     const std::optional<std::string> word = node.value_exact<std::string>();
-    if (word && (key.kind == KeyKind::span || (key.range.or_auto && *word == auto_word))) {
+    if (word && (key.kind == KeyKind::span || (key.range.or_auto && *word == auto_word)))
         return *word;
-    }
     switch (key.kind) {
-        case KeyKind::flag:
-            return optional_value(node.value_exact<bool>());
-        case KeyKind::integer:
-            return optional_value(node.value_exact<std::int64_t>());
-        case KeyKind::number:
-            return optional_value(to_number(node));
-        case KeyKind::vector:
-            return optional_value(to_numbers<3>(node));
-        case KeyKind::span:
-            return optional_value(to_numbers<2>(node));
+        case KeyKind::flag: return optional_value(node.value_exact<bool>());
+        case KeyKind::integer: return optional_value(node.value_exact<std::int64_t>());
+        case KeyKind::number: return optional_value(to_number(node));
+        case KeyKind::vector: return optional_value(to_numbers<3>(node));
+        case KeyKind::span: return optional_value(to_numbers<2>(node));
         case KeyKind::choice:
         case KeyKind::text:
         case KeyKind::file:
-        case KeyKind::folder:
-            return optional_value(word);
+        case KeyKind::folder: return optional_value(word);
     }
     return {};
 }
@@ -121,13 +108,11 @@ std::optional<JobValue> to_value(const toml::node& node, const Key& key) {
 /// Sets the key from the node; returns what is wrong, empty if nothing.
 std::string set_from_node(Job& job, const Key& key, const toml::node& node) {
     const std::optional<JobValue> value = to_value(node, key);
-    if (!value) {
+    if (!value)
         return fmt::format("`{}` is {}; expected {}", key.name, found_text(node), wanted_text(key));
-    }
     std::string fault = complaint(key, *value);
-    if (fault.empty()) {
+    if (fault.empty())
         key.set(job, *value);
-    }
     return fault;
 }
 
@@ -141,11 +126,10 @@ std::string written_key(std::string_view key) {
 
 /// A file named without a source is an OBJ file, or an image.
 void choose_source(Job& job, std::string_view table) {
-    if (table == "mesh" && !job.mesh.file.empty()) {
+    if (table == "mesh" && !job.mesh.file.empty())
         job.mesh.source = MeshSource::file;
-    } else if (table == "map" && !job.map.file.empty()) {
+    else if (table == "map" && !job.map.file.empty())
         job.map.source = MapSource::file;
-    }
 }
 
 class TableReader {
@@ -161,12 +145,10 @@ class TableReader {
             if (inner == nullptr) {
                 read_key("", name, node);
             } else if (const toml::table* keys = node.as_table()) {
-                for (const auto& [inner_name, inner_node] : *keys) {
+                for (const auto& [inner_name, inner_node] : *keys)
                     read_key(inner->name + '.', inner_name, inner_node);
-                }
-                if (!keys->contains("source")) {
+                if (!keys->contains("source"))
                     choose_source(job_, inner->name);
-                }
             } else {
                 faults_.push_back(fault_at(name.source(), fmt::format("`{0}` is {1}; `{0}` is a table of keys: "
                                                                       "write [{0}], then its keys",
@@ -176,9 +158,8 @@ class TableReader {
     }
 
     Job take(const std::string& file) {
-        if (faults_.empty()) {
+        if (faults_.empty())
             return job_;
-        }
         std::sort(faults_.begin(), faults_.end(), [](const Fault& a, const Fault& b) {
             return std::tie(a.line, a.column) < std::tie(b.line, b.column);
         });
@@ -188,9 +169,8 @@ class TableReader {
             message += fmt::format("{}{}:{}:{}: {}{}", i == 0 ? "" : "\n", file, fault.line, fault.column, fault.text,
                                    fault.unknown_name.empty() ? "" : suggestion(fault.unknown_name));
         }
-        if (faults_.size() > most_faults) {
+        if (faults_.size() > most_faults)
             message += fmt::format("\n{}: and {} more", file, faults_.size() - most_faults);
-        }
         throw InputError(message);
     }
 
@@ -216,9 +196,8 @@ class TableReader {
 
 std::string_view trimmed(std::string_view text) {
     const std::size_t first = text.find_first_not_of(" \t");
-    if (first == std::string_view::npos) {
+    if (first == std::string_view::npos)
         return {};
-    }
     return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
@@ -227,15 +206,12 @@ bool is_bare_word(const Key& key, std::string_view value) {
         case KeyKind::choice:
         case KeyKind::text:
         case KeyKind::file:
-        case KeyKind::folder:
-            return value.empty() || (value.front() != '"' && value.front() != '\'');
-        case KeyKind::span:
-            return std::find(key.choices.begin(), key.choices.end(), value) != key.choices.end();
+        case KeyKind::folder: return value.empty() || (value.front() != '"' && value.front() != '\'');
+        case KeyKind::span: return std::find(key.choices.begin(), key.choices.end(), value) != key.choices.end();
         case KeyKind::flag:
         case KeyKind::integer:
         case KeyKind::number:
-        case KeyKind::vector:
-            break;
+        case KeyKind::vector: break;
     }
     return key.range.or_auto && value == auto_word;
 }
@@ -254,12 +230,10 @@ void set_from_text(Job& job, const Key& key, std::string_view text) {
         throw InputError(fmt::format("`{}` cannot be {}; expected {}", key.name, printable(text), wanted_text(key)));
     }
     const toml::node* value = table.get("value");
-    if (table.size() != 1 || value == nullptr) {
+    if (table.size() != 1 || value == nullptr)
         throw InputError(fmt::format("`{}`: one --set sets one key", key.name));
-    }
-    if (const std::string fault = set_from_node(job, key, *value); !fault.empty()) {
+    if (const std::string fault = set_from_node(job, key, *value); !fault.empty())
         throw InputError(fault);
-    }
 }
 
 void set_key(Job& job, std::string_view name, std::string_view value) {
@@ -271,25 +245,21 @@ void set_key(Job& job, std::string_view name, std::string_view value) {
                         "has {2}",
                         name, group->keys.front().name, keys_text(*group)));
     }
-    if (key == nullptr) {
+    if (key == nullptr)
         throw InputError(fmt::format("unknown key `{}`{}", printable(name), suggestion(name)));
-    }
-    if (is_bare_word(*key, value)) {
+    if (is_bare_word(*key, value))
         set_value(job, *key, std::string(value));
-    } else if (value.empty()) {
+    else if (value.empty())
         throw InputError(fmt::format("`{}` has no value; expected {}", name, wanted_text(*key)));
-    } else {
+    else
         set_from_text(job, *key, value);
-    }
-    if (key->name == design_key) {
+    if (key->name == design_key)
         apply_design(job);
-    }
     if (key->kind == KeyKind::file) {
         set_value(job, *key, rebase_path(std::get<std::string>(key->get(job)), "", job.folder));
         if (const Key* source = find_key(table_of(*key) + ".source");
-            source != nullptr && source->get(job) == default_of(*source)) {
+            source != nullptr && source->get(job) == default_of(*source))
             choose_source(job, table_of(*key));
-        }
     }
 }
 
@@ -310,9 +280,8 @@ Job read_job(const std::filesystem::path& path) {
 void apply_setting(Job& job, std::string_view setting) {
     const std::size_t equals = setting.find('=');
     try {
-        if (equals == std::string_view::npos) {
+        if (equals == std::string_view::npos)
             throw InputError("expected table.key=value, for example mesh.columns=3");
-        }
         Job changed = job;
         set_key(changed, trimmed(setting.substr(0, equals)), trimmed(setting.substr(equals + 1)));
         job = std::move(changed);
@@ -323,11 +292,9 @@ void apply_setting(Job& job, std::string_view setting) {
 
 void apply_settings(Job& job, const std::vector<std::string>& settings) {
     for (const bool presets : {true, false}) {
-        for (const std::string& setting : settings) {
-            if ((trimmed(std::string_view(setting).substr(0, setting.find('='))) == design_key) == presets) {
+        for (const std::string& setting : settings)
+            if ((trimmed(std::string_view(setting).substr(0, setting.find('='))) == design_key) == presets)
                 apply_setting(job, setting);
-            }
-        }
     }
 }
 

@@ -47,29 +47,24 @@ std::string read_toml_text(const std::filesystem::path& path, std::string_view k
     const std::string name = path.string();
     std::error_code failed;
     const std::filesystem::file_status status = std::filesystem::status(path, failed);
-    if (status.type() == std::filesystem::file_type::not_found) {
+    if (status.type() == std::filesystem::file_type::not_found)
         throw InputError(fmt::format("{}: no such {}", name, kind));
-    }
-    if (status.type() == std::filesystem::file_type::directory) {
+    if (status.type() == std::filesystem::file_type::directory)
         throw InputError(fmt::format("{}: is a folder, not a {}", name, kind));
-    }
-    if (status.type() != std::filesystem::file_type::regular) {
+    if (status.type() != std::filesystem::file_type::regular)
         throw InputError(fmt::format("{}: is not a file that can be read as a {}", name, kind));
-    }
     std::ifstream file(path, std::ios::binary);
     std::string text(largest_toml_file + 1, '\0');
     file.read(text.data(), static_cast<std::streamsize>(text.size()));
-    if (!file.is_open() || file.bad()) {
+    if (!file.is_open() || file.bad())
         throw InputError(fmt::format("{}: cannot be read; check its permissions", name));
-    }
     text.resize(static_cast<std::size_t>(file.gcount()));
     return text;
 }
 
 toml::table parse_toml(std::string_view text, const std::string& name, std::string_view kind) {
-    if (text.size() > largest_toml_file) {
+    if (text.size() > largest_toml_file)
         throw InputError(fmt::format("{}: over {} bytes; {} has at most that many", name, largest_toml_file, kind));
-    }
     refuse_deep_keys(text, name);
     try {
         return toml::parse(text);
@@ -81,37 +76,26 @@ toml::table parse_toml(std::string_view text, const std::string& name, std::stri
 
 std::string found_text(const toml::node& node) {
     switch (node.type()) {
-        case toml::node_type::table:
-            return "a table";
-        case toml::node_type::array:
-            return fmt::format("an array of {}", node.as_array()->size());
-        case toml::node_type::string:
-            return printable(toml_string(node.as_string()->get())) + ", a string";
-        case toml::node_type::integer:
-            return fmt::format("{}, an integer", node.as_integer()->get());
+        case toml::node_type::table: return "a table";
+        case toml::node_type::array: return fmt::format("an array of {}", node.as_array()->size());
+        case toml::node_type::string: return printable(toml_string(node.as_string()->get())) + ", a string";
+        case toml::node_type::integer: return fmt::format("{}, an integer", node.as_integer()->get());
         case toml::node_type::floating_point:
             return toml_number(node.as_floating_point()->get()) + ", a floating-point number";
-        case toml::node_type::boolean:
-            return node.as_boolean()->get() ? "true" : "false";
-        case toml::node_type::date:
-            return "a date";
-        case toml::node_type::time:
-            return "a time";
-        case toml::node_type::date_time:
-            return "a date and time";
-        case toml::node_type::none:
-            break;
+        case toml::node_type::boolean: return node.as_boolean()->get() ? "true" : "false";
+        case toml::node_type::date: return "a date";
+        case toml::node_type::time: return "a time";
+        case toml::node_type::date_time: return "a date and time";
+        case toml::node_type::none: break;
     }
     return "nothing";
 }
 
 std::optional<double> to_number(const toml::node& node) {
-    if (const auto* number = node.as_floating_point()) {
+    if (const auto* number = node.as_floating_point())
         return number->get();
-    }
-    if (const auto* integer = node.as_integer()) {
+    if (const auto* integer = node.as_integer())
         return static_cast<double>(integer->get());
-    }
     return {};
 }
 

@@ -18,15 +18,13 @@ std::size_t utf8_sequence(std::string_view text) {
                                : lead < 0xf0 ? 3
                                : lead < 0xf5 ? 4
                                              : 0;
-    if (length == 0 || text.size() < length) {
+    if (length == 0 || text.size() < length)
         return 0;
-    }
     char32_t code = length == 1 ? lead : lead & (0xffu >> (length + 1));
     for (std::size_t k = 1; k < length; ++k) {
         const auto byte = static_cast<unsigned char>(text[k]);
-        if ((byte & 0xc0) != 0x80) {
+        if ((byte & 0xc0) != 0x80)
             return 0;
-        }
         code = (code << 6) | (byte & 0x3fu);
     }
     const bool overlong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
@@ -72,17 +70,14 @@ struct ToToml {
 }  // namespace
 
 std::string toml_number(double value) {
-    if (std::isnan(value)) {
+    if (std::isnan(value))
         return "nan";
-    }
-    if (std::isinf(value)) {
+    if (std::isinf(value))
         return value < 0 ? "-inf" : "inf";
-    }
     std::string text = fmt::format("{}", value);
     // Without a point TOML would read an integer, and -0 would lose its sign.
-    if (text.find_first_of(".e") == std::string::npos) {
+    if (text.find_first_of(".e") == std::string::npos)
         text += ".0";
-    }
     return text;
 }
 
@@ -99,9 +94,8 @@ std::string fit_to_print(std::string_view text) {
     while (!text.empty()) {
         std::size_t length = utf8_sequence(text);
         // U+0080 to U+009F are controls as well.
-        if (length == 2 && text[0] == '\xc2' && static_cast<unsigned char>(text[1]) < 0xa0) {
+        if (length == 2 && text[0] == '\xc2' && static_cast<unsigned char>(text[1]) < 0xa0)
             length = 0;
-        }
         out += length == 0 ? fmt::format("\\x{:02x}", static_cast<unsigned char>(text[0]))
                            : escaped(text.substr(0, length), false);
         text.remove_prefix(length == 0 ? 1 : length);
@@ -111,22 +105,19 @@ std::string fit_to_print(std::string_view text) {
 
 std::string printable(std::string_view text) {
     constexpr std::size_t limit = 60;
-    if (text.size() <= limit) {
+    if (text.size() <= limit)
         return fit_to_print(text);
-    }
     std::size_t cut = limit;
-    while (cut > limit - 4 && (static_cast<unsigned char>(text[cut]) & 0xc0) == 0x80) {
+    while (cut > limit - 4 && (static_cast<unsigned char>(text[cut]) & 0xc0) == 0x80)
         --cut;  // not inside a UTF-8 sequence
-    }
     return fit_to_print(text.substr(0, cut)) + "...";
 }
 
 bool is_utf8(std::string_view text) {
     while (!text.empty()) {
         const std::size_t length = utf8_sequence(text);
-        if (length == 0) {
+        if (length == 0)
             return false;
-        }
         text.remove_prefix(length);
     }
     return true;

@@ -108,14 +108,10 @@ std::uint64_t BareRecursion::mipmap_difference_of(const TexCoord& i, const TexCo
 bool BareRecursion::test_heights(const Vertex& i, const Vertex& j, EdgeTests& edge) const {
     const Registers& r = setup_.registers;
     switch (r.formats.height_test) {
-        case HeightTest::rank:
-            return test_rank(i, j, edge);
-        case HeightTest::curvature:
-            return curvature_test(curvature_of(i.texture, j.texture, edge.texture), r.tests);
-        case HeightTest::mipmap:
-            return mipmap_test(mipmap_difference_of(i.texture, j.texture, edge.texture), r.tests);
-        case HeightTest::summed_height:
-            break;
+        case HeightTest::rank: return test_rank(i, j, edge);
+        case HeightTest::curvature: return curvature_test(curvature_of(i.texture, j.texture, edge.texture), r.tests);
+        case HeightTest::mipmap: return mipmap_test(mipmap_difference_of(i.texture, j.texture, edge.texture), r.tests);
+        case HeightTest::summed_height: break;
     }
     const RectangleSize size = rectangle_size(i.texture, j.texture, r.map, r.formats);
     return summed_height_test(sum_around(i.texture, size), sum_around(j.texture, size), sum_around(edge.texture, size),

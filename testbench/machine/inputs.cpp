@@ -26,18 +26,12 @@ namespace {
 HeightMap make_map(const Job& job) {
     const Job::Map& map = job.map;
     switch (map.source) {
-        case MapSource::half_donut:
-            return half_donut_map(map.width, map.height);
-        case MapSource::text:
-            return text_map(map.width, map.height, map.text);
-        case MapSource::noise:
-            return noise_map(map.width, map.height, map.seed);
-        case MapSource::constant:
-            return constant_map(map.width, map.height, map.value);
-        case MapSource::ramp:
-            return ramp_map(map.width, map.height);
-        case MapSource::file:
-            break;
+        case MapSource::half_donut: return half_donut_map(map.width, map.height);
+        case MapSource::text: return text_map(map.width, map.height, map.text);
+        case MapSource::noise: return noise_map(map.width, map.height, map.seed);
+        case MapSource::constant: return constant_map(map.width, map.height, map.value);
+        case MapSource::ramp: return ramp_map(map.width, map.height);
+        case MapSource::file: break;
     }
     return read_height_map(map.path, map.channel);
 }

@@ -115,10 +115,9 @@ void Simulation::check_limits(const Pipeline& machine) const {
 
 std::string Simulation::stuck() const {
     std::string text;
-    for (const auto& machine : machines) {
+    for (const auto& machine : machines)
         if (!machine->drained())
             text += stuck(*machine, setup);
-    }
     return text;
 }
 

@@ -35,11 +35,10 @@ const char* remedy(std::string_view register_name) {
 /// That every value fits its register.
 void check_registers(const datapath::Registers& registers) {
     datapath::visit_registers(registers, [](const datapath::Register& field, const auto& values) {
-        for (const std::int64_t value : values) {
+        for (const std::int64_t value : values)
             if (!datapath::holds(field, value))
                 throw InputError(fmt::format("the register {} has {} bits and cannot hold {}: {}", field.name,
                                              field.bits, value, remedy(field.name)));
-        }
     });
 }
 
@@ -124,11 +123,8 @@ void make_height_table(const TestSettings& tests, PreparedScene& scene) {
     const datapath::MapGeometry covered = table_extent(registers.map, base, registers.formats);
     registers.covered = {covered.width, covered.height};
     switch (registers.formats.height_test) {
-        case datapath::HeightTest::summed_height:
-            break;
-        case datapath::HeightTest::rank:
-            rank_lattice(scene, base);
-            break;
+        case datapath::HeightTest::summed_height: break;
+        case datapath::HeightTest::rank: rank_lattice(scene, base); break;
         case datapath::HeightTest::curvature:
             scene.curvature_table = make_curvature_table(scene.map, base, registers.formats);
             break;

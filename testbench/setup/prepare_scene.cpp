@@ -43,10 +43,9 @@ BaseMesh base_mesh(const Scene& scene) {
     for (std::size_t k = 0; k < scene.vertices.size(); ++k)
         mesh.vertices.push_back(base_vertex(scene.vertices[k], k));
     for (std::size_t k = 0; k < scene.triangles.size(); ++k) {
-        for (const std::uint32_t corner : scene.triangles[k]) {
+        for (const std::uint32_t corner : scene.triangles[k])
             if (corner >= scene.vertices.size())
                 throw InputError(fmt::format("triangles[{}] names vertex {} of {}", k, corner, scene.vertices.size()));
-        }
         const auto& [a, b, c] = scene.triangles[k];
         const auto position = [&](std::uint32_t corner) { return mesh.vertices[corner].position; };
         if (triangle_normal(position(a), position(b), position(c)) == glm::dvec3(0))

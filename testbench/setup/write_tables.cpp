@@ -60,12 +60,8 @@ void write_tables(const PreparedScene& scene, const TableSink& sink) {
                                      format.bits);
     });
     switch (registers.formats.height_test) {
-        case datapath::HeightTest::summed_height:
-            write_summed_height_table(scene, sink);
-            break;
-        case datapath::HeightTest::rank:
-            write_rank_table(scene, sink);
-            break;
+        case datapath::HeightTest::summed_height: write_summed_height_table(scene, sink); break;
+        case datapath::HeightTest::rank: write_rank_table(scene, sink); break;
         case datapath::HeightTest::curvature:
             write_table(registers.height_table, sink,
                         [&](std::uint32_t x, std::uint32_t) { return scene.curvature_table.entries[x]; });

@@ -193,8 +193,13 @@ int tessera_last_error(struct tessera_driver* driver, uint64_t* address) {
 }
 
 const char* tessera_text(int result) {
-    static const char* const own[] = {"no error", "the bus answered by an error", "no such device", "still busy",
-                                      "a read-only register", "no such register", "refused: a frame, or a reset, is under way"};
+    static const char* const own[] = {"no error",
+                                      "the bus answered by an error",
+                                      "no such device",
+                                      "still busy",
+                                      "a read-only register",
+                                      "no such register",
+                                      "refused: a frame, or a reset, is under way"};
     static const char* const of_device[TESSERA_ERRORS] = {TESSERA_ERROR_TEXTS};
     if (result > 0 && result < TESSERA_ERRORS)
         return of_device[result];

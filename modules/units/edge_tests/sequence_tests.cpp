@@ -17,10 +17,9 @@ SequenceTests::SequenceTests(const sc_core::sc_module_name& name, const UnitCont
 
 /// Null: no edge is there.
 SequenceTests::Edge* SequenceTests::first(Next next) {
-    for (std::size_t k = 0; k < edges_.size(); ++k) {
+    for (std::size_t k = 0; k < edges_.size(); ++k)
         if (edges_.at(k).next == next)
             return &edges_.at(k);
-    }
     return nullptr;
 }
 
@@ -57,10 +56,9 @@ bool SequenceTests::take_edge(std::uint64_t cycle) {
     edge.tested.tag = edge.normal.tag;
     add_result(edge.tested, from_tex_coord_test.front());
     add_result(edge.tested, from_view_test.front());
-    for (const PartTag& tag : {edge.height.tag, from_tex_coord_test.front().tag, from_view_test.front().tag}) {
+    for (const PartTag& tag : {edge.height.tag, from_tex_coord_test.front().tag, from_view_test.front().tag})
         if (tag.triangle != edge.tested.tag.triangle || tag.part != edge.tested.tag.part)
             SC_REPORT_ERROR("tessera/sequence_tests", "the tests decided different edges");
-    }
     edge.next = after_cheap_tests(edge);
     normal_operands.pop();
     height_operands.pop();

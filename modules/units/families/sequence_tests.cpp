@@ -68,10 +68,9 @@ bool FamilySequenceTests::take_edge(std::size_t lane, std::uint64_t cycle) {
     add_result(edge.tested, from_tex_coord_test[lane].front());
     add_result(edge.tested, from_view_test[lane].front());
     for (const PartTag& tag :
-         {edge.height.tag, from_tex_coord_test[lane].front().tag, from_view_test[lane].front().tag}) {
+         {edge.height.tag, from_tex_coord_test[lane].front().tag, from_view_test[lane].front().tag})
         if (!same_part(tag, edge.tested.tag))
             SC_REPORT_ERROR("tessera/sequence_tests", "the tests decided different edges");
-    }
     normal_operands[lane].pop();
     height_operands[lane].pop();
     from_tex_coord_test[lane].pop();

@@ -210,10 +210,9 @@ void FamilyTessellation::step() {
         most_parts_ += most;
     }
     const sc_core::sc_object* blocker = to_pass_or_tessellate.free() ? nullptr : to_pass_or_tessellate.consumer();
-    for (const StreamOutput<TestOperands>& output : to_tessellation_tests) {
+    for (const StreamOutput<TestOperands>& output : to_tessellation_tests)
         if (!output.free())
             blocker = output.consumer();
-    }
     if (blocker != nullptr)
         activity_.set(cycle, State::blocked, blocker);
     else

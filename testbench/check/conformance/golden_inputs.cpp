@@ -13,14 +13,10 @@ golden::AddressMode golden_mode(datapath::AddressMode mode) {
 
 golden::Diagonal golden_diagonal(datapath::Triangulation choice) {
     switch (choice) {
-        case datapath::Triangulation::first:
-            return golden::Diagonal::first;
-        case datapath::Triangulation::second:
-            return golden::Diagonal::second;
-        case datapath::Triangulation::greatest_rank:
-            return golden::Diagonal::greatest_rank;
-        case datapath::Triangulation::shorter:
-            break;
+        case datapath::Triangulation::first: return golden::Diagonal::first;
+        case datapath::Triangulation::second: return golden::Diagonal::second;
+        case datapath::Triangulation::greatest_rank: return golden::Diagonal::greatest_rank;
+        case datapath::Triangulation::shorter: break;
     }
     return golden::Diagonal::shorter;
 }

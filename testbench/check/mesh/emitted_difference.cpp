@@ -47,12 +47,11 @@ EmittedDifference::EmittedDifference(const EmittedMesh& mesh, std::size_t base_t
         throw ResourceError(
             fmt::format("check.invariants: cannot check more than {} triangles; set it to false for a run of this size",
                         UINT32_MAX - 1));
-    for (const EmittedTriangle& triangle : mesh.triangles) {
+    for (const EmittedTriangle& triangle : mesh.triangles)
         if (triangle.base < base_triangles)
             ++offsets_[triangle.base + 2];
         else if (++extra_ == 1)
             note("a triangle of a base triangle that does not exist", triangle);
-    }
     for (std::size_t b = 2; b < offsets_.size(); ++b)
         offsets_[b] += offsets_[b - 1];
     order_.resize(offsets_.back());

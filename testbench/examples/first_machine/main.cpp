@@ -19,10 +19,9 @@ PreparedScene square_with_bump() {
                       {{0, 1, 0}, {0, 1}, {0, 0, 1}}};
     scene.triangles = {{0, 1, 2}, {0, 2, 3}};
     scene.map_width = scene.map_height = 64;
-    for (int y = 0; y < 64; ++y) {
+    for (int y = 0; y < 64; ++y)
         for (int x = 0; x < 64; ++x)
             scene.map.push_back(static_cast<float>(std::exp(-(std::pow(x - 31.5, 2) + std::pow(y - 31.5, 2)) / 200)));
-    }
     scene.settings.displacement.scale = 0.4;
     scene.settings.camera = {{0.5, -1.1, 1.2}, {0.5, 0.5, 0.1}, {0, 0, 1}, 36, 0.01, 1024, 768};
     return prepare(scene);

@@ -29,10 +29,9 @@ tessera::Scene scene_of(int frame, int frames) {
                       {{0, 1, 0}, {0, 1}, {0, 0, 1}}};
     scene.triangles = {{0, 1, 2}, {0, 2, 3}};
     scene.map_width = scene.map_height = 64;
-    for (int y = 0; y < 64; ++y) {
+    for (int y = 0; y < 64; ++y)
         for (int x = 0; x < 64; ++x)
             scene.map.push_back(static_cast<float>(std::exp(-(std::pow(x - 31.5, 2) + std::pow(y - 31.5, 2)) / 200)));
-    }
     tessera::SceneSettings& settings = scene.settings;
     settings.formats.summed_height_bits = 32;  // of the device: not to be chosen for each frame
     settings.displacement.scale = 0.4 * (frame + 1) / frames;

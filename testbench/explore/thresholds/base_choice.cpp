@@ -11,10 +11,8 @@ namespace tessera {
 
 std::string BaseChoice::name() const {
     switch (kind) {
-        case Kind::job:
-            return "the job's";
-        case Kind::plane:
-            return fmt::format("{} x {}", columns, rows);
+        case Kind::job: return "the job's";
+        case Kind::plane: return fmt::format("{} x {}", columns, rows);
         case Kind::lattice:
             return fmt::format("lattice of {} texels, {} x {}{}", spacing, columns, rows,
                                ranks       ? ", for ranks"

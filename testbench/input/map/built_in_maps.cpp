@@ -25,11 +25,9 @@ HeightMap map_of(std::int64_t width, std::int64_t height, Value&& value) {
     map.width = static_cast<int>(width);
     map.height = static_cast<int>(height);
     map.values.resize(static_cast<std::size_t>(width * height));
-    for (int y = 0; y < map.height; ++y) {
-        for (int x = 0; x < map.width; ++x) {
+    for (int y = 0; y < map.height; ++y)
+        for (int x = 0; x < map.width; ++x)
             map.at(x, y) = static_cast<float>(value(x, y));
-        }
-    }
     return map;
 }
 
@@ -57,9 +55,8 @@ HeightMap half_donut_map(std::int64_t width, std::int64_t height) {
 HeightMap text_map(std::int64_t width, std::int64_t height, std::string_view text) {
     check_sides(width, height);
     const StrokeText letters(text);
-    if (letters.blank()) {
+    if (letters.blank())
         throw InputError("map.text: the text is empty, so the map would be flat. Give it at least one letter.");
-    }
     // A margin of one gap around the text keeps the strokes' edges inside the map.
     constexpr int margin = StrokeText::glyph_advance - StrokeText::glyph_width;
     constexpr int letter_height = StrokeText::glyph_height;
@@ -87,9 +84,8 @@ HeightMap noise_map(std::int64_t width, std::int64_t height, std::int64_t seed) 
 }
 
 HeightMap constant_map(std::int64_t width, std::int64_t height, double value) {
-    if (!(value >= 0 && value <= 1)) {
+    if (!(value >= 0 && value <= 1))
         throw InputError(fmt::format("map.value: the constant map's value is {}; it must be 0 to 1.", value));
-    }
     return map_of(width, height, [value](int, int) { return value; });
 }
 

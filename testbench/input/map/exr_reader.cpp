@@ -91,9 +91,8 @@ bool repair_non_finite(HeightMap& map) {
             high = std::max(high, value);
         }
     }
-    if (!(low <= high)) {
+    if (!(low <= high))
         return false;
-    }
     std::int64_t nan_count = 0;
     std::int64_t plus_count = 0;
     std::int64_t minus_count = 0;
@@ -107,10 +106,9 @@ bool repair_non_finite(HeightMap& map) {
         }
     }
     const auto say = [&map](std::int64_t count, std::string_view kind, std::string_view which, float value) {
-        if (count > 0) {
+        if (count > 0)
             map.repairs.push_back(fmt::format("{} {} texel{} set to the {} finite value, {}.", count, kind,
                                               count == 1 ? "" : "s", which, value));
-        }
     };
     say(nan_count, "NaN", "lowest", low);
     say(plus_count, "+infinity", "highest", high);

@@ -27,27 +27,24 @@ std::ifstream open_file(const std::filesystem::path& path) {
 
 std::string lower_case_extension(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
-    for (char& c : extension) {
+    for (char& c : extension)
         c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    }
     return extension;
 }
 
 std::uint64_t map_file_size(const std::filesystem::path& path) {
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
-    if (status.type() == std::filesystem::file_type::not_found) {
+    if (status.type() == std::filesystem::file_type::not_found)
         throw InputError(fmt::format("{}: there is no such map file. Check map.file.", path.string()));
-    }
     // Reading a pipe or device may block or never end.
     if (error || status.type() != std::filesystem::file_type::regular) {
         throw InputError(
             fmt::format("{}: the map is not a regular file. Name an EXR, PNG or PGM file.", path.string()));
     }
     const std::uintmax_t size = std::filesystem::file_size(path, error);
-    if (error) {
+    if (error)
         throw InputError(fmt::format("{}: the map file cannot be examined: {}.", path.string(), error.message()));
-    }
     return size;
 }
 
@@ -86,11 +83,9 @@ void check_map_sides(std::string_view what, std::int64_t width, std::int64_t hei
 std::string printable_ascii(std::string_view text) {
     constexpr std::size_t longest = 200;
     std::string result(text.substr(0, longest));
-    for (char& c : result) {
-        if (c < ' ' || c > '~') {
+    for (char& c : result)
+        if (c < ' ' || c > '~')
             c = '?';
-        }
-    }
     return text.size() > longest ? result + "..." : result;
 }
 

@@ -29,12 +29,11 @@ struct PgmFile {
     }
 
     void skip_space_and_comments() {
-        while (next != end && (is_space(*next) || *next == '#')) {
+        while (next != end && (is_space(*next) || *next == '#'))
             if (*next == '#')
                 skip_comment();
             else
                 ++next;
-        }
     }
 
     unsigned number(std::string_view what, unsigned least, unsigned most) {

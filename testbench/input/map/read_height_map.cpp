@@ -18,12 +18,9 @@ enum class Format { exr, png, pgm };
 
 constexpr std::string_view format_name(Format format) {
     switch (format) {
-        case Format::exr:
-            return "EXR";
-        case Format::png:
-            return "PNG";
-        case Format::pgm:
-            return "PGM";
+        case Format::exr: return "EXR";
+        case Format::png: return "PNG";
+        case Format::pgm: return "PGM";
     }
     return "";
 }
@@ -37,26 +34,21 @@ bool starts_with(std::string_view text, std::string_view start) {
 }
 
 Format format_of_content(const std::filesystem::path& path, std::string_view start) {
-    if (start.empty()) {
+    if (start.empty())
         refuse(path, "the map file is empty. Supply an EXR, PNG or PGM file.");
-    }
-    if (starts_with(start, "\x76\x2f\x31\x01")) {
+    if (starts_with(start, "\x76\x2f\x31\x01"))
         return Format::exr;
-    }
-    if (starts_with(start, "\x89PNG\r\n\x1a\n")) {
+    if (starts_with(start, "\x89PNG\r\n\x1a\n"))
         return Format::png;
-    }
     if (start.size() >= 2 && start[0] == 'P' && start[1] >= '1' && start[1] <= '7') {
-        if (start[1] == '2' || start[1] == '5') {
+        if (start[1] == '2' || start[1] == '5')
             return Format::pgm;
-        }
         refuse(path, fmt::format("the map is a PNM file of kind {}; only greymaps P2 and P5 are read. Convert it, for "
                                  "example with pnmtopnm, pamtopnm or ppmtopgm.",
                                  start.substr(0, 2)));
     }
-    if (starts_with(start, "version https://git-lfs")) {
+    if (starts_with(start, "version https://git-lfs"))
         refuse(path, "this is a Git LFS pointer, not the map itself. Fetch it with git lfs pull.");
-    }
     const std::string extension = lower_case_extension(path);
     const bool known = extension == ".exr" || extension == ".png" || extension == ".pgm";
     refuse(path, fmt::format("the map's first bytes, \"{}\", are not those of an EXR, PNG or PGM file{}. {}",
@@ -68,12 +60,9 @@ Format format_of_content(const std::filesystem::path& path, std::string_view sta
 
 HeightMap read_format(Format format, const std::filesystem::path& path, const std::string& channel) {
     switch (format) {
-        case Format::exr:
-            return read_exr(path, channel);
-        case Format::png:
-            return read_png(path);
-        case Format::pgm:
-            return read_pgm(path);
+        case Format::exr: return read_exr(path, channel);
+        case Format::png: return read_png(path);
+        case Format::pgm: return read_pgm(path);
     }
     return {};
 }

@@ -17,9 +17,8 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 
 void check_count(const char* key, std::int64_t value, std::int64_t smallest) {
-    if (value < smallest || value > largest_grid) {
+    if (value < smallest || value > largest_grid)
         throw InputError(fmt::format("{} = {}: must be {} to {} for this mesh", key, value, smallest, largest_grid));
-    }
 }
 
 void check_size(const char* key, double value) {
@@ -48,11 +47,9 @@ BaseMesh finished(BaseMesh mesh) {
 /// Vertices of the grid lines first_row..last_row, all columns, row by row.
 void add_rows(BaseMesh& mesh, std::int64_t columns, std::int64_t first_row, std::int64_t last_row,
               const std::function<BaseVertex(std::int64_t, std::int64_t)>& vertex) {
-    for (std::int64_t j = first_row; j <= last_row; ++j) {
-        for (std::int64_t i = 0; i <= columns; ++i) {
+    for (std::int64_t j = first_row; j <= last_row; ++j)
+        for (std::int64_t i = 0; i <= columns; ++i)
             mesh.vertices.push_back(vertex(i, j));
-        }
-    }
 }
 
 /// Two triangles per quad, for `rows` rows of quads on the first vertices of the mesh. alternate: diagonals alternate
@@ -173,11 +170,10 @@ BaseMesh make_sphere(std::int64_t columns, std::int64_t rows, double radius) {
             pole.position = radius * pole.normal;
             const auto index = static_cast<std::uint32_t>(mesh.vertices.size());
             mesh.vertices.push_back(pole);
-            if (north) {
+            if (north)
                 mesh.triangles.push_back({last_line + i, last_line + i + 1, index});
-            } else {
+            else
                 mesh.triangles.push_back({i + 1, i, index});
-            }
         }
     }
     return finished(std::move(mesh));

@@ -41,20 +41,13 @@ BaseMesh make_base_mesh(const Job::Mesh& job, const std::string& file) {
     const std::int64_t columns = quads(job.columns, job.source);
     const std::int64_t rows = quads(job.rows, job.source);
     switch (job.source) {
-        case MeshSource::plane:
-            return make_plane(columns, rows, job.width, job.depth);
-        case MeshSource::cylinder:
-            return make_cylinder(columns, rows, job.radius, job.height);
-        case MeshSource::sphere:
-            return make_sphere(columns, rows, job.radius);
-        case MeshSource::lattice:
-            throw InputError("mesh.source = \"lattice\" depends on the map (load_mesh)");
-        case MeshSource::file:
-            return read_obj(file);
-        case MeshSource::patches:
-            return make_patch_mesh(read_bezier_patches(file), columns, rows, file);
-        case MeshSource::run:
-            return read_run_mesh(file);
+        case MeshSource::plane: return make_plane(columns, rows, job.width, job.depth);
+        case MeshSource::cylinder: return make_cylinder(columns, rows, job.radius, job.height);
+        case MeshSource::sphere: return make_sphere(columns, rows, job.radius);
+        case MeshSource::lattice: throw InputError("mesh.source = \"lattice\" depends on the map (load_mesh)");
+        case MeshSource::file: return read_obj(file);
+        case MeshSource::patches: return make_patch_mesh(read_bezier_patches(file), columns, rows, file);
+        case MeshSource::run: return read_run_mesh(file);
     }
     throw InputError("mesh.source is none of plane, cylinder, sphere, file, patches, run");
 }

@@ -24,11 +24,10 @@ std::string quoted(std::string_view token) {
     std::string text = "'";
     for (char c : token.substr(0, longest)) {
         const auto byte = static_cast<unsigned char>(c);
-        if (byte < 0x20 || byte >= 0x7f) {
+        if (byte < 0x20 || byte >= 0x7f)
             text += fmt::format("\\x{:02x}", byte);
-        } else {
+        else
             text += c;
-        }
     }
     return text + (token.size() > longest ? "...'" : "'");
 }
@@ -45,28 +44,22 @@ std::string_view foreign_mesh_kind(std::string_view content) {
         {"PK\x03\x04"sv, "a ZIP archive (3MF and USDZ are such)"sv},
         {"<?xml"sv, "an XML file (COLLADA and X3D are such)"sv},
     }};
-    for (const auto& [start, kind] : kinds) {
-        if (content.substr(0, start.size()) == start) {
+    for (const auto& [start, kind] : kinds)
+        if (content.substr(0, start.size()) == start)
             return kind;
-        }
-    }
     const std::size_t first = std::min(content.find_first_not_of(" \t\r\n"), content.size());
-    if (content.substr(first, 1) == "{" && content.find("\"asset\"") != std::string_view::npos) {
+    if (content.substr(first, 1) == "{" && content.find("\"asset\"") != std::string_view::npos)
         return "a glTF file";
-    }
-    if (content.substr(first, 6) == "solid " && content.find("facet") != std::string_view::npos) {
+    if (content.substr(first, 6) == "solid " && content.find("facet") != std::string_view::npos)
         return "an STL file";
-    }
     // Binary STL: 80 arbitrary bytes, the number of triangles, 50 bytes for each.
     constexpr std::size_t header = 84, triangle = 50;
     if (content.size() >= header) {
         std::uint64_t triangles = 0;
-        for (std::size_t k = 0; k < 4; ++k) {
+        for (std::size_t k = 0; k < 4; ++k)
             triangles |= std::uint64_t{static_cast<unsigned char>(content[80 + k])} << (8 * k);
-        }
-        if (triangles > 0 && content.size() == header + triangle * triangles) {
+        if (triangles > 0 && content.size() == header + triangle * triangles)
             return "an STL file";
-        }
     }
     return {};
 }
@@ -74,16 +67,14 @@ std::string_view foreign_mesh_kind(std::string_view content) {
 std::optional<double> to_number(std::string_view token) {
     if (!token.empty() && token.front() == '+') {
         token.remove_prefix(1);
-        if (!token.empty() && (token.front() == '-' || token.front() == '+')) {
+        if (!token.empty() && (token.front() == '-' || token.front() == '+'))
             return std::nullopt;
-        }
     }
     double value = 0;
     const char* end = token.data() + token.size();
     const auto [stop, error] = std::from_chars(token.data(), end, value);
-    if (stop != end || (error != std::errc() && error != std::errc::result_out_of_range)) {
+    if (stop != end || (error != std::errc() && error != std::errc::result_out_of_range))
         return std::nullopt;
-    }
     if (error == std::errc::result_out_of_range) {
         // 0 or HUGE_VAL: strtod tells which
         return std::abs(std::strtod(std::string(token).c_str(), nullptr));
@@ -100,16 +91,13 @@ void require_size(const glm::dvec3& size, const std::string& name) {
 std::string read_mesh_text(const std::string& path, std::string_view kind) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(path, error);
-    if (!std::filesystem::exists(status)) {
+    if (!std::filesystem::exists(status))
         throw InputError(fmt::format("{}: no such file: mesh.file must name {}", path, kind));
-    }
-    if (!std::filesystem::is_regular_file(status)) {
+    if (!std::filesystem::is_regular_file(status))
         throw InputError(fmt::format("{}: not a regular file: mesh.file must name {}", path, kind));
-    }
     std::ifstream in(path, std::ios::binary);
-    if (!in) {
+    if (!in)
         throw InputError(fmt::format("{}: cannot be opened ({}): check its permissions", path, std::strerror(errno)));
-    }
     std::string text;
     std::vector<char> piece(std::size_t{1} << 20);
     while (in) {
@@ -120,9 +108,8 @@ std::string read_mesh_text(const std::string& path, std::string_view kind) {
                                             largest_mesh_file, kind));
         }
     }
-    if (in.bad()) {
+    if (in.bad())
         throw InputError(fmt::format("{}: reading failed after {} bytes: check the disk", path, text.size()));
-    }
     return text;
 }
 

@@ -27,9 +27,8 @@ using Triangle = std::array<std::uint32_t, 3>;
 struct Tally {
     std::size_t count = 0, first_line = 0;
     void add(std::size_t line, std::size_t times = 1) {
-        if (count == 0) {
+        if (count == 0)
             first_line = line;
-        }
         count += times;
     }
 };
@@ -54,9 +53,8 @@ class Assembler {
         triangles_ = {};
         text_.corners = {};
         complete_smooth_normals(mesh_);
-        for (std::string& flaw : surface_flaws(mesh_)) {
+        for (std::string& flaw : surface_flaws(mesh_))
             mesh_.repairs.push_back(std::move(flaw));
-        }
         complete_tangent_frames(mesh_);
         measure_texture_scale(mesh_);
         return std::move(mesh_);
@@ -75,24 +73,20 @@ class Assembler {
             corners.clear();
             for (std::uint32_t i = 0; i < face.count; ++i) {
                 const auto corner = static_cast<std::uint32_t>(face.first + i);
-                if (corners.empty() || position_of(corner) != position_of(corners.back())) {
+                if (corners.empty() || position_of(corner) != position_of(corners.back()))
                     corners.push_back(corner);
-                }
             }
-            while (corners.size() > 1 && position_of(corners.front()) == position_of(corners.back())) {
+            while (corners.size() > 1 && position_of(corners.front()) == position_of(corners.back()))
                 corners.pop_back();
-            }
             if (corners.size() < 3) {
                 degenerate.add(face.line, face.count - 2);
                 continue;
             }
-            if (corners.size() < face.count) {
+            if (corners.size() < face.count)
                 repeated.add(face.line);
-            }
             points.clear();
-            for (std::uint32_t corner : corners) {
+            for (std::uint32_t corner : corners)
                 points.push_back(point(corner));
-            }
             const std::optional<PolygonCut> cut = cut_polygon(points, work_left);
             if (!cut) {
                 throw ResourceError(
@@ -100,12 +94,10 @@ class Assembler {
                                 "took {} steps, the limit: triangulate the mesh in the program that made it",
                                 name_, face.line, face.count, largest_cutting_work));
             }
-            if (cut->crosses_itself) {
+            if (cut->crosses_itself)
                 crossing.add(face.line);
-            }
-            if (cut->nonplanar) {
+            if (cut->nonplanar)
                 nonplanar.add(face.line);
-            }
             for (const Triangle& t : cut->triangles) {
                 const Triangle triangle{corners[t[0]], corners[t[1]], corners[t[2]]};
                 if (triangle_normal(point(triangle[0]), point(triangle[1]), point(triangle[2])) == glm::dvec3(0)) {
@@ -176,9 +168,8 @@ class Assembler {
                 const std::uint32_t m = text_.corners[i].normal, n = text_.corners[j].normal;
                 if (m == ObjText::none || n == ObjText::none ||
                     (position_of(i) == position_of(j) &&
-                     unit_or_zero(text_.normals[m]) == unit_or_zero(text_.normals[n]))) {
+                     unit_or_zero(text_.normals[m]) == unit_or_zero(text_.normals[n])))
                     return false;
-                }
             }
         }
         return true;
@@ -208,11 +199,10 @@ class Assembler {
                 if (corner.normal != ObjText::none) {
                     const glm::dvec3& given = text_.normals[corner.normal];
                     vertex.normal = unit_or_zero(given);
-                    if (vertex.normal == glm::dvec3(0)) {
+                    if (vertex.normal == glm::dvec3(0))
                         zero_normals.add(lines_[i / 3]);
-                    } else if (std::abs(safe_length(given) - 1) > 0.01) {
+                    else if (std::abs(safe_length(given) - 1) > 0.01)
                         odd_normals.add(lines_[i / 3]);
-                    }
                 }
                 if (corner.texture != ObjText::none) {
                     vertex.texture = text_.textures[corner.texture];
@@ -242,16 +232,13 @@ class Assembler {
         const auto [low, high] = bounds_of(mesh_.vertices);
         const glm::dvec3 size = high - low;
         require_size(size, name_);
-        if (vertices.empty()) {
+        if (vertices.empty())
             return;
-        }
         constexpr std::array<std::array<int, 2>, 3> seen_along{{{1, 2}, {0, 2}, {0, 1}}};
         int thinnest = 2;
-        for (int axis : {1, 0}) {
-            if (size[axis] < size[thinnest]) {
+        for (int axis : {1, 0})
+            if (size[axis] < size[thinnest])
                 thinnest = axis;
-            }
-        }
         const auto [across, up] = seen_along[static_cast<std::size_t>(thinnest)];
         for (std::uint32_t i : vertices) {
             BaseVertex& vertex = mesh_.vertices[i];
@@ -263,9 +250,8 @@ class Assembler {
     }
 
     void repair(const Tally& tally, const char* sentence) {
-        if (tally.count > 0) {
+        if (tally.count > 0)
             mesh_.repairs.push_back(fmt::format(fmt::runtime(sentence), tally.count, tally.first_line));
-        }
     }
 
     ObjText text_;

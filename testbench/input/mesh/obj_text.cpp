@@ -76,9 +76,8 @@ class Reader {
 
     void check_kind() {
         constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-        if (text_.substr(0, 3) == byte_order_mark) {
+        if (text_.substr(0, 3) == byte_order_mark)
             text_.remove_prefix(3);
-        }
         if (const std::string_view kind = foreign_mesh_kind(text_); !kind.empty()) {
             throw InputError(
                 fmt::format("{}: this is {}, and mesh.file takes OBJ: open it in Blender, MeshLab or the "
@@ -98,9 +97,8 @@ class Reader {
         statement_.clear();
         line_ = next_line_;
         for (bool continued = true; continued;) {
-            if (at_ >= text_.size()) {
+            if (at_ >= text_.size())
                 fail("the file ends in a line continuation");
-            }
             const std::size_t end = std::min(text_.find_first_of("\r\n", at_), text_.size());
             std::string_view line = text_.substr(at_, end - at_);
             line = line.substr(0, line.find('#'));
@@ -139,14 +137,12 @@ class Reader {
                 fail(fmt::format("{} in `{}` is no number up to {:g}, written with a point and between blanks",
                                  quoted(word), list.keyword, largest_coordinate));
             }
-            if (count < 3) {
+            if (count < 3)
                 first[count] = value;
-            }
             ++count;
         }
-        if (count < list.fewest || count > list.most) {
+        if (count < list.fewest || count > list.most)
             fail(fmt::format("`{}` with {} number(s): it takes {} to {}", list.keyword, count, list.fewest, list.most));
-        }
         limit(++list.count, largest_obj_records, "lines of vertices");
         return first;
     }
@@ -164,9 +160,8 @@ class Reader {
             }
             out_.corners.push_back(*corner);
         }
-        if (face.count < 3) {
+        if (face.count < 3)
             fail(fmt::format("a face with {} corner(s): it needs three or more", face.count));
-        }
         triangles_ += face.count - 2;
         limit(triangles_, largest_base_triangles, "base triangles");
         out_.faces.push_back(face);
@@ -181,14 +176,12 @@ class Reader {
             std::int64_t index = 0;
             const auto [stop, error] = std::from_chars(word.data(), word.data() + end, index);
             if (error == std::errc() && stop == word.data() + end && index != 0 && index >= -have &&
-                index <= static_cast<std::int64_t>(largest_obj_records)) {
+                index <= static_cast<std::int64_t>(largest_obj_records))
                 indices[k] = static_cast<std::uint32_t>(index > 0 ? index - 1 : have + index);
-            } else if (k != 1 || end > 0 || word.size() < 2) {  // only the second of three may be omitted
+            else if (k != 1 || end > 0 || word.size() < 2)  // only the second of three may be omitted
                 return std::nullopt;
-            }
-            if (end == word.size()) {
+            if (end == word.size())
                 return ObjText::Corner{indices[0], indices[1], indices[2]};
-            }
             word.remove_prefix(end + 1);
         }
         return std::nullopt;

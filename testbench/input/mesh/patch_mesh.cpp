@@ -31,12 +31,10 @@ struct Place {
 /// Interpolates between a and b. Exactly a or b at the ends and if both are equal, and bit-identical in either
 /// direction, so that both patches of a border get the same points.
 glm::dvec3 between(const glm::dvec3& a, const glm::dvec3& b, const Place& place) {
-    if (place.step == 0 || a == b) {
+    if (place.step == 0 || a == b)
         return a;
-    }
-    if (place.step == place.steps) {
+    if (place.step == place.steps)
         return b;
-    }
     const double from_middle = static_cast<double>(2 * place.step - place.steps) / static_cast<double>(2 * place.steps);
     return (a + b) / 2.0 + from_middle * (b - a);
 }
@@ -44,11 +42,9 @@ glm::dvec3 between(const glm::dvec3& a, const glm::dvec3& b, const Place& place)
 /// The two points of De Casteljau's next-to-last step: the curve's point lies between them, and its derivative is three
 /// times their difference.
 std::array<glm::dvec3, 2> last_two(Curve curve, const Place& place) {
-    for (std::size_t left = 3; left > 1; --left) {
-        for (std::size_t i = 0; i < left; ++i) {
+    for (std::size_t left = 3; left > 1; --left)
+        for (std::size_t i = 0; i < left; ++i)
             curve[i] = between(curve[i], curve[i + 1], place);
-        }
-    }
     return {curve[0], curve[1]};
 }
 
@@ -98,11 +94,10 @@ class Patch {
             return place.step == 0 ? 1.0 : place.step == place.steps ? -1.0 : 0.0;
         };
         const bool flat_u = safe_length(du) <= vanishing * size_, flat_v = safe_length(dv) <= vanishing * size_;
-        if (flat_u && !flat_v) {
+        if (flat_u && !flat_v)
             du = into(v) * mixed;
-        } else if (flat_v && !flat_u) {
+        else if (flat_v && !flat_u)
             dv = into(u) * mixed;
-        }
         const glm::dvec3 across = glm::cross(unit_or_zero(du), unit_or_zero(dv));
         return safe_length(across) > vanishing ? unit_or_zero(across) : glm::dvec3(0);
     }
@@ -112,11 +107,9 @@ class Patch {
 };
 
 void check(const BezierPatches& patches, std::int64_t columns, std::int64_t rows, const std::string& name) {
-    for (const auto& [key, value] : {std::pair{"mesh.columns", columns}, {"mesh.rows", rows}}) {
-        if (value < 1 || value > largest_grid) {
+    for (const auto& [key, value] : {std::pair{"mesh.columns", columns}, {"mesh.rows", rows}})
+        if (value < 1 || value > largest_grid)
             throw InputError(fmt::format("{} = {}: must be 1 to {} for a patch mesh", key, value, largest_grid));
-        }
-    }
     const std::size_t triangles = 2 * static_cast<std::size_t>(columns * rows) * patches.patches.size();
     if (triangles > largest_base_triangles) {
         throw ResourceError(
@@ -131,11 +124,9 @@ std::vector<BaseVertex> all_vertices(const BezierPatches& patches, std::int64_t 
     std::vector<BaseVertex> vertices;
     for (std::size_t k = 0; k < patches.patches.size(); ++k) {
         const Patch patch(patches, k);
-        for (std::int64_t j = 0; j <= rows; ++j) {
-            for (std::int64_t i = 0; i <= columns; ++i) {
+        for (std::int64_t j = 0; j <= rows; ++j)
+            for (std::int64_t i = 0; i <= columns; ++i)
                 vertices.push_back(patch.vertex({i, columns}, {j, rows}));
-            }
-        }
     }
     return vertices;
 }
@@ -153,9 +144,8 @@ void share_normals(std::vector<BaseVertex>& vertices) {
                 vertices[i].normal = vertices[k].normal;
                 break;
             }
-            if (next[k] == UINT32_MAX) {
+            if (next[k] == UINT32_MAX)
                 next[k] = i;
-            }
             k = next[k];
         }
     }
@@ -218,9 +208,8 @@ BaseMesh make_patch_mesh(const BezierPatches& patches, std::int64_t columns, std
                         without_normal));
     }
     complete_smooth_normals(mesh);
-    for (std::string& flaw : surface_flaws(mesh)) {
+    for (std::string& flaw : surface_flaws(mesh))
         mesh.repairs.push_back(std::move(flaw));
-    }
     complete_tangent_frames(mesh);
     measure_texture_scale(mesh);
     return mesh;

@@ -27,9 +27,8 @@ class PatchReader {
         const std::size_t patches = count("patches", largest_base_triangles);
         for (std::size_t k = 0; k < patches; ++k) {
             read_numbers(16, fmt::format("patch {} of {}", k + 1, patches));
-            for (std::size_t i = 0; i < 16; ++i) {
+            for (std::size_t i = 0; i < 16; ++i)
                 indices_[i] = index(numbers_[i]);
-            }
             result_.patches.push_back(indices_);
             lines_.push_back(line_);
         }
@@ -37,9 +36,8 @@ class PatchReader {
         for (std::size_t k = 0; k < points; ++k) {
             read_numbers(3, fmt::format("point {} of {}", k + 1, points));
             glm::dvec3 point;
-            for (int i = 0; i < 3; ++i) {
+            for (int i = 0; i < 3; ++i)
                 point[i] = coordinate(numbers_[static_cast<std::size_t>(i)]);
-            }
             result_.points.push_back(point);
         }
         if (next_line()) {
@@ -62,18 +60,16 @@ class PatchReader {
             words_ = trimmed(rest_.substr(0, end));
             rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
             ++line_;
-            if (!words_.empty()) {
+            if (!words_.empty())
                 return true;
-            }
         }
         return false;
     }
 
     /// Reads the next line's numbers into numbers_. `what`: their meaning, for messages.
     void read_numbers(std::size_t wanted, const std::string& what) {
-        if (!next_line()) {
+        if (!next_line())
             fail(fmt::format("the file ends before {}: it is cut off, or its count is wrong", what));
-        }
         numbers_.clear();
         std::string_view row = words_;
         for (bool more = true; more;) {
@@ -90,9 +86,8 @@ class PatchReader {
 
     std::size_t whole_number(std::string_view word, const char* what, std::size_t most) {
         const std::optional<double> number = to_number(word);
-        if (!number || !(*number >= 1) || std::floor(*number) != *number) {
+        if (!number || !(*number >= 1) || std::floor(*number) != *number)
             fail(fmt::format("{} is no number of {}: expected a whole number from 1", quoted(word), what));
-        }
         if (*number > static_cast<double>(most)) {
             throw ResourceError(fmt::format("{}:{}: {} {}, the limit is {}: take a part of the model", name_, line_,
                                             quoted(word), what, most));
@@ -108,9 +103,8 @@ class PatchReader {
     std::uint32_t index(std::string_view word) {
         const std::optional<double> number = to_number(word);
         if (!number || !(*number >= 1 && *number <= static_cast<double>(largest_obj_records)) ||
-            std::floor(*number) != *number) {
+            std::floor(*number) != *number)
             fail(fmt::format("{} is no point's number: points are counted from 1", quoted(word)));
-        }
         return static_cast<std::uint32_t>(*number) - 1;
     }
 

@@ -39,9 +39,8 @@ bool strictly_convex(const std::vector<glm::dvec2>& points) {
     for (std::size_t i = 0; i <= n; ++i) {
         const glm::dvec2& a = points[i % n];
         const glm::dvec2& b = points[(i + 1) % n];
-        if (turn(a, b, points[(i + 2) % n]) <= 0) {
+        if (turn(a, b, points[(i + 2) % n]) <= 0)
             return false;
-        }
         if (b.x != a.x) {
             reversals += known && right != (b.x > a.x);
             right = b.x > a.x;
@@ -54,16 +53,14 @@ bool strictly_convex(const std::vector<glm::dvec2>& points) {
 /// Twice the vector area (Newell); its direction is the mean normal given by the winding.
 glm::dvec3 vector_area(const std::vector<glm::dvec3>& points) {
     glm::dvec3 sum(0);
-    for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t i = 0; i < points.size(); ++i)
         sum += glm::cross(points[i], points[(i + 1) % points.size()]);
-    }
     return sum;
 }
 
 void fan(const std::vector<std::uint32_t>& corners, PolygonCut& result) {
-    for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i)
         result.triangles.push_back({corners[0], corners[i], corners[i + 1]});
-    }
 }
 
 /// Cuts off every second corner, round by round, until few enough remain for a fan. A fan of thousands of triangles has
@@ -74,9 +71,8 @@ void cut_convex(std::vector<std::uint32_t> corners, PolygonCut& result) {
         const std::size_t n = corners.size();
         for (std::size_t i = 0; i < n; i += 2) {
             left.push_back(corners[i]);
-            if (i + 1 < n) {
+            if (i + 1 < n)
                 result.triangles.push_back({corners[i], corners[i + 1], corners[(i + 2) % n]});
-            }
         }
         corners = std::move(left);
     }
@@ -88,9 +84,8 @@ bool outline_crosses_itself(const std::vector<glm::dvec2>& points) {
     for (std::size_t i = 0; i < n; ++i) {
         for (std::size_t j = i + 2; j < n && (i > 0 || j + 1 < n); ++j) {
             const glm::dvec2 &a = points[i], &b = points[(i + 1) % n], &c = points[j], &d = points[(j + 1) % n];
-            if (turn(a, b, c) * turn(a, b, d) < 0 && turn(c, d, a) * turn(c, d, b) < 0) {
+            if (turn(a, b, c) * turn(a, b, d) < 0 && turn(c, d, a) * turn(c, d, b) < 0)
                 return true;
-            }
         }
     }
     return false;
@@ -109,9 +104,8 @@ bool clip_ears(const std::vector<glm::dvec2>& points, std::vector<std::uint32_t>
         const auto [a, b, c] = around(k);
         blocks[b] = turn(points[a], points[b], points[c]) <= 0;
     };
-    for (std::size_t k = 0; k < outline.size(); ++k) {
+    for (std::size_t k = 0; k < outline.size(); ++k)
         classify(k);
-    }
     std::uint64_t work = 0;
     const auto is_ear = [&](const std::array<std::uint32_t, 3>& t) {
         const glm::dvec2 &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
@@ -125,9 +119,8 @@ bool clip_ears(const std::vector<glm::dvec2>& points, std::vector<std::uint32_t>
     };
     std::size_t at = 0;
     for (std::size_t tried = 0; outline.size() > 3 && tried < outline.size();) {
-        if (++work > work_left) {
+        if (++work > work_left)
             return false;
-        }
         const std::array<std::uint32_t, 3> triangle = around(at);
         if (!is_ear(triangle)) {
             at = (at + 1) % outline.size();
@@ -173,18 +166,15 @@ std::optional<PolygonCut> cut_polygon(const std::vector<glm::dvec3>& corners, st
     const glm::dvec3 area = vector_area(local);
     if (!(safe_length(area) > flattest_triangle)) {  // a bow tie whose halves cancel, or collinear points
         fan(outline, result);
-        for (const auto& t : result.triangles) {
+        for (const auto& t : result.triangles)
             result.crosses_itself |= triangle_normal(corners[t[0]], corners[t[1]], corners[t[2]]) != glm::dvec3(0);
-        }
         return result;
     }
     const glm::dvec3 normal = unit_or_zero(area);
     int axis = 2;
-    for (int k = 0; k < 2; ++k) {
-        if (std::abs(normal[k]) > std::abs(normal[axis])) {
+    for (int k = 0; k < 2; ++k)
+        if (std::abs(normal[k]) > std::abs(normal[axis]))
             axis = k;
-        }
-    }
     const int first = (axis + 1) % 3, second = (axis + 2) % 3;
     std::vector<glm::dvec2> points;
     for (const glm::dvec3& p : local) {
@@ -196,15 +186,13 @@ std::optional<PolygonCut> cut_polygon(const std::vector<glm::dvec3>& corners, st
         return result;
     }
     if (n <= most_checked_for_crossing) {
-        if (work_left < n * n) {
+        if (work_left < n * n)
             return std::nullopt;
-        }
         work_left -= n * n;
         result.crosses_itself = outline_crosses_itself(points);
     }
-    if (!clip_ears(points, outline, result, work_left)) {
+    if (!clip_ears(points, outline, result, work_left))
         return std::nullopt;
-    }
     return result;
 }
 

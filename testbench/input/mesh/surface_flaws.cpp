@@ -40,9 +40,8 @@ class PointsOnSegments {
     };
 
     void build(std::size_t low, std::size_t high, int axis) {
-        if (high - low < 2) {
+        if (high - low < 2)
             return;
-        }
         const std::size_t middle = low + (high - low) / 2;
         const auto at = [&](std::size_t i) { return points_.begin() + static_cast<std::ptrdiff_t>(i); };
         std::nth_element(at(low), at(middle), at(high), [axis](const BorderPoint& a, const BorderPoint& b) {
@@ -53,9 +52,8 @@ class PointsOnSegments {
     }
 
     static bool is_on(const Segment& segment, const BorderPoint& point) {
-        if (point.index == segment.a.index || point.index == segment.b.index) {
+        if (point.index == segment.a.index || point.index == segment.b.index)
             return false;
-        }
         const glm::dvec3 direction = segment.along / segment.length;
         const glm::dvec3 offset = (point.position - segment.a.position) / segment.length;
         const double t = glm::dot(offset, direction);
@@ -64,14 +62,12 @@ class PointsOnSegments {
 
     /// Searches a cell that the segment crosses between parameters t0 and t1.
     bool any(const Segment& segment, std::size_t low, std::size_t high, int axis, double t0, double t1) {
-        if (low >= high || t0 > t1) {
+        if (low >= high || t0 > t1)
             return false;
-        }
         ++steps_;
         const std::size_t middle = low + (high - low) / 2;
-        if (is_on(segment, points_[middle])) {
+        if (is_on(segment, points_[middle]))
             return true;
-        }
         const double plane = points_[middle].position[axis] - segment.a.position[axis];
         const double speed = segment.along[axis], slack = on_edge * segment.length;
         double low_t0 = t0, low_t1 = t1, high_t0 = t0, high_t1 = t1;
@@ -100,16 +96,14 @@ class PointsOnSegments {
 void find_t_junctions(const BaseMesh& mesh, const std::vector<std::array<std::uint32_t, 2>>& border,
                       std::uint64_t most_steps, std::vector<std::string>& flaws) {
     std::vector<std::uint32_t> indices;
-    for (const auto& edge : border) {
+    for (const auto& edge : border)
         indices.insert(indices.end(), edge.begin(), edge.end());
-    }
     std::sort(indices.begin(), indices.end());
     indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
     std::vector<BorderPoint> points;
     points.reserve(indices.size());
-    for (std::uint32_t index : indices) {
+    for (std::uint32_t index : indices)
         points.push_back({mesh.vertices[index].position, index});
-    }
     PointsOnSegments tree(std::move(points));
     std::size_t found = 0, searched = 0;
     while (searched < border.size() && tree.steps() < most_steps) {
@@ -145,9 +139,8 @@ void edge_flaws(const BaseMesh& mesh, const std::vector<std::uint32_t>& same_pos
     std::vector<std::array<std::uint32_t, 2>> border;
     for (std::size_t i = 0; i < uses.size();) {
         std::size_t end = i;
-        while (end < uses.size() && uses[end] >> 1 == uses[i] >> 1) {
+        while (end < uses.size() && uses[end] >> 1 == uses[i] >> 1)
             ++end;
-        }
         if (end - i == 1) {
             border.push_back(
                 {static_cast<std::uint32_t>(uses[i] >> 33), static_cast<std::uint32_t>(uses[i] >> 1 & UINT32_MAX)});
@@ -158,23 +151,19 @@ void edge_flaws(const BaseMesh& mesh, const std::vector<std::uint32_t>& same_pos
         }
         i = end;
     }
-    if (crowded > 0) {
+    if (crowded > 0)
         flaws.push_back(fmt::format("{} edge(s) belong to more than two triangles.", crowded));
-    }
-    if (opposed > 0) {
+    if (opposed > 0)
         flaws.push_back(fmt::format("Across {} edge(s) the winding changes: neighbours face opposite ways.", opposed));
-    }
     find_t_junctions(mesh, border, most_steps, flaws);
 }
 
 void normal_flaws(const BaseMesh& mesh, const std::vector<std::uint32_t>& same_position,
                   std::vector<std::string>& flaws) {
     std::vector<char> several(mesh.vertices.size(), 0);
-    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-        if (mesh.vertices[i].normal != mesh.vertices[same_position[i]].normal) {
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+        if (mesh.vertices[i].normal != mesh.vertices[same_position[i]].normal)
             several[same_position[i]] = 1;
-        }
-    }
     if (const auto count = std::count(several.begin(), several.end(), 1); count > 0) {
         flaws.push_back(
             fmt::format("{} point(s) have more than one normal: the displaced surface opens there.", count));
@@ -186,9 +175,8 @@ void normal_flaws(const BaseMesh& mesh, const std::vector<std::uint32_t>& same_p
         against += std::any_of(t.begin(), t.end(),
                                [&](std::uint32_t i) { return glm::dot(facing, mesh.vertices[i].normal) < 0; });
     }
-    if (against > 0) {
+    if (against > 0)
         flaws.push_back(fmt::format("{} triangle(s) have a normal that points against their winding.", against));
-    }
 }
 
 }  // namespace

@@ -13,16 +13,12 @@ Quadric make_quadric(QuadricShape shape, const glm::dvec3& centre, const glm::dv
         quadric.form[k][k] = 1 / (semi_axes[k] * semi_axes[k]);
     double& along = quadric.form[axis][axis];
     switch (shape) {
-        case QuadricShape::ellipsoid:
-            quadric.constant = -1;
-            break;
+        case QuadricShape::ellipsoid: quadric.constant = -1; break;
         case QuadricShape::paraboloid:
             along = 0;
             quadric.linear[axis] = 1 / semi_axes[axis];
             break;
-        case QuadricShape::cone:
-            along = -along;
-            break;
+        case QuadricShape::cone: along = -along; break;
         case QuadricShape::cylinder:
             along = 0;
             quadric.constant = -1;

@@ -201,17 +201,16 @@ Surface parse_surface(std::string_view text, const std::string& name) {
                      fmt::format("`{0}` is {1}; write [{0}], then its keys", table, found_text(*document.get(table))));
         const std::string label = table;
         TomlFields fields(*keys, label, name);
-        if (label == "domain") {
+        if (label == "domain")
             read_domain(fields, surface);
-        } else if (!shape.empty()) {
+        else if (!shape.empty())
             top.fail(table, fmt::format("[{}] and [{}] are both there: a file describes one surface", shape, label));
-        } else if (label == "quadric") {
+        else if (label == "quadric")
             surface.shape = read_quadric(fields);
-        } else if (label == "nurbs") {
+        else if (label == "nurbs")
             surface.shape = read_nurbs(fields);
-        } else {
+        else
             surface.shape = read_bezier(fields);
-        }
         if (label != "domain")
             shape = label;
         fields.finish();

@@ -123,10 +123,8 @@ void draw_text(Image& image, double left, double base_line, double size, const s
 
 Legend make_legend(const RenderMesh& mesh, const Style& style) {
     switch (style.colour_by) {
-        case ColourBy::generation:
-            return generation_legend(mesh);
-        case ColourBy::deciding_test:
-            return test_legend(mesh);
+        case ColourBy::generation: return generation_legend(mesh);
+        case ColourBy::deciding_test: return test_legend(mesh);
         case ColourBy::stopped_by:
             return {"kept whole by",
                     {{stop_colour(Stop::none), "no test"},
@@ -134,10 +132,8 @@ Legend make_legend(const RenderMesh& mesh, const Style& style) {
                      {stop_colour(Stop::tex_coord), "tex coord"},
                      {stop_colour(Stop::generation), "generation"},
                      {stop_colour(Stop::several), "several"}}};
-        case ColourBy::error:
-            return error_legend(style.errors);
-        case ColourBy::none:
-            break;
+        case ColourBy::error: return error_legend(style.errors);
+        case ColourBy::none: break;
     }
     return {};
 }

@@ -46,16 +46,11 @@ Colour deciding_test_colour(DecidingTest test) {
 
 Stop stop_of(std::uint8_t stopped_by) {
     switch (stopped_by) {
-        case 0:
-            return Stop::none;
-        case datapath::view_bit:
-            return Stop::view;
-        case datapath::tex_coord_bit:
-            return Stop::tex_coord;
-        case datapath::generation_bit:
-            return Stop::generation;
-        default:
-            return Stop::several;
+        case 0: return Stop::none;
+        case datapath::view_bit: return Stop::view;
+        case datapath::tex_coord_bit: return Stop::tex_coord;
+        case datapath::generation_bit: return Stop::generation;
+        default: return Stop::several;
     }
 }
 

@@ -72,14 +72,10 @@ class Paint {
         switch (style_.colour_by) {
             case ColourBy::generation:
                 return generations_[std::min<std::size_t>(triangle.generation, generations_.size() - 1)];
-            case ColourBy::deciding_test:
-                return tests_[static_cast<std::size_t>(triangle.deciding_test)];
-            case ColourBy::stopped_by:
-                return stops_[static_cast<std::size_t>(stop_of(triangle.stopped_by))];
-            case ColourBy::error:
-                return error_paint(point);
-            case ColourBy::none:
-                break;
+            case ColourBy::deciding_test: return tests_[static_cast<std::size_t>(triangle.deciding_test)];
+            case ColourBy::stopped_by: return stops_[static_cast<std::size_t>(stop_of(triangle.stopped_by))];
+            case ColourBy::error: return error_paint(point);
+            case ColourBy::none: break;
         }
         return surface_;
     }

@@ -110,13 +110,10 @@ class AreaCounter {
     unsigned height_test_multiplications() const {
         const bool area = registers_.tests.summed_height_unit == datapath::SummedHeightUnit::area;
         switch (registers_.formats.height_test) {
-            case datapath::HeightTest::summed_height:
-                return area ? Multiplications::summed_height_limit : 0;
-            case datapath::HeightTest::curvature:
-                return Multiplications::curvature_measure;
+            case datapath::HeightTest::summed_height: return area ? Multiplications::summed_height_limit : 0;
+            case datapath::HeightTest::curvature: return Multiplications::curvature_measure;
             case datapath::HeightTest::rank:
-            case datapath::HeightTest::mipmap:
-                break;
+            case datapath::HeightTest::mipmap: break;
         }
         return 0;
     }

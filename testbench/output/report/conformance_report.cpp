@@ -18,14 +18,10 @@ const char* verdict(bool passed) {
 
 const char* kind_name(InvariantFigure::Kind kind) {
     switch (kind) {
-        case InvariantFigure::Kind::fact:
-            return "fact";
-        case InvariantFigure::Kind::violation:
-            return "violation";
-        case InvariantFigure::Kind::rounding:
-            return "rounding";
-        case InvariantFigure::Kind::input:
-            break;
+        case InvariantFigure::Kind::fact: return "fact";
+        case InvariantFigure::Kind::violation: return "violation";
+        case InvariantFigure::Kind::rounding: return "rounding";
+        case InvariantFigure::Kind::input: break;
     }
     return "input";
 }

@@ -24,10 +24,9 @@ bool is_memory(const Unit& unit) {
 /// The largest share of a state with a cause: the unit that blocks, is awaited or is missing.
 const Activity::Share* largest_share(const Unit& unit, State state) {
     const Activity::Share* largest = nullptr;
-    for (const Activity::Share& share : unit.activity().shares()) {
+    for (const Activity::Share& share : unit.activity().shares())
         if (share.by != nullptr && share.state == state && (largest == nullptr || share.cycles > largest->cycles))
             largest = &share;
-    }
     return largest;
 }
 
@@ -103,10 +102,9 @@ namespace {
 std::pair<const Unit*, std::uint64_t> longest_wait(const Pipeline& pipeline, const Unit* by) {
     std::pair<const Unit*, std::uint64_t> longest{nullptr, 0};
     for (const Unit* unit : pipeline.units()) {
-        for (const Activity::Share& share : unit->activity().shares()) {
+        for (const Activity::Share& share : unit->activity().shares())
             if (share.by == by && share.cycles > longest.second)
                 longest = {unit, share.cycles};
-        }
     }
     return longest;
 }
@@ -204,12 +202,11 @@ std::string timing_tables(const Pipeline& pipeline, std::uint64_t cycles) {
                     "blocked", "starved", "utilisation", "items/kcyc", "occup.", "most", "by whom");
     std::string queues =
         fmt::format("{:<40}{:>10}{:>12}{:>12}{:>10}\n", "queue or wire", "items", "items/kcyc", "mean level", "most");
-    for (const Unit* unit : pipeline.units()) {
+    for (const Unit* unit : pipeline.units())
         if (is_queue_or_wire(*unit))
             queues += queue_line(*unit, cycles);
         else
             text += unit_line(*unit, cycles);
-    }
     return text + "\n" + queues;
 }
 

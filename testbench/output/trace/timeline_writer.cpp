@@ -124,10 +124,9 @@ void TimelineWriter::counter(const char* name, const char* series, std::uint64_t
 
 void TimelineWriter::finish() {
     check_open();
-    if (reached_) {
+    if (reached_)
         for (const auto& [counter, value] : held_)
             write_counter(counter.first, counter.second, window_.first, value);
-    }
     buffer_ += "\n]}\n";
     out_ << buffer_;
     out_.flush();

@@ -16,10 +16,9 @@ constexpr std::size_t longest_entry = 128;
 
 constexpr std::array<std::array<char, 8>, 256> make_bytes_in_binary() {
     std::array<std::array<char, 8>, 256> table{};
-    for (unsigned byte = 0; byte < 256; ++byte) {
+    for (unsigned byte = 0; byte < 256; ++byte)
         for (unsigned bit = 0; bit < 8; ++bit)
             table[byte][7 - bit] = (byte >> bit & 1) != 0 ? '1' : '0';
-    }
     return table;
 }
 constexpr auto bytes_in_binary = make_bytes_in_binary();

@@ -71,15 +71,12 @@ tlm::tlm_sync_enum MemoryFault::nb_transport_fw(MemoryRequest& request, tlm::tlm
             to_memory->nb_transport_fw(request, again, delay);
             break;
         }
-        case FaultKind::response_early:
-            send_back(request, tlm::BEGIN_RESP);
-            break;
+        case FaultKind::response_early: send_back(request, tlm::BEGIN_RESP); break;
         case FaultKind::end_request_doubled:
             if (status == tlm::TLM_UPDATED)
                 send_back(request, tlm::END_REQ);
             break;
-        default:
-            break;
+        default: break;
     }
     return status;
 }
@@ -112,21 +109,17 @@ tlm::tlm_sync_enum MemoryFault::answer(MemoryRequest& request, tlm::tlm_phase& p
     }
     struck_ = nullptr;  // the port uses its payloads again
     switch (trigger_.kind()) {
-        case FaultKind::response_lost:
-            return tlm::TLM_COMPLETED;
+        case FaultKind::response_lost: return tlm::TLM_COMPLETED;
         case FaultKind::response_reordered:
             held_ = &request;
             trigger_.wait_for_next(true);
             return tlm::TLM_COMPLETED;
-        case FaultKind::error_response:
-            request.response = tlm::TLM_GENERIC_ERROR_RESPONSE;
-            break;
+        case FaultKind::error_response: request.response = tlm::TLM_GENERIC_ERROR_RESPONSE; break;
         case FaultKind::bit_flip:
             if (request.command == tlm::TLM_READ_COMMAND)
                 flip_data(request);
             break;
-        default:
-            break;
+        default: break;
     }
     const tlm::tlm_sync_enum status = socket->nb_transport_bw(request, phase, delay);
     return trigger_.kind() == FaultKind::response_doubled ? send_back(request, tlm::BEGIN_RESP) : status;

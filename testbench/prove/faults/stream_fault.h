@@ -57,16 +57,13 @@ class StreamFault : public sc_core::sc_module,
             case FaultKind::bit_flip:
                 trigger_.require_bit(flip_bit(copies_.front(), formats_, tag_bits_, trigger_.fault().bit));
                 break;
-            case FaultKind::doubled:
-                copies_.push_back(payload);
-                break;
+            case FaultKind::doubled: copies_.push_back(payload); break;
             case FaultKind::reordered:
                 held_ = payload;
                 trigger_.wait_for_next(true);
                 copies_.clear();
                 break;
-            default:
-                copies_.clear();
+            default: copies_.clear();
         }
     }
 
@@ -82,10 +79,8 @@ class StreamFault : public sc_core::sc_module,
 
     tlm::tlm_sync_enum nb_transport_fw(Payload& payload, tlm::tlm_phase& phase, sc_core::sc_time& delay) override {
         switch (trigger_.kind()) {
-            case FaultKind::request_before_end:
-                return begin_again(payload, phase, delay);
-            case FaultKind::end_request_doubled:
-                return end_twice(payload, phase, delay);
+            case FaultKind::request_before_end: return begin_again(payload, phase, delay);
+            case FaultKind::end_request_doubled: return end_twice(payload, phase, delay);
             case FaultKind::back_pressure_ignored:
                 if (consumer_.size() < consumer_.depth() || !trigger_.strikes())
                     return out->nb_transport_fw(payload, phase, delay);

@@ -66,13 +66,9 @@ void Trial::fault(std::uint64_t& count, const std::string& what, const Machine& 
 
 std::uint64_t Trial::threshold(std::uint64_t measure, std::uint64_t usual, std::uint64_t& at_limit) {
     switch (random_.bits() & 3) {
-        case 0:
-            ++at_limit;
-            return measure;
-        case 1:
-            return measure == 0 ? 0 : measure - 1;
-        default:
-            return random_.bits() % (usual + 1);
+        case 0: ++at_limit; return measure;
+        case 1: return measure == 0 ? 0 : measure - 1;
+        default: return random_.bits() % (usual + 1);
     }
 }
 

@@ -46,14 +46,13 @@ std::vector<std::uint32_t> any_codes(Random& random, std::size_t texels, std::ui
     std::vector<std::uint32_t> codes;
     const auto kind = random.integer(0, 3);
     std::uint32_t step = 0;
-    for (std::size_t k = 0; k < texels; ++k) {
+    for (std::size_t k = 0; k < texels; ++k)
         if (kind == 0)
             codes.push_back(random.coin() ? highest : 0);
         else if (kind == 1)
             codes.push_back(step = random.chance(5) ? random.natural(0, highest) : step);
         else
             codes.push_back(random.natural(0, highest));
-    }
     return codes;
 }
 

@@ -13,16 +13,11 @@ namespace {
 
 int any_side(Random& random) {
     switch (random.integer(0, 4)) {
-        case 0:
-            return 1;
-        case 1:
-            return random.integer32(2, 9);
-        case 2:
-            return 1 << random.integer(1, 6);
-        case 3:
-            return 2 * random.integer32(5, 40) + 1;
-        default:
-            return random.integer32(10, 96);
+        case 0: return 1;
+        case 1: return random.integer32(2, 9);
+        case 2: return 1 << random.integer(1, 6);
+        case 3: return 2 * random.integer32(5, 40) + 1;
+        default: return random.integer32(10, 96);
     }
 }
 
@@ -31,8 +26,7 @@ std::function<std::int64_t(int, int)> any_pattern(Random& random, const RandomMa
     const std::int64_t highest = map.highest;
     const auto any_sample = [&random, highest] { return random.integer(0, highest); };
     switch (random.integer(0, 7)) {
-        case 0:
-            return [any_sample](int, int) { return any_sample(); };
+        case 0: return [any_sample](int, int) { return any_sample(); };
         case 1:  // extremes
             return [&random, highest](int, int) { return random.coin() ? highest : 0; };
         case 2: {  // steps: blocks of one height each

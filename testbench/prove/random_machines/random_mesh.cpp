@@ -23,14 +23,10 @@ dvec2 on_circle(double part) {
     const double whole = std::floor(quarters), t = quarters - whole;
     const dvec2 p{(1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)};
     switch (static_cast<int>(whole)) {
-        case 0:
-            return p;
-        case 1:
-            return {-p.y, p.x};
-        case 2:
-            return {-p.x, -p.y};
-        default:
-            return {p.y, -p.x};
+        case 0: return p;
+        case 1: return {-p.y, p.x};
+        case 2: return {-p.x, -p.y};
+        default: return {p.y, -p.x};
     }
 }
 
@@ -291,15 +287,9 @@ std::string MeshMaker::make() {
             });
             return "torus";
         case 4:
-        case 5:
-            solid();
-            return "solid";
-        case 6:
-            fan();
-            return "fan";
-        case 7:
-            slivers();
-            return "slivers";
+        case 5: solid(); return "solid";
+        case 6: fan(); return "fan";
+        case 7: slivers(); return "slivers";
         case 8:
             if (random_.coin()) {
                 book();
@@ -307,9 +297,7 @@ std::string MeshMaker::make() {
             }
             mirrored_pair();
             return "mirrored pair";
-        default:
-            soup();
-            return "soup";
+        default: soup(); return "soup";
     }
 }
 

@@ -24,9 +24,8 @@ void complete_smooth_normals(BaseMesh& mesh) {
             const glm::dvec3 a = unit_or_zero(p[(k + 1) % 3] - p[k]), b = unit_or_zero(p[(k + 2) % 3] - p[k]);
             const double angle = std::atan2(safe_length(glm::cross(a, b)), glm::dot(a, b));
             Sum& sum = sums[group[t[k]]];
-            if (sum.angle == 0) {
+            if (sum.angle == 0)
                 sum.first = normal;
-            }
             sum.direction += angle * normal;
             sum.angle += angle;
         }
@@ -35,9 +34,8 @@ void complete_smooth_normals(BaseMesh& mesh) {
     std::size_t cancelling = 0;
     std::vector<char> counted(mesh.vertices.size(), 0);
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-        if (mesh.vertices[i].normal != glm::dvec3(0)) {
+        if (mesh.vertices[i].normal != glm::dvec3(0))
             continue;
-        }
         const Sum& sum = sums[group[i]];
         const bool cancels = !(safe_length(sum.direction) > cancelled * sum.angle);
         mesh.vertices[i].normal = cancels ? sum.first : unit_or_zero(sum.direction);

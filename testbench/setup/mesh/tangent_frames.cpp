@@ -27,11 +27,9 @@ std::vector<std::uint32_t> frame_groups(const BaseMesh& mesh) {
 /// A unit vector perpendicular to n, from the axis least aligned with n.
 glm::dvec3 perpendicular(const glm::dvec3& n) {
     int axis = 0;
-    for (int k = 1; k < 3; ++k) {
-        if (std::abs(n[k]) < std::abs(n[axis])) {
+    for (int k = 1; k < 3; ++k)
+        if (std::abs(n[k]) < std::abs(n[axis]))
             axis = k;
-        }
-    }
     glm::dvec3 along(0);
     along[axis] = 1;
     return unit_or_zero(along - n * n[axis]);

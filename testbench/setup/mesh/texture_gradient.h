@@ -25,9 +25,8 @@ inline std::optional<TextureGradient> texture_gradient(const BaseMesh& mesh,
     // same criterion of "no area" as for a triangle in space
     const glm::dvec3 facing =
         triangle_normal(glm::dvec3(a.texture, 0), glm::dvec3(b.texture, 0), glm::dvec3(c.texture, 0));
-    if (facing.z == 0) {
+    if (facing.z == 0)
         return std::nullopt;
-    }
     const double determinant = ab.x * ac.y - ab.y * ac.x;
     const glm::dvec3 p = b.position - a.position, q = c.position - a.position;
     TextureGradient gradient;
@@ -36,9 +35,8 @@ inline std::optional<TextureGradient> texture_gradient(const BaseMesh& mesh,
     gradient.mirrored = facing.z < 0;
     gradient.area = triangle_area(a.position, b.position, c.position);
     const double check = safe_length(gradient.dp_du) + safe_length(gradient.dp_dv);
-    if (!std::isfinite(check)) {
+    if (!std::isfinite(check))
         return std::nullopt;
-    }
     return gradient;
 }
 

@@ -9,11 +9,9 @@ namespace tessera {
 
 void measure_texture_scale(BaseMesh& mesh) {
     double largest_area = 0;
-    for (const auto& triangle : mesh.triangles) {
-        if (const auto gradient = texture_gradient(mesh, triangle)) {
+    for (const auto& triangle : mesh.triangles)
+        if (const auto gradient = texture_gradient(mesh, triangle))
             largest_area = std::max(largest_area, gradient->area);
-        }
-    }
     if (!(largest_area > 0)) {
         mesh.texture_scale = {};
         mesh.repairs.push_back(
@@ -26,9 +24,8 @@ void measure_texture_scale(BaseMesh& mesh) {
     double total = 0;
     for (const auto& triangle : mesh.triangles) {
         const auto gradient = texture_gradient(mesh, triangle);
-        if (!gradient) {
+        if (!gradient)
             continue;
-        }
         const double weight = gradient->area / largest_area;  // relative: sums of squares of huge models stay finite
         const double u = safe_length(gradient->dp_du), v = safe_length(gradient->dp_dv);
         total += weight;

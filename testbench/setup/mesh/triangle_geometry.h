@@ -17,9 +17,8 @@ inline double safe_length(const glm::dvec3& a) {
 /// a / |a|; zero for the zero vector.
 inline glm::dvec3 unit_or_zero(const glm::dvec3& a) {
     const double largest = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)});
-    if (!(largest > 0)) {
+    if (!(largest > 0))
         return glm::dvec3(0);
-    }
     const glm::dvec3 scaled = a / largest;  // two steps: 1 / |a| may overflow
     return scaled / std::sqrt(glm::dot(scaled, scaled));
 }
@@ -28,16 +27,13 @@ inline glm::dvec3 unit_or_zero(const glm::dvec3& a) {
 inline glm::dvec3 triangle_normal(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
     const glm::dvec3 ab = b - a, ac = c - a, bc = c - b;
     double largest = 0;
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 3; ++k)
         largest = std::max({largest, std::abs(ab[k]), std::abs(ac[k]), std::abs(bc[k])});
-    }
-    if (!(largest > 0)) {
+    if (!(largest > 0))
         return glm::dvec3(0);
-    }
     const glm::dvec3 twice_area = glm::cross(ab / largest, ac / largest);
-    if (!(safe_length(twice_area) > flattest_triangle)) {
+    if (!(safe_length(twice_area) > flattest_triangle))
         return glm::dvec3(0);
-    }
     return unit_or_zero(twice_area);
 }
 

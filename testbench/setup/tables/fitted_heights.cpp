@@ -67,10 +67,9 @@ class HeightFit {
   public:
     HeightFit(std::vector<Observation> observations, std::size_t texels)
         : observations_(std::move(observations)), diagonal_(texels, 0) {
-        for (const Observation& o : observations_) {
+        for (const Observation& o : observations_)
             for (std::size_t k = 0; k < 3; ++k)
                 diagonal_[o.texel[k]] += o.weight[k] * o.weight[k];
-        }
     }
 
     void improve(Values& heights) const {

@@ -95,10 +95,9 @@ class Refinement {
 
     void set_base(const std::vector<TextureTriangle>& base) {
         std::set<std::array<std::array<std::int64_t, 2>, 3>> known;
-        for (const TextureTriangle& corners : base) {
+        for (const TextureTriangle& corners : base)
             if (has_area(corners) && known.insert(name_of(corners, period_)).second)
                 add_base_triangle(corners);
-        }
         for (std::uint32_t edge = 0; edge < edges_.size(); ++edge)
             rate(edge);
     }

@@ -13,10 +13,9 @@ namespace {
 
 std::vector<fs::path> files_in(const fs::path& folder) {
     std::vector<fs::path> files;
-    for (const auto& entry : fs::directory_iterator(folder)) {
+    for (const auto& entry : fs::directory_iterator(folder))
         if (entry.path().filename().string().rfind("LICENSE", 0) != 0)
             files.push_back(entry.path());
-    }
     std::sort(files.begin(), files.end());
     return files;
 }

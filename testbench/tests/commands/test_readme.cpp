@@ -85,16 +85,10 @@ void check_target(const std::string& command) {
 void try_command(const std::string& command, const Checkout& checkout) {
     INFO("$ " << command);
     switch (trial_of(command)) {
-        case Trial::foreign:
-            return;
-        case Trial::parse:
-            parse_script(source_folder() / command.substr(0, command.find(' ')));
-            return;
-        case Trial::build:
-            check_target(command);
-            return;
-        case Trial::run:
-            break;
+        case Trial::foreign: return;
+        case Trial::parse: parse_script(source_folder() / command.substr(0, command.find(' '))); return;
+        case Trial::build: check_target(command); return;
+        case Trial::run: break;
     }
     const ProgramEnd end = checkout.run(command);
     INFO(end.text());
@@ -149,10 +143,9 @@ TEST_CASE("every command of the folders' READMEs works, and every file they link
 
 TEST_CASE("every test that modules/README.md names is there") {
     std::string sources;
-    for (const auto& entry : fs::recursive_directory_iterator(source_folder() / "testbench/tests")) {
+    for (const auto& entry : fs::recursive_directory_iterator(source_folder() / "testbench/tests"))
         if (entry.path().extension() == ".cpp")
             sources += read_all(entry.path());
-    }
     const std::string page = read_all(source_folder() / "modules/README.md");
     const std::regex row(R"(\n\|[^\n]*\| `(\w+ [^`\n]+)` \|(?=\n))");
     unsigned tests = 0;
@@ -165,10 +158,9 @@ TEST_CASE("every test that modules/README.md names is there") {
 
 TEST_CASE("every script parses") {
     for (const char* const folder : {"scripts", "scripts/checks", ".ci"}) {
-        for (const auto& entry : fs::directory_iterator(source_folder() / folder)) {
+        for (const auto& entry : fs::directory_iterator(source_folder() / folder))
             if (entry.is_regular_file() && entry.path().extension().empty())
                 parse_script(entry.path());
-        }
     }
 }
 
@@ -181,10 +173,9 @@ TEST_CASE("scripts/check lists its checks and runs those named, with their optio
     const ProgramEnd help = checkout.run("scripts/check --help");
     CHECK(help.exit_code == 0);
     CHECK_THAT(help.out, Contains("  failing      Fails.\n") && Contains("\n  all  "));
-    for (const auto& entry : fs::directory_iterator(checks)) {
+    for (const auto& entry : fs::directory_iterator(checks))
         if (entry.is_regular_file())
             CHECK_THAT(help.out, Contains("\n  " + entry.path().filename().string() + " "));
-    }
 
     const ProgramEnd one = checkout.run("scripts/check failing --seconds 3 obj");
     CHECK(one.exit_code == 3);

@@ -66,12 +66,11 @@ void check_ends_well(const std::vector<std::string>& arguments, const fs::path& 
     long failures = 0;
     for (long at = 1; at <= calls; ++at) {
         fs::remove_all(folder / "out");
-        for (const auto& [name, content] : expected.before) {
+        for (const auto& [name, content] : expected.before)
             if (content == "(folder)")
                 fs::create_directories(folder / "out" / name);
             else
                 write_all(folder / "out" / name, content);
-        }
         const ProgramEnd end = run_failing(arguments, folder, at, what);
         INFO("call " << at << " of " << calls << ": " << what << "\n" << end.text());
         const Files left = files_in(folder / "out");

@@ -24,9 +24,8 @@ class Random {
     glm::dvec3 unit() {
         for (;;) {
             const glm::dvec3 v{real(-1, 1), real(-1, 1), real(-1, 1)};  // braces: in this order
-            if (glm::length(v) > 0.1 && glm::length(v) < 1) {
+            if (glm::length(v) > 0.1 && glm::length(v) < 1)
                 return v / glm::length(v);
-            }
         }
     }
 
@@ -40,9 +39,8 @@ inline std::vector<double> constant_codes(int width, int height, double code) {
 
 inline std::vector<double> random_codes(int width, int height, Random& random) {
     std::vector<double> codes = constant_codes(width, height, 0);
-    for (double& code : codes) {
+    for (double& code : codes)
         code = static_cast<double>(random.integer(0, 65535));
-    }
     return codes;
 }
 

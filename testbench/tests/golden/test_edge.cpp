@@ -20,11 +20,9 @@ bool same_bits(double a, double b) {
 }
 template <class Vector>
 bool same_bits(const Vector& a, const Vector& b) {
-    for (int k = 0; k < Vector::length(); ++k) {
-        if (!same_bits(a[k], b[k])) {
+    for (int k = 0; k < Vector::length(); ++k)
+        if (!same_bits(a[k], b[k]))
             return false;
-        }
-    }
     return true;
 }
 
@@ -228,11 +226,9 @@ TEST_CASE("map constant over the edge's three rectangles: no summed height") {
             const Rectangle size = plain.rectangle_size(i.texture, j.texture);
             for (const glm::dvec2& t : {i.texture, j.texture, (i.texture + j.texture) / 2.0}) {
                 const Rectangle r = plain.rectangle_about(t, size);
-                for (std::int64_t y = r.y; y < r.y + r.height; ++y) {
-                    for (std::int64_t x = r.x; x < r.x + r.width; ++x) {
+                for (std::int64_t y = r.y; y < r.y + r.height; ++y)
+                    for (std::int64_t x = r.x; x < r.x + r.width; ++x)
                         codes[static_cast<std::size_t>(y % 64 * 64 + x % 64)] = 4711;
-                    }
-                }
             }
             REQUIRE(evaluate_edge(i, j, Map(64, 64, mode, mode, codes), {}).summed_height == 0);
         }

@@ -31,11 +31,9 @@ TEST_CASE("table: four reads equal the sum texel by texel") {
                 // Every origin in three periods, every size up to two.
                 for (std::int64_t y = -height; y < 2 * height; ++y) {
                     for (std::int64_t x = -width; x < 2 * width; ++x) {
-                        for (std::int64_t h = 1; h <= height + 1; ++h) {
-                            for (std::int64_t w = 1; w <= width + 1; ++w) {
+                        for (std::int64_t h = 1; h <= height + 1; ++h)
+                            for (std::int64_t w = 1; w <= width + 1; ++w)
                                 check({x, y, w, h});
-                            }
-                        }
                     }
                 }
             } else {
@@ -73,9 +71,8 @@ TEST_CASE("map: nearest texel, borders, and any number of periods") {
     CHECK(clamped.texel({-3.5, 99}) == 10);
     CHECK(repeated.texel({5, 3}) == 0);  // last border: first texel
     CHECK(repeated.texel({-0.25, -0.25}) == 14);
-    for (int period = -4; period <= 4; ++period) {
+    for (int period = -4; period <= 4; ++period)
         CHECK(repeated.texel({5 * period + 2.5, 1.5 - 3 * period}) == 7);
-    }
     const Map mixed(5, 3, AddressMode::repeat, AddressMode::clamp, random_codes(5, 3, random));
     CHECK(mixed.texel({5, 3}) == 10);
 }
@@ -193,16 +190,13 @@ TEST_CASE("normal map: central differences, borders, thin axes") {
         return n / glm::length(n);
     };
     std::vector<double> ramp;
-    for (int y = 0; y < 4; ++y) {
-        for (int x = 0; x < 5; ++x) {
+    for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 5; ++x)
             ramp.push_back(10 * x + 30 * y);
-        }
-    }
     Map clamped(5, 4, AddressMode::clamp, AddressMode::clamp, ramp);
     clamped.derive_normals(scale, {su, sv});
-    for (std::size_t texel = 0; texel < 20; ++texel) {  // a ramp's one-sided border slope is its slope
+    for (std::size_t texel = 0; texel < 20; ++texel)  // a ramp's one-sided border slope is its slope
         CHECK(glm::distance(clamped.normal(texel), expected(10 * scale / su, 30 * scale / sv)) < 1e-15);
-    }
     Map repeated(5, 4, AddressMode::repeat, AddressMode::repeat, ramp);
     repeated.derive_normals(scale, {su, sv});
     CHECK(glm::distance(repeated.normal(6), expected(10 * scale / su, 30 * scale / sv)) < 1e-15);

@@ -89,9 +89,8 @@ class DirectedEdges {
 
 TEST_CASE("subdivision: every pattern tiles the triangle and keeps its winding") {
     std::array<Vertex, 6> v{plane_vertex(10, 10), plane_vertex(50, 20), plane_vertex(20, 60)};
-    for (std::size_t e = 0; e < 3; ++e) {
+    for (std::size_t e = 0; e < 3; ++e)
         v[3 + e].texture = (v[e].texture + v[(e + 1) % 3].texture) / 2.0;
-    }
     for (const Diagonal diagonal : {Diagonal::shorter, Diagonal::first, Diagonal::second}) {
         for (unsigned pattern = 0; pattern < 8; ++pattern) {
             const std::array<bool, 3> split{(pattern & 1) != 0, (pattern & 2) != 0, (pattern & 4) != 0};
@@ -105,9 +104,8 @@ TEST_CASE("subdivision: every pattern tiles the triangle and keeps its winding")
                 const double child_area = texture_area({at(0), at(1), at(2)});
                 CHECK(child_area > 0);
                 area += child_area;
-                for (std::size_t k = 0; k < 3; ++k) {
+                for (std::size_t k = 0; k < 3; ++k)
                     CHECK(edges.add(child[k], child[(k + 1) % 3]));
-                }
             }
             CHECK(area == Approx(texture_area({v[0], v[1], v[2]})));
             // The rest of the boundary: 3 edges, or 2 halves where split.
@@ -190,9 +188,8 @@ TEST_CASE("half donut on the plane of 18: ends, no T-vertex, area kept") {
                    (a.second == b.second && (a.second == 0 || a.second == end));
         }) == 0);
         CHECK(area == Approx(end * end).epsilon(1e-12));
-        for (std::size_t k = 0; k < base.size(); ++k) {
+        for (std::size_t k = 0; k < base.size(); ++k)
             CHECK(area_of_base[k] == Approx(texture_area(base[k])).epsilon(1e-12));
-        }
     }
 }
 
@@ -288,10 +285,9 @@ TEST_CASE("cylinder: repeat closes the seam, clamp opens it") {
         CHECK(result.triangles_emitted > 1000);
         const std::size_t open = edges.without_partner(
             [&](const Key& a, const Key& b) { return row[a] == row[b] && (row[a] == 0 || row[a] == height); });
-        if (mode == AddressMode::repeat) {
+        if (mode == AddressMode::repeat)
             CHECK(open == 0);
-        } else {
+        else
             CHECK(open > 0);
-        }
     }
 }

@@ -23,9 +23,8 @@ inline std::string parse_error_of(const std::string& text) {
 
 inline std::vector<Key> all_keys() {
     std::vector<Key> keys;
-    for (const KeyTable& table : job_tables()) {
+    for (const KeyTable& table : job_tables())
         keys.insert(keys.end(), table.keys.begin(), table.keys.end());
-    }
     return keys;
 }
 
@@ -44,9 +43,8 @@ inline double bits_to_double(std::uint64_t bits) {
 
 inline double random_number(const KeyRange& range) {
     const double any = bits_to_double(*rc::gen::arbitrary<std::uint64_t>());
-    if (any >= range.low && any <= range.high) {
+    if (any >= range.low && any <= range.high)
         return any;
-    }
     const double part = static_cast<double>(*rc::gen::inRange<std::int64_t>(0, 1000001)) / 1000000.0;
     return std::min(range.high, range.low + part * (range.high - range.low));
 }
@@ -78,34 +76,28 @@ inline std::string random_text() {
                                           "data:"};
     std::string text;
     for (const std::size_t i :
-         *rc::gen::container<std::vector<std::size_t>>(rc::gen::inRange<std::size_t>(0, pieces.size()))) {
+         *rc::gen::container<std::vector<std::size_t>>(rc::gen::inRange<std::size_t>(0, pieces.size())))
         text += pieces[i];
-    }
     return text;
 }
 
 inline JobValue random_value(const Key& key) {
     switch (key.kind) {
-        case KeyKind::flag:
-            return *rc::gen::arbitrary<bool>();
+        case KeyKind::flag: return *rc::gen::arbitrary<bool>();
         case KeyKind::integer:
             return *rc::gen::inRange(static_cast<std::int64_t>(key.range.low),
                                      static_cast<std::int64_t>(key.range.high) + 1);
-        case KeyKind::number:
-            return random_number(key.range);
+        case KeyKind::number: return random_number(key.range);
         case KeyKind::vector:
             return std::array<double, 3>{random_number(key.range), random_number(key.range), random_number(key.range)};
         case KeyKind::span: {
             const double a = random_number(key.range), b = random_number(key.range);
             return a < b ? std::array<double, 2>{a, b} : std::array<double, 2>{key.range.low, key.range.high};
         }
-        case KeyKind::choice:
-            return std::string(*rc::gen::elementOf(key.choices));
+        case KeyKind::choice: return std::string(*rc::gen::elementOf(key.choices));
         case KeyKind::text:
-        case KeyKind::file:
-            return random_text();
-        case KeyKind::folder:
-            return "f" + random_text();
+        case KeyKind::file: return random_text();
+        case KeyKind::folder: return "f" + random_text();
     }
     return false;
 }

@@ -31,9 +31,8 @@ void survives(const std::string& text) {
         }
         REQUIRE(same_settings(parse_job(dump_job(job), "again.toml"), job));
     } catch (const InputError& error) {
-        if (std::string(error.what()).find("hostile.toml:") != 0) {
+        if (std::string(error.what()).find("hostile.toml:") != 0)
             FAIL("no file in: " << error.what());
-        }
     }
 }
 
@@ -44,9 +43,8 @@ std::string bare_dump(const Job& job) {
     while (!dump.empty()) {
         const std::string line = dump.substr(0, dump.find('\n') + 1);
         dump.erase(0, line.size());
-        if (line[0] != '#' && line[0] != '\n') {
+        if (line[0] != '#' && line[0] != '\n')
             bare += line;
-        }
     }
     return bare;
 }
@@ -56,9 +54,8 @@ std::string bare_dump(const Job& job) {
 TEST_CASE("deep nesting of every kind ends in a message") {
     const auto repeated = [](const std::string& piece, std::size_t times) {
         std::string text;
-        for (std::size_t i = 0; i < times; ++i) {
+        for (std::size_t i = 0; i < times; ++i)
             text += piece;
-        }
         return text;
     };
     CHECK_THAT(parse_error_of("a = " + repeated("[", 500000)), StartsWith("job.toml:1:"));
@@ -72,20 +69,17 @@ TEST_CASE("deep nesting of every kind ends in a message") {
     const std::string level = "a" + repeated(".a", 64) + " = [\n";
     for (const std::size_t levels : {1u, 7u, 8u, 15u, 16u, 17u, 64u}) {
         std::string text = level;
-        for (std::size_t i = 1; i < levels; ++i) {
+        for (std::size_t i = 1; i < levels; ++i)
             text += "{" + level;
-        }
         std::string closed = text;
-        for (std::size_t i = 1; i < levels; ++i) {
+        for (std::size_t i = 1; i < levels; ++i)
             closed += "]}";
-        }
         CHECK_THAT(parse_error_of(text), StartsWith("job.toml:"));
         CHECK_THAT(parse_error_of(closed + "]"), StartsWith("job.toml:"));
     }
     std::string many;
-    for (int i = 0; i < 50000; ++i) {
+    for (int i = 0; i < 50000; ++i)
         many += "mesh_" + std::to_string(i) + " = 1\n";
-    }
     CHECK_THAT(parse_error_of(many), Contains("and 49980 more"));
 }
 
@@ -180,9 +174,8 @@ TEST_CASE("hostile pieces of TOML") {
 
 TEST_CASE("a dumped job cut at every byte") {
     const std::string bare = bare_dump(Job{});
-    for (std::size_t length = 0; length <= bare.size(); ++length) {
+    for (std::size_t length = 0; length <= bare.size(); ++length)
         survives(bare.substr(0, length));
-    }
 }
 
 TEST_CASE("a dumped job with every byte changed") {
@@ -202,11 +195,9 @@ TEST_CASE("a dumped job with every byte changed") {
 TEST_CASE("characters beyond ASCII at every place") {
     const std::string bare = bare_dump(Job{}) + "# comment\n'a\"b' = 'c\"'\n\"d'\\\"\" = \"e'\\\\\"\n";
     for (const std::string character : {"\xc2\xa0", "\xc3\xa4", "\xe1\x9a\x80", "\xe2\x80\x83", "\xef\xbb\xbf",
-                                        "\xe2\x80\xa8", "\xc2\x85", "\xf0\x9f\x98\x80", "\xff", "\xc3"}) {
-        for (std::size_t i = 0; i <= bare.size(); ++i) {
+                                        "\xe2\x80\xa8", "\xc2\x85", "\xf0\x9f\x98\x80", "\xff", "\xc3"})
+        for (std::size_t i = 0; i <= bare.size(); ++i)
             survives(bare.substr(0, i) + character + bare.substr(i));
-        }
-    }
     CHECK(parse_job("# \xc3\xa4\n[map]\ntext = \"\xc3\xa4\" # \xc3\xa4\n", "job.toml").map.text == "\xc3\xa4");
     CHECK_THAT(parse_error_of("[map]\ntext = '\xc3\xa4' \xc3\xa4\n"), StartsWith("job.toml:2:12: not TOML"));
     CHECK(parse_job("map.text = \"\"\"\n\\\n \xc3\xa4\nb\"\"\"\n", "job.toml").map.text == "\xc3\xa4\nb");

@@ -50,25 +50,20 @@ std::string set_error_of(const std::string& setting) {
 JobValue another_value(const Key& key) {
     const JobValue given = default_of(key);
     switch (key.kind) {
-        case KeyKind::flag:
-            return !std::get<bool>(given);
+        case KeyKind::flag: return !std::get<bool>(given);
         case KeyKind::integer: {
             const auto low = static_cast<std::int64_t>(key.range.low);
             return std::get<std::int64_t>(given) == low ? low + 1 : low;
         }
-        case KeyKind::number:
-            return given == JobValue(key.range.low) ? key.range.high : key.range.low;
-        case KeyKind::vector:
-            return std::array<double, 3>{0.1, -1e-7, 12345.678};
-        case KeyKind::span:
-            return std::array<double, 2>{-0.5, 1533.25};
+        case KeyKind::number: return given == JobValue(key.range.low) ? key.range.high : key.range.low;
+        case KeyKind::vector: return std::array<double, 3>{0.1, -1e-7, 12345.678};
+        case KeyKind::span: return std::array<double, 2>{-0.5, 1533.25};
         case KeyKind::choice:
             return std::string(key.choices.back() == std::get<std::string>(given) ? key.choices.front()
                                                                                   : key.choices.back());
         case KeyKind::text:
         case KeyKind::file:
-        case KeyKind::folder:
-            return std::string("a \"quoted\" \\ b\xc3\xa4r\n\t\x01\x7f # = ]");
+        case KeyKind::folder: return std::string("a \"quoted\" \\ b\xc3\xa4r\n\t\x01\x7f # = ]");
     }
     return given;
 }
@@ -306,9 +301,8 @@ TEST_CASE("numbers print in their shortest form and read back exactly") {
 TEST_CASE("random jobs round-trip") {
     rc::prop("dump, read, dump", [] {
         Job job;
-        for (const Key& key : all_keys()) {
+        for (const Key& key : all_keys())
             set_value(job, key, random_value(key));
-        }
         const std::string dump = dump_job(job);
         const Job again = parse_job(dump, "dump.toml");
         RC_ASSERT(same_settings(again, job));

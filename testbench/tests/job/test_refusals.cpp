@@ -89,9 +89,8 @@ TEST_CASE("every number's range holds at its ends and refuses beyond them") {
                 key.kind == KeyKind::integer ? std::to_string(static_cast<std::int64_t>(value)) : toml_number(value);
             return key.kind == KeyKind::vector ? "[1, 1, " + text + "]" : text;
         };
-        if (key.kind != KeyKind::integer && key.kind != KeyKind::number && key.kind != KeyKind::vector) {
+        if (key.kind != KeyKind::integer && key.kind != KeyKind::number && key.kind != KeyKind::vector)
             continue;
-        }
         const double infinity = std::numeric_limits<double>::infinity();
         const bool whole = key.kind == KeyKind::integer;
         const double below = whole ? key.range.low - 1 : std::nextafter(key.range.low, -infinity);
@@ -101,9 +100,8 @@ TEST_CASE("every number's range holds at its ends and refuses beyond them") {
         const std::string too_high = parse_error_of(one_key(key, around(above)));
         CHECK_THAT(too_high, StartsWith("job.toml:2:1: `" + key.name + "` = "));
         CHECK_THAT(too_high, Contains("out of range; the range is"));
-        if (!(key.range.or_zero && below == 0)) {
+        if (!(key.range.or_zero && below == 0))
             CHECK_THAT(parse_error_of(one_key(key, around(below))), Contains("out of range; the range is"));
-        }
         if (!whole) {
             for (const std::string value : {"nan", "-nan", "inf", "-inf"}) {
                 const std::string error =
@@ -275,9 +273,8 @@ TEST_CASE("keys that contradict each other") {
 TEST_CASE("validate survives random jobs") {
     rc::prop("a verdict, nothing else", [] {
         Job job;
-        for (const Key& key : all_keys()) {
+        for (const Key& key : all_keys())
             set_value(job, key, random_value(key));
-        }
         validate_error_of(job);
     });
 }

@@ -192,10 +192,9 @@ struct Row {
 std::vector<Row> every_combination() {
     std::vector<Row> rows;
     for (const Base& base : bases) {
-        for (const Named& test : height_tests) {
+        for (const Named& test : height_tests)
             for (const Named& design : designs)
                 rows.push_back({base.name + ", " + test.name + ", " + design.name, &base, test, design});
-        }
     }
     return rows;
 }

@@ -94,11 +94,10 @@ void expect_refusal(const fs::path& folder, const Arguments& command, const std:
 bool includes_systemc(const fs::path& headers, const std::string& name) {
     const std::regex include("#include ([<\"])(.*)[>\"]");
     std::smatch match;
-    for (const std::string& line : lines_of(read_all(headers / name))) {
+    for (const std::string& line : lines_of(read_all(headers / name)))
         if (std::regex_match(line, match, include) &&
             (match[2] == "systemc" || (match[1] == "\"" && includes_systemc(headers, match[2]))))
             return true;
-    }
     return false;
 }
 
@@ -106,12 +105,11 @@ bool includes_systemc(const fs::path& headers, const std::string& name) {
 std::vector<std::string> code_in(const fs::path& markdown, const std::string& language) {
     std::vector<std::string> code;
     bool within = false;
-    for (const std::string& line : lines_of(read_all(markdown))) {
+    for (const std::string& line : lines_of(read_all(markdown)))
         if (line.rfind("```", 0) == 0)
             within = line == "```" + language;
         else if (within && !line.empty())
             code.push_back(line);
-    }
     return code;
 }
 
@@ -125,10 +123,9 @@ TEST_CASE("the example finds an installation that was moved, by CMake and by pkg
     const std::string printed = build_and_run(folder.path());
 
     std::string command;
-    for (const std::string& line : code_in(source_folder() / "modules/README.md", "sh")) {
+    for (const std::string& line : code_in(source_folder() / "modules/README.md", "sh"))
         if (line.rfind("g++ ", 0) == 0)
             command = TESSERA_COMPILER + line.substr(3);
-    }
     REQUIRE_THAT(command, Contains("pkg-config"));
 #ifdef TESSERA_SYSTEMC_BY_PKG_CONFIG
     require_success({"bash", "-euc", command}, folder.path() / "example",

@@ -19,11 +19,10 @@ struct CanHold<Aggregate, std::tuple<Members...>, std::void_t<decltype(Aggregate
 /// How many members an aggregate has; an array is one.
 template <typename Aggregate, typename... Members>
 constexpr std::size_t count_members() {
-    if constexpr (CanHold<Aggregate, std::tuple<Members..., Anything>>::value) {
+    if constexpr (CanHold<Aggregate, std::tuple<Members..., Anything>>::value)
         return count_members<Aggregate, Members..., Anything>();
-    } else {
+    else
         return sizeof...(Members);
-    }
 }
 
 }  // namespace tessera::testing

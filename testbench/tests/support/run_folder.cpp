@@ -19,14 +19,13 @@ namespace {
 std::vector<std::string> cells_of(const std::string& row) {
     std::vector<std::string> cells(1);
     bool quoted = false;
-    for (const char c : row) {
+    for (const char c : row)
         if (c == '"')
             quoted = !quoted;
         else if (c == ',' && !quoted)
             cells.emplace_back();
         else
             cells.back() += c;
-    }
     return cells;
 }
 
@@ -56,10 +55,9 @@ std::uint64_t RunFolder::invariant(const std::string& name) const {
 std::map<int, std::uint64_t> RunFolder::by_generation() const {
     std::map<int, std::uint64_t> result;
     const std::string prefix = "generation_";
-    for (const auto& [name, figure] : statistics.at("mesh").items()) {
+    for (const auto& [name, figure] : statistics.at("mesh").items())
         if (name.rfind(prefix, 0) == 0)
             result[std::stoi(name.substr(prefix.size()))] = figure.at("value").get<std::uint64_t>();
-    }
     return result;
 }
 

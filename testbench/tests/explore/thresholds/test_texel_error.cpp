@@ -38,10 +38,9 @@ struct Meter {
 BaseMesh plane_from(const glm::dvec2& first, const HeightMap& map, const Job::Mesh& size) {
     const auto lines = [](double from, int texels) {
         std::vector<double> at{0};
-        for (double line = from; line < texels; line += 16) {
+        for (double line = from; line < texels; line += 16)
             if (line > 0)
                 at.push_back(line / texels);
-        }
         at.push_back(1);
         return at;
     };

@@ -30,19 +30,16 @@ void write_png(const std::filesystem::path& path, const PngImage& image) {
                  image.interlaced ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
                  PNG_FILTER_TYPE_DEFAULT);
     std::vector<png_color> palette;
-    for (std::size_t i = 0; i + 2 < image.palette.size(); i += 3) {
+    for (std::size_t i = 0; i + 2 < image.palette.size(); i += 3)
         palette.push_back({image.palette[i], image.palette[i + 1], image.palette[i + 2]});
-    }
-    if (!palette.empty()) {
+    if (!palette.empty())
         png_set_PLTE(png, info, palette.data(), static_cast<int>(palette.size()));
-    }
     png_write_info(png, info);
     const std::size_t row_bytes = image.bytes.size() / image.height;
     std::vector<png_bytep> rows;
     std::vector<std::uint8_t> bytes = image.bytes;
-    for (std::size_t y = 0; y < image.height; ++y) {
+    for (std::size_t y = 0; y < image.height; ++y)
         rows.push_back(bytes.data() + y * row_bytes);
-    }
     png_write_image(png, rows.data());
     png_write_end(png, info);
     png_destroy_write_struct(&png, &info);
@@ -83,9 +80,8 @@ void write_exr(const std::filesystem::path& path, const ExrImage& image) {
         header.setTileDescription(Imf::TileDescription(8, 8, image.mip_map ? Imf::MIPMAP_LEVELS : Imf::ONE_LEVEL));
         Imf::TiledOutputFile file(path.c_str(), header);
         file.setFrameBuffer(frame);
-        for (int level = 0; level < file.numLevels(); ++level) {
+        for (int level = 0; level < file.numLevels(); ++level)
             file.writeTiles(0, file.numXTiles(level) - 1, 0, file.numYTiles(level) - 1, level);
-        }
     } else {
         Imf::OutputFile file(path.c_str(), header);
         file.setFrameBuffer(frame);
@@ -96,13 +92,11 @@ void write_exr(const std::filesystem::path& path, const ExrImage& image) {
 Outcome outcome_of(const std::filesystem::path& path) {
     try {
         const HeightMap map = read_height_map(path);
-        if (map.repairs.empty()) {
+        if (map.repairs.empty())
             return {Outcome::Kind::loaded, ""};
-        }
         std::string all;
-        for (const std::string& repair : map.repairs) {
+        for (const std::string& repair : map.repairs)
             all += repair + " ";
-        }
         return {Outcome::Kind::loaded_with_remark, all};
     } catch (const InputError& error) {
         return {Outcome::Kind::refused, error.what()};

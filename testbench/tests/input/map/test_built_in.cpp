@@ -50,15 +50,13 @@ TEST_CASE("the half donut is a half torus") {
 
 TEST_CASE("half donut and ramp agree with the reference maps to one code of 16 bits") {
     const auto folder = shared_data("maps");
-    if (folder.empty()) {
+    if (folder.empty())
         return;
-    }
     const auto differ = [](const HeightMap& a, const HeightMap& b) {
         REQUIRE(a.values.size() == b.values.size());
         long worst = 0;
-        for (std::size_t i = 0; i < a.values.size(); ++i) {
+        for (std::size_t i = 0; i < a.values.size(); ++i)
             worst = std::max(worst, std::labs(code(a.values[i]) - code(b.values[i])));
-        }
         return worst;
     };
     CHECK(differ(half_donut_map(256, 256), read_height_map(folder / "half_torus_256.pgm")) <= 1);
@@ -106,9 +104,8 @@ TEST_CASE("text is legible: inside the map, flat tops, soft edges, every charact
             const float value = map.at(x, y);
             REQUIRE(value >= 0);
             REQUIRE(value <= 1);
-            if (x == 0 || y == 0 || x == map.width - 1 || y == map.height - 1) {
+            if (x == 0 || y == 0 || x == map.width - 1 || y == map.height - 1)
                 REQUIRE(value == 0);
-            }
             top = top || value == 1;
             edge = edge || (value > 0.4F && value < 0.6F);
             total += static_cast<double>(value);
@@ -137,11 +134,9 @@ TEST_CASE("text is legible: inside the map, flat tops, soft edges, every charact
 TEST_CASE("noise depends on seed and place only, and is about uniform") {
     const HeightMap map = noise_map(128, 64, 7);
     const HeightMap larger = noise_map(300, 70, 7);
-    for (int y = 0; y < 64; ++y) {
-        for (int x = 0; x < 128; ++x) {
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 128; ++x)
             REQUIRE(map.at(x, y) == larger.at(x, y));
-        }
-    }
     CHECK(map.values != noise_map(128, 64, 8).values);
     const double mean = std::accumulate(larger.values.begin(), larger.values.end(), 0.0) / (300 * 70);
     CHECK(mean == Approx(0.5).margin(0.01));

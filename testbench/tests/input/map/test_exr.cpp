@@ -158,17 +158,15 @@ TEST_CASE("sides over the limit are refused from the header") {
 
 TEST_CASE("the face in every EXR variant is the same map") {
     const auto folder = shared_data("exr");
-    if (folder.empty()) {
+    if (folder.empty())
         return;
-    }
     const HeightMap reference = read_height_map(folder / "face97x81_float_none_scan.exr");
     const HeightMap half_reference = read_height_map(folder / "face97x81_half_none_scan.exr");
     int count = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
         const std::string name = entry.path().filename().string();
-        if (name.rfind("face97x81_", 0) != 0) {
+        if (name.rfind("face97x81_", 0) != 0)
             continue;
-        }
         ++count;
         INFO(name);
         const HeightMap map = read_height_map(entry.path());
@@ -193,15 +191,13 @@ TEST_CASE("the face in every EXR variant is the same map") {
 
 TEST_CASE("the OpenEXR project's own test images are read") {
     const auto folder = shared_data("exr");
-    if (folder.empty()) {
+    if (folder.empty())
         return;
-    }
     for (const char* const name : {"oexr_AllHalfValues.exr", "oexr_BrightRingsNanInf.exr"}) {
         const HeightMap map = read_height_map(folder / name);
         CHECK_FALSE(map.repairs.empty());
-        for (const float value : map.values) {
+        for (const float value : map.values)
             REQUIRE(std::isfinite(value));
-        }
     }
     // The same picture; only its windows differ.
     const HeightMap t02 = read_height_map(folder / "oexr_t02.exr");

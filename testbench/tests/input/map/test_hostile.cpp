@@ -126,9 +126,8 @@ TEST_CASE("EXR files cut off or with bytes changed") {
     const auto tiled = GENERATE(false, true);
     const auto compression = GENERATE(0, 1, 3, 4, 5, 6, 8);
     ExrImage image{11, 9, std::vector<float>(99)};
-    for (std::size_t i = 0; i < image.values.size(); ++i) {
+    for (std::size_t i = 0; i < image.values.size(); ++i)
         image.values[i] = static_cast<float>((i * 7) % 13);
-    }
     image.pixels = compression % 2 == 0 ? Pixels::half : Pixels::float_;
     image.tiled = tiled;
     image.compression = compression;
@@ -142,9 +141,8 @@ TEST_CASE("PNG files cut off or with bytes changed are all refused") {
     const auto interlaced = GENERATE(false, true);
     const auto type = GENERATE(PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_PALETTE);
     PngImage image{5, 4, 8, type, std::vector<std::uint8_t>(20, 1), {}, interlaced};
-    if (type == PNG_COLOR_TYPE_PALETTE) {
+    if (type == PNG_COLOR_TYPE_PALETTE)
         image.palette = {1, 2, 3, 4, 5, 6};
-    }
     write_png(folder / "good.png", image);
     CHECK(outcome_of(folder / "good.png").kind != Outcome::Kind::refused);
     // Nothing escapes the checksums.
@@ -161,9 +159,8 @@ TEST_CASE("PGM files cut off or with bytes changed") {
 namespace {
 
 void set_word(std::string& bytes, std::size_t at, std::uint32_t value) {
-    for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t i = 0; i < 4; ++i)
         bytes.at(at + i) = static_cast<char>(value >> (8 * i));
-    }
 }
 
 void set_far_corner(std::string& bytes, std::uint32_t x, std::uint32_t y) {

@@ -175,9 +175,8 @@ TEST_CASE("a PNG map's transparent colour is ignored, and said") {
 TEST_CASE("an interlaced PNG equals the plain one") {
     const TestFolder folder;
     std::vector<std::uint8_t> bytes(std::size_t{23} * 19);
-    for (std::size_t i = 0; i < bytes.size(); ++i) {
+    for (std::size_t i = 0; i < bytes.size(); ++i)
         bytes[i] = static_cast<std::uint8_t>(i * 37);
-    }
     write_png(folder / "plain.png", {23, 19, 8, PNG_COLOR_TYPE_GRAY, bytes, {}, false});
     write_png(folder / "adam7.png", {23, 19, 8, PNG_COLOR_TYPE_GRAY, bytes, {}, true});
     CHECK(read_height_map(folder / "plain.png").values == read_height_map(folder / "adam7.png").values);

@@ -40,11 +40,9 @@ inline EdgeCounts count_edges(const BaseMesh& mesh) {
 inline void require_complete(const BaseMesh& mesh) {
     REQUIRE_FALSE(mesh.triangles.empty());
     std::size_t bad_indices = 0, flat = 0, bad_frames = 0, bad_values = 0;
-    for (const auto& t : mesh.triangles) {
-        for (std::uint32_t i : t) {
+    for (const auto& t : mesh.triangles)
+        for (std::uint32_t i : t)
             bad_indices += i >= mesh.vertices.size();
-        }
-    }
     REQUIRE(bad_indices == 0);
     for (const auto& t : mesh.triangles) {
         flat += triangle_normal(mesh.vertices[t[0]].position, mesh.vertices[t[1]].position,

@@ -20,12 +20,10 @@ namespace {
 std::vector<fs::path> files_in(const char* folder) {
     std::vector<fs::path> files;
     const fs::path path = shared_data(folder);
-    if (path.empty()) {
+    if (path.empty())
         return files;
-    }
-    for (const auto& entry : fs::directory_iterator(path)) {
+    for (const auto& entry : fs::directory_iterator(path))
         files.push_back(entry.path());
-    }
     std::sort(files.begin(), files.end());
     return files;
 }
@@ -38,9 +36,8 @@ bool is_obj(const fs::path& file) {
 
 TEST_CASE("the shared meshes load") {
     for (const fs::path& file : files_in("meshes")) {
-        if (!is_obj(file)) {
+        if (!is_obj(file))
             continue;
-        }
         INFO(file);
         const BaseMesh mesh = read_obj(file.string());
         require_complete(mesh);
@@ -52,9 +49,8 @@ TEST_CASE("the shared meshes load") {
 
 TEST_CASE("the shared meshes are what tinyobjloader reads") {
     for (const fs::path& file : files_in("meshes")) {
-        if (!is_obj(file)) {
+        if (!is_obj(file))
             continue;
-        }
         INFO(file);
         const BaseMesh mesh = read_obj(file.string());
         tinyobj::ObjReader reader;
@@ -84,9 +80,8 @@ TEST_CASE("the shared meshes are what tinyobjloader reads") {
 
 TEST_CASE("the built-in plane is the shared plane of 18 triangles") {
     const fs::path file = shared_data("meshes/plane_18.obj");
-    if (file.empty()) {
+    if (file.empty())
         return;
-    }
     const BaseMesh built_in = make_plane(3, 3, 2, 2), read = read_obj(file.string());
     REQUIRE(read.triangles.size() == built_in.triangles.size());
     for (std::size_t i = 0; i < read.triangles.size(); ++i) {
@@ -103,9 +98,8 @@ TEST_CASE("the built-in plane is the shared plane of 18 triangles") {
 
 TEST_CASE("the shared cylinders close at their seam") {
     const fs::path folder = shared_data("meshes");
-    if (folder.empty()) {
+    if (folder.empty())
         return;
-    }
     for (const char* name : {"cylinder_1800.obj", "cylinder_1800_lps.obj"}) {
         const BaseMesh mesh = read_obj((folder / name).string());
         CHECK(mesh.vertices.size() == 961);
@@ -114,11 +108,9 @@ TEST_CASE("the shared cylinders close at their seam") {
         CHECK(edges.border == 60);
         CHECK(edges.odd == 0);
         std::size_t open = 0;
-        for (const BaseVertex& v : mesh.vertices) {
-            for (const BaseVertex& w : mesh.vertices) {
+        for (const BaseVertex& v : mesh.vertices)
+            for (const BaseVertex& w : mesh.vertices)
                 open += v.position == w.position && (v.normal != w.normal || v.tangent != w.tangent);
-            }
-        }
         CHECK(open == 0);
     }
 }
@@ -130,9 +122,8 @@ TEST_CASE("hostile files load with a repair or end in one clear error") {
         return repair.find("have no texture coordinates") != std::string::npos;
     };
     for (const fs::path& file : files_in("hostile/obj")) {
-        if (!is_obj(file)) {
+        if (!is_obj(file))
             continue;
-        }
         const std::string name = file.filename().string();
         INFO(name);
         try {
@@ -145,9 +136,8 @@ TEST_CASE("hostile files load with a repair or end in one clear error") {
                                                   [&](const std::string& repair) { return !told_of_every_ok(repair); });
                 CHECK(others == (name == "ok_all_forms.obj" ? 1 : 0));
             }
-            for (const std::string& repair : mesh.repairs) {
+            for (const std::string& repair : mesh.repairs)
                 CHECK(repair.back() == '.');
-            }
         } catch (const InputError& error) {
             CHECK_THAT(error.what(), Contains(name));
             CHECK(name.rfind("ok_", 0) != 0);

@@ -31,9 +31,8 @@ BaseMesh parse(const std::string& text) {
 
 std::string all_repairs(const BaseMesh& mesh) {
     std::string all;
-    for (const std::string& repair : mesh.repairs) {
+    for (const std::string& repair : mesh.repairs)
         all += repair + "\n";
-    }
     return all;
 }
 
@@ -83,9 +82,8 @@ TEST_CASE("the forms an OBJ may take all give the same mesh") {
     for (std::string text : forms) {
         for (std::string ending : {"\n", "\r\n", "\r"}) {
             std::string with_ending;
-            for (char c : text) {
+            for (char c : text)
                 with_ending += c == '\n' ? ending : std::string(1, c);
-            }
             INFO(with_ending);
             const BaseMesh mesh = parse(with_ending);
             CHECK(all_repairs(mesh) == "");
@@ -279,12 +277,10 @@ TEST_CASE("texture scale is the area-weighted mean with its spread") {
 
 TEST_CASE("concave polygons are cut inside their outline") {
     std::vector<glm::dvec2> saws{{0, -1}};
-    for (const double y : {-3, -8, -3, -8, -3, -10}) {
+    for (const double y : {-3, -8, -3, -8, -3, -10})
         saws.emplace_back(saws.size(), y);
-    }
-    for (const double y : {4, 0, 3, -2, 3, 0, 3}) {
+    for (const double y : {4, 0, 3, -2, 3, 0, 3})
         saws.emplace_back(14 - saws.size(), y);
-    }
     const std::vector<std::vector<glm::dvec2>> outlines{
         {{0, 0}, {4, 0}, {4, 4}, {2, 1}, {0, 4}},                                          // a notch
         {{0, 0}, {2, 0}, {1, 0.5}, {1, 2}},                                                // a dart
@@ -298,17 +294,15 @@ TEST_CASE("concave polygons are cut inside their outline") {
     for (std::size_t i = 0; i < outlines.size(); ++i) {
         for (bool reversed : {false, true}) {
             std::vector<glm::dvec2> outline = outlines[i];
-            if (reversed) {
+            if (reversed)
                 std::reverse(outline.begin() + 1, outline.end());
-            }
             INFO(i << reversed);
             const BaseMesh mesh = parse(polygon(outline));
             CHECK(all_repairs(mesh) == "");
             CHECK(mesh.triangles.size() == outline.size() - 2);
             CHECK(signed_area(mesh) == Approx(reversed ? -areas[i] : areas[i]));
-            for (const BaseVertex& v : mesh.vertices) {
+            for (const BaseVertex& v : mesh.vertices)
                 CHECK(v.normal.z == (reversed ? -1 : 1));
-            }
         }
     }
 }
@@ -347,11 +341,9 @@ TEST_CASE("a large convex polygon is cut without a corner that most of its trian
         CHECK(signed_area(mesh) ==
               Approx(static_cast<double>(n) / 2 * std::sin(2 * 3.14159265358979323846 / static_cast<double>(n))));
         std::vector<std::size_t> triangles(mesh.vertices.size());
-        for (const auto& t : mesh.triangles) {
-            for (const std::uint32_t i : t) {
+        for (const auto& t : mesh.triangles)
+            for (const std::uint32_t i : t)
                 ++triangles[i];
-            }
-        }
         // Two more each round, and at the end a fan of no more than 8 corners.
         const double rounds = std::ceil(std::log2(static_cast<double>(n) / 8));
         CHECK(static_cast<double>(*std::max_element(triangles.begin(), triangles.end())) <= 2 * rounds + 6);
@@ -378,22 +370,19 @@ TEST_CASE("outlines that cross themselves or are not plane load with a repair") 
 
 TEST_CASE("limits are named") {
     std::string face = "f";
-    for (std::size_t i = 0; i < 1'000'000; ++i) {
+    for (std::size_t i = 0; i < 1'000'000; ++i)
         face += i % 3 == 0 ? " 1" : i % 3 == 1 ? " 2" : " 3";
-    }
     CHECK_THROWS_AS(parse(square + face + "\n"), ResourceError);
     CHECK_THROWS_WITH(parse(square + face + "\n"), StartsWith("test.obj:10: ") && Contains("65536"));
     std::string many = square;
-    for (std::size_t i = 0; i < 4'000'001; ++i) {
+    for (std::size_t i = 0; i < 4'000'001; ++i)
         many += "f 1 2 3\n";
-    }
     CHECK_THROWS_WITH(parse(many), StartsWith("test.obj:4000010: ") && Contains("4000000"));
 
     // a comb, where every ear test looks at many corners, on a small allowance
     std::vector<glm::dvec3> comb;
-    for (int i = 0; i < 1000; ++i) {
+    for (int i = 0; i < 1000; ++i)
         comb.push_back({i, i % 2 * 100, 0});
-    }
     comb.push_back({500, -100, 0});
     std::uint64_t little = 1000, much = largest_cutting_work;
     CHECK_FALSE(cut_polygon(comb, little));
@@ -445,20 +434,11 @@ TEST_CASE("damaged files end in a mesh or an error") {
         for (auto damages = 1 + random() % 3; damages > 0; --damages) {
             const std::size_t at = random() % (text.size() + 1), length = random() % 20;
             switch (random() % 5) {
-                case 0:
-                    text.resize(at);
-                    break;
-                case 1:
-                    text.erase(at, length);
-                    break;
-                case 2:
-                    text.insert(at, words[random() % std::size(words)]);
-                    break;
-                case 3:
-                    text.insert(at, text.substr(random() % (text.size() + 1), length));
-                    break;
-                default:
-                    text.insert(at, 1, static_cast<char>(random()));
+                case 0: text.resize(at); break;
+                case 1: text.erase(at, length); break;
+                case 2: text.insert(at, words[random() % std::size(words)]); break;
+                case 3: text.insert(at, text.substr(random() % (text.size() + 1), length)); break;
+                default: text.insert(at, 1, static_cast<char>(random()));
             }
         }
         INFO(text);

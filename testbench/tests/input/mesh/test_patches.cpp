@@ -41,15 +41,12 @@ BezierPatches one_patch(At at) {
 /// In Newell's format.
 std::string text_of(const BezierPatches& patches) {
     std::string text = fmt::format("{}\n", patches.patches.size());
-    for (const auto& patch : patches.patches) {
-        for (std::size_t k = 0; k < 16; ++k) {
+    for (const auto& patch : patches.patches)
+        for (std::size_t k = 0; k < 16; ++k)
             text += fmt::format("{}{}", patch[k] + 1, k < 15 ? "," : "\n");
-        }
-    }
     text += fmt::format("{}\n", patches.points.size());
-    for (const glm::dvec3& p : patches.points) {
+    for (const glm::dvec3& p : patches.points)
         text += fmt::format("{},{},{}\n", p.x, p.y, p.z);
-    }
     return text;
 }
 
@@ -60,9 +57,8 @@ double largest_of(const glm::dvec3& a) {
 /// The text with one line, counted from 1, replaced.
 std::string with_line(std::string text, int number, const std::string& line) {
     std::size_t at = 0;
-    for (int k = 1; k < number; ++k) {
+    for (int k = 1; k < number; ++k)
         at = text.find('\n', at) + 1;
-    }
     return text.replace(at, text.find('\n', at) - at, line);
 }
 
@@ -94,18 +90,15 @@ TEST_CASE("patches: the teapot has 32 patches and 992 triangles, closed but for 
     CHECK(edges.odd == 0);
     // The body's rim and the lid's, 16 edges round; the spout's two ends and the handle's two, 8 each.
     CHECK(edges.border == 64);
-    for (const BaseVertex& v : mesh.vertices) {
-        if (v.position.x == 0 && v.position.y == 0) {
+    for (const BaseVertex& v : mesh.vertices)
+        if (v.position.x == 0 && v.position.y == 0)
             CHECK(largest_of(v.normal - glm::dvec3(0, 0, v.position.z > 1 ? 1 : -1)) < 1e-15);
-        }
-    }
 }
 
 TEST_CASE("patches: the teapot is the one of the shared data") {
     const fs::path file = shared_data("meshes/teapot_n4.obj");
-    if (file.empty()) {
+    if (file.empty())
         return;
-    }
     const BaseMesh expected = read_obj(file.string()), mesh = make_patch_mesh(teapot(), 4, 4, "teapot");
     REQUIRE(mesh.vertices.size() == expected.vertices.size());
     CHECK(mesh.triangles == expected.triangles);
@@ -205,9 +198,8 @@ TEST_CASE("patches: a collapsed border at any of the four sides has the limit's 
         CHECK(mesh.repairs.size() <= 2);  // the triangles, and perhaps a pole
         const double up = mesh.vertices.back().normal.z;
         CHECK(std::abs(up) == 1);
-        for (const BaseVertex& v : mesh.vertices) {
+        for (const BaseVertex& v : mesh.vertices)
             CHECK(v.normal == glm::dvec3(0, 0, up));
-        }
     }
 }
 
@@ -242,9 +234,8 @@ TEST_CASE("patches: text as it may come loads") {
     CHECK(parse_bezier_patches(text, "p").points == patches.points);
     CHECK(parse_bezier_patches(text, "p").patches == patches.patches);
     std::string windows;
-    for (const char c : text) {
+    for (const char c : text)
         windows += c == '\n' ? "\r\n\r\n" : c == ',' ? " ,\t" : std::string(1, c);
-    }
     CHECK(parse_bezier_patches(windows, "p").points == patches.points);
     CHECK(parse_error(text.substr(0, text.size() - 1)).empty());
     CHECK(parse_error(with_line(text, 5, "1e-3,+2.5,.5")).empty());
@@ -278,9 +269,8 @@ TEST_CASE("patches: hostile text ends in one message with its line") {
         INFO(last);
         CHECK_THAT(parse_error(with_line(text, 2, row + last)), Contains("p.txt:2:") && Contains("'" + last + "'"));
     }
-    for (const std::string point : {"1,2", "1,2,3,4", "1 2 3"}) {
+    for (const std::string point : {"1,2", "1,2,3,4", "1 2 3"})
         CHECK_THAT(parse_error(with_line(text, 7, point)), Contains("p.txt:7: point 4 of 16"));
-    }
     for (const std::string bad : {"nan", "inf", "1e39", "1e999", "one", "", "0x10", "1.2.3"}) {
         INFO(bad);
         CHECK_THAT(parse_error(with_line(text, 7, "1," + bad + ",3")), Contains("p.txt:7: '" + bad + "'"));

@@ -22,10 +22,9 @@ std::map<Ends, int> new_edges(const ChildIndices& indices) {
     std::map<Ends, int> found;
     for (int c = 0; c < indices.count; ++c) {
         const auto& corners = indices.children[static_cast<std::size_t>(c)];
-        for (std::size_t e = 0; e < 3; ++e) {
+        for (std::size_t e = 0; e < 3; ++e)
             if (corners[e] > 2 || corners[(e + 1) % 3] > 2)
                 ++found[sorted(corners[e], corners[(e + 1) % 3])];
-        }
     }
     return found;
 }

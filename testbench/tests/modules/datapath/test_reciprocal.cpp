@@ -50,10 +50,9 @@ void sample(std::uint32_t first, std::uint32_t interval, int count, Visit&& visi
 
 TEST_CASE("reciprocal: seeds and result within the stated errors") {
     double seed = 0;
-    for (std::size_t k = 0; k < 128; ++k) {
+    for (std::size_t k = 0; k < 128; ++k)
         for (const double m : {1 + static_cast<double>(k) / 128, 1 + static_cast<double>(k + 1) / 128})
             seed = std::max(seed, std::abs(std::ldexp(reciprocal_seeds[k], -16) * m - 1));
-    }
     CHECK(seed < 0x1p-8);
     CHECK(seed > 0x1p-8 * 0.99);  // as tight as said
 

@@ -14,10 +14,9 @@ struct FrameImage {
 
 /// Sets the bits of a table's entries that lie beyond their format.
 inline void fill_beyond(std::vector<unsigned char>& table, std::size_t entry_bytes, int bits) {
-    for (std::size_t entry = 0; entry < table.size(); entry += entry_bytes) {
+    for (std::size_t entry = 0; entry < table.size(); entry += entry_bytes)
         for (std::size_t bit = static_cast<std::size_t>(bits); bit < 8 * entry_bytes; ++bit)
             table[entry + bit / 8] = static_cast<unsigned char>(table[entry + bit / 8] | 1u << bit % 8);
-    }
 }
 
 /// The three tables and the base triangles of a setup. beyond: bits of an entry beyond its format are set.

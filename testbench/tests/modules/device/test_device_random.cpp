@@ -45,16 +45,11 @@ DeviceDesign packed_design(const MachineSetup& setup) {
 std::uint32_t random_word(Dice& dice) {
     const std::uint64_t word = dice.any();
     switch (dice.below(5)) {
-        case 0:
-            return static_cast<std::uint32_t>(word);
-        case 1:
-            return static_cast<std::uint32_t>(word % 4);
-        case 2:
-            return static_cast<std::uint32_t>(word % 64);
-        case 3:
-            return static_cast<std::uint32_t>(word) | 0xffffff00u;
-        default:
-            return static_cast<std::uint32_t>(1u << (word % 32));
+        case 0: return static_cast<std::uint32_t>(word);
+        case 1: return static_cast<std::uint32_t>(word % 4);
+        case 2: return static_cast<std::uint32_t>(word % 64);
+        case 3: return static_cast<std::uint32_t>(word) | 0xffffff00u;
+        default: return static_cast<std::uint32_t>(1u << (word % 32));
     }
 }
 
@@ -98,9 +93,8 @@ const CaseTable<BenchMode> random_accesses{
             tessera_driver& driver = bench.init();
             cpu.approximately_timed = mode.approximately_timed;
             for (std::uint64_t k = 0; k < count; ++k) {
-                if (k % 100 == 0 && !bench.devices[0]->busy()) {  // so that some frames begin
+                if (k % 100 == 0 && !bench.devices[0]->busy())  // so that some frames begin
                     set_frame(driver, setup, places);
-                }
                 std::vector<unsigned char> data(4 * (dice.one_in(3) ? dice.below(40) : 1) +
                                                 (dice.one_in(8) ? dice.below(4) : 0) + 4);
                 for (std::size_t at = 0; at + 4 <= data.size(); at += 4)
@@ -156,16 +150,11 @@ const CaseTable<BenchMode> random_addresses{
             tessera_driver& driver = bench.init();
             const auto address = [&](std::uint64_t its) {
                 switch (dice.below(8)) {
-                    case 0:
-                        return dice.any();
-                    case 1:
-                        return Bench::memory_base + dice.below(bench.memory.bytes.size()) / 4 * 4;
-                    case 2:
-                        return Bench::memory_base + bench.memory.bytes.size() - dice.below(3000) / 4 * 4;
-                    case 3:
-                        return 0 - dice.below(20000);
-                    default:
-                        return its;
+                    case 0: return dice.any();
+                    case 1: return Bench::memory_base + dice.below(bench.memory.bytes.size()) / 4 * 4;
+                    case 2: return Bench::memory_base + bench.memory.bytes.size() - dice.below(3000) / 4 * 4;
+                    case 3: return 0 - dice.below(20000);
+                    default: return its;
                 }
             };
             for (std::uint64_t k = 0; k < count; ++k) {

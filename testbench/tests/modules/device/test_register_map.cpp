@@ -96,12 +96,11 @@ TEST_CASE("every register of the machine can be written and arrives, at its leas
             if (name.find(".base") != std::string::npos)
                 return;
             const std::int64_t half = field.bits == 64 ? 0 : std::int64_t{1} << (field.bits - 1);
-            for (const std::int64_t value : values) {
+            for (const std::int64_t value : values)
                 if (field.kind == datapath::RegisterKind::signed_number)
                     CHECK(value == (greatest ? half - 1 : -half));
                 else
                     CHECK(value == (greatest ? half - 1 + half : 0));
-            }
         });
     }
 }

@@ -137,18 +137,12 @@ struct ScriptedMemory : sc_core::sc_module {
         on_request(payload);
         its_delay += delay;
         switch (way) {
-            case Way::completed:
-                return tlm::TLM_COMPLETED;
-            case Way::begin_response:
-                phase = tlm::BEGIN_RESP;
-                return tlm::TLM_UPDATED;
-            case Way::end_request:
-                phase = tlm::END_REQ;
-                return tlm::TLM_UPDATED;
+            case Way::completed: return tlm::TLM_COMPLETED;
+            case Way::begin_response: phase = tlm::BEGIN_RESP; return tlm::TLM_UPDATED;
+            case Way::end_request: phase = tlm::END_REQ; return tlm::TLM_UPDATED;
             case Way::begin_request:  // a breach
                 return tlm::TLM_UPDATED;
-            default:
-                return tlm::TLM_ACCEPTED;
+            default: return tlm::TLM_ACCEPTED;
         }
     }
 };

@@ -46,9 +46,8 @@ struct Bench {
         reader().fill(256);
         sc_core::sc_start();
         memory.activity().finish(clock.last_cycle() + 1);
-        for (const auto& reader : readers) {
+        for (const auto& reader : readers)
             reader->check_values();
-        }
         CHECK(memory.activity().items_in() == memory.activity().items_out());
         CHECK(memory.describe_contents().empty());
     }

@@ -23,12 +23,9 @@ struct Filler {
         const std::int64_t values = std::int64_t{1} << field.bits;
         const std::int64_t lowest = field.is_signed ? -values / 2 : 0;
         switch (random.integer(0, 3)) {
-            case 0:
-                return lowest;
-            case 1:
-                return lowest + values - 1;
-            default:
-                return random.integer(lowest, lowest + values - 1);
+            case 0: return lowest;
+            case 1: return lowest + values - 1;
+            default: return random.integer(lowest, lowest + values - 1);
         }
     }
     std::uint32_t annotation(const char*, std::uint32_t) {

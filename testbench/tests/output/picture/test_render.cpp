@@ -185,11 +185,10 @@ TEST_CASE("The wireframe darkens the pixels along edges and no others") {
         for (int y = 22; y < 98; ++y) {
             const double to_diagonal = std::abs((x + 0.5) + (y + 0.5) - 120) / std::sqrt(2.0);
             CAPTURE(x, y);
-            if (to_diagonal < 0.1) {
+            if (to_diagonal < 0.1)
                 REQUIRE(brightness(images[1], x, y) + 100 < brightness(images[0], x, y));
-            } else if (to_diagonal > 2) {
+            else if (to_diagonal > 2)
                 REQUIRE(images[1].at(x, y) == images[0].at(x, y));
-            }
         }
     for (int k = 30; k < 90; ++k) {
         REQUIRE(brightness(images[1], k, 99) + 50 < brightness(images[0], k, 99));

@@ -21,10 +21,9 @@ using nlohmann::json;
 std::vector<json> events_of(const std::string& text, const std::string& phase) {
     std::vector<json> events;
     const json timeline = json::parse(text);
-    for (const json& event : timeline.at("traceEvents")) {
+    for (const json& event : timeline.at("traceEvents"))
         if (event.at("ph") == phase)
             events.push_back(event);
-    }
     return events;
 }
 
@@ -91,10 +90,9 @@ TEST_CASE("Timeline: intervals are cut to the window") {
             const std::uint64_t end = begin + random() % 8;
             writer.interval(track, "busy", "", begin, end);
             std::set<std::uint64_t> cycles;
-            for (std::uint64_t cycle = begin; cycle < end; ++cycle) {
+            for (std::uint64_t cycle = begin; cycle < end; ++cycle)
                 if (cycle >= window.first && cycle <= window.last)
                     cycles.insert(cycle);
-            }
             if (!cycles.empty())
                 expected.emplace_back(*cycles.begin(), cycles.size());
             begin = end;

@@ -131,10 +131,9 @@ TEST_CASE("a window shows the cycles it names, with the values they have in the 
             // Operands of what came before the window are shown only while still in the unit.
             const bool operand = signal.initial != its.at(first * period);
             std::vector<std::pair<std::uint64_t, std::uint64_t>> expected;
-            for (const auto& change : its.changes) {
+            for (const auto& change : its.changes)
                 if (change.first > first * period && change.first < (last + 1) * period)
                     expected.push_back(change);
-            }
             if (!operand) {
                 CHECK(signal.changes == expected);
                 continue;

@@ -154,12 +154,11 @@ struct Stimulus {
         for (const Signal& signal : signals)
             handles.push_back(writer.add(signal.scope, signal.name, signal.bits));
         for (const auto& [cycle, operations] : cycles) {
-            for (const Operation& operation : operations) {
+            for (const Operation& operation : operations)
                 if (operation.is_pulse)
                     writer.pulse(handles[operation.signal]);
                 else
                     writer.set(handles[operation.signal], operation.value);
-            }
             writer.end_cycle(cycle);
         }
         writer.finish(finish);
@@ -191,10 +190,9 @@ struct Stimulus {
             }
             const bool is_first = cycle == std::min(window.first, end);
             Stamp stamp{cycle * units_per_cycle, is_first, {}};
-            for (std::size_t s = 0; s < signals.size(); ++s) {
+            for (std::size_t s = 0; s < signals.size(); ++s)
                 if (is_first || values[s] != before[s])
                     stamp.values[signals[s].scope + "." + signals[s].name] = values[s];
-            }
             if (is_first || (cycle > window.first && cycle <= window.last && !stamp.values.empty()))
                 stamps.push_back(stamp);
         }
@@ -232,16 +230,10 @@ class StimulusMaker {
         }
         stimulus.finish = cycle - std::min(cycle, below(3)) + below(2) * below(10);
         switch (below(4)) {
-            case 0:
-                break;
-            case 1:
-                stimulus.window.first = below(cycle + 10);
-                break;
-            case 2:
-                stimulus.window.last = below(cycle + 10);
-                break;
-            default:
-                stimulus.window = {below(cycle + 10), below(cycle + 10)};
+            case 0: break;
+            case 1: stimulus.window.first = below(cycle + 10); break;
+            case 2: stimulus.window.last = below(cycle + 10); break;
+            default: stimulus.window = {below(cycle + 10), below(cycle + 10)};
         }
         return stimulus;
     }
@@ -251,14 +243,10 @@ class StimulusMaker {
 
     std::uint64_t value() {
         switch (below(4)) {
-            case 0:
-                return below(2);
-            case 1:
-                return 0 - below(5);
-            case 2:
-                return std::uint64_t{1} << below(64);
-            default:
-                return random_();
+            case 0: return below(2);
+            case 1: return 0 - below(5);
+            case 2: return std::uint64_t{1} << below(64);
+            default: return random_();
         }
     }
 
@@ -407,10 +395,9 @@ TEST_CASE("VCD: a pulse lasts a cycle, whoever sets the signal") {
         stimulus.cycles = cycles;
         stimulus.finish = 20;
         std::vector<std::uint64_t> times;
-        for (const Stamp& stamp : stamps_of(stimulus)) {
+        for (const Stamp& stamp : stamps_of(stimulus))
             if (!stamp.has_all_values && !stamp.values.empty())
                 times.push_back(stamp.time);
-        }
         return times;
     };
     using Times = std::vector<std::uint64_t>;

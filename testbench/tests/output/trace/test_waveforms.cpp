@@ -21,10 +21,9 @@ fs::path waveforms() {
 
 std::vector<fs::path> files_ending_in(const std::string& extension) {
     std::vector<fs::path> files;
-    for (const auto& entry : fs::directory_iterator(waveforms())) {
+    for (const auto& entry : fs::directory_iterator(waveforms()))
         if (entry.path().extension() == extension)
             files.push_back(entry.path());
-    }
     std::sort(files.begin(), files.end());
     return files;
 }

@@ -128,10 +128,9 @@ TEST_CASE("Cells whose squares lie beyond a clamped map ask for nothing") {
     const CurvatureTable table = make_curvature_table(map, base, formats);
     CHECK(table.covered.width == 33);
     CHECK(table.covered.height == 33);
-    for (int level = 2; level <= 3; ++level) {
+    for (int level = 2; level <= 3; ++level)
         for (std::uint32_t y = 0; y < 33; ++y)
             CHECK(datapath::pack_curvature(entry_at(table, 28, y, level)) == 0);
-    }
     CHECK(datapath::pack_curvature(entry_at(table, 16, 16, 3)) != 0);
 }
 
@@ -142,10 +141,9 @@ TEST_CASE(
     for (std::uint16_t& code : map.codes)
         code = static_cast<std::uint16_t>(random.natural(0, 65535));
     QuantisedMap wider = empty_map(49, 49, AddressMode::clamp, AddressMode::clamp);
-    for (std::uint32_t y = 0; y < 49; ++y) {
+    for (std::uint32_t y = 0; y < 49; ++y)
         for (std::uint32_t x = 0; x < 49; ++x)
             wider.codes[std::size_t{y} * 49 + x] = map.code(std::clamp(x, 16u, 32u) - 16, std::clamp(y, 16u, 32u) - 16);
-    }
     const CurvatureTable table = make_curvature_table(map, {}, formats);
     const CurvatureTable whole = make_curvature_table(wider, {}, formats);
     for (const std::uint32_t x : {0u, 8u, 16u}) {

@@ -30,19 +30,17 @@ TEST_CASE("A mesh whose map is linear within its triangles, but for noise, gets 
     Random random(1);
     QuantisedMap map = empty_map(65, 65, AddressMode::clamp, AddressMode::clamp);
     const auto level = [](std::uint32_t x, std::uint32_t y) { return 20000.0 + 100 * x + 50 * y; };
-    for (std::uint32_t y = 0; y < 65; ++y) {
+    for (std::uint32_t y = 0; y < 65; ++y)
         for (std::uint32_t x = 0; x < 65; ++x)
             map.codes[std::size_t{y} * 65 + x] = static_cast<std::uint16_t>(level(x, y) + random.integer32(-500, 500));
-    }
     const auto mesh = lattice_triangles(map.geometry, 32, formats);
     const QuantisedMap fitted = fit_heights(map, mesh, formats);
     for (std::uint32_t y = 0; y < 65; ++y) {
-        for (std::uint32_t x = 0; x < 65; ++x) {
+        for (std::uint32_t x = 0; x < 65; ++x)
             if (x % 32 == 0 && y % 32 == 0)
                 CHECK(fitted.code(x, y) == Approx(level(x, y)).margin(120));
             else
                 REQUIRE(fitted.code(x, y) == map.code(x, y));
-        }
     }
 }
 
