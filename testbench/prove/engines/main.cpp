@@ -1,12 +1,14 @@
 #include <fmt/core.h>
 
+#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <cstdlib>
+#include <exception>
 #include <systemc>
 
+#include "testbench/common/error.h"
 #include "testbench/prove/engines/engine_run.h"
 #include "testbench/prove/engines/scheduled_case.h"
-#include "testbench/prove/program.h"
 #include "testbench/prove/random_machines/random_case.h"
 
 // Runs random designs, seed by seed, with both engines of timed mode: the clocked one and the schedule. All figures, the
@@ -49,7 +51,17 @@ int sc_main(int argc, char** argv) {
         ->capture_default_str()
         ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 32));
     app.add_flag("--list", list, "what was compared of each design: digests of the mesh and of each unit's item times");
-    return run_program("tessera_compare_engines", app, argc, argv, [&] { return compare(first, count, list); });
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::bad_input);
+    }
+    try {
+        return compare(first, count, list);
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "tessera_compare_engines: {}\n", error.what());
+        return static_cast<int>(ExitCode::resource_limit);
+    }
 }
 
 int main(int argc, char** argv) {

@@ -1,11 +1,14 @@
 #include <fmt/core.h>
 
+#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdint>
+#include <cstdio>
+#include <exception>
 #include <string>
 
+#include "testbench/common/error.h"
 #include "testbench/common/grouped_digits.h"
-#include "testbench/prove/program.h"
 #include "testbench/prove/random_edges/edge_trial.h"
 
 // Runs random edges through the datapath from both ends and against the definitions: modules/datapath/CRACK_FREEDOM.md.
@@ -60,7 +63,18 @@ void print(const EdgeTrial& trial, std::uint64_t seed, double seconds) {
                number(static_cast<std::uint64_t>(static_cast<double>(trial.edges) / seconds)));
 }
 
-int try_edges(std::uint64_t seed, std::uint64_t edges) {
+int try_edges(int argc, char** argv) {
+    std::uint64_t seed = 1, edges = 1'000'000;
+    CLI::App app{"Tries random edges: the same from either end, and as the definitions say."};
+    app.add_option("--seed", seed, "what the edges follow from")->capture_default_str();
+    app.add_option("--edges", edges, "how many")
+        ->capture_default_str()
+        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 48));
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::bad_input);
+    }
     const auto start = std::chrono::steady_clock::now();
     const EdgeTrial trial = try_random_edges(seed, edges);
     print(trial, seed, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
@@ -75,11 +89,10 @@ int try_edges(std::uint64_t seed, std::uint64_t edges) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    std::uint64_t seed = 1, edges = 1'000'000;
-    CLI::App app{"Tries random edges: the same from either end, and as the definitions say."};
-    app.add_option("--seed", seed, "what the edges follow from")->capture_default_str();
-    app.add_option("--edges", edges, "how many")
-        ->capture_default_str()
-        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 48));
-    return tessera::run_program("tessera_random_edges", app, argc, argv, [&] { return try_edges(seed, edges); });
+    try {
+        return try_edges(argc, argv);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "tessera_random_edges: %s\n", error.what());
+        return static_cast<int>(tessera::ExitCode::resource_limit);
+    }
 }

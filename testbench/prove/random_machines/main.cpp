@@ -1,14 +1,16 @@
 #include <fmt/core.h>
 
+#include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdlib>
+#include <exception>
 #include <filesystem>
 #include <string>
 #include <systemc>
 
 #include "testbench/common/atomic_file.h"
+#include "testbench/common/error.h"
 #include "testbench/common/grouped_digits.h"
-#include "testbench/prove/program.h"
 #include "testbench/prove/random_machines/case_process.h"
 
 // Runs random cases, seed by seed, in both modes, each run in a process of its own. Every run must end, satisfy the
@@ -94,14 +96,25 @@ int sc_main(int argc, char** argv) {
                    "write the first case to this folder, for `tessera run FOLDER/job.toml`, and run nothing");
     app.add_option("--failures", order.failures, "where cases that fail are written")->capture_default_str();
     app.add_flag("--list", order.list, "a line for each case");
-    return run_program("tessera_random_cases", app, argc, argv, [&] {
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::bad_input);
+    }
+    try {
         if (order.write.empty())
             return run_cases(order);
         const RandomCase random_case = make_random_case(order.seed);
         random_case.write(order.write, Mode::timed);
         fmt::print("seed {}: {}\n  in {}\n", order.seed, random_case.summary(), order.write);
         return 0;
-    });
+    } catch (const InputError& error) {
+        fmt::print(stderr, "tessera_random_cases: {}\n", error.what());
+        return static_cast<int>(ExitCode::bad_input);
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "tessera_random_cases: {}\n", error.what());
+        return static_cast<int>(ExitCode::resource_limit);
+    }
 }
 
 int main(int argc, char** argv) {
