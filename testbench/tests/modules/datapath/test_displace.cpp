@@ -13,7 +13,7 @@ using namespace tessera::testing;
 
 namespace {
 
-constexpr std::int64_t largest = std::numeric_limits<std::int32_t>::max();
+constexpr std::int64_t greatest_int32 = std::numeric_limits<std::int32_t>::max();
 constexpr std::int64_t lowest = std::numeric_limits<std::int32_t>::min();
 
 /// One component bit for bit, roundings as the header names them.
@@ -78,11 +78,11 @@ TEST_CASE("displace: exact against 128 bits, whatever the operands") {
 
 TEST_CASE("displace: every register at its limits") {
     const Formats formats;
-    for (const std::int64_t p : {lowest, std::int64_t{0}, largest})
+    for (const std::int64_t p : {lowest, std::int64_t{0}, greatest_int32})
         for (const std::int32_t n : {-32768, -16384, 0, 16384, 32767})
             for (const std::uint32_t code : {0u, 1u, 65535u})
-                for (const std::int64_t scale : {lowest, std::int64_t{-1}, std::int64_t{1}, largest})
-                    for (const std::int64_t bias : {lowest, std::int64_t{0}, largest}) {
+                for (const std::int64_t scale : {lowest, std::int64_t{-1}, std::int64_t{1}, greatest_int32})
+                    for (const std::int64_t bias : {lowest, std::int64_t{0}, greatest_int32}) {
                         const auto at = static_cast<std::int32_t>(p);
                         check({at, at, at}, {n, -n, 0}, code,
                               {static_cast<std::int32_t>(scale), static_cast<std::int32_t>(bias)}, formats);

@@ -20,8 +20,8 @@ using tessera::testing::count_members;
 
 namespace {
 
-const std::filesystem::path root = tessera::source_folder();
-const std::filesystem::path folder = root / "modules/datapath";
+const std::filesystem::path project = tessera::source_folder();
+const std::filesystem::path folder = project / "modules/datapath";
 
 std::string text_of(const std::filesystem::path& file) {
     std::string text = tessera::read_all(file);
@@ -95,7 +95,7 @@ TEST_CASE("the datapath's README names every function of its headers, and no oth
         INFO(row.at(0));
         REQUIRE(row.size() == 7);
         for (const std::string& test : matches(row.at(6), "`(\\w+)`"))
-            CHECK(std::filesystem::exists(root / "testbench/tests/modules/datapath" / (test + ".cpp")));
+            CHECK(std::filesystem::exists(project / "testbench/tests/modules/datapath" / (test + ".cpp")));
         CHECK(row.at(6).find("`test_") != std::string::npos);
     }
 }
