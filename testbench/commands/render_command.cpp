@@ -91,8 +91,9 @@ bool asks_for(const RenderRequest& request, PictureView view) {
 }
 
 /// Measures the run's mesh against the interpolated map, as `tessera compare` does: of a triangle the largest distance
-/// found, either way. About 5 s for 200,000 triangles. The darkest colour stands for --error-scale or, by default, the error exceeded by 1 % of the area: the largest
-/// errors, of a few triangles on a step of the map, would leave no colours for the rest.
+/// found, either way. About 5 s for 200,000 triangles. The darkest colour stands for --error-scale or, by default, the
+/// error exceeded by 1 % of the area: the largest errors, of a few triangles on a step of the map, would leave no
+/// colours for the rest.
 void add_errors(const RecordedRun& run, RenderMesh& mesh, ErrorScale& scale) {
     const BaseMesh base = load_mesh(run.job);
     const HeightMap map = load_map(run.job);

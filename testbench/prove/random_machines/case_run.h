@@ -22,8 +22,8 @@ struct CaseFigures {
     std::uint64_t mismatches = 0;        ///< with the golden model
     std::uint64_t spilled = 0;           ///< triangles that went off chip
     std::uint64_t cycles = 0;
-    std::uint64_t mesh_digest =
-        0;  ///< of one run's emitted triangles, all there is of each, in any order; not added up
+    /// Of one run's emitted triangles, all there is of each, in any order; not added up.
+    std::uint64_t mesh_digest = 0;
 
     void add(const CaseFigures& other);
 };

@@ -75,9 +75,9 @@ TEST_CASE("every job of the project has its test here") {
         if (entry.path().extension() == ".toml")
             names.push_back(entry.path().stem().string());
     std::sort(names.begin(), names.end());
-    std::vector<std::string> covered(job_results.size());
-    std::transform(job_results.begin(), job_results.end(), covered.begin(),
-                   [](const JobResult& each) { return each.name; });
+    std::vector<std::string> covered;
+    for (const JobResult& each : job_results)
+        covered.emplace_back(each.name);
     CHECK(names == covered);
 }
 
