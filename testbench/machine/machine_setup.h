@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "modules/pipeline.h"
+#include "modules/timing/design.h"
 #include "testbench/job/job.h"
 #include "testbench/setup/mesh/base_mesh.h"
 #include "testbench/setup/model_scale.h"
