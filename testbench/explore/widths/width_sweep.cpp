@@ -69,6 +69,7 @@ WidthKnee find_knee(const WidthRequest& request, const std::vector<WidthRow>& ro
     WidthKnee knee;
     knee.flips_given = request.most_flips.has_value();
     knee.error_given = request.most_error.has_value();
+    knee.most_local = request.job.check.allowed_flips;
     const auto widest = std::find_if(rows.begin(), rows.end(), [](const WidthRow& row) { return row.refused.empty(); });
     if (widest == rows.end())
         return knee;
@@ -76,7 +77,8 @@ WidthKnee find_knee(const WidthRequest& request, const std::vector<WidthRow>& ro
     knee.most_error = request.most_error.value_or(widest->run.position_rms * error_above_widest);
     for (auto row = widest; row != rows.end(); ++row) {
         if (!row->refused.empty() || row->run.split_flips_percent() > knee.most_flips ||
-            row->run.position_rms > knee.most_error || !row->run.invariants.passed())
+            row->run.position_rms > knee.most_error || !row->run.conformance.passed(knee.most_local) ||
+            !row->run.invariants.passed())
             break;
         knee.row = static_cast<std::size_t>(row - rows.begin());
     }

@@ -43,9 +43,10 @@ struct WidthRow {
     std::uint64_t displacement_map_bytes = 0, normal_map_bytes = 0, summed_height_table_bytes = 0;
 };
 
-/// The narrowest width that, with every wider one tried, stays within both limits and violates no invariant.
+/// The narrowest width that, with every wider one tried, stays within the limits and violates no invariant.
 struct WidthKnee {
     double most_flips = 0, most_error = 0;
+    double most_local = 0;  ///< percent of the edges that differ from the golden model: check.allowed_flips
     bool flips_given = false, error_given = false;
     std::optional<std::size_t> row;  ///< none: not even the widest does
 };

@@ -53,9 +53,10 @@ std::string knee_text(const WidthTable& table) {
     const WidthKnee& knee = table.knee;
     const std::string limits = fmt::format(
         "at most {} of the edges with another split decision than exact arithmetic, an RMS position error of "
-        "at most {}, and no invariant violated",
+        "at most {}, at most {:g} % local (check.allowed_flips), and no invariant violated",
         limit_text(knee.flips_given, fmt::format("{:.3f} %", knee.most_flips), "0.5 above the widest's"),
-        limit_text(knee.error_given, fmt::format("{:.3e} model units", knee.most_error), "1.25 times the widest's"));
+        limit_text(knee.error_given, fmt::format("{:.3e} model units", knee.most_error), "1.25 times the widest's"),
+        knee.most_local);
     if (!knee.row) {
         const bool any =
             std::any_of(table.rows.begin(), table.rows.end(), [](const WidthRow& row) { return row.refused.empty(); });

@@ -221,8 +221,9 @@ TEST_CASE("widths: refused widths keep their place and say why") {
     CHECK_THAT(csv, Contains("out of range"));
 }
 
-TEST_CASE("widths: the knee is the narrowest width that keeps, with all wider ones, to both limits") {
-    const Job job = sphere_job();
+TEST_CASE("widths: the knee is the narrowest width that keeps, with all wider ones, to all limits") {
+    Job job = sphere_job();
+    job.check.allowed_flips = 100;
     const std::vector<SweptQuantity> swept{{find_quantity("normal"), {18, 15, 12, 9, 7}}};
     const auto knee = [&](std::optional<double> flips, std::optional<double> error) {
         return sweep(job, swept, 1, flips, error).tables.front();
@@ -238,6 +239,12 @@ TEST_CASE("widths: the knee is the narrowest width that keeps, with all wider on
     REQUIRE(at_third.knee.row);
     CHECK(*at_third.knee.row == 2);
     CHECK(at_third.knee.flips_given);
+    // a run at the next width would fail
+    const ConformanceResult& local = anything.rows[2].run.conformance;
+    REQUIRE(anything.rows[3].run.conformance.flips_percent() > local.flips_percent());
+    job.check.allowed_flips = local.flips_percent();
+    CHECK(*knee(100.0, 1e9).knee.row == 2);
+    job.check.allowed_flips = 100;
     const WidthTable relative = knee({}, {});
     CHECK(relative.knee.most_flips == anything.rows[0].run.split_flips_percent() + 0.5);
     WidthRequest request{job, swept, 1, {}, {}};
