@@ -75,13 +75,14 @@ std::vector<DeviceRegister> documented_registers() {
     registers.formats.highlight_tag = true;
     registers.formats.distances = true;
     registers.formats.rank_bits = registers.formats.bound_bits = 16;
-    std::vector<DeviceRegister> all;
+    std::vector<DeviceRegister> all = register_map({}, {});
     for (std::size_t kind = 1; kind < height_test_kinds.size(); ++kind) {  // each has the paper's registers
         registers.formats.height_test = static_cast<datapath::HeightTest>(kind);
         for (DeviceRegister& made : register_map(registers, {}))
             if (std::none_of(all.begin(), all.end(), [&](const DeviceRegister& r) { return r.name == made.name; }))
                 all.push_back(std::move(made));
     }
+    std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.offset < b.offset; });
     return all;
 }
 
@@ -185,7 +186,7 @@ std::string registers_page(const std::vector<DeviceRegister>& registers) {
         << "# The device's registers\n\n"
         << made_by
         << "\n\nOffsets are in bytes and the same in every design. Widths and reset values are those of the default\n"
-           "formats. A register of more than 32 bits has a second word, which follows the lower one. Bits beyond the\n"
+           "design, of a register that it lacks those of a design that has it. A register of more than 32 bits has a second word, which follows the lower one. Bits beyond the\n"
            "width read as 0, of a signed register as its sign, and are dropped when written. `ro`: a write is refused.\n"
            "`rw`: refused while a frame is under way, unless marked *. `command`: a 1 acts and reads as 0. `w1c`: a 1\n"
            "clears the bit.\n\n"

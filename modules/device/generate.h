@@ -9,7 +9,8 @@
 
 namespace tessera {
 
-/// The map that the generated files describe: the default formats, with a Highlight Test.
+/// The map that the generated files describe: the registers of every design, with the widths and reset values of the default
+/// one where it has them.
 std::vector<DeviceRegister> documented_registers();
 
 /// C99: offsets, bits, error causes, records, and the list of registers that the driver uses.
