@@ -201,6 +201,8 @@ class RegisterCheck {
                        static_cast<int>(map.rank_table().rows),
                        static_cast<int>(job_.formats.rank_bits + job_.formats.bound_bits) +
                            (formats_.distances && job_.formats.bound_bits > 0 ? datapath::radius_bits : 0));
+                flag("rank_table.columns", registers_.covered.columns, number(map.rank_table().columns));
+                flag("rank_table.rows", registers_.covered.rows, number(map.rank_table().rows));
                 break;
             case HeightTest::curvature:
                 layout("curvature_table", table, static_cast<int>(map.curvature_table().cells.size()), 1, 36);

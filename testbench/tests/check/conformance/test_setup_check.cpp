@@ -20,6 +20,7 @@
 #include "testbench/output/report/conformance_report.h"
 #include "testbench/tests/check/conformance/setup_run.h"
 #include "testbench/tests/support/case_table.h"
+#include "testbench/tests/support/job_settings.h"
 
 using namespace tessera;
 using Catch::Contains;
@@ -265,69 +266,77 @@ TEST_CASE("one wrong register, base vertex or table entry fails the default job"
     CHECK(run.check().passed());
 }
 
-TEST_CASE("one wrong register or table entry of a Curvature Test fails its job") {
-    Job job;
-    job.hardware.height_test = HeightTest::curvature;
-    job.map.width = job.map.height = 60;
-    SetupRun run{job};
-    const SetupResult right = run.check();
-    INFO(right.first_wrong);
-    REQUIRE(right.passed());
-    REQUIRE(right.parts.size() == 5);
-    for (const Mistake& mistake : std::vector<Mistake>{
-             {"curvature_table.columns", [](MachineSetup& s) { ++s.registers.covered.columns; }},
-             {"curvature_table.rows", [](MachineSetup& s) { --s.registers.covered.rows; }},
-             {"curvature_table.columns", [](MachineSetup& s) { --s.registers.height_table.columns; }},
-             {"curvature_table.rows", [](MachineSetup& s) { ++s.registers.height_table.rows; }},
-             {"curvature_table.entry_bytes", [](MachineSetup& s) { ++s.registers.height_table.entry_bytes; }},
-             {"tests.curvature_threshold", [](MachineSetup& s) { ++s.registers.tests.curvature_threshold; }},
-             {"tests.curvature_threshold", [](MachineSetup& s) { --s.registers.tests.curvature_threshold; }}}) {
-        MachineSetup wrong = run.setup;
-        mistake.make(wrong);
-        run.require_noticed(wrong, mistake.name);
-    }
-    const datapath::TableLayout& table = run.setup.registers.height_table;
-    Socket& socket = run.simulation.host.summed_height_table;
-    for (const std::uint32_t x : {0U, table.columns / 2, table.columns - 1})
-        for (unsigned byte = 0; byte < table.entry_bytes; ++byte) {
-            add_to_entry(socket, table, x, 0, byte, 1);
-            const SetupResult result = run.check();
-            CHECK(result.wrong() >= 1);
-            CHECK_THAT(result.first_wrong, Contains(fmt::format("curvature table: {}.", x)));
-            add_to_entry(socket, table, x, 0, byte, -1);
-        }
-    CHECK(run.check().passed());
+namespace {
+
+struct OtherTest {
+    std::string name;
+    std::string settings;
+};
+
+/// The first value of a register, up or down by one.
+void change(datapath::Registers& registers, const std::string& name, int by) {
+    datapath::describe_registers(registers, [&](const datapath::Register& field, auto& value, auto&...) {
+        using Value = std::decay_t<decltype(value)>;
+        if (field.name == name)
+            value = std::is_same_v<Value, bool> ? static_cast<Value>(!static_cast<bool>(value))
+                                                : static_cast<Value>(static_cast<std::int64_t>(value) + by);
+    });
 }
 
-TEST_CASE("one wrong register or table entry of a Mipmap Test fails its job") {
-    Job job;
-    job.hardware.height_test = HeightTest::mipmap;
-    job.tests.mipmap_filter = MipmapFilter::maximum;
-    job.map.width = 60;
-    job.map.height = 37;
-    SetupRun run{job};
-    const SetupResult right = run.check();
-    INFO(right.first_wrong);
-    REQUIRE(right.passed());
-    for (const Mistake& mistake : std::vector<Mistake>{
-             {"mipmap_table.columns", [](MachineSetup& s) { --s.registers.height_table.columns; }},
-             {"mipmap_table.rows", [](MachineSetup& s) { ++s.registers.height_table.rows; }},
-             {"mipmap_table.entry_bytes", [](MachineSetup& s) { ++s.registers.height_table.entry_bytes; }},
-             {"tests.mipmap_threshold", [](MachineSetup& s) { ++s.registers.tests.mipmap_threshold; }},
-             {"tests.mipmap_threshold", [](MachineSetup& s) { --s.registers.tests.mipmap_threshold; }}}) {
-        MachineSetup wrong = run.setup;
-        mistake.make(wrong);
-        run.require_noticed(wrong, mistake.name);
-    }
-    const datapath::TableLayout& table = run.setup.registers.height_table;
-    Socket& socket = run.simulation.host.summed_height_table;
-    for (const std::uint32_t x : {0U, 60U * 37, table.columns - 1}) {
-        add_to_entry(socket, table, x, 0, 0, 1);
-        CHECK_THAT(run.check().first_wrong, Contains(fmt::format("mipmap table: {}", x)));
-        add_to_entry(socket, table, x, 0, 0, -1);
-    }
-    CHECK(run.check().passed());
+std::vector<std::string> names_of(const datapath::Registers& registers) {
+    std::vector<std::string> names;
+    datapath::visit_registers(registers,
+                              [&](const datapath::Register& field, const auto&) { names.push_back(field.name); });
+    return names;
 }
+
+const testing::CaseTable other_tests(
+    "one wrong register or table entry fails the job of a ",
+    {OtherTest{"Curvature Test", "hardware.height_test=curvature map.width=60 map.height=60"},
+     {"Mipmap Test", "hardware.height_test=mipmap tests.mipmap_filter=maximum map.width=60 map.height=37"},
+     {"Rank Test",
+      "hardware.height_test=rank mesh.source=lattice mesh.spacing=16 map.width=60 map.height=44 formats.bound_bits=8"},
+     {"Rank Test as the viewer sees it",
+      "hardware.height_test=rank mesh.source=lattice mesh.spacing=16 map.width=60 map.height=44 formats.bound_bits=8 "
+      "hardware.test_order=cheap_first tests.rank_view=per_pixel"}},
+    [](const OtherTest& row) {
+        SetupRun run{testing::with_settings({}, row.settings)};
+        const SetupResult right = run.check();
+        INFO(right.first_wrong);
+        REQUIRE(right.passed());
+        REQUIRE(right.parts.size() == 5);
+        const std::string table_name(kind_of(run.setup.registers.formats.height_test).table);
+        const std::vector<std::string> others = names_of({});
+        for (const int by : {1, -1}) {
+            for (const std::string& name : names_of(run.setup.registers))
+                if (std::find(others.begin(), others.end(), name) == others.end()) {
+                    MachineSetup wrong = run.setup;
+                    change(wrong.registers, name, by);
+                    run.require_noticed(wrong, name);
+                }
+            for (const auto& [name, side] : {std::pair{".columns", &datapath::TableLayout::columns},
+                                             {".rows", &datapath::TableLayout::rows},
+                                             {".entry_bytes", &datapath::TableLayout::entry_bytes}}) {
+                MachineSetup wrong = run.setup;
+                wrong.registers.height_table.*side += static_cast<std::uint32_t>(by);
+                run.require_noticed(wrong, table_name + name);
+            }
+        }
+        const datapath::TableLayout& table = run.setup.registers.height_table;
+        Socket& socket = run.simulation.host.summed_height_table;
+        const std::string spoken = table_name.substr(0, table_name.find('_')) + " table: ";
+        for (const std::uint32_t x : {0U, table.columns / 2, table.columns - 1})
+            for (unsigned byte = 0; byte < table.entry_bytes; ++byte) {
+                add_to_entry(socket, table, x, table.rows - 1, byte, 1);
+                const SetupResult result = run.check();
+                CHECK(result.wrong() >= 1);
+                CHECK_THAT(result.first_wrong, Contains(spoken) && Contains(std::to_string(x)));
+                add_to_entry(socket, table, x, table.rows - 1, byte, -1);
+            }
+        CHECK(run.check().passed());
+    });
+
+}  // namespace
 
 TEST_CASE("one wrong fitted height fails its job") {
     Job job;
@@ -340,7 +349,7 @@ TEST_CASE("one wrong fitted height fails its job") {
     CHECK_THAT(run.check().first_wrong, Contains("displacement map: (30, 30)"));
 }
 
-TEST_CASE("a mistake of every register is tried") {
+TEST_CASE("for every register of the default design a wrong value is tried") {
     std::set<std::string> tried;
     for (const Mistake& mistake : register_mistakes())
         tried.insert(mistake.name.substr(0, mistake.name.find('[')));
