@@ -58,7 +58,7 @@ std::string checks_rows(const Checks& checks) {
             e.bound_hit
                 ? fmt::format("more than {} triangles, where its run was stopped", count(e.bound))
                 : fmt::format("{} triangles ({:+.2f} %, allowed {}); {:.2f} % of the points farther apart than "
-                              "rounding explains (allowed {:.3g}), at most {:.3g} model units, RMS {:.3g} (allowed "
+                              "rounding explains (allowed {:.3g} %), at most {:.3g} model units, RMS {:.3g} (allowed "
                               "{:.3g})",
                               count(e.golden_triangles), e.more_triangles(),
                               std::isinf(e.allowed.triangles) ? std::string("any, since values saturated")
@@ -88,7 +88,7 @@ std::string checks_rows(const Checks& checks) {
     if (checks.work)
         text += check_row(
             "work conservation", checks.work->passed(),
-            fmt::format("{} triangles and {} balances of units checked, {} violations", count(checks.work->triangles),
+            fmt::format("{} triangles and {} unit counts checked, {} violations", count(checks.work->triangles),
                         count(checks.work->equations), count(checks.work->violations)));
     if (checks.reads)
         text += check_row(
@@ -123,14 +123,16 @@ std::string work_rows(const Simulation& simulation, const MeshCounts& mesh) {
 
 std::string timing_rows(const Simulation& simulation) {
     const Totals totals(simulation);
-    const auto per = [&](std::uint64_t count) { return ratio(simulation.cycles(), count); };
+    const auto per = [&](std::uint64_t count) {
+        const double cycles = ratio(simulation.cycles(), count);
+        return fmt::format("{:.{}f}", cycles, cycles < 10 ? 2 : 1);
+    };
     const double period = simulation.setup.design.timing.cycle_picoseconds * 1e-12;
     std::string text =
-        row("cycles",
-            fmt::format("{}: {:.1f} per finished triangle, {:.1f} per pass, {:.1f} per edge; {:.3g} ms at {:.4g} MHz",
-                        count(simulation.cycles()), per(totals.counts.finished), per(totals.counts.passes),
-                        per(totals.counts.edges_tested), static_cast<double>(simulation.cycles()) * period * 1e3,
-                        1e-6 / period));
+        row("cycles", fmt::format("{}: {} per finished triangle, {} per pass, {} per edge; {:.3g} ms at {:.4g} MHz",
+                                  count(simulation.cycles()), per(totals.counts.finished), per(totals.counts.passes),
+                                  per(totals.counts.edges_tested),
+                                  static_cast<double>(simulation.cycles()) * period * 1e3, 1e-6 / period));
     text += row("bottleneck", bottleneck_text(simulation.last_machine().pipeline, simulation.cycles()));
     const UnitArea area = total_area(area_of(simulation));
     text += row("hardware", fmt::format("{} multipliers, {} bits of registers, {} bits of memory with {} table ports",
@@ -216,8 +218,9 @@ std::string summary(const MachineSetup& setup, const Simulation& simulation, con
     if (timed)
         text += row("engine", fmt::format("{}: {}", setup.scheduled ? "schedule" : "clocked", setup.engine_reason));
     text += row(timed ? "timed mode" : "functional mode",
-                fmt::format("simulated in {:.2f} s, {:.2f} million edges a second, with the checks of each edge",
-                            seconds, static_cast<double>(edges) / seconds / 1e6));
+                fmt::format("simulated in {:.2f} s, {:.2f} million edges a second{}", seconds,
+                            static_cast<double>(edges) / seconds / 1e6,
+                            checks.conformance || checks.work || checks.reads ? ", with the checks of each edge" : ""));
     for (const std::string& warning : saturation_warnings(saturations))
         text += fmt::format("  warning: {}\n", warning);
     if (!checks.texel_borders.empty())

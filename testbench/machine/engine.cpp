@@ -41,7 +41,7 @@ void choose_engine(const Job& job, MachineSetup& setup) {
     const std::string name = key_without_schedule(job, setup);
     if (name.empty()) {
         setup.scheduled = true;
-        setup.engine_reason = job.timing.engine == Engine::schedule ? "timing.engine" : "the design has one";
+        setup.engine_reason = job.timing.engine == Engine::schedule ? "timing.engine" : "this design supports it";
         return;
     }
     const Key& key = *find_key(name);

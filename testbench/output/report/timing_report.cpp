@@ -13,6 +13,8 @@ namespace tessera {
 
 namespace {
 
+constexpr std::size_t most_named = 4;  // units of a limit
+
 double state_percent(const Unit& unit, State state, std::uint64_t cycles) {
     return 100 * ratio(unit.activity().cycles_in(state), cycles);
 }
@@ -39,7 +41,7 @@ std::string whom(const Unit& unit) {
         text += fmt::format("{}{} {}", text.empty() ? "" : ", ",
                             state == State::blocked              ? "blocked by"
                             : state == State::waiting_for_memory ? "waits for"
-                                                                 : "lacks",
+                                                                 : "starved by",
                             unit_name(*share->by));
     }
     return text;
@@ -58,12 +60,14 @@ double utilisation(const Unit& unit, std::uint64_t cycles) {
     return ratio(std::min(unit.occupied_cycles(), cycles), cycles);
 }
 
-bool is_queue_or_wire(const Unit& unit) {
+bool is_queue_or_join(const Unit& unit) {
     return dynamic_cast<const TriangleQueue*>(&unit) != nullptr ||
-           dynamic_cast<const CollectTests*>(&unit) != nullptr || dynamic_cast<const SequenceTests*>(&unit) != nullptr;
+           dynamic_cast<const CollectTests*>(&unit) != nullptr || dynamic_cast<const SequencingUnit*>(&unit) != nullptr;
 }
 
 std::string Limit::names() const {
+    if (units.size() > most_named)
+        return fmt::format("{} and {} others", unit_name(*units[0]), units.size() - 1);
     std::string text;
     for (std::size_t k = 0; k < units.size(); ++k)
         text += (k == 0 ? "" : k + 1 == units.size() ? " and " : ", ") + unit_name(*units[k]);
@@ -97,6 +101,21 @@ Bottleneck find_bottleneck(const Pipeline& pipeline, std::uint64_t cycles) {
 }
 
 namespace {
+
+/// The unit that has waited longest for a cache, where that is most of the time: what it waits for, and the keys that help.
+std::string wait_for_a_cache(const Pipeline& pipeline, std::uint64_t cycles) {
+    std::string text;
+    std::uint64_t longest = cycles / 2;
+    for (const Unit* unit : pipeline.units()) {
+        const Activity::Share* share = largest_share(*unit, State::waiting_for_memory);
+        if (share == nullptr || share->cycles <= longest || dynamic_cast<const TableCache*>(share->by) == nullptr)
+            continue;
+        longest = share->cycles;
+        text = fmt::format("{0} waits for {1} {2:.1f} %: timing.{1}_fills, timing.off_chip_bandwidth", unit_name(*unit),
+                           share->by->basename(), 100 * ratio(longest, cycles));
+    }
+    return text;
+}
 
 /// The unit held up longest by `by`, and for how many cycles.
 std::pair<const Unit*, std::uint64_t> longest_wait(const Pipeline& pipeline, const Unit* by) {
@@ -137,7 +156,7 @@ const Unit& longest_stay(const Pipeline& pipeline) {
     const Unit* longest = &pipeline.transform;
     for (const Unit* unit : pipeline.units()) {
         const bool waits =
-            is_queue_or_wire(*unit) || unit == &pipeline.get_triangle || unit == &pipeline.pass_or_tessellate;
+            is_queue_or_join(*unit) || unit == &pipeline.get_triangle || unit == &pipeline.pass_or_tessellate;
         if (!waits && mean_stay(*unit) > mean_stay(*longest))
             longest = unit;
     }
@@ -148,17 +167,16 @@ std::string latency_text(const Pipeline& pipeline, std::uint64_t cycles, const B
     const Unit& get = pipeline.get_triangle;
     const double starved = state_percent(get, State::starved, cycles),
                  blocked = state_percent(get, State::blocked, cycles);
-    const std::string held_up =
-        starved > blocked ? fmt::format(
-                                "get_triangle is starved {:.1f} %: more base triangles, a higher "
-                                "hardware.queue_watermark",
-                                starved)
-                          : fmt::format("get_triangle is blocked {:.1f} %: larger buffers, timing.*_buffer", blocked);
+    std::string held_up = wait_for_a_cache(pipeline, cycles);
+    if (held_up.empty())
+        held_up = starved > blocked
+                      ? fmt::format(
+                            "get_triangle is starved {:.1f} %: more base triangles, a higher hardware.queue_watermark",
+                            starved)
+                      : fmt::format("get_triangle is blocked {:.1f} %: larger buffers, timing.*_buffer", blocked);
     const Unit& longest = longest_stay(pipeline);
     return fmt::format(
-        "none: bound by latency; of the busiest ({}) {:.1f} % of the throughput is used; at most {:.1f} "
-        "times "
-        "faster "
+        "none: bound by latency; of the busiest ({}) {:.1f} % of the throughput is used; at most {:.1f} times faster "
         "with more triangles in flight ({}) or shorter latencies (an item stays {:.1f} cycles in {})",
         found.first.names(), 100 * found.first.utilisation, found.bound(), held_up, mean_stay(longest),
         unit_name(longest));
@@ -199,11 +217,11 @@ std::string bottleneck_text(const Pipeline& pipeline, std::uint64_t cycles) {
 std::string timing_tables(const Pipeline& pipeline, std::uint64_t cycles) {
     std::string text =
         fmt::format("{:<40}{:>10}{:>9}{:>8}{:>9}{:>9}{:>13}{:>12}{:>9}{:>6}  {}\n", "unit", "items", "busy", "memory",
-                    "blocked", "starved", "utilisation", "items/kcyc", "occup.", "most", "by whom");
+                    "blocked", "starved", "utilisation", "items/kcyc", "occup.", "most", "cause");
     std::string queues =
-        fmt::format("{:<40}{:>10}{:>12}{:>12}{:>10}\n", "queue or wire", "items", "items/kcyc", "mean level", "most");
+        fmt::format("{:<40}{:>10}{:>12}{:>12}{:>10}\n", "queue or join", "items", "items/kcyc", "mean level", "most");
     for (const Unit* unit : pipeline.units())
-        if (is_queue_or_wire(*unit))
+        if (is_queue_or_join(*unit))
             queues += queue_line(*unit, cycles);
         else
             text += unit_line(*unit, cycles);
@@ -216,20 +234,16 @@ std::string timing_text(const Simulation& simulation) {
     for (const auto& machine : simulation.machines)
         tables += timing_tables(machine->pipeline, cycles) + "\n";
     return fmt::format(
-               "{} cycles. In each a unit is in one state, the first of these that applies, in per cent of "
-               "all cycles:\n"
+               "{} cycles. In each a unit is in one state, the first of these that applies, in per cent of all cycles:\n"
                "  blocked  a finished item is not taken\n"
-               "  busy     an item is worked on that has all it needs; in a memory: a request is being "
-               "answered\n"
+               "  busy     an item is worked on that has all it needs; in a memory: a request is being answered\n"
                "  memory   table entries have been asked for and have not come\n"
                "  starved  nothing to work on, or the other branch's results are still to come\n"
-               "utilisation: items times initiation interval (in a memory: port slots taken), in per cent of "
-               "all "
-               "cycles; 100 is\nthe most the unit can do. items: taken; in a memory, requests. items/kcyc: "
-               "in "
-               "1000 cycles. occup.: items in the\nunit, on average; most: at a time. by whom: who held it "
-               "up "
-               "longest in each state. Queues and wires do no work:\nthey have a rate and a level.\n\n",
+               "utilisation: items times initiation interval (in a memory: port slots taken; off chip: cycles of the "
+               "channel,\nwhich caches use, too), in per cent of all cycles; 100 is the most the unit can do. items: taken; "
+               "in a memory,\nrequests. items/kcyc: in 1000 cycles. occup.: items in the unit, on average; most: at a "
+               "time. cause: who held it\nup longest in each state. Queues and joins do no work: they have a rate and a "
+               "level.\n\n",
                cycles) +
            tables + "bottleneck: " + bottleneck_text(simulation.last_machine().pipeline, cycles) + "\n";
 }

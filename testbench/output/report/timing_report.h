@@ -15,15 +15,15 @@ double utilisation(const Unit& unit, std::uint64_t cycles);
 /// first the whole name, "tessera_1.summed_height_table".
 std::string unit_name(const sc_core::sc_object& unit);
 
-/// Does no work of its own and only passes items on: the Triangle Queue, Collect Tests.
-bool is_queue_or_wire(const Unit& unit);
+/// Does no work of its own, only passes items on: the Triangle Queue, Collect Tests, Sequence Tests.
+bool is_queue_or_join(const Unit& unit);
 
 /// Units whose utilisation lies within a per cent of the highest among them.
 struct Limit {
     std::vector<const Unit*> units;  ///< in the order of the pipeline; empty: no unit did anything
     double utilisation = 0;          ///< the highest
 
-    /// "a, b and c".
+    /// "a, b and c"; of many "a and 16 others".
     std::string names() const;
 };
 
@@ -48,7 +48,7 @@ Bottleneck find_bottleneck(const Pipeline& pipeline, std::uint64_t cycles);
 /// The same in words, one or two sentences.
 std::string bottleneck_text(const Pipeline& pipeline, std::uint64_t cycles);
 
-/// Per unit and memory: cycles by state and by whom, utilisation, throughput, occupancy; per queue and wire: rate and
+/// Per unit and memory: cycles by state and cause, utilisation, throughput, occupancy; per queue and join: rate and
 /// level. Tables for people.
 std::string timing_tables(const Pipeline& pipeline, std::uint64_t cycles);
 

@@ -62,7 +62,7 @@ void unit_figures(std::vector<Figure>& all, const Unit& unit, std::uint64_t cycl
     FigureGroup group(all, "timing." + unit_name(unit));
     group.add("items", activity.items_in(), "item", "taken; in a memory, requests");
     group.add("items_out", activity.items_out(), "item", "finished and handed on, or dropped as not needed");
-    if (!is_queue_or_wire(unit))
+    if (!is_queue_or_join(unit))
         state_figures(group, unit, cycles);
     group.add("throughput", ratio(activity.items_out(), cycles), "item/cycle", "items out per cycle");
     group.add("occupancy", ratio(activity.item_cycles(), cycles), "item", "items in the unit, on average");

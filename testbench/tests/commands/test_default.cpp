@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <sstream>
 
 #include "testbench/job/job_keys.h"
 #include "testbench/job/read_job.h"
@@ -29,6 +30,15 @@ TEST_CASE("the default job leaves a complete run folder whose figures agree") {
     CHECK_THAT(end.out, !Contains("note:") && !Contains("warning:"));
     CHECK_THAT(end.out, !Contains("\x1b"));
     CHECK_THAT(end.out, !Contains("SystemC"));
+
+    const std::string readme = read_all(source_folder() / "README.md"), before = "prints (shortened):\n\n";
+    REQUIRE_THAT(readme, Contains(before));
+    const std::size_t begin = readme.find(before) + before.size();
+    std::istringstream shown(readme.substr(begin, readme.find("    results in", begin) - begin));
+    unsigned lines = 0;
+    for (std::string line; std::getline(shown, line); ++lines)
+        CHECK_THAT(end.out, Contains(line.substr(4, line.find("...") - 4)));
+    CHECK(lines == 9);
 }
 
 TEST_CASE("the summary says which test decided, in the statistics' figures") {

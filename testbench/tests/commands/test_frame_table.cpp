@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "testbench/tests/support/program_runner.h"
+#include "testbench/tests/support/test_folder.h"
 
 using namespace tessera;
 

@@ -101,7 +101,7 @@ TEST_CASE("good maps of every kind run") {
     }
 }
 
-TEST_CASE("what was mended in mesh and map is said and written down") {
+TEST_CASE("repairs to mesh and map are reported and recorded") {
     const TestFolder here;
     write_all(here.path() / "flat.obj",
               "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"

@@ -137,7 +137,7 @@ TEST_CASE("render: EXR files by name or by wish") {
     CHECK_FALSE(fs::exists(here.path() / "run/shaded.png"));
 }
 
-TEST_CASE("render: a camera that sees nothing, and a run that emitted nothing, give an empty picture and say so") {
+TEST_CASE("render: a camera that sees nothing, and a run that emitted nothing, draw an empty picture, with a note") {
     const TestFolder here;
     make_run(here.path());
     CHECK_THAT(rendered({"run", "--size", "100x80", "--view", "shaded", "--eye", "0", "0", "5", "--target", "0", "0",

@@ -5,7 +5,7 @@
 #include "testbench/output/picture/render_mesh.h"
 #include "testbench/output/report/ply_writer.h"
 #include "testbench/run_folder/ply_reader.h"
-#include "testbench/tests/support/program_runner.h"
+#include "testbench/tests/support/test_folder.h"
 
 using namespace tessera;
 

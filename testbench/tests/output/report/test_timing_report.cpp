@@ -21,10 +21,12 @@ constexpr std::uint64_t cycles = 1000;
 
 /// A machine whose units have done nothing yet.
 struct Machine {
-    MachineSetup setup = setup_of(timed_job());
+    MachineSetup setup;
     Simulation simulation{setup, 1000};
     Pipeline& pipeline = simulation.pipeline;
     TessellationTests& tests = pipeline.tessellation_tests[0];
+
+    explicit Machine(const Job& job = timed_job()) : setup(setup_of(job)) {}
 };
 
 /// `count` items one after another, from cycle `first` on, of one cycle each; with one interval a cycle the
@@ -61,12 +63,12 @@ TEST_CASE("timing tables: each column of a unit") {
     a.finish(cycles);
     const std::string text = timing_tables(m.pipeline, cycles);
     CHECK_THAT(text, StartsWith("unit                                         items     busy  memory  blocked  "
-                                "starved  utilisation  items/kcyc   occup.  most  by whom\n"));
+                                "starved  utilisation  items/kcyc   occup.  most  cause\n"));
     // (2 * 10 + 3 * 100) / 1000 items in it on average
     CHECK(line_of(text, "tessellation_tests_0.normal_test") ==
           "tessellation_tests_0.normal_test                 3     7.00    4.00    20.00    69.00         0.30"
           "        3.00    0.320     3  blocked by tessellation_tests_0.collect_tests, waits for normal_map, "
-          "lacks transform");
+          "starved by transform");
     // who did nothing starved, and nobody is named
     m.pipeline.lighting.activity().finish(cycles);
     CHECK(line_of(timing_tables(m.pipeline, cycles), "lighting") ==
@@ -87,8 +89,8 @@ TEST_CASE("timing tables: of several who block a unit the one that did so longes
                EndsWith("  blocked by tessellation_tests_0.view_test"));
 }
 
-// Otherwise the queue would be "blocked" whenever something waits in it, and the wires "starved" for ever.
-TEST_CASE("timing tables: queues and wires have a rate and a level, and no states") {
+// Otherwise the queue would be "blocked" whenever something waits in it, and the joins "starved" for ever.
+TEST_CASE("timing tables: queues and joins have a rate and a level, and no states") {
     Machine m;
     Activity& queue = m.pipeline.triangle_queue.activity();
     for (int k = 0; k < 5; ++k)
@@ -100,7 +102,7 @@ TEST_CASE("timing tables: queues and wires have a rate and a level, and no state
     work_on(*m.tests.collect_tests, 20);
     const std::string text = timing_tables(m.pipeline, cycles);
     CHECK_THAT(text,
-               EndsWith("queue or wire                                items  items/kcyc  mean level      most\n"
+               EndsWith("queue or join                                items  items/kcyc  mean level      most\n"
                         "tessellation_tests_0.collect_tests              20       20.00       0.020         1\n"
                         "triangle_queue                                   5        5.00       2.500         5\n"));
     CHECK(text.find("triangle_queue") == text.rfind("triangle_queue"));
@@ -216,6 +218,30 @@ TEST_CASE("bottleneck: below 85 % latency binds, and what would help is said") {
     CHECK_FALSE(find_bottleneck(m.pipeline, cycles).binding);
     work_on(m.pipeline.lighting, 1, 950);
     CHECK(find_bottleneck(m.pipeline, cycles).binding);
+}
+
+TEST_CASE("bottleneck: below 85 %, a unit that waits for a cache most of the time names the cache's keys") {
+    Job job = timed_job();
+    job.timing.summed_height_table.cache.bytes = 1024;
+    Machine m(job);
+    work_on(m.pipeline.lighting, 500);
+    Activity& waiting = m.tests.height_test.activity();
+    waiting.set(0, State::waiting_for_memory, m.pipeline.height_table_cache.get());
+    waiting.finish(501);
+    CHECK_THAT(bottleneck_text(m.pipeline, cycles),
+               Contains("(tessellation_tests_0.summed_height_test waits for summed_height_table_cache 50.1 %: "
+                        "timing.summed_height_table_cache_fills, timing.off_chip_bandwidth)"));
+}
+
+TEST_CASE("bottleneck: of five units that tie one is named") {
+    Machine m;
+    for (Unit* unit : {static_cast<Unit*>(&m.pipeline.calculate_new_p), static_cast<Unit*>(&m.pipeline.transform),
+                       static_cast<Unit*>(&m.tests.view_test), static_cast<Unit*>(&m.pipeline.lighting)})
+        work_on(*unit, 100);
+    CHECK(find_bottleneck(m.pipeline, cycles).first.names() ==
+          "calculate_new_p, transform, tessellation_tests_0.view_test and lighting");
+    work_on(m.tests.tex_coord_test, 100);
+    CHECK(find_bottleneck(m.pipeline, cycles).first.names() == "calculate_new_p and 4 others");
 }
 
 TEST_CASE("bottleneck: a machine that did nothing has none") {
