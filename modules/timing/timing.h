@@ -70,8 +70,9 @@ struct Timing {
     UnitTiming tessellation{1, 1, 1};
     UnitTiming triangle_queue{1, 1, 1};
     UnitTiming lighting{4, 1, 1};
-    unsigned results_buffer = 4;      ///< finished tests of an edge that wait for its other tests
-    unsigned edges_in_sequence = 32;  ///< tests cheapest first: edges that wait for the Normal or Summed Height Test
+    unsigned results_buffer = 4;  ///< finished tests of an edge that wait for its other tests
+    unsigned edges_in_sequence =
+        32;  ///< tests cheapest first: edges from their cheap tests' results on until they leave
     MemoryTiming displacement_map;
     MemoryTiming normal_map;
     MemoryTiming summed_height_table;

@@ -39,7 +39,7 @@ class TessellatingUnit : public Unit {
 ///
 /// In:   DecidedTriangle. Out: its children, one after another; for a finished triangle on its way to fetch normals,
 ///       the triangle itself.
-/// Arithmetic: wiring; with the `shorter` diagonal two Manhattan lengths (6 subtractions, 4 adds) and a compare. New
+/// Arithmetic: wiring; with the `shorter` diagonal two Manhattan lengths (6 subtractions, 4 adds), a margin (1 subtraction) and a compare. New
 ///       vertices' generations saturate (counted), which can only happen with the Generation Test off.
 /// Timing: one child per interval, the first a latency after the triangle was taken; latency 1, interval 1 by default.
 ///       Capacity: one triangle; the next is taken when its last child has been taken.

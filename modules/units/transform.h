@@ -13,8 +13,8 @@ namespace tessera {
 /// In:   DisplacedPoint. Out: ScreenPoint: of an edge or vertex with P's, of a normal with N's in N's place; of families
 ///       with both. A base triangle's P's also go to the View Test, which waits for them; of families the View Test has
 ///       them with the edge.
-/// Arithmetic: 9 multiplications (position or normal); for a position a reciprocal (a table and 4 multiplications) and
-///       2 more, saturate (counted).
+/// Arithmetic: a position: 9 multiplications, a reciprocal (a table and 4 more) and 2 more, saturate (counted); a normal:
+///       9. The reports of area count both, 24: a machine of families has both in one item.
 /// Timing: one vertex, normal or edge per interval and pipeline; latency 20, interval 1, one pipeline by default.
 ///       Several pipelines take turns; items stay in order.
 /// Waits for nothing but its input; held back by Pass or Tessellate.

@@ -319,7 +319,7 @@ std::vector<KeyTable> declare_keys() {
         key.add("engine", &Job::TimingSettings::engine, "How a run is timed, with the same results: by a schedule, several times as fast, or by a clock that calls each unit in each cycle; auto: by a schedule where the design and the options of the run have one (modules/schedule/README.md)");
         declare_timing_keys(key);
     });
-    list.table("check", &Job::check, "Conformance to the golden model.", [](const auto& key) {
+    list.table("check", &Job::check, "What a run checks.", [](const auto& key) {
         using Check = Job::Check;
         key.add("golden", &Check::golden, "Every edge's decision against the golden model (scoreboard), and every register and table entry against what golden derives from the job by itself");
         key.add("end_to_end", &Check::end_to_end, "Golden run of the whole mesh, compared with the hardware's; also every register and table entry, as with check.golden");

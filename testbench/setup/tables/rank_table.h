@@ -31,7 +31,7 @@ struct RankTables {
     /// is nearer than its edge's ends by no more: a midpoint that is needed is never left out, wherever the eye is.
     std::vector<std::uint8_t> radius;
 
-    /// The largest error when every edge splits that can, codes. 0 on a lattice (lattice.h).
+    /// The largest error when every edge splits that can, codes. 0 on a lattice (split_hierarchy.h).
     double least_error = 0;
     /// No grid point's vertical error exceeds bound_error(threshold) and least_error, for thresholds up to this one, if
     /// there are no clashes. With radii a threshold may differ from midpoint to midpoint (modules/datapath/rank_view.h).
