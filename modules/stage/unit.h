@@ -4,7 +4,7 @@
 #include <string>
 #include <systemc>
 
-#include "modules/stage/begun.h"
+#include "modules/sockets/parts.h"
 #include "modules/timing/activity.h"
 #include "modules/timing/cycle_scheduler.h"
 #include "modules/timing/design.h"
@@ -12,6 +12,13 @@
 namespace tessera {
 
 class Signals;
+
+/// The item a unit began last, as the timeline names it.
+struct Begun {
+    std::uint64_t count = 0;  ///< items begun; 0: none is named
+    Origin triangle;
+    Parts parts = all_parts;  ///< the one part, or all: the whole triangle
+};
 
 /// A box of the paper's figures 7 and 8, or a memory: a module on the clock, with a record of its state in each cycle.
 class Unit : public CycleProcess, public sc_core::sc_module {

@@ -33,8 +33,9 @@ constexpr bool strikes_held_back(FaultKind kind) {
 struct Fault {
     FaultKind kind = FaultKind::dropped;
     std::string place;  ///< an output or a memory port, without the machine's name: displace_vertex.to_transform
-    std::uint64_t transaction = 1;  ///< of those at the place, from 1 on; of some kinds of those held back there
-    std::uint64_t bit = 0;          ///< with bit_flip of the payload, with address_flip of the address
+    std::uint64_t transaction =
+        1;                  ///< counted from 1 at the place; of some kinds (strikes_held_back) among those held back
+    std::uint64_t bit = 0;  ///< with bit_flip of the payload, with address_flip of the address
 };
 
 /// A run's fault: says which transaction is the broken one, and remembers whether it came.

@@ -1,11 +1,10 @@
-#include "testbench/prove/fuzz/check_mesh.h"
-
 #include <cmath>
 
 #include "testbench/common/error.h"
 #include "testbench/input/mesh/bezier_patches.h"
 #include "testbench/input/mesh/mesh_limits.h"
 #include "testbench/prove/fuzz/fuzz_target.h"
+#include "testbench/setup/mesh/base_mesh.h"
 #include "testbench/setup/mesh/triangle_geometry.h"
 
 namespace tessera::fuzz {
@@ -34,8 +33,7 @@ void promise_scale(const BaseMesh::TextureScale& s) {
             "the mean texture scale in v is not between the smallest and the largest");
 }
 
-}  // namespace
-
+/// Checks the guarantees of base_mesh.h.
 void promise_complete(const BaseMesh& mesh) {
     promise(!mesh.triangles.empty(), "a mesh without a triangle");
     for (const auto& t : mesh.triangles) {
@@ -51,6 +49,8 @@ void promise_complete(const BaseMesh& mesh) {
     for (const std::string& repair : mesh.repairs)
         promise(!repair.empty(), "a repair without words");
 }
+
+}  // namespace
 
 void check_patches(std::string_view bytes) {
     constexpr std::int64_t columns = 3, rows = 2;

@@ -10,7 +10,7 @@
 #include "testbench/job/frame_job.h"
 #include "testbench/machine/host_traffic.h"
 #include "testbench/output/report/ply_writer.h"
-#include "testbench/tests/support/program_runner.h"
+#include "testbench/tests/support/test_folder.h"
 
 using namespace tessera;
 using Catch::Contains;

@@ -320,7 +320,7 @@ TEST_CASE("read checks compare every entry of a rectangle, and name the address 
     CHECK(wrong[2] - wrong[3] == 4 * 16);
 }
 
-TEST_CASE("a fault that cannot be is not taken for one") {
+TEST_CASE("an impossible fault is not counted as injected") {
     const auto catchers = [](const Fault& fault) { return run(Mode::timed, fault).catchers; };
     CHECK(catchers({FaultKind::dropped, "displace_vertex.to_transforn", 1, 0}) == "?.");
     CHECK(catchers({FaultKind::dropped, "displace_vertex.to_transform", 100000, 0}) == ".");
