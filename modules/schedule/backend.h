@@ -10,8 +10,8 @@ namespace tessera::schedule {
 struct Join {
     Cycle first_edge = 0;  ///< when one came before there was a place for it
     Cycle open = 0;
-    Cycle geometry = 0;                              ///< the last part from Transform
-    std::array<Cycle, most_tests_units> tests = {};  ///< the last edge from each Tessellation Tests unit
+    Cycle geometry = 0, tests = 0;                 ///< the last part of each branch
+    std::array<Cycle, most_tests_units> edges{};  ///< the last edge from each Tessellation Tests unit
     Cycle start = 0, finish = 0, depart = 0;
     Unit to = nobody;
     bool has_edges = false;
@@ -53,11 +53,10 @@ class Backend {
     void account(const Join& join, Cycle first_edge) {
         join_states_.until(std::min(join.open, first_edge), State::starved);
         join_states_.until(join.open, State::starved, transform);
-        const Cycle tests = *std::max_element(join.tests.begin(), join.tests.begin() + tests_units_);
-        join_states_.until(std::min(join.geometry, tests), State::starved);
-        if (join.geometry <= tests)
+        join_states_.until(std::min(join.geometry, join.tests), State::starved);
+        if (join.geometry <= join.tests)
             for (unsigned k = 0; k < tests_units_; ++k)
-                join_states_.until(join.tests[k], State::starved, of_tests(k, collect_tests));
+                join_states_.until(join.edges[k], State::starved, of_tests(k, collect_tests));
         else
             join_states_.until(join.geometry, State::starved, transform);
         join_states_.until(join.finish, State::busy);

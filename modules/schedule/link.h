@@ -7,10 +7,16 @@
 
 namespace tessera::schedule {
 
-/// A part of a triangle.
-struct Item {
-    std::uint64_t pass = 0;
-    unsigned part = 0;
+/// A part of a triangle in some pass.
+class Item {
+  public:
+    Item() = default;
+    Item(std::uint64_t pass, unsigned part) : number_(pass << 4 | part) {}
+    std::uint64_t pass() const { return number_ >> 4; }
+    unsigned part() const { return number_ & 15; }
+
+  private:
+    std::uint64_t number_ = 0;
 };
 
 /// Between two units: the buffer at the consumer's input, and the item on offer that it has not taken.
@@ -23,7 +29,7 @@ class Link {
     /// Nothing is on offer.
     bool free() const { return !offers_; }
     /// True: taken at once.
-    bool send(const Item& item) {
+    bool send(Item item) {
         const unsigned stall = stalls_.next();
         if (stall == 0 && !buffer_.full()) {
             push(item);
@@ -51,7 +57,7 @@ class Link {
     }
 
     bool empty() const { return buffer_.empty(); }
-    const Item& front() const { return buffer_.front().item; }
+    Item front() const { return buffer_.front().item; }
     /// When the first item was taken.
     Cycle since() const { return buffer_.front().taken; }
     void pop() {
@@ -66,7 +72,7 @@ class Link {
         Cycle taken = 0;
     };
 
-    void push(const Item& item) {
+    void push(Item item) {
         buffer_.push({item, calls_->now()});
         ++taken_;
     }

@@ -156,14 +156,15 @@ void Machine::test(unsigned part, const Facts& facts) {
     if (!joining_.has_edges)
         joining_.first_edge = collected_;
     joining_.has_edges = true;
-    joining_.tests[0] = std::max({joining_.tests[0], collected_, joining_.open});
-    join_edges_.pop(joining_.tests[0]);
+    joining_.tests = std::max({joining_.tests, collected_, joining_.open});
+    join_edges_.pop(joining_.tests);
 }
 
 /// Pass or Tessellate, once all parts have come.
 void Machine::join(const Facts& facts) {
-    joining_.start = backend_.start(std::max(joining_.geometry, joining_.tests[0]));
+    joining_.start = backend_.start(std::max(joining_.geometry, joining_.tests));
     join_starts_.add(joining_.start);
+    joining_.edges[0] = joining_.tests;
     backend_.decide(joining_, facts);
     joins_.add(joining_);
     if (joining_.has_edges)

@@ -12,7 +12,7 @@ namespace tessera::schedule {
 /// A memory with one table and several readers, whose requests it takes in the order in which they come. While its buffer
 /// is full each reader's next one waits; then they take turns.
 ///
-/// Reader: accepted(), once its request has been taken; answered(slot, cycle), once it is known when the last entry comes.
+/// Reader: accepted(), once its request has been taken; answered(item, cycle), once it is known when the last entry comes.
 template <class Reader>
 class SharedTable {
   public:
@@ -20,8 +20,8 @@ class SharedTable {
         Reader* reader = nullptr;
         const std::uint8_t* banks = nullptr;  ///< of each entry
         unsigned entries = 0;
-        bool last = false;      ///< of those for this item
-        std::size_t slot = 0;   ///< the item's, in the reader
+        bool last = false;        ///< of those for this item
+        std::uint64_t item = 0;   ///< the reader's
         Cycle taken = 0;
     };
 
@@ -36,7 +36,7 @@ class SharedTable {
           offers_(std::size_t{plan.input.depth} + most_tests_units) {}
 
     /// Reader number `number` offers a request. True: taken at once.
-    bool offer(Request request, unsigned number) {
+    bool offer(const Request& request, unsigned number) {
         const Cycle now = calls_.now();
         const unsigned stall = stalls_.next();
         readers_ = std::max(readers_, number + 1);
@@ -80,9 +80,9 @@ class SharedTable {
         bool waits = false;
     };
 
-    void take(Request& request) {
-        request.taken = calls_.now();
+    void take(const Request& request) {
         buffer_.push(request);
+        buffer_.back().taken = calls_.now();
     }
     /// Those held back, in turn, as far as there is room.
     void admit() {
@@ -104,8 +104,7 @@ class SharedTable {
         }
     }
     void serve(Cycle now) {
-        const Request request = buffer_.front();
-        buffer_.pop();
+        const Request& request = buffer_.front();
         held_up_ += now - std::max(request.taken, served_);
         served_ = now;
         states_.until(now, State::starved);
@@ -114,7 +113,8 @@ class SharedTable {
         level_.stay(offers_.front(), answer_);
         offers_.pop();
         if (request.last)
-            request.reader->answered(request.slot, answer_);
+            request.reader->answered(request.item, answer_);
+        buffer_.pop();
     }
 
     Calls& calls_;

@@ -31,28 +31,10 @@ SteppedMachine::Tests::Tests(SteppedMachine& machine, const TestsPlan& plan, uns
     for (std::size_t test = 0; test < results.size(); ++test)
         all[test]->delivers_to(results[test], edge_parts, of_tests(k, collect_tests));
     normal_test.reads(&Facts::normal_test, k, machine.normal_map_, normal_map);
-    normal_test.waits_for(&Pass::bumped, k, nobody);
+    normal_test.waits_for(&Pass::bumped, k);
     height_test.reads(&Facts::height_test, k, machine.height_table_, height_table);
     height_test.reads_second(machine.displacement_map_for_tests_, displacement_map_for_tests);
-    view_test.waits_for(&Pass::on_screen, k, transform);
-}
-
-void SteppedMachine::Tests::call(unsigned call) {
-    switch (call) {
-        case collect_tests_call: return collect();
-        case view_test_call: return take_corners(), view_test.step();
-        case normal_test_call: return normal_test.step();
-        case height_test_call: return height_test.step();
-        case tex_coord_test_call: return tex_coord_test.step();
-        default: return calculate_new_u.step();
-    }
-}
-
-/// At any time.
-void SteppedMachine::Tests::take_corners() {
-    corners.admit();
-    for (; !corners.empty(); corners.pop())
-        view_test.corner_came(corners.front().pass, calls.now());
+    view_test.waits_for(&Pass::on_screen, k, &corners, transform);
 }
 
 /// An edge goes on when all four tests have decided.
@@ -67,8 +49,9 @@ void SteppedMachine::Tests::collect() {
             collect_states.until(calls.now(), State::blocked, pass_or_tessellate);
             collect_level.stay(collected, calls.now());
         }
-        if (std::any_of(results.begin(), results.end(), [](const Link& result) { return result.empty(); }))
-            return;
+        for (const Link& result : results)
+            if (result.empty())
+                return;
         collected = calls.now();
         collect_states.until(collected, State::starved);
         const Item edge = results[0].front();
@@ -101,11 +84,19 @@ SteppedMachine::SteppedMachine(const Plan& plan)
     displace_vertex_.delivers_to(to_transform_, all_parts, transform);
     displace_vertex_.reads(&Facts::displace_vertex, 0, displacement_map_, displacement_map);
     transform_.delivers_to(to_join_, all_parts, pass_or_tessellate);
+    stages_[transform_call] = &transform_;
+    stages_[displace_vertex_call] = &displace_vertex_;
+    stages_[calculate_new_p_call] = &calculate_new_p_;
     branches_[0] = {&to_calculate_new_p_, all_parts, 0, 0, calculate_new_p};
     for (unsigned k = 0; k < most_tests_units; ++k) {
         tests_[k] = std::make_unique<Tests>(*this, plan.tests[k], k);
         transform_.delivers_to(tests_[k]->corners, vertex_parts, of_tests(k, view_test));
         const unsigned takes = 1u << (first_edge_part + k) | 1u << k | 1u << (k + 1) % 3;
+        stages_[of_tests_call(k, calculate_new_u_call)] = &tests_[k]->calculate_new_u;
+        stages_[of_tests_call(k, tex_coord_test_call)] = &tests_[k]->tex_coord_test;
+        stages_[of_tests_call(k, height_test_call)] = &tests_[k]->height_test;
+        stages_[of_tests_call(k, normal_test_call)] = &tests_[k]->normal_test;
+        stages_[of_tests_call(k, view_test_call)] = &tests_[k]->view_test;
         branches_[1 + k] = {&tests_[k]->input, takes, 0, 0, of_tests(k, calculate_new_u)};
     }
 }
@@ -119,7 +110,9 @@ const Source::Next& SteppedMachine::next() {
     do {
         while (calls_.any()) {
             const unsigned unit = calls_.next();
-            if (unit != get_triangle_call)
+            if (stages_[unit] != nullptr)
+                stages_[unit]->step();
+            else if (unit != get_triangle_call)
                 call(unit);
             else if (get_triangle_begins())
                 return next_ = source_.next(calls_.now());
@@ -128,19 +121,15 @@ const Source::Next& SteppedMachine::next() {
     return next_ = {};
 }
 
-void SteppedMachine::call(unsigned call) {
-    switch (call) {
+/// A unit that is neither a stage nor Get Triangle.
+void SteppedMachine::call(unsigned unit) {
+    switch (unit) {
         case displacement_map_call: return displacement_map_.step();
         case displacement_map_for_tests_call: return displacement_map_for_tests_.step();
         case normal_map_call: return normal_map_.step();
         case height_table_call: return height_table_.step();
         case join_call: return join();
-        case transform_call: return transform_.step();
-        case displace_vertex_call: return displace_vertex_.step();
-        case calculate_new_p_call: return calculate_new_p_.step();
-        default:
-            call -= first_tests_call;
-            return tests_[call / calls_of_tests]->call(call % calls_of_tests);
+        default: return tests_[(unit - first_tests_call) / calls_of_tests]->collect();
     }
 }
 
@@ -238,18 +227,18 @@ bool SteppedMachine::take_parts() {
     const Cycle now = calls_.now();
     for (; !to_join_.empty(); to_join_.pop()) {
         const Item part = to_join_.front();
-        if (part.pass == opened_ && !open(part.pass))
+        if (part.pass() == opened_ && !open(part.pass()))
             break;
-        Pass& pass = passes_[part.pass];
-        pass.geometry_left &= ~(1u << part.part);
+        Pass& pass = passes_[part.pass()];
+        pass.geometry_left &= ~(1u << part.part());
         pass.join.geometry = now;
     }
     for (unsigned k = 0; k < most_tests_units; ++k) {
         Link& edges = tests_[k]->edges;
-        for (; !edges.empty() && edges.front().pass < opened_; edges.pop()) {
-            Pass& pass = passes_[edges.front().pass];
-            pass.tests_left &= ~(1u << edges.front().part);
-            pass.join.tests[k] = now;
+        for (; !edges.empty() && edges.front().pass() < opened_; edges.pop()) {
+            Pass& pass = passes_[edges.front().pass()];
+            pass.tests_left &= ~(1u << edges.front().part());
+            pass.join.tests = pass.join.edges[k] = now;
         }
     }
     return true;

@@ -71,8 +71,6 @@ class SteppedMachine final : public Timetable {
     /// Tessellation Tests unit k.
     struct Tests {
         Tests(SteppedMachine& machine, const TestsPlan& plan, unsigned k);
-        void call(unsigned call);
-        void take_corners();
         void collect();
 
         Calls& calls;
@@ -95,7 +93,7 @@ class SteppedMachine final : public Timetable {
 
     template <class Self, class Each>
     static void for_each_unit(Self& self, Each&& each);
-    void call(unsigned call);
+    void call(unsigned unit);
     bool get_triangle_begins();
     bool send_parts(Branch& branch);
     void set_get_triangle_state();
@@ -129,6 +127,7 @@ class SteppedMachine final : public Timetable {
     Link to_calculate_new_p_, to_displace_vertex_, to_transform_, to_join_;
     SteppedStage calculate_new_p_, displace_vertex_, transform_;
     std::array<std::unique_ptr<Tests>, most_tests_units> tests_;
+    std::array<SteppedStage*, Calls::most_units> stages_{};  // by their calls
     Input join_triangles_;
     Level ahead_of_parts_;
 };

@@ -2,7 +2,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "modules/schedule/backend.h"
 #include "modules/schedule/link.h"
@@ -27,16 +26,7 @@ struct Pass {
     Join join;
 };
 
-/// Those there are, by their numbers.
-class Passes {
-  public:
-    /// most: at a time.
-    explicit Passes(std::size_t most) : passes_(power_of_two(most)) {}
-    Pass& operator[](std::uint64_t pass) { return passes_[pass & (passes_.size() - 1)]; }
-
-  private:
-    std::vector<Pass> passes_;
-};
+using Passes = Latest<Pass>;
 
 /// A unit with an input, a pipeline and outputs (stage.h), which is called in the cycles in which something can happen.
 class SteppedStage {
@@ -49,7 +39,7 @@ class SteppedStage {
           call_(call),
           input_(input),
           pipeline_(plan),
-          items_(power_of_two(plan.stages)),
+          items_(plan.stages),
           level_(plan.stages) {}
 
     /// parts: those that the consumer takes, one bit each.
@@ -61,14 +51,18 @@ class SteppedStage {
         memories_[0] = {&memory, its};
     }
     void reads_second(Memory& memory, Unit its) { memories_[1] = {&memory, its}; }
-    /// Edges wait for their triangle's corners: of unit `number`, from the unit `awaited`.
-    void waits_for(Pass::CornersOfTests Pass::*corners, unsigned number, Unit awaited) {
+    /// Edges wait for their triangle's corners, of Tessellation Tests unit `number`: those that the unit itself has read or, if
+    /// there is such a link, those that come from there.
+    void waits_for(Pass::CornersOfTests Pass::*corners, unsigned number, Link* from = nullptr, Unit awaited = nobody) {
         corners_ = corners;
         number_ = number;
+        from_ = from;
         awaited_ = awaited;
     }
 
     void step() {
+        if (from_ != nullptr)
+            take_corners();
         input_.admit();
         while (started_ > departed_ && first().finished <= calls_.now() && deliver())
             depart();
@@ -85,22 +79,15 @@ class SteppedStage {
     }
     /// The last entry for item n comes in this cycle.
     void answered(std::uint64_t n, Cycle cycle) {
-        InPipeline& it = items_[n & (items_.size() - 1)];
+        InPipeline& it = items_[n];
         it.answer = cycle;
         it.finished = cycle + pipeline_.latency();
         calls_.wake_at(call_, it.finished);
-        if (corners_ != nullptr && it.item.part < first_edge_part) {
-            corner_came(it.item.pass, cycle);
+        if (corners_ != nullptr && it.item.part() < first_edge_part) {
+            corner_came(it.item.pass(), cycle);
             calls_.wake_at(call_, cycle);
         }
     }
-    /// One of the corners that the triangle's edges wait for.
-    void corner_came(std::uint64_t pass, Cycle cycle) {
-        Corners& corners = (passes_[pass].*corners_)[number_];
-        --corners.left;
-        corners.come = cycle;
-    }
-
     States& states() { return states_; }
     const States& states() const { return states_; }
     Level& level() { return level_; }
@@ -122,7 +109,19 @@ class SteppedStage {
         Unit consumer = nobody;
     };
 
-    InPipeline& first() { return items_[departed_ & (items_.size() - 1)]; }
+    void corner_came(std::uint64_t pass, Cycle cycle) {
+        Corners& corners = (passes_[pass].*corners_)[number_];
+        --corners.left;
+        corners.come = cycle;
+    }
+    /// At any time.
+    void take_corners() {
+        from_->admit();
+        for (; !from_->empty(); from_->pop())
+            corner_came(from_->front().pass(), calls_.now());
+    }
+
+    InPipeline& first() { return items_[departed_]; }
 
     /// Offers the first item to its consumers. True: all have taken it.
     bool deliver() {
@@ -130,7 +129,7 @@ class SteppedStage {
         if (blocked_by_ == nobody) {
             account(it);
             for (unsigned k = 0; k < output_count_; ++k)
-                if ((outputs_[k].parts >> it.item.part & 1) != 0)
+                if ((outputs_[k].parts >> it.item.part() & 1) != 0)
                     outputs_[k].link->send(it.item);
         }
         states_.until(calls_.now(), State::blocked, blocked_by_);
@@ -158,8 +157,8 @@ class SteppedStage {
     /// Makes the requests of the item that started last. True: all have been taken.
     bool ask() {
         while (asked_ < to_ask_ && !on_offer_) {
-            const InPipeline& it = items_[(started_ - 1) & (items_.size() - 1)];
-            const PartReads& reads = (passes_[it.item.pass].facts.*reads_)[it.item.part];
+            const InPipeline& it = items_[started_ - 1];
+            const PartReads& reads = (passes_[it.item.pass()].facts.*reads_)[it.item.part()];
             const unsigned entries = reads.entries[asked_];
             const std::uint8_t* const banks = &reads.banks[asked_entries_];
             asked_entries_ += entries;
@@ -172,9 +171,9 @@ class SteppedStage {
         if (input_.empty() || started_ - departed_ == pipeline_.stages())
             return false;
         Cycle from = pipeline_.due();
-        const Item& item = input_.front();
-        if (corners_ != nullptr && item.part >= first_edge_part) {
-            const Corners& corners = (passes_[item.pass].*corners_)[number_];
+        const Item item = input_.front();
+        if (corners_ != nullptr && item.part() >= first_edge_part) {
+            const Corners& corners = (passes_[item.pass()].*corners_)[number_];
             from = corners.left > 0 ? never : std::max(from, corners.come);
         }
         if (from > calls_.now())
@@ -183,7 +182,7 @@ class SteppedStage {
     }
     void start() {
         const Cycle now = calls_.now();
-        InPipeline& it = items_[started_++ & (items_.size() - 1)];
+        InPipeline& it = items_[started_++];
         it.item = input_.front();
         it.taken = input_.since();
         it.due = std::max(it.taken, pipeline_.due());
@@ -191,7 +190,7 @@ class SteppedStage {
         it.finished = now + pipeline_.latency();
         it.memory = nobody;
         if (reads_ != nullptr) {
-            const PartReads& reads = (passes_[it.item.pass].facts.*reads_)[it.item.part];
+            const PartReads& reads = (passes_[it.item.pass()].facts.*reads_)[it.item.part()];
             asked_ = asked_entries_ = 0;
             to_ask_ = reads.requests;
             if (to_ask_ > 0) {
@@ -217,10 +216,11 @@ class SteppedStage {
     Facts::Reads Facts::*reads_ = nullptr;
     std::array<ItsMemory, 2> memories_;
     Pass::CornersOfTests Pass::*corners_ = nullptr;
+    Link* from_ = nullptr;
     Unit awaited_ = nobody;
     unsigned number_ = 0;
 
-    std::vector<InPipeline> items_;
+    Latest<InPipeline> items_;
     std::uint64_t started_ = 0, departed_ = 0;
     unsigned to_ask_ = 0, asked_ = 0;  // requests of the item that started last
     unsigned asked_entries_ = 0;
