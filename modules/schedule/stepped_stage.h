@@ -123,20 +123,20 @@ class SteppedStage {
 
     InPipeline& first() { return items_[departed_]; }
 
-    /// Offers the first item to its consumers. True: all have taken it.
+    /// Offers the first item to its consumers. True: all have taken it. Of several that have not the first output counts.
     bool deliver() {
-        const InPipeline& it = first();
-        if (blocked_by_ == nobody) {
-            account(it);
-            for (unsigned k = 0; k < output_count_; ++k)
-                if ((outputs_[k].parts >> it.item.part() & 1) != 0)
-                    outputs_[k].link->send(it.item);
-        }
-        states_.until(calls_.now(), State::blocked, blocked_by_);
+        const Item item = first().item;
+        const bool offered = blocked_by_ != nobody;
+        if (offered)
+            states_.until(calls_.now(), State::blocked, blocked_by_);
+        else
+            account(first());
         blocked_by_ = nobody;
-        for (unsigned k = output_count_; k-- > 0;)
-            if (!outputs_[k].link->free())
-                blocked_by_ = outputs_[k].consumer;
+        for (unsigned k = output_count_; k-- > 0;) {
+            const auto& [link, parts, consumer] = outputs_[k];
+            if ((parts >> item.part() & 1) != 0 && !(offered ? link->free() : link->send(item)))
+                blocked_by_ = consumer;
+        }
         return blocked_by_ == nobody;
     }
     void depart() {
