@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "modules/schedule/machine.h"
+#include "modules/schedule/stepped_machine.h"
 #include "modules/sockets/parts.h"
 
 namespace tessera {
@@ -38,6 +40,12 @@ schedule::TablePlan table_plan(const schedule::InputPlan& input, const MemoryTim
     return {input, timing.ports, timing.banks, slots, timing.latency, timing.window, under_way};
 }
 
+std::unique_ptr<schedule::Timetable> make_schedule(const schedule::Plan& plan) {
+    if (plan.tests_units == 1)
+        return std::make_unique<schedule::Machine>(plan);
+    return std::make_unique<schedule::SteppedMachine>(plan);
+}
+
 }  // namespace
 
 std::string Conductor::key_without_schedule(const Design& design, const datapath::Formats& formats) {
@@ -48,8 +56,6 @@ std::string Conductor::key_without_schedule(const Design& design, const datapath
         return "hardware.test_order";
     if (design.queue.capacity > 0)
         return "hardware.queue_capacity";
-    if (design.tests_units != 1)
-        return "hardware.tests_units";
     if (formats.codes)
         return "hardware.one_texel_from_map";
     const auto cached = [&](const MemoryTiming& table) { return table.cache.bytes > 0; };
@@ -67,7 +73,6 @@ schedule::Plan Conductor::plan_of(Pipeline& machine, const Rasteriser& rasterise
     const datapath::Formats& formats = registers.formats;
     const HeightTestKind& kind = kind_of(formats.height_test);
     const Inputs inputs(t.stalls);
-    TessellationTests& tests = machine.tessellation_tests[0];
     PassOrTessellate& join = *machine.triangle_pass_or_tessellate;
 
     s::Plan plan;
@@ -84,23 +89,26 @@ schedule::Plan Conductor::plan_of(Pipeline& machine, const Rasteriser& rasterise
                             pipeline_plan(t.displace_vertex, 1, displace_vertex_latency(timed))};
     plan.transform = {inputs.of(machine.transform.from_displace_vertex),
                       pipeline_plan(t.transform, timed.transform_pipelines)};
-    plan.calculate_new_u = {inputs.of(tests.calculate_new_u.input), pipeline_plan(t.calculate_new_u)};
-    plan.tex_coord_test = {inputs.of(tests.tex_coord_test.input), pipeline_plan(t.tex_coord_test)};
-    plan.height_test = {inputs.of(tests.height_test.input),
-                        pipeline_plan(t.*kind.unit_timing, 1, height_test_latency(timed, formats))};
     UnitTiming normal_test = t.normal_test;
     if (registers.tests.highlight_test)
         normal_test.latency += t.highlight_test_latency;
-    plan.normal_test = {inputs.of(tests.normal_test.input),
-                        pipeline_plan(normal_test, 1, t.read_latency(t.normal_map))};
-    plan.view_test = {inputs.of(tests.view_test.input), pipeline_plan(t.view_test)};
-    plan.view_test_corners = inputs.of(*tests.view_test.from_transform);
-    plan.results = {
-        inputs.of(tests.collect_tests->from_normal_test), inputs.of(tests.collect_tests->from_tex_coord_test),
-        inputs.of(tests.collect_tests->from_summed_height_test), inputs.of(tests.collect_tests->from_view_test)};
+    plan.tests_units = timed.tests_units;
+    for (unsigned k = 0; k < plan.tests_units; ++k) {
+        TessellationTests& tests = machine.tessellation_tests[k];
+        plan.tests[k] = {
+            {inputs.of(tests.calculate_new_u.input), pipeline_plan(t.calculate_new_u)},
+            {inputs.of(tests.tex_coord_test.input), pipeline_plan(t.tex_coord_test)},
+            {inputs.of(tests.height_test.input),
+             pipeline_plan(t.*kind.unit_timing, 1, height_test_latency(timed, formats))},
+            {inputs.of(tests.normal_test.input), pipeline_plan(normal_test, 1, t.read_latency(t.normal_map))},
+            {inputs.of(tests.view_test.input), pipeline_plan(t.view_test)},
+            inputs.of(*tests.view_test.from_transform),
+            {inputs.of(tests.collect_tests->from_normal_test), inputs.of(tests.collect_tests->from_tex_coord_test),
+             inputs.of(tests.collect_tests->from_summed_height_test), inputs.of(tests.collect_tests->from_view_test)},
+            inputs.of(join.from_tessellation_tests[k])};
+    }
     plan.join_triangles = inputs.of(join.from_get_triangle);
     plan.join_parts = inputs.of(join.from_transform);
-    plan.join_edges = inputs.of(join.from_tessellation_tests[0]);
     plan.join_places = t.pass_or_tessellate.buffer;
     plan.join = pipeline_plan(t.pass_or_tessellate);
     plan.tessellation_input = inputs.of(machine.triangle_tessellation->from_pass_or_tessellate);
@@ -113,12 +121,12 @@ schedule::Plan Conductor::plan_of(Pipeline& machine, const Rasteriser& rasterise
     if (machine.displacement_map_for_tests != nullptr)
         plan.displacement_map_for_tests =
             table_plan(inputs.of(*machine.displacement_map_for_tests, t.displacement_map.buffer), t.displacement_map,
-                       registers.displacement_map.entry_bytes, plan.height_test.pipeline.stages + 1);
+                       registers.displacement_map.entry_bytes, plan.tests[0].height_test.pipeline.stages + 1);
     plan.normal_map = table_plan(inputs.of(machine.normal_map, t.normal_map.buffer), t.normal_map,
-                                 registers.normal_map.entry_bytes, plan.normal_test.pipeline.stages + 1);
+                                 registers.normal_map.entry_bytes, plan.tests[0].normal_test.pipeline.stages + 1);
     plan.height_table =
         table_plan(inputs.of(machine.height_table, (t.*kind.table_timing).buffer), t.*kind.table_timing,
-                   registers.height_table.entry_bytes, kind.requests * plan.height_test.pipeline.stages + 1);
+                   registers.height_table.entry_bytes, kind.requests * plan.tests[0].height_test.pipeline.stages + 1);
     return plan;
 }
 
@@ -141,7 +149,7 @@ Conductor::Conductor(const sc_core::sc_module_name& name, Pipeline& machine, Hos
     : sc_module(name),
       machine_(machine),
       host_(host),
-      schedule_(plan_of(machine, rasteriser, timed)),
+      schedule_(make_schedule(plan_of(machine, rasteriser, timed))),
       vertices_(facts_.displace_vertex,
                 {BankOfEntry(timed.timing.displacement_map, machine.registers().displacement_map)}),
       heights_(facts_.height_test,
@@ -149,10 +157,7 @@ Conductor::Conductor(const sc_core::sc_module_name& name, Pipeline& machine, Hos
                             machine.registers().height_table),
                 BankOfEntry(timed.timing.displacement_map, machine.registers().displacement_map)}),
       normals_(facts_.normal_test, {BankOfEntry(timed.timing.normal_map, machine.registers().normal_map)}) {
-    TessellationTests& tests = machine.tessellation_tests[0];
     machine.displace_vertex.observe_reads(&vertices_);
-    tests.height_test.observe_reads(&heights_);
-    tests.normal_test.observe_reads(&normals_);
     units_ = {&machine.get_triangle,
               &machine.calculate_new_p,
               &machine.displace_vertex,
@@ -165,13 +170,13 @@ Conductor::Conductor(const sc_core::sc_module_name& name, Pipeline& machine, Hos
               machine.displacement_map_for_tests.get(),
               &machine.normal_map,
               &machine.height_table,
-              nullptr,
-              &tests.calculate_new_u,
-              &tests.tex_coord_test,
-              &tests.height_test,
-              &tests.normal_test,
-              &tests.view_test,
-              tests.collect_tests};
+              nullptr};
+    for (TessellationTests& tests : machine.tessellation_tests) {
+        tests.height_test.observe_reads(&heights_);
+        tests.normal_test.observe_reads(&normals_);
+        units_.insert(units_.end(), {&tests.calculate_new_u, &tests.tex_coord_test, &tests.height_test,
+                                     &tests.normal_test, &tests.view_test, tests.collect_tests});
+    }
     consumers_.assign(units_.begin(), units_.end());
     consumers_[schedule::rasteriser] = &rasteriser;
     SC_HAS_PROCESS(Conductor);
@@ -198,10 +203,13 @@ void Conductor::send(const schedule::Source::Next& next) {
 
 void Conductor::conduct() {
     for (;;) {
-        schedule_.send(host_.total() - host_.sent(), schedule_.last());
-        for (unsigned passes = 1; schedule_.next().any; ++passes) {
-            send(schedule_.begun());
-            schedule_.pass(facts_);
+        schedule_->send(host_.total() - host_.sent(), schedule_->last());
+        for (unsigned passes = 1;; ++passes) {
+            const schedule::Source::Next& next = schedule_->next();
+            if (!next.any)
+                break;
+            send(next);
+            schedule_->pass(facts_);
             if (passes % passes_between_waits == 0)
                 wait(sc_core::SC_ZERO_TIME);
         }
@@ -212,15 +220,15 @@ void Conductor::conduct() {
 void Conductor::observe(const Unit& unit, schedule::ItemObserver* observer) {
     const auto found = std::find(units_.begin(), units_.end(), &unit);
     if (found != units_.end())
-        schedule_.observe(static_cast<schedule::Unit>(found - units_.begin()), observer);
+        schedule_->observe(static_cast<schedule::Unit>(found - units_.begin()), observer);
 }
 
 void Conductor::finish(std::uint64_t cycles) {
-    schedule_.finish(cycles);
+    schedule_->finish(cycles);
     for (std::size_t k = 0; k < units_.size(); ++k) {
         if (units_[k] == nullptr)
             continue;
-        const schedule::Figures its = schedule_.figures(static_cast<schedule::Unit>(k));
+        const schedule::Figures its = schedule_->figures(static_cast<schedule::Unit>(k));
         Activity::Figures figures;
         figures.items = its.items;
         figures.high_water_mark = its.most;
@@ -235,21 +243,23 @@ void Conductor::finish(std::uint64_t cycles) {
         units_[k]->activity().assign(figures);
     }
     const auto assign = [&](TableMemory& memory, schedule::Unit unit) {
-        const schedule::Table& table = schedule_.table(unit);
-        memory.assign({table.bank_slots(), table.entries(), table.held_up()});
+        const schedule::TableFigures its = schedule_->table_figures(unit);
+        memory.assign({its.bank_slots, its.entries, its.held_up});
     };
     assign(machine_.displacement_map, schedule::displacement_map);
     if (machine_.displacement_map_for_tests != nullptr)
         assign(*machine_.displacement_map_for_tests, schedule::displacement_map_for_tests);
     assign(machine_.normal_map, schedule::normal_map);
     assign(machine_.height_table, schedule::height_table);
-    const schedule::Source& source = schedule_.source();
+    const schedule::Source& source = schedule_->source();
     machine_.triangle_queue.assign({source.highest(), source.highest_in_store(), source.history()});
-    machine_.triangle_pass_or_tessellate->assign_most_ahead_of_parts(schedule_.most_ahead_of_parts());
-    machine_.get_triangle.assign_parts_sent(schedule_.parts_sent());
-    machine_.triangle_pass_or_tessellate->from_transform.assign_taken(schedule_.parts_sent());
-    machine_.triangle_pass_or_tessellate->from_tessellation_tests[0].assign_taken(schedule_.edges());
-    machine_.tessellation_tests[0].view_test.from_transform->assign_taken(schedule_.corners());
+    machine_.triangle_pass_or_tessellate->assign_most_ahead_of_parts(schedule_->most_ahead_of_parts());
+    machine_.get_triangle.assign_parts_sent(schedule_->parts_sent());
+    machine_.triangle_pass_or_tessellate->from_transform.assign_taken(schedule_->parts_sent());
+    for (unsigned k = 0; k < machine_.tessellation_tests.size(); ++k) {
+        machine_.triangle_pass_or_tessellate->from_tessellation_tests[k].assign_taken(schedule_->edges(k));
+        machine_.tessellation_tests[k].view_test.from_transform->assign_taken(schedule_->corners(k));
+    }
     machine_.off_chip_memory.activity().finish(cycles);
 }
 

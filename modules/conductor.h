@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <systemc>
 #include <utility>
@@ -9,7 +10,7 @@
 #include "modules/memories/interleave.h"
 #include "modules/pipeline.h"
 #include "modules/rasteriser.h"
-#include "modules/schedule/machine.h"
+#include "modules/schedule/timetable.h"
 
 namespace tessera {
 
@@ -27,7 +28,7 @@ class Conductor : public sc_core::sc_module {
               const Design& timed);
 
     /// The last cycle in which anything happened so far.
-    std::uint64_t last_cycle() const { return schedule_.last(); }
+    std::uint64_t last_cycle() const { return schedule_->last(); }
     /// Null: none.
     void observe(const Unit& unit, schedule::ItemObserver* observer);
     /// Gives the units their figures, for a run of so many cycles.
@@ -37,7 +38,7 @@ class Conductor : public sc_core::sc_module {
     /// Turns a unit's reads into the banks of the entries of its memories, of which an item reads one.
     class ReadFacts : public ReadObserver {
       public:
-        using Parts = std::array<schedule::PartReads, schedule::Facts::parts_of_a_triangle>;
+        using Parts = schedule::Facts::Reads;
         ReadFacts(Parts& parts, std::vector<BankOfEntry> memories) : parts_(parts), memories_(std::move(memories)) {}
         void read(unsigned part, const Reads& reads) override;
 
@@ -52,7 +53,7 @@ class Conductor : public sc_core::sc_module {
 
     Pipeline& machine_;
     Host& host_;
-    schedule::Machine schedule_;
+    std::unique_ptr<schedule::Timetable> schedule_;
     schedule::Facts facts_;
     ReadFacts vertices_, heights_, normals_;
     std::vector<Unit*> units_;                          // by the schedule's numbers; null: the rasteriser, or not there

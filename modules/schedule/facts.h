@@ -4,6 +4,11 @@
 
 namespace tessera::schedule {
 
+/// The parts of a triangle, one bit each: three vertices, three normals, three edges.
+constexpr unsigned parts_of_a_triangle = 9;
+constexpr unsigned first_edge_part = 6;
+constexpr unsigned vertex_parts = 0007, edge_parts = 0700, all_parts = 0777;
+
 /// The table entries that a unit read for one part of a triangle: one to three requests, one after another, all to one
 /// of its memories.
 struct PartReads {
@@ -21,13 +26,11 @@ enum class Way : std::uint8_t { tessellation, lighting, dropped };
 
 /// What a pass of a triangle through the machine depends on, besides the design.
 struct Facts {
-    static constexpr unsigned parts_of_a_triangle = 9;
+    using Reads = std::array<PartReads, parts_of_a_triangle>;
 
-    std::uint16_t parts = 0;  ///< one bit each: three vertices, three normals, three edges
+    std::uint16_t parts = 0;  ///< that are not known yet
     bool tested = true;       ///< its vertices and edges go to the tests
-    std::array<PartReads, parts_of_a_triangle> displace_vertex;
-    std::array<PartReads, parts_of_a_triangle> height_test;
-    std::array<PartReads, parts_of_a_triangle> normal_test;
+    Reads displace_vertex, height_test, normal_test;
     Way way = Way::dropped;
     unsigned children = 0;
     std::array<std::uint32_t, 4> place{};  ///< of each child, where the caller keeps it

@@ -4,40 +4,30 @@
 
 namespace tessera::schedule {
 
-namespace {
-
-constexpr unsigned first_edge = 6;
-constexpr unsigned vertex_parts = 0007, edge_parts = 0700;
-
-}  // namespace
-
 Machine::Machine(const Plan& plan)
     : plan_(plan),
       source_(plan.source),
       calculate_new_p_(plan.calculate_new_p),
       displace_vertex_(plan.displace_vertex),
       transform_(plan.transform),
-      calculate_new_u_(plan.calculate_new_u),
-      tex_coord_test_(plan.tex_coord_test),
-      height_test_(plan.height_test),
-      normal_test_(plan.normal_test),
-      view_test_(plan.view_test),
-      corners_(plan.view_test_corners),
-      results_{Input(plan.results[0]), Input(plan.results[1]), Input(plan.results[2]), Input(plan.results[3])},
+      calculate_new_u_(plan.tests[0].calculate_new_u),
+      tex_coord_test_(plan.tests[0].tex_coord_test),
+      height_test_(plan.tests[0].height_test),
+      normal_test_(plan.tests[0].normal_test),
+      view_test_(plan.tests[0].view_test),
+      corners_(plan.tests[0].view_test_corners),
+      results_{Input(plan.tests[0].results[0]), Input(plan.tests[0].results[1]), Input(plan.tests[0].results[2]),
+               Input(plan.tests[0].results[3])},
       displacement_map_(plan.displacement_map),
       displacement_map_for_tests_(plan.displacement_map_for_tests),
       normal_map_(plan.normal_map),
       height_table_(plan.height_table),
       join_triangles_(plan.join_triangles),
       join_parts_(plan.join_parts),
-      join_edges_(plan.join_edges),
+      join_edges_(plan.tests[0].join_edges),
       join_starts_(plan.join_places),
-      join_(plan.join),
-      join_level_(plan.join_places + plan.join.stages),
       ahead_of_parts_(plan.join_triangles.depth),
-      tessellation_input_(plan.tessellation_input),
-      lighting_(plan.lighting),
-      rasteriser_(plan.rasteriser) {}
+      backend_(plan, source_) {}
 
 void Machine::pass(const Facts& facts) {
     const Cycle begin = next_.begin;
@@ -107,7 +97,7 @@ void Machine::geometry(unsigned part, const Facts& facts) {
 
 /// Get Triangle, Calculate New U, the tests, Collect Tests, Pass or Tessellate. A vertex ends in the Normal Test.
 void Machine::test(unsigned part, const Facts& facts) {
-    const bool is_edge = part >= first_edge;
+    const bool is_edge = part >= first_edge_part;
     const bool base = (facts.parts & vertex_parts) != 0;
     const Cycle sent = to_tests_.send(plan_.get_triangle.interval);
     to_tests_.taken(sent, calculate_new_u_.take(sent));
@@ -172,48 +162,13 @@ void Machine::test(unsigned part, const Facts& facts) {
 
 /// Pass or Tessellate, once all parts have come.
 void Machine::join(const Facts& facts) {
-    joining_.start = join_.start(std::max(joining_.geometry, joining_.tests));
+    joining_.start = backend_.start(std::max(joining_.geometry, joining_.tests));
     join_starts_.add(joining_.start);
-    joining_.finish = joining_.start + join_.latency();
-    const Cycle offer = std::max(joining_.finish, join_.last_depart());
-    joining_.depart = offer;
-    if (facts.way == Way::lighting) {
-        joining_.to = lighting;
-        joining_.depart = lighting_.take(offer);
-        lighting_.start();
-        const Cycle lit = rasteriser_.take(lighting_.finish());
-        rasteriser_.pop(lit);
-        lighting_.depart(lit, rasteriser);
-        last_ = std::max(last_, lit);
-    } else if (facts.way == Way::tessellation) {
-        joining_.to = tessellation;
-        joining_.depart = split(offer, facts);
-    }
-    join_.depart(joining_.depart);
-    join_level_.stay(joining_.open, joining_.depart);
-    last_ = std::max(last_, joining_.depart);
+    joining_.edges[0] = joining_.tests;
+    backend_.decide(joining_, facts);
     joins_.add(joining_);
     if (joining_.has_edges)
         account_joins(joining_.first_edge);
-}
-
-/// Tessellation. Returns when it takes the triangle.
-Cycle Machine::split(Cycle offer, const Facts& facts) {
-    const Cycle taken = tessellation_input_.take(offer);
-    const Cycle begin = std::max(taken, tessellated_);
-    tessellation_input_.pop(begin);
-    tessellation_states_.until(begin, State::starved);
-    next_child_ = std::max(next_child_, begin + plan_.tessellation.latency);
-    tessellated_ = begin;
-    for (unsigned k = 0; k < facts.children; ++k) {
-        const Cycle sent = std::max(next_child_, tessellated_);
-        next_child_ = sent + plan_.tessellation.interval;
-        tessellated_ = source_.offer(sent, facts.place[k]);
-        tessellation_states_.until(sent, State::busy);
-        tessellation_states_.until(tessellated_, State::blocked, triangle_queue);
-    }
-    tessellation_level_.stay(begin, tessellated_);
-    return taken;
 }
 
 /// Of several outputs that are not free the first counts.
@@ -244,20 +199,10 @@ void Machine::account_get_triangle(Cycle begin, Cycle joined) {
     }
 }
 
-/// first_tested: when the first edge came of these triangles.
-void Machine::account_joins(Cycle first_tested) {
-    for (std::uint64_t k = joins_.first(); k < joins_.count(); ++k) {
-        const Join& it = joins_[k];
-        join_states_.until(std::min(it.open, first_tested), State::starved);
-        join_states_.until(it.open, State::starved, transform);
-        join_states_.until(std::min(it.geometry, it.tests), State::starved);
-        if (it.geometry <= it.tests)
-            join_states_.until(it.tests, State::starved, collect_tests);
-        else
-            join_states_.until(it.geometry, State::starved, transform);
-        join_states_.until(it.finish, State::busy);
-        join_states_.until(it.depart, State::blocked, it.to);
-    }
+/// first_edge: when the first edge came of these triangles.
+void Machine::account_joins(Cycle first_edge) {
+    for (std::uint64_t k = joins_.first(); k < joins_.count(); ++k)
+        backend_.account(joins_[k], first_edge);
     joins_.forget_before(joins_.count());
 }
 
@@ -269,9 +214,7 @@ void Machine::for_each_unit(Self& m, Each&& each) {
     stage(calculate_new_p, m.calculate_new_p_);
     stage(displace_vertex, m.displace_vertex_);
     stage(transform, m.transform_);
-    each(pass_or_tessellate, m.join_states_, m.join_level_);
-    each(tessellation, m.tessellation_states_, m.tessellation_level_);
-    stage(lighting, m.lighting_);
+    Backend::for_each_unit(m.backend_, each);
     stage(displacement_map, m.displacement_map_);
     stage(displacement_map_for_tests, m.displacement_map_for_tests_);
     stage(normal_map, m.normal_map_);
@@ -310,13 +253,12 @@ void Machine::observe(Unit unit, ItemObserver* observer) {
     });
 }
 
-const Table& Machine::table(Unit memory) const {
-    switch (memory) {
-        case displacement_map: return displacement_map_;
-        case displacement_map_for_tests: return displacement_map_for_tests_;
-        case normal_map: return normal_map_;
-        default: return height_table_;
-    }
+TableFigures Machine::table_figures(Unit memory) const {
+    const Table& table = memory == displacement_map             ? displacement_map_
+                         : memory == displacement_map_for_tests ? displacement_map_for_tests_
+                         : memory == normal_map                 ? normal_map_
+                                                                : height_table_;
+    return {table.ports().bank_slots(), table.ports().entries(), table.held_up()};
 }
 
 }  // namespace tessera::schedule

@@ -1,95 +1,34 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <vector>
 
-#include "modules/schedule/facts.h"
-#include "modules/schedule/source.h"
-#include "modules/schedule/stage.h"
-#include "modules/schedule/table.h"
+#include "modules/schedule/backend.h"
+#include "modules/schedule/sequence.h"
+#include "modules/schedule/timetable.h"
 
 namespace tessera::schedule {
 
-/// The units' numbers; those of Tessellation Tests come last.
-enum : Unit {
-    get_triangle,
-    calculate_new_p,
-    displace_vertex,
-    transform,
-    pass_or_tessellate,
-    tessellation,
-    triangle_queue,
-    lighting,
-    displacement_map,
-    displacement_map_for_tests,
-    normal_map,
-    height_table,
-    rasteriser,
-    calculate_new_u,
-    tex_coord_test,
-    height_test,
-    normal_test,
-    view_test,
-    collect_tests,
-    units
-};
-
-/// What the machine is built of.
-struct Plan {
-    SourcePlan source;
-    PipelinePlan get_triangle;
-    StagePlan calculate_new_p, displace_vertex, transform;
-    StagePlan calculate_new_u, tex_coord_test, height_test, normal_test, view_test;
-    InputPlan view_test_corners;
-    std::array<InputPlan, 4> results;                  ///< of Collect Tests: Normal, Tex Coord, height and View Test
-    InputPlan join_triangles, join_parts, join_edges;  ///< of Pass or Tessellate
-    unsigned join_places = 1;                          ///< triangles that are not complete
-    PipelinePlan join;
-    InputPlan tessellation_input;
-    PipelinePlan tessellation;
-    StagePlan lighting;
-    InputPlan rasteriser;
-    TablePlan displacement_map, normal_map, height_table;
-    TablePlan displacement_map_for_tests;  ///< the height test's second memory, if it has one
-};
-
-/// What a unit did in a run.
-struct Figures {
-    const States* states = nullptr;
-    std::uint64_t items = 0;
-    std::uint64_t most = 0;
-    std::uint64_t item_cycles = 0;
-};
-
 /// When everything happens in the machine of triangles with one Tessellation Tests unit: each item's cycles follow from
 /// those of the items before it (README.md).
-class Machine {
+class Machine final : public Timetable {
   public:
     explicit Machine(const Plan& plan);
 
-    /// The host has so many triangles more, from this cycle on.
-    void send(std::uint64_t triangles, Cycle cycle) { source_.send(triangles, cycle); }
-    /// The triangle that Get Triangle begins next. Call pass() for it before the next call.
-    const Source::Next& next() { return next_ = source_.next(free_); }
-    const Source::Next& begun() const { return next_; }
-    void pass(const Facts& facts);
+    void send(std::uint64_t triangles, Cycle cycle) override { source_.send(triangles, cycle); }
+    const Source::Next& next() override { return next_ = source_.next(free_); }
+    void pass(const Facts& facts) override;
 
-    /// The last cycle in which anything happened so far.
-    Cycle last() const { return last_; }
-    /// At the end of a run, of so many cycles.
-    void finish(Cycle end);
+    Cycle last() const override { return backend_.last(); }
+    void finish(Cycle end) override;
 
-    Figures figures(Unit unit) const;
-    void observe(Unit unit, ItemObserver* observer);
-    const Source& source() const { return source_; }
-    const Table& table(Unit memory) const;
-    /// Most triangles that waited for their first part, or for any, at the end of a cycle.
-    std::uint64_t most_ahead_of_parts() const { return ahead_of_parts_.most(); }
-    /// To Calculate New P.
-    std::uint64_t parts_sent() const { return parts_sent_; }
-    /// Vertices taken by the View Test, and edges by Pass or Tessellate.
-    std::uint64_t corners() const { return corners_.taken(); }
-    std::uint64_t edges() const { return join_edges_.taken(); }
+    Figures figures(Unit unit) const override;
+    TableFigures table_figures(Unit memory) const override;
+    void observe(Unit unit, ItemObserver* observer) override;
+    const Source& source() const override { return source_; }
+    std::uint64_t most_ahead_of_parts() const override { return ahead_of_parts_.most(); }
+    std::uint64_t parts_sent() const override { return parts_sent_; }
+    std::uint64_t corners(unsigned) const override { return corners_.taken(); }
+    std::uint64_t edges(unsigned) const override { return join_edges_.taken(); }
 
   private:
     /// One of Get Triangle's outputs: the cycle of its next part, and of what it has sent of the triangle, when that was
@@ -101,7 +40,7 @@ class Machine {
         Cycle next = 0;
         Cycle free = 0;
         unsigned count = 0;
-        std::array<Offer, Facts::parts_of_a_triangle> offers;
+        std::array<Offer, parts_of_a_triangle> offers;
 
         void begin(Cycle cycle, unsigned latency) {
             next = std::max(next, cycle + latency);
@@ -119,16 +58,6 @@ class Machine {
                 offers[count++] = {from, to};
         }
     };
-    /// A triangle in Pass or Tessellate.
-    struct Join {
-        Cycle first_edge = 0;  ///< when one came before it had a place
-        Cycle open = 0;
-        Cycle geometry = 0, tests = 0;  ///< the last part of each branch
-        Cycle start = 0, finish = 0, depart = 0;
-        Unit to = nobody;
-        bool has_edges = false;
-    };
-
     template <class Machine, class Each>
     static void for_each_unit(Machine& machine, Each&& each);
     void geometry(unsigned part, const Facts& facts);
@@ -136,9 +65,8 @@ class Machine {
     /// Returns when the last entry has come; reads[].requests > 0.
     Cycle read(Table& table, const PartReads& reads, Cycle start, Cycle& asked);
     void join(const Facts& facts);
-    Cycle split(Cycle offer, const Facts& facts);
     void account_get_triangle(Cycle begin, Cycle joined);
-    void account_joins(Cycle first_tested);
+    void account_joins(Cycle first_edge);
 
     Plan plan_;
     Source source_;
@@ -160,23 +88,13 @@ class Machine {
 
     Input join_triangles_, join_parts_, join_edges_;
     History join_starts_;
-    Pipeline join_;
-    States join_states_;
-    Level join_level_, ahead_of_parts_;
+    Level ahead_of_parts_;
+    Backend backend_;
     Sequence<Join> joins_;  // that are not accounted for
     Join joining_;
     bool opened_ = false;                          // joining_
     Cycle arrived_ = 0;                            // the triangle itself
     Cycle corners_come_ = 0, corners_bumped_ = 0;  // of a base triangle
-
-    Input tessellation_input_;
-    Cycle tessellated_ = 0;  // the last child has been taken
-    Cycle next_child_ = 0;   // may be sent
-    States tessellation_states_;
-    Level tessellation_level_{1};
-    Stage lighting_;
-    Input rasteriser_;
-    Cycle last_ = 0;
     std::uint64_t parts_sent_ = 0;
 };
 

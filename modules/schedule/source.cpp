@@ -103,6 +103,14 @@ Source::Next Source::next(Cycle free) {
     return next;
 }
 
+Cycle Source::due(Cycle now) {
+    evaluate_pops();
+    Cycle due = begun_ < departs_.count() ? std::max(now, cycle_of(departs_[begun_])) : ~Cycle{0};
+    if (host_triangles_ > 0 && (host_taken_ > now || below_watermark(now)))
+        due = std::min(due, std::max(now, host_taken_));
+    return due;
+}
+
 /// The queue's levels, after each push up to cycle `end`; later departures from it may not be known.
 void Source::account(Cycle end) {
     for (; accounted_pushes_ < pushes_.count() && cycle_of(pushes_[accounted_pushes_].when) <= end;

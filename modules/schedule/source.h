@@ -47,6 +47,10 @@ class Source {
     /// Get Triangle can begin a triangle from cycle `free` on.
     Next next(Cycle free);
 
+    /// Of a Get Triangle that asks in the order of time, and can begin one in cycle `now`: in which cycle that is or, later,
+    /// it is to ask again; ~0: when something was offered or sent.
+    Cycle due(Cycle now);
+
     /// Accounts for all that has happened, at the end of a run.
     void finish(Cycle end);
 

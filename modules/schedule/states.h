@@ -5,13 +5,10 @@
 #include <cstdint>
 
 #include "modules/schedule/history.h"
+#include "modules/schedule/units.h"
 #include "modules/timing/state.h"
 
 namespace tessera::schedule {
-
-/// A unit's number in the machine (machine.h).
-using Unit = std::uint8_t;
-constexpr Unit nobody = 255;
 
 /// A unit's cycles by state and by whom, told in stretches, earliest first.
 class States {

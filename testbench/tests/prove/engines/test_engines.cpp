@@ -54,6 +54,20 @@ const CaseTable designs(
         {"four Transform pipelines, a high watermark",
          "hardware.transform_pipelines=4 timing.transform_interval=4 hardware.queue_watermark=50"},
         {"two machines", "hardware.machines=2"},
+        {"three tests units", "hardware.tests_units=3"},
+        {"three tests units, four ports, last in first out, two machines",
+         "hardware.tests_units=3 timing.summed_height_table_ports=4 hardware.queue_order=lifo hardware.machines=2"},
+        {"three tests units far ahead of the geometry, one place in Pass or Tessellate, random stalls",
+         "hardware.tests_units=3 timing.displacement_map_ports=1 timing.displacement_map_latency=60 "
+         "timing.displace_vertex_interval=9 timing.pass_or_tessellate_buffer=1 timing.summed_height_table_ports=12 "
+         "timing.stalls_seed=3 timing.stalls_per_mille=300 timing.stalls_longest=20"},
+        {"three tests units, latencies and stalls of thousands of cycles",
+         "hardware.tests_units=3 tests.generation_limit=2 timing.transform_latency=3000 timing.normal_map_latency=5000 "
+         "timing.stalls_seed=3 timing.stalls_per_mille=20 timing.stalls_longest=2500"},
+        {"Crater Lake by curvature, three tests units, random stalls",
+         "hardware.tests_units=3 hardware.height_test=curvature tests.curvature_threshold=1 timing.stalls_seed=5 "
+         "timing.stalls_per_mille=200 timing.stalls_longest=9",
+         "crater_lake_24"},
         {"random stalls, last in first out",
          "hardware.queue_order=lifo timing.stalls_seed=3 timing.stalls_per_mille=300 "
          "timing.stalls_longest=20"},
@@ -93,6 +107,7 @@ std::string chosen(const std::string& settings) {
 TEST_CASE("which engine times a run, and why") {
     CHECK(chosen("") == "schedule: this design supports it");
     CHECK(chosen("hardware.height_test=curvature") == "schedule: this design supports it");
+    CHECK(chosen("hardware.tests_units=3") == "schedule: this design supports it");
     CHECK(chosen("timing.engine=schedule") == "schedule: timing.engine");
     CHECK(chosen("timing.engine=clocked") == "clocked: timing.engine");
     CHECK(chosen("mode=functional") == "clocked: ");
@@ -100,7 +115,6 @@ TEST_CASE("which engine times a run, and why") {
         {"hardware.work", "\"family\""},
         {"hardware.test_order", "\"cheap_first\""},
         {"hardware.queue_capacity", "64"},
-        {"hardware.tests_units", "3"},
         {"hardware.one_texel_from_map", "true"},
         {"timing.displacement_map_cache_bytes", "4096"},
         {"timing.normal_map_cache_bytes", "4096"},

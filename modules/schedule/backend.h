@@ -1,0 +1,123 @@
+#pragma once
+#include <algorithm>
+#include <array>
+
+#include "modules/schedule/timetable.h"
+
+namespace tessera::schedule {
+
+/// A triangle in Pass or Tessellate.
+struct Join {
+    Cycle first_edge = 0;  ///< when one came before there was a place for it
+    Cycle open = 0;
+    Cycle geometry = 0, tests = 0;                 ///< the last part of each branch
+    std::array<Cycle, most_tests_units> edges{};  ///< the last edge from each Tessellation Tests unit
+    Cycle start = 0, finish = 0, depart = 0;
+    Unit to = nobody;
+    bool has_edges = false;
+};
+
+/// What becomes of a triangle once all of its parts have come: Pass or Tessellate's pipeline, then Lighting and the
+/// rasteriser, or Tessellation, which fills the queue. Triangles come in order, and nothing that comes later holds them up.
+class Backend {
+  public:
+    Backend(const Plan& plan, Source& source)
+        : tests_units_(plan.tests_units),
+          tessellation_plan_(plan.tessellation),
+          source_(source),
+          join_(plan.join),
+          join_level_(plan.join_places + plan.join.stages),
+          tessellation_input_(plan.tessellation_input),
+          lighting_(plan.lighting),
+          rasteriser_(plan.rasteriser) {}
+
+    /// The next triangle has been complete since this cycle. Returns when it leaves its place.
+    Cycle start(Cycle complete) { return join_.start(complete); }
+    /// The triangle that started last goes where `facts` says.
+    void decide(Join& join, const Facts& facts) {
+        join.finish = join.start + join_.latency();
+        const Cycle offer = std::max(join.finish, join_.last_depart());
+        join.depart = offer;
+        if (facts.way == Way::lighting) {
+            join.to = lighting;
+            join.depart = light(offer);
+        } else if (facts.way == Way::tessellation) {
+            join.to = tessellation;
+            join.depart = split(offer, facts);
+        }
+        join_.depart(join.depart);
+        join_level_.stay(join.open, join.depart);
+        last_ = std::max(last_, join.depart);
+    }
+    /// Of Pass or Tessellate, triangle by triangle. first_edge: when the first edge came of those that had no place.
+    void account(const Join& join, Cycle first_edge) {
+        join_states_.until(std::min(join.open, first_edge), State::starved);
+        join_states_.until(join.open, State::starved, transform);
+        join_states_.until(std::min(join.geometry, join.tests), State::starved);
+        if (join.geometry <= join.tests)
+            for (unsigned k = 0; k < tests_units_; ++k)
+                join_states_.until(join.edges[k], State::starved, of_tests(k, collect_tests));
+        else
+            join_states_.until(join.geometry, State::starved, transform);
+        join_states_.until(join.finish, State::busy);
+        join_states_.until(join.depart, State::blocked, join.to);
+    }
+
+    /// The last cycle in which a triangle left, or reached the rasteriser.
+    Cycle last() const { return last_; }
+
+    /// each(unit, states, level)
+    template <class Backend, class Each>
+    static void for_each_unit(Backend& b, Each&& each) {
+        each(pass_or_tessellate, b.join_states_, b.join_level_);
+        each(tessellation, b.tessellation_states_, b.tessellation_level_);
+        each(lighting, b.lighting_.states(), b.lighting_.level());
+    }
+
+  private:
+    /// Returns when Lighting takes the triangle.
+    Cycle light(Cycle offer) {
+        const Cycle taken = lighting_.take(offer);
+        lighting_.start();
+        const Cycle lit = rasteriser_.take(lighting_.finish());
+        rasteriser_.pop(lit);
+        lighting_.depart(lit, rasteriser);
+        last_ = std::max(last_, lit);
+        return taken;
+    }
+    /// Returns when Tessellation takes the triangle.
+    Cycle split(Cycle offer, const Facts& facts) {
+        const Cycle taken = tessellation_input_.take(offer);
+        const Cycle begin = std::max(taken, tessellated_);
+        tessellation_input_.pop(begin);
+        tessellation_states_.until(begin, State::starved);
+        next_child_ = std::max(next_child_, begin + tessellation_plan_.latency);
+        tessellated_ = begin;
+        for (unsigned k = 0; k < facts.children; ++k) {
+            const Cycle sent = std::max(next_child_, tessellated_);
+            next_child_ = sent + tessellation_plan_.interval;
+            tessellated_ = source_.offer(sent, facts.place[k]);
+            tessellation_states_.until(sent, State::busy);
+            tessellation_states_.until(tessellated_, State::blocked, triangle_queue);
+        }
+        tessellation_level_.stay(begin, tessellated_);
+        return taken;
+    }
+
+    unsigned tests_units_;
+    PipelinePlan tessellation_plan_;
+    Source& source_;
+    Pipeline join_;
+    States join_states_;
+    Level join_level_;
+    Input tessellation_input_;
+    Cycle tessellated_ = 0;  // the last child has been taken
+    Cycle next_child_ = 0;   // may be sent
+    States tessellation_states_;
+    Level tessellation_level_{1};
+    Stage lighting_;
+    Input rasteriser_;
+    Cycle last_ = 0;
+};
+
+}  // namespace tessera::schedule

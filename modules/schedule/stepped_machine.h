@@ -1,0 +1,135 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "modules/schedule/backend.h"
+#include "modules/schedule/calls.h"
+#include "modules/schedule/link.h"
+#include "modules/schedule/shared_table.h"
+#include "modules/schedule/stepped_stage.h"
+
+namespace tessera::schedule {
+
+/// When everything happens in the machine of triangles with three Tessellation Tests units. Their readers share each memory's
+/// ports in the order of time, and one unit may be passes ahead of another: the order of the items is no order of
+/// evaluation. So the units in front of Pass or Tessellate's decision are called cycle by cycle, without their data, as the clock
+/// calls those of the machine; what follows from the decision is known at once (backend.h).
+class SteppedMachine final : public Timetable {
+  public:
+    explicit SteppedMachine(const Plan& plan);
+
+    void send(std::uint64_t triangles, Cycle cycle) override;
+    const Source::Next& next() override;
+    void pass(const Facts& facts) override;
+
+    Cycle last() const override { return backend_.last(); }
+    void finish(Cycle end) override;
+
+    Figures figures(Unit unit) const override;
+    TableFigures table_figures(Unit memory) const override;
+    void observe(Unit unit, ItemObserver* observer) override;
+    const Source& source() const override { return source_; }
+    std::uint64_t most_ahead_of_parts() const override { return ahead_of_parts_.most(); }
+    std::uint64_t parts_sent() const override { return parts_sent_; }
+    std::uint64_t corners(unsigned k) const override { return tests_[k]->corners.taken(); }
+    std::uint64_t edges(unsigned k) const override { return tests_[k]->edges.taken(); }
+
+  private:
+    using Memory = SteppedStage::Memory;
+
+    /// The order of the calls within a cycle: downstream first.
+    enum Call : unsigned {
+        displacement_map_call,
+        displacement_map_for_tests_call,
+        normal_map_call,
+        height_table_call,
+        join_call,
+        first_tests_call
+    };
+    enum TestsCall : unsigned {
+        collect_tests_call,
+        view_test_call,
+        normal_test_call,
+        height_test_call,
+        tex_coord_test_call,
+        calculate_new_u_call,
+        calls_of_tests
+    };
+    enum LastCall : unsigned {
+        transform_call = first_tests_call + most_tests_units * calls_of_tests,
+        displace_vertex_call,
+        calculate_new_p_call,
+        get_triangle_call
+    };
+
+    static constexpr unsigned of_tests_call(unsigned k, TestsCall call) {
+        return first_tests_call + k * calls_of_tests + call;
+    }
+
+    /// Tessellation Tests unit k.
+    struct Tests {
+        Tests(SteppedMachine& machine, const TestsPlan& plan, unsigned k);
+        void collect();
+
+        Calls& calls;
+        Link input, to_normal_test, to_tex_coord_test, to_height_test, to_view_test, corners;
+        std::array<Link, 4> results;
+        Link edges;  // to Pass or Tessellate
+        SteppedStage calculate_new_u, tex_coord_test, height_test, normal_test, view_test;
+        bool leaves = false;  // an edge, that Collect Tests has collected
+        Cycle collected = 0;
+        States collect_states;
+        Level collect_level{1};
+    };
+    /// One of Get Triangle's outputs.
+    struct Branch {
+        Link* link = nullptr;
+        unsigned takes = 0, left = 0;  ///< parts of a triangle
+        Cycle next = 0;                ///< when it may send one
+        Unit consumer = nobody;
+    };
+
+    template <class Self, class Each>
+    static void for_each_unit(Self& self, Each&& each);
+    void call(unsigned unit);
+    bool get_triangle_begins();
+    bool send_parts(Branch& branch);
+    void set_get_triangle_state();
+    void join();
+    bool take_parts();
+    bool open(std::uint64_t pass);
+    bool decide();
+
+    Plan plan_;
+    Calls calls_;
+    Passes passes_;
+    Source source_;
+    Source::Next next_;
+    Backend backend_;
+
+    std::uint64_t begun_ = 0;   // passes
+    std::uint64_t opened_ = 0;  // of these, in Pass or Tessellate
+    std::uint64_t joined_ = 0;  // of these, decided
+    bool complete_ = false;     // the first that is not decided; it starts when its Join says
+
+    bool sending_ = false;  // Get Triangle
+    Cycle begin_ = 0;
+    std::array<Branch, 1 + most_tests_units> branches_;
+    std::uint64_t parts_sent_ = 0;
+    State get_triangle_state_ = State::starved;  // since some earlier cycle
+    Unit get_triangle_by_ = nobody;
+    States get_triangle_states_;
+    Level get_triangle_level_{1};
+
+    Memory displacement_map_, displacement_map_for_tests_, normal_map_, height_table_;
+    Link to_calculate_new_p_, to_displace_vertex_, to_transform_, to_join_;
+    SteppedStage calculate_new_p_, displace_vertex_, transform_;
+    std::array<std::unique_ptr<Tests>, most_tests_units> tests_;
+    std::array<SteppedStage*, Calls::most_units> stages_{};  // by their calls
+    Input join_triangles_;
+    Level ahead_of_parts_;
+};
+
+}  // namespace tessera::schedule

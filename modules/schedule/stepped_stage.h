@@ -1,0 +1,233 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "modules/schedule/backend.h"
+#include "modules/schedule/link.h"
+#include "modules/schedule/shared_table.h"
+
+namespace tessera::schedule {
+
+/// Of a base triangle, in a unit whose edges wait for its corners.
+struct Corners {
+    unsigned left = 0;  ///< that have not come
+    Cycle come = 0;     ///< the last of the others
+};
+
+/// A triangle between Get Triangle and its decision in Pass or Tessellate.
+struct Pass {
+    using CornersOfTests = std::array<Corners, most_tests_units>;
+
+    Facts facts;
+    CornersOfTests bumped, on_screen;              ///< in each Normal Test and View Test
+    Cycle arrived = 0;                             ///< in Pass or Tessellate
+    unsigned geometry_left = 0, tests_left = 0;    ///< parts that have not come there
+    Join join;
+};
+
+using Passes = Latest<Pass>;
+
+/// A unit with an input, a pipeline and outputs (stage.h), which is called in the cycles in which something can happen.
+class SteppedStage {
+  public:
+    using Memory = SharedTable<SteppedStage>;
+
+    SteppedStage(Calls& calls, Passes& passes, unsigned call, Link& input, const PipelinePlan& plan)
+        : calls_(calls),
+          passes_(passes),
+          call_(call),
+          input_(input),
+          pipeline_(plan),
+          items_(plan.stages),
+          level_(plan.stages) {}
+
+    /// parts: those that the consumer takes, one bit each.
+    void delivers_to(Link& link, unsigned parts, Unit consumer) { outputs_[output_count_++] = {&link, parts, consumer}; }
+    /// The entries that a triangle's parts need, and the memory. number: which of its readers this is.
+    void reads(Facts::Reads Facts::*reads, unsigned number, Memory& memory, Unit its) {
+        reads_ = reads;
+        number_ = number;
+        memories_[0] = {&memory, its};
+    }
+    void reads_second(Memory& memory, Unit its) { memories_[1] = {&memory, its}; }
+    /// Edges wait for their triangle's corners, of Tessellation Tests unit `number`: those that the unit itself has read or, if
+    /// there is such a link, those that come from there.
+    void waits_for(Pass::CornersOfTests Pass::*corners, unsigned number, Link* from = nullptr, Unit awaited = nobody) {
+        corners_ = corners;
+        number_ = number;
+        from_ = from;
+        awaited_ = awaited;
+    }
+
+    void step() {
+        if (from_ != nullptr)
+            take_corners();
+        input_.admit();
+        while (started_ > departed_ && first().finished <= calls_.now() && deliver())
+            depart();
+        while (ask() && may_start())
+            start();
+        if (started_ > departed_ && first().finished > calls_.now())
+            calls_.wake_at(call_, first().finished);
+    }
+
+    /// Its request has been taken.
+    void accepted() {
+        on_offer_ = false;
+        calls_.wake(call_);
+    }
+    /// The last entry for item n comes in this cycle.
+    void answered(std::uint64_t n, Cycle cycle) {
+        InPipeline& it = items_[n];
+        it.answer = cycle;
+        it.finished = cycle + pipeline_.latency();
+        calls_.wake_at(call_, it.finished);
+        if (corners_ != nullptr && it.item.part() < first_edge_part) {
+            corner_came(it.item.pass(), cycle);
+            calls_.wake_at(call_, cycle);
+        }
+    }
+    States& states() { return states_; }
+    const States& states() const { return states_; }
+    Level& level() { return level_; }
+    const Level& level() const { return level_; }
+
+  private:
+    struct InPipeline {
+        Item item;
+        Cycle taken = 0;     ///< into the input's buffer
+        Cycle due = 0;       ///< from then on the interval allowed it to start
+        Cycle start = 0;
+        Cycle answer = 0;    ///< to its last request
+        Cycle finished = 0;  ///< never: not known
+        Unit memory = nobody;
+    };
+    struct Output {
+        Link* link = nullptr;
+        unsigned parts = 0;
+        Unit consumer = nobody;
+    };
+
+    void corner_came(std::uint64_t pass, Cycle cycle) {
+        Corners& corners = (passes_[pass].*corners_)[number_];
+        --corners.left;
+        corners.come = cycle;
+    }
+    /// At any time.
+    void take_corners() {
+        from_->admit();
+        for (; !from_->empty(); from_->pop())
+            corner_came(from_->front().pass(), calls_.now());
+    }
+
+    InPipeline& first() { return items_[departed_]; }
+
+    /// Offers the first item to its consumers. True: all have taken it. Of several that have not the first output counts.
+    bool deliver() {
+        const Item item = first().item;
+        const bool offered = blocked_by_ != nobody;
+        if (offered)
+            states_.until(calls_.now(), State::blocked, blocked_by_);
+        else
+            account(first());
+        blocked_by_ = nobody;
+        for (unsigned k = output_count_; k-- > 0;) {
+            const auto& [link, parts, consumer] = outputs_[k];
+            if ((parts >> item.part() & 1) != 0 && !(offered ? link->free() : link->send(item)))
+                blocked_by_ = consumer;
+        }
+        return blocked_by_ == nobody;
+    }
+    void depart() {
+        pipeline_.depart(calls_.now());
+        level_.stay(first().start, calls_.now());
+        ++departed_;
+    }
+    /// Up to now, when the first item is finished and those before it have departed.
+    void account(const InPipeline& it) {
+        states_.until(it.taken, State::starved);
+        states_.until(std::min(it.start, it.due), State::busy);
+        states_.until(it.start, State::starved, awaited_);
+        if (it.memory != nobody)
+            states_.until(it.answer, State::waiting_for_memory, it.memory);
+        states_.until(calls_.now(), State::busy);
+    }
+
+    /// Makes the requests of the item that started last. True: all have been taken.
+    bool ask() {
+        while (asked_ < to_ask_ && !on_offer_) {
+            const InPipeline& it = items_[started_ - 1];
+            const PartReads& reads = (passes_[it.item.pass()].facts.*reads_)[it.item.part()];
+            const unsigned entries = reads.entries[asked_];
+            const std::uint8_t* const banks = &reads.banks[asked_entries_];
+            asked_entries_ += entries;
+            const bool last = ++asked_ == to_ask_;
+            on_offer_ = !memories_[reads.memory].table->offer({this, banks, entries, last, started_ - 1}, number_);
+        }
+        return !on_offer_;
+    }
+    bool may_start() {
+        if (input_.empty() || started_ - departed_ == pipeline_.stages())
+            return false;
+        Cycle from = pipeline_.due();
+        const Item item = input_.front();
+        if (corners_ != nullptr && item.part() >= first_edge_part) {
+            const Corners& corners = (passes_[item.pass()].*corners_)[number_];
+            from = corners.left > 0 ? never : std::max(from, corners.come);
+        }
+        if (from > calls_.now())
+            calls_.wake_at(call_, from);
+        return from <= calls_.now();
+    }
+    void start() {
+        const Cycle now = calls_.now();
+        InPipeline& it = items_[started_++];
+        it.item = input_.front();
+        it.taken = input_.since();
+        it.due = std::max(it.taken, pipeline_.due());
+        it.start = pipeline_.start(now);
+        it.finished = now + pipeline_.latency();
+        it.memory = nobody;
+        if (reads_ != nullptr) {
+            const PartReads& reads = (passes_[it.item.pass()].facts.*reads_)[it.item.part()];
+            asked_ = asked_entries_ = 0;
+            to_ask_ = reads.requests;
+            if (to_ask_ > 0) {
+                it.finished = never;
+                it.memory = memories_[reads.memory].unit;
+            }
+        }
+        input_.pop();
+    }
+
+    struct ItsMemory {
+        Memory* table = nullptr;
+        Unit unit = nobody;
+    };
+
+    Calls& calls_;
+    Passes& passes_;
+    unsigned call_;  // which is the unit's
+    Link& input_;
+    Pipeline pipeline_;
+    std::array<Output, 4> outputs_;
+    unsigned output_count_ = 0;
+    Facts::Reads Facts::*reads_ = nullptr;
+    std::array<ItsMemory, 2> memories_;
+    Pass::CornersOfTests Pass::*corners_ = nullptr;
+    Link* from_ = nullptr;
+    Unit awaited_ = nobody;
+    unsigned number_ = 0;
+
+    Latest<InPipeline> items_;
+    std::uint64_t started_ = 0, departed_ = 0;
+    unsigned to_ask_ = 0, asked_ = 0;  // requests of the item that started last
+    unsigned asked_entries_ = 0;
+    bool on_offer_ = false;      // one of them
+    Unit blocked_by_ = nobody;  // the first item; nobody: it is not on offer
+    States states_;
+    Level level_;
+};
+
+}  // namespace tessera::schedule
