@@ -10,7 +10,7 @@ namespace tessera::schedule {
 struct Join {
     Cycle first_edge = 0;  ///< when one came before there was a place for it
     Cycle open = 0;
-    Cycle geometry = 0, tests = 0;                 ///< the last part of each branch
+    Cycle geometry = 0, tests = 0;                ///< the last part of each branch
     std::array<Cycle, most_tests_units> edges{};  ///< the last edge from each Tessellation Tests unit
     Cycle start = 0, finish = 0, depart = 0;
     Unit to = nobody;

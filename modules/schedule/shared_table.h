@@ -20,8 +20,8 @@ class SharedTable {
         Reader* reader = nullptr;
         const std::uint8_t* banks = nullptr;  ///< of each entry
         unsigned entries = 0;
-        bool last = false;        ///< of those for this item
-        std::uint64_t item = 0;   ///< the reader's
+        bool last = false;       ///< of those for this item
+        std::uint64_t item = 0;  ///< the reader's
         Cycle taken = 0;
     };
 

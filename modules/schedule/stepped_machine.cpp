@@ -7,21 +7,28 @@ namespace tessera::schedule {
 SteppedMachine::Tests::Tests(SteppedMachine& machine, const TestsPlan& plan, unsigned k)
     : calls(machine.calls_),
       input(calls, plan.calculate_new_u.input, get_triangle_call, of_tests_call(k, calculate_new_u_call)),
-      to_normal_test(calls, plan.normal_test.input, of_tests_call(k, calculate_new_u_call), of_tests_call(k, normal_test_call)),
-      to_tex_coord_test(calls, plan.tex_coord_test.input, of_tests_call(k, calculate_new_u_call), of_tests_call(k, tex_coord_test_call)),
-      to_height_test(calls, plan.height_test.input, of_tests_call(k, calculate_new_u_call), of_tests_call(k, height_test_call)),
-      to_view_test(calls, plan.view_test.input, of_tests_call(k, calculate_new_u_call), of_tests_call(k, view_test_call)),
+      to_normal_test(calls, plan.normal_test.input, of_tests_call(k, calculate_new_u_call),
+                     of_tests_call(k, normal_test_call)),
+      to_tex_coord_test(calls, plan.tex_coord_test.input, of_tests_call(k, calculate_new_u_call),
+                        of_tests_call(k, tex_coord_test_call)),
+      to_height_test(calls, plan.height_test.input, of_tests_call(k, calculate_new_u_call),
+                     of_tests_call(k, height_test_call)),
+      to_view_test(calls, plan.view_test.input, of_tests_call(k, calculate_new_u_call),
+                   of_tests_call(k, view_test_call)),
       corners(calls, plan.view_test_corners, transform_call, of_tests_call(k, view_test_call)),
       results{Link(calls, plan.results[0], of_tests_call(k, normal_test_call), of_tests_call(k, collect_tests_call)),
               Link(calls, plan.results[1], of_tests_call(k, tex_coord_test_call), of_tests_call(k, collect_tests_call)),
               Link(calls, plan.results[2], of_tests_call(k, height_test_call), of_tests_call(k, collect_tests_call)),
               Link(calls, plan.results[3], of_tests_call(k, view_test_call), of_tests_call(k, collect_tests_call))},
       edges(calls, plan.join_edges, of_tests_call(k, collect_tests_call), join_call),
-      calculate_new_u(calls, machine.passes_, of_tests_call(k, calculate_new_u_call), input, plan.calculate_new_u.pipeline),
+      calculate_new_u(calls, machine.passes_, of_tests_call(k, calculate_new_u_call), input,
+                      plan.calculate_new_u.pipeline),
       tex_coord_test(calls, machine.passes_, of_tests_call(k, tex_coord_test_call), to_tex_coord_test,
                      plan.tex_coord_test.pipeline),
-      height_test(calls, machine.passes_, of_tests_call(k, height_test_call), to_height_test, plan.height_test.pipeline),
-      normal_test(calls, machine.passes_, of_tests_call(k, normal_test_call), to_normal_test, plan.normal_test.pipeline),
+      height_test(calls, machine.passes_, of_tests_call(k, height_test_call), to_height_test,
+                  plan.height_test.pipeline),
+      normal_test(calls, machine.passes_, of_tests_call(k, normal_test_call), to_normal_test,
+                  plan.normal_test.pipeline),
       view_test(calls, machine.passes_, of_tests_call(k, view_test_call), to_view_test, plan.view_test.pipeline) {
     calculate_new_u.delivers_to(to_normal_test, all_parts, of_tests(k, schedule::normal_test));
     calculate_new_u.delivers_to(to_tex_coord_test, edge_parts, of_tests(k, schedule::tex_coord_test));
@@ -135,7 +142,9 @@ void SteppedMachine::call(unsigned unit) {
 
 void SteppedMachine::pass(const Facts& facts) {
     const Cycle now = calls_.now();
-    const unsigned vertices = facts.parts & vertex_parts;
+    const auto vertices = [](unsigned parts) {
+        return static_cast<unsigned>(__builtin_popcount(parts & vertex_parts));
+    };
     Pass& pass = passes_[begun_++];
     pass.facts = facts;
     pass.arrived = join_triangles_.take(now);
@@ -153,8 +162,8 @@ void SteppedMachine::pass(const Facts& facts) {
         Branch& branch = branches_[1 + k];
         if (!facts.tested)
             branch.left = 0;
-        pass.bumped[k] = {static_cast<unsigned>(__builtin_popcount(branch.left & vertex_parts)), 0};
-        pass.on_screen[k] = {static_cast<unsigned>(__builtin_popcount(vertices)), 0};
+        pass.bumped[k] = {vertices(branch.left), 0};
+        pass.on_screen[k] = {vertices(facts.parts), 0};
     }
     parts_sent_ += static_cast<unsigned>(__builtin_popcount(facts.parts));
     set_get_triangle_state();
@@ -219,11 +228,12 @@ void SteppedMachine::join() {
     to_join_.admit();
     for (const auto& tests : tests_)
         tests->edges.admit();
-    while (take_parts() && decide()) {
-    }
+    do
+        take_parts();
+    while (decide());
 }
 
-bool SteppedMachine::take_parts() {
+void SteppedMachine::take_parts() {
     const Cycle now = calls_.now();
     for (; !to_join_.empty(); to_join_.pop()) {
         const Item part = to_join_.front();
@@ -241,7 +251,6 @@ bool SteppedMachine::take_parts() {
             pass.join.tests = pass.join.edges[k] = now;
         }
     }
-    return true;
 }
 
 /// False: there is no place for the triangle, or it has not come itself.

@@ -98,7 +98,7 @@ class SteppedMachine final : public Timetable {
     bool send_parts(Branch& branch);
     void set_get_triangle_state();
     void join();
-    bool take_parts();
+    void take_parts();
     bool open(std::uint64_t pass);
     bool decide();
 

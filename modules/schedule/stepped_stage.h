@@ -2,6 +2,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "modules/schedule/backend.h"
 #include "modules/schedule/link.h"
@@ -20,9 +21,9 @@ struct Pass {
     using CornersOfTests = std::array<Corners, most_tests_units>;
 
     Facts facts;
-    CornersOfTests bumped, on_screen;              ///< in each Normal Test and View Test
-    Cycle arrived = 0;                             ///< in Pass or Tessellate
-    unsigned geometry_left = 0, tests_left = 0;    ///< parts that have not come there
+    CornersOfTests bumped, on_screen;            ///< in each Normal Test and View Test
+    Cycle arrived = 0;                           ///< in Pass or Tessellate
+    unsigned geometry_left = 0, tests_left = 0;  ///< parts that have not come there
     Join join;
 };
 
@@ -43,7 +44,7 @@ class SteppedStage {
           level_(plan.stages) {}
 
     /// parts: those that the consumer takes, one bit each.
-    void delivers_to(Link& link, unsigned parts, Unit consumer) { outputs_[output_count_++] = {&link, parts, consumer}; }
+    void delivers_to(Link& link, unsigned parts, Unit consumer) { outputs_.push_back({&link, parts, consumer}); }
     /// The entries that a triangle's parts need, and the memory. number: which of its readers this is.
     void reads(Facts::Reads Facts::*reads, unsigned number, Memory& memory, Unit its) {
         reads_ = reads;
@@ -96,8 +97,8 @@ class SteppedStage {
   private:
     struct InPipeline {
         Item item;
-        Cycle taken = 0;     ///< into the input's buffer
-        Cycle due = 0;       ///< from then on the interval allowed it to start
+        Cycle taken = 0;  ///< into the input's buffer
+        Cycle due = 0;    ///< from then on the interval allowed it to start
         Cycle start = 0;
         Cycle answer = 0;    ///< to its last request
         Cycle finished = 0;  ///< never: not known
@@ -132,7 +133,7 @@ class SteppedStage {
         else
             account(first());
         blocked_by_ = nobody;
-        for (unsigned k = output_count_; k-- > 0;) {
+        for (std::size_t k = outputs_.size(); k-- > 0;) {
             const auto& [link, parts, consumer] = outputs_[k];
             if ((parts >> item.part() & 1) != 0 && !(offered ? link->free() : link->send(item)))
                 blocked_by_ = consumer;
@@ -211,8 +212,7 @@ class SteppedStage {
     unsigned call_;  // which is the unit's
     Link& input_;
     Pipeline pipeline_;
-    std::array<Output, 4> outputs_;
-    unsigned output_count_ = 0;
+    std::vector<Output> outputs_;
     Facts::Reads Facts::*reads_ = nullptr;
     std::array<ItsMemory, 2> memories_;
     Pass::CornersOfTests Pass::*corners_ = nullptr;
@@ -224,7 +224,7 @@ class SteppedStage {
     std::uint64_t started_ = 0, departed_ = 0;
     unsigned to_ask_ = 0, asked_ = 0;  // requests of the item that started last
     unsigned asked_entries_ = 0;
-    bool on_offer_ = false;      // one of them
+    bool on_offer_ = false;     // one of them
     Unit blocked_by_ = nobody;  // the first item; nobody: it is not on offer
     States states_;
     Level level_;

@@ -25,10 +25,7 @@ struct TablePlan {
 class Ports {
   public:
     explicit Ports(const TablePlan& plan)
-        : plan_(plan),
-          free_(std::size_t{plan.banks} * plan.ports),
-          bank_slots_(plan.banks),
-          window_(plan.window) {}
+        : plan_(plan), free_(std::size_t{plan.banks} * plan.ports), bank_slots_(plan.banks), window_(plan.window) {}
 
     /// The first cycle in which the ports allow a request for `count` entries, which lie in these banks.
     Cycle ready(const std::uint8_t* banks, unsigned count) {

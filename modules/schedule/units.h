@@ -34,6 +34,8 @@ constexpr unsigned most_tests_units = 3;
 constexpr Unit units_of_tests = units_with_one - calculate_new_u;
 
 /// The same unit of Tessellation Tests unit k.
-constexpr Unit of_tests(unsigned k, Unit unit) { return static_cast<Unit>(unit + k * units_of_tests); }
+constexpr Unit of_tests(unsigned k, Unit unit) {
+    return static_cast<Unit>(unit + k * units_of_tests);
+}
 
 }  // namespace tessera::schedule
