@@ -243,8 +243,8 @@ void Conductor::finish(std::uint64_t cycles) {
         units_[k]->activity().assign(figures);
     }
     const auto assign = [&](TableMemory& memory, schedule::Unit unit) {
-        const schedule::TableFigures its = schedule_->table_figures(unit);
-        memory.assign({its.bank_slots, its.entries, its.held_up});
+        const schedule::Ports& its = schedule_->ports(unit);
+        memory.assign({its.bank_slots(), its.entries(), its.held_up()});
     };
     assign(machine_.displacement_map, schedule::displacement_map);
     if (machine_.displacement_map_for_tests != nullptr)

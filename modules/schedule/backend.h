@@ -2,7 +2,8 @@
 #include <algorithm>
 #include <array>
 
-#include "modules/schedule/timetable.h"
+#include "modules/schedule/facts.h"
+#include "modules/schedule/plan.h"
 
 namespace tessera::schedule {
 
@@ -67,11 +68,11 @@ class Backend {
     Cycle last() const { return last_; }
 
     /// each(unit, states, level)
-    template <class Backend, class Each>
-    static void for_each_unit(Backend& b, Each&& each) {
-        each(pass_or_tessellate, b.join_states_, b.join_level_);
-        each(tessellation, b.tessellation_states_, b.tessellation_level_);
-        each(lighting, b.lighting_.states(), b.lighting_.level());
+    template <class Each>
+    void for_each_unit(Each&& each) {
+        each(pass_or_tessellate, join_states_, join_level_);
+        each(tessellation, tessellation_states_, tessellation_level_);
+        each(lighting, lighting_.states(), lighting_.level());
     }
 
   private:

@@ -5,8 +5,7 @@
 namespace tessera::schedule {
 
 Machine::Machine(const Plan& plan)
-    : plan_(plan),
-      source_(plan.source),
+    : Timetable(plan),
       calculate_new_p_(plan.calculate_new_p),
       displace_vertex_(plan.displace_vertex),
       transform_(plan.transform),
@@ -22,12 +21,23 @@ Machine::Machine(const Plan& plan)
       displacement_map_for_tests_(plan.displacement_map_for_tests),
       normal_map_(plan.normal_map),
       height_table_(plan.height_table),
-      join_triangles_(plan.join_triangles),
       join_parts_(plan.join_parts),
       join_edges_(plan.tests[0].join_edges),
-      join_starts_(plan.join_places),
-      ahead_of_parts_(plan.join_triangles.depth),
-      backend_(plan, source_) {}
+      join_starts_(plan.join_places) {
+    has(calculate_new_p, calculate_new_p_);
+    has(displace_vertex, displace_vertex_);
+    has(transform, transform_);
+    has(displacement_map, displacement_map_.ports());
+    has(displacement_map_for_tests, displacement_map_for_tests_.ports());
+    has(normal_map, normal_map_.ports());
+    has(height_table, height_table_.ports());
+    has(calculate_new_u, calculate_new_u_);
+    has(tex_coord_test, tex_coord_test_);
+    has(height_test, height_test_);
+    has(normal_test, normal_test_);
+    has(view_test, view_test_);
+    has(collect_tests, collect_states_, collect_level_);
+}
 
 void Machine::pass(const Facts& facts) {
     const Cycle begin = next_.begin;
@@ -206,59 +216,9 @@ void Machine::account_joins(Cycle first_edge) {
     joins_.forget_before(joins_.count());
 }
 
-/// each(unit, states, level), for all but the Triangle Queue.
-template <class Self, class Each>
-void Machine::for_each_unit(Self& m, Each&& each) {
-    const auto stage = [&](Unit unit, auto& it) { each(unit, it.states(), it.level()); };
-    each(get_triangle, m.get_triangle_states_, m.get_triangle_level_);
-    stage(calculate_new_p, m.calculate_new_p_);
-    stage(displace_vertex, m.displace_vertex_);
-    stage(transform, m.transform_);
-    Backend::for_each_unit(m.backend_, each);
-    stage(displacement_map, m.displacement_map_);
-    stage(displacement_map_for_tests, m.displacement_map_for_tests_);
-    stage(normal_map, m.normal_map_);
-    stage(height_table, m.height_table_);
-    stage(calculate_new_u, m.calculate_new_u_);
-    stage(tex_coord_test, m.tex_coord_test_);
-    stage(height_test, m.height_test_);
-    stage(normal_test, m.normal_test_);
-    stage(view_test, m.view_test_);
-    each(collect_tests, m.collect_states_, m.collect_level_);
-}
-
 void Machine::finish(Cycle end) {
     account_joins(end);
-    source_.finish(end);
-    for_each_unit(*this, [&](Unit, States& states, const Level&) { states.until(end, State::starved); });
-}
-
-Figures Machine::figures(Unit unit) const {
-    if (unit == triangle_queue)
-        return {&source_.states(), source_.pushed(), source_.most(), source_.item_cycles()};
-    Figures found;
-    for_each_unit(*this, [&](Unit its, const States& states, const Level& level) {
-        if (its == unit)
-            found = {&states, level.items(), level.most(), level.item_cycles()};
-    });
-    return found;
-}
-
-void Machine::observe(Unit unit, ItemObserver* observer) {
-    if (unit == triangle_queue)
-        source_.observe(observer);
-    for_each_unit(*this, [&](Unit its, States&, Level& level) {
-        if (its == unit)
-            level.observe(observer);
-    });
-}
-
-TableFigures Machine::table_figures(Unit memory) const {
-    const Table& table = memory == displacement_map             ? displacement_map_
-                         : memory == displacement_map_for_tests ? displacement_map_for_tests_
-                         : memory == normal_map                 ? normal_map_
-                                                                : height_table_;
-    return {table.ports().bank_slots(), table.ports().entries(), table.held_up()};
+    Timetable::finish(end);
 }
 
 }  // namespace tessera::schedule

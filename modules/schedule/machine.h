@@ -2,7 +2,6 @@
 #include <array>
 #include <cstdint>
 
-#include "modules/schedule/backend.h"
 #include "modules/schedule/sequence.h"
 #include "modules/schedule/timetable.h"
 
@@ -14,19 +13,9 @@ class Machine final : public Timetable {
   public:
     explicit Machine(const Plan& plan);
 
-    void send(std::uint64_t triangles, Cycle cycle) override { source_.send(triangles, cycle); }
     const Source::Next& next() override { return next_ = source_.next(free_); }
     void pass(const Facts& facts) override;
-
-    Cycle last() const override { return backend_.last(); }
     void finish(Cycle end) override;
-
-    Figures figures(Unit unit) const override;
-    TableFigures table_figures(Unit memory) const override;
-    void observe(Unit unit, ItemObserver* observer) override;
-    const Source& source() const override { return source_; }
-    std::uint64_t most_ahead_of_parts() const override { return ahead_of_parts_.most(); }
-    std::uint64_t parts_sent() const override { return parts_sent_; }
     std::uint64_t corners(unsigned) const override { return corners_.taken(); }
     std::uint64_t edges(unsigned) const override { return join_edges_.taken(); }
 
@@ -58,8 +47,6 @@ class Machine final : public Timetable {
                 offers[count++] = {from, to};
         }
     };
-    template <class Machine, class Each>
-    static void for_each_unit(Machine& machine, Each&& each);
     void geometry(unsigned part, const Facts& facts);
     void test(unsigned part, const Facts& facts);
     /// Returns when the last entry has come; reads[].requests > 0.
@@ -68,13 +55,7 @@ class Machine final : public Timetable {
     void account_get_triangle(Cycle begin, Cycle joined);
     void account_joins(Cycle first_edge);
 
-    Plan plan_;
-    Source source_;
-    Source::Next next_;
     Cycle free_ = 0;  // Get Triangle
-
-    States get_triangle_states_;
-    Level get_triangle_level_{1};
     Branch to_geometry_, to_tests_;
     Stage calculate_new_p_, displace_vertex_, transform_;
     Stage calculate_new_u_, tex_coord_test_, height_test_, normal_test_, view_test_;
@@ -86,16 +67,13 @@ class Machine final : public Timetable {
     Table displacement_map_, displacement_map_for_tests_, normal_map_, height_table_;
     Cycle vertices_asked_ = 0, heights_asked_ = 0, normals_asked_ = 0;  // the last request was taken
 
-    Input join_triangles_, join_parts_, join_edges_;
+    Input join_parts_, join_edges_;
     History join_starts_;
-    Level ahead_of_parts_;
-    Backend backend_;
     Sequence<Join> joins_;  // that are not accounted for
     Join joining_;
     bool opened_ = false;                          // joining_
     Cycle arrived_ = 0;                            // the triangle itself
     Cycle corners_come_ = 0, corners_bumped_ = 0;  // of a base triangle
-    std::uint64_t parts_sent_ = 0;
 };
 
 }  // namespace tessera::schedule

@@ -30,9 +30,8 @@ class SharedTable {
         : calls_(calls),
           call_(call),
           stalls_(plan.input.stalls),
-          ports_(plan),
+          ports_(plan, std::size_t{plan.under_way} * most_tests_units),
           buffer_(plan.input.depth),
-          level_(std::size_t{plan.under_way} * most_tests_units),
           offers_(std::size_t{plan.input.depth} + most_tests_units) {}
 
     /// Reader number `number` offers a request. True: taken at once.
@@ -66,12 +65,7 @@ class SharedTable {
         }
     }
 
-    Cycle held_up() const { return held_up_; }
-    const Ports& ports() const { return ports_; }
-    States& states() { return states_; }
-    const States& states() const { return states_; }
-    Level& level() { return level_; }
-    const Level& level() const { return level_; }
+    Ports& ports() { return ports_; }
 
   private:
     struct HeldBack {
@@ -105,15 +99,10 @@ class SharedTable {
     }
     void serve(Cycle now) {
         const Request& request = buffer_.front();
-        held_up_ += now - std::max(request.taken, served_);
-        served_ = now;
-        states_.until(now, State::starved);
-        answer_ = std::max(answer_, ports_.serve(request.banks, request.entries, now));
-        states_.until(answer_, State::busy);
-        level_.stay(offers_.front(), answer_);
+        const Cycle answer = ports_.serve(offers_.front(), request.taken, request.banks, request.entries, now);
         offers_.pop();
         if (request.last)
-            request.reader->answered(request.item, answer_);
+            request.reader->answered(request.item, answer);
         buffer_.pop();
     }
 
@@ -126,12 +115,7 @@ class SharedTable {
     unsigned readers_ = 0;                                // that have asked so far
     unsigned turn_ = 0;                                   // of these, the next to be let in
     unsigned waiting_ = 0;                                // of these, those held back
-    States states_;
-    Level level_;
-    Ring<Cycle> offers_;  // of the requests not served
-    Cycle served_ = 0;
-    Cycle answer_ = 0;
-    Cycle held_up_ = 0;
+    Ring<Cycle> offers_;                                  // of the requests not served
 };
 
 }  // namespace tessera::schedule

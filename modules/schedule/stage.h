@@ -112,9 +112,7 @@ class Stage {
     }
 
     States& states() { return states_; }
-    const States& states() const { return states_; }
     Level& level() { return level_; }
-    const Level& level() const { return level_; }
 
   private:
     Input input_;

@@ -70,10 +70,8 @@ void SteppedMachine::Tests::collect() {
 }
 
 SteppedMachine::SteppedMachine(const Plan& plan)
-    : plan_(plan),
+    : Timetable(plan),
       passes_(plan.join_triangles.depth + plan.join_places + 1),
-      source_(plan.source),
-      backend_(plan, source_),
       displacement_map_(calls_, plan.displacement_map, displacement_map_call),
       displacement_map_for_tests_(calls_, plan.displacement_map_for_tests, displacement_map_for_tests_call),
       normal_map_(calls_, plan.normal_map, normal_map_call),
@@ -84,9 +82,14 @@ SteppedMachine::SteppedMachine(const Plan& plan)
       to_join_(calls_, plan.join_parts, transform_call, join_call),
       calculate_new_p_(calls_, passes_, calculate_new_p_call, to_calculate_new_p_, plan.calculate_new_p.pipeline),
       displace_vertex_(calls_, passes_, displace_vertex_call, to_displace_vertex_, plan.displace_vertex.pipeline),
-      transform_(calls_, passes_, transform_call, to_transform_, plan.transform.pipeline),
-      join_triangles_(plan.join_triangles),
-      ahead_of_parts_(plan.join_triangles.depth) {
+      transform_(calls_, passes_, transform_call, to_transform_, plan.transform.pipeline) {
+    has(calculate_new_p, calculate_new_p_);
+    has(displace_vertex, displace_vertex_);
+    has(transform, transform_);
+    has(displacement_map, displacement_map_.ports());
+    has(displacement_map_for_tests, displacement_map_for_tests_.ports());
+    has(normal_map, normal_map_.ports());
+    has(height_table, height_table_.ports());
     calculate_new_p_.delivers_to(to_displace_vertex_, all_parts, displace_vertex);
     displace_vertex_.delivers_to(to_transform_, all_parts, transform);
     displace_vertex_.reads(&Facts::displace_vertex, 0, displacement_map_, displacement_map);
@@ -97,19 +100,26 @@ SteppedMachine::SteppedMachine(const Plan& plan)
     branches_[0] = {&to_calculate_new_p_, all_parts, 0, 0, calculate_new_p};
     for (unsigned k = 0; k < most_tests_units; ++k) {
         tests_[k] = std::make_unique<Tests>(*this, plan.tests[k], k);
-        transform_.delivers_to(tests_[k]->corners, vertex_parts, of_tests(k, view_test));
+        Tests& tests = *tests_[k];
+        has(of_tests(k, calculate_new_u), tests.calculate_new_u);
+        has(of_tests(k, tex_coord_test), tests.tex_coord_test);
+        has(of_tests(k, height_test), tests.height_test);
+        has(of_tests(k, normal_test), tests.normal_test);
+        has(of_tests(k, view_test), tests.view_test);
+        has(of_tests(k, collect_tests), tests.collect_states, tests.collect_level);
+        transform_.delivers_to(tests.corners, vertex_parts, of_tests(k, view_test));
         const unsigned takes = 1u << (first_edge_part + k) | 1u << k | 1u << (k + 1) % 3;
-        stages_[of_tests_call(k, calculate_new_u_call)] = &tests_[k]->calculate_new_u;
-        stages_[of_tests_call(k, tex_coord_test_call)] = &tests_[k]->tex_coord_test;
-        stages_[of_tests_call(k, height_test_call)] = &tests_[k]->height_test;
-        stages_[of_tests_call(k, normal_test_call)] = &tests_[k]->normal_test;
-        stages_[of_tests_call(k, view_test_call)] = &tests_[k]->view_test;
-        branches_[1 + k] = {&tests_[k]->input, takes, 0, 0, of_tests(k, calculate_new_u)};
+        stages_[of_tests_call(k, calculate_new_u_call)] = &tests.calculate_new_u;
+        stages_[of_tests_call(k, tex_coord_test_call)] = &tests.tex_coord_test;
+        stages_[of_tests_call(k, height_test_call)] = &tests.height_test;
+        stages_[of_tests_call(k, normal_test_call)] = &tests.normal_test;
+        stages_[of_tests_call(k, view_test_call)] = &tests.view_test;
+        branches_[1 + k] = {&tests.input, takes, 0, 0, of_tests(k, calculate_new_u)};
     }
 }
 
 void SteppedMachine::send(std::uint64_t triangles, Cycle cycle) {
-    source_.send(triangles, cycle);
+    Timetable::send(triangles, cycle);
     calls_.wake_at(get_triangle_call, cycle);
 }
 
@@ -293,63 +303,6 @@ bool SteppedMachine::decide() {
         calls_.wake(get_triangle_call);
     ++joined_;
     return true;
-}
-
-/// each(unit, states, level), for all but the Triangle Queue.
-template <class Self, class Each>
-void SteppedMachine::for_each_unit(Self& m, Each&& each) {
-    const auto with = [&](Unit unit, auto& it) { each(unit, it.states(), it.level()); };
-    each(get_triangle, m.get_triangle_states_, m.get_triangle_level_);
-    with(calculate_new_p, m.calculate_new_p_);
-    with(displace_vertex, m.displace_vertex_);
-    with(transform, m.transform_);
-    Backend::for_each_unit(m.backend_, each);
-    with(displacement_map, m.displacement_map_);
-    with(displacement_map_for_tests, m.displacement_map_for_tests_);
-    with(normal_map, m.normal_map_);
-    with(height_table, m.height_table_);
-    for (unsigned k = 0; k < most_tests_units; ++k) {
-        auto& tests = *m.tests_[k];
-        with(of_tests(k, calculate_new_u), tests.calculate_new_u);
-        with(of_tests(k, tex_coord_test), tests.tex_coord_test);
-        with(of_tests(k, height_test), tests.height_test);
-        with(of_tests(k, normal_test), tests.normal_test);
-        with(of_tests(k, view_test), tests.view_test);
-        each(of_tests(k, collect_tests), tests.collect_states, tests.collect_level);
-    }
-}
-
-void SteppedMachine::finish(Cycle end) {
-    source_.finish(end);
-    for_each_unit(*this, [&](Unit, States& states, const Level&) { states.until(end, State::starved); });
-}
-
-Figures SteppedMachine::figures(Unit unit) const {
-    if (unit == triangle_queue)
-        return {&source_.states(), source_.pushed(), source_.most(), source_.item_cycles()};
-    Figures found;
-    for_each_unit(*this, [&](Unit its, const States& states, const Level& level) {
-        if (its == unit)
-            found = {&states, level.items(), level.most(), level.item_cycles()};
-    });
-    return found;
-}
-
-void SteppedMachine::observe(Unit unit, ItemObserver* observer) {
-    if (unit == triangle_queue)
-        source_.observe(observer);
-    for_each_unit(*this, [&](Unit its, States&, Level& level) {
-        if (its == unit)
-            level.observe(observer);
-    });
-}
-
-TableFigures SteppedMachine::table_figures(Unit memory) const {
-    const Memory& table = memory == displacement_map             ? displacement_map_
-                          : memory == displacement_map_for_tests ? displacement_map_for_tests_
-                          : memory == normal_map                 ? normal_map_
-                                                                 : height_table_;
-    return {table.ports().bank_slots(), table.ports().entries(), table.held_up()};
 }
 
 }  // namespace tessera::schedule

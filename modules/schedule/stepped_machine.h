@@ -4,11 +4,11 @@
 #include <memory>
 #include <vector>
 
-#include "modules/schedule/backend.h"
 #include "modules/schedule/calls.h"
 #include "modules/schedule/link.h"
 #include "modules/schedule/shared_table.h"
 #include "modules/schedule/stepped_stage.h"
+#include "modules/schedule/timetable.h"
 
 namespace tessera::schedule {
 
@@ -23,16 +23,6 @@ class SteppedMachine final : public Timetable {
     void send(std::uint64_t triangles, Cycle cycle) override;
     const Source::Next& next() override;
     void pass(const Facts& facts) override;
-
-    Cycle last() const override { return backend_.last(); }
-    void finish(Cycle end) override;
-
-    Figures figures(Unit unit) const override;
-    TableFigures table_figures(Unit memory) const override;
-    void observe(Unit unit, ItemObserver* observer) override;
-    const Source& source() const override { return source_; }
-    std::uint64_t most_ahead_of_parts() const override { return ahead_of_parts_.most(); }
-    std::uint64_t parts_sent() const override { return parts_sent_; }
     std::uint64_t corners(unsigned k) const override { return tests_[k]->corners.taken(); }
     std::uint64_t edges(unsigned k) const override { return tests_[k]->edges.taken(); }
 
@@ -91,8 +81,6 @@ class SteppedMachine final : public Timetable {
         Unit consumer = nobody;
     };
 
-    template <class Self, class Each>
-    static void for_each_unit(Self& self, Each&& each);
     void call(unsigned unit);
     bool get_triangle_begins();
     bool send_parts(Branch& branch);
@@ -102,12 +90,8 @@ class SteppedMachine final : public Timetable {
     bool open(std::uint64_t pass);
     bool decide();
 
-    Plan plan_;
     Calls calls_;
     Passes passes_;
-    Source source_;
-    Source::Next next_;
-    Backend backend_;
 
     std::uint64_t begun_ = 0;   // passes
     std::uint64_t opened_ = 0;  // of these, in Pass or Tessellate
@@ -117,19 +101,14 @@ class SteppedMachine final : public Timetable {
     bool sending_ = false;  // Get Triangle
     Cycle begin_ = 0;
     std::array<Branch, 1 + most_tests_units> branches_;
-    std::uint64_t parts_sent_ = 0;
     State get_triangle_state_ = State::starved;  // since some earlier cycle
     Unit get_triangle_by_ = nobody;
-    States get_triangle_states_;
-    Level get_triangle_level_{1};
 
     Memory displacement_map_, displacement_map_for_tests_, normal_map_, height_table_;
     Link to_calculate_new_p_, to_displace_vertex_, to_transform_, to_join_;
     SteppedStage calculate_new_p_, displace_vertex_, transform_;
     std::array<std::unique_ptr<Tests>, most_tests_units> tests_;
     std::array<SteppedStage*, Calls::most_units> stages_{};  // by their calls
-    Input join_triangles_;
-    Level ahead_of_parts_;
 };
 
 }  // namespace tessera::schedule

@@ -90,9 +90,7 @@ class SteppedStage {
         }
     }
     States& states() { return states_; }
-    const States& states() const { return states_; }
     Level& level() { return level_; }
-    const Level& level() const { return level_; }
 
   private:
     struct InPipeline {

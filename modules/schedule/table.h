@@ -18,14 +18,19 @@ struct TablePlan {
     unsigned under_way = 1;  ///< most requests at a time
 };
 
-/// The banks of a table, and their ports.
+/// What serves a table's requests, in order: its banks and their ports.
 ///
 /// A request is served when a port of each bank it reads is free or, with a window, when request n - window has sent its last
-/// address.
+/// address; answer[n] = max(answer[n - 1], its last address + latency).
 class Ports {
   public:
-    explicit Ports(const TablePlan& plan)
-        : plan_(plan), free_(std::size_t{plan.banks} * plan.ports), bank_slots_(plan.banks), window_(plan.window) {}
+    /// most: requests at a time.
+    Ports(const TablePlan& plan, std::size_t most)
+        : plan_(plan),
+          free_(std::size_t{plan.banks} * plan.ports),
+          bank_slots_(plan.banks),
+          window_(plan.window),
+          level_(most) {}
 
     /// The first cycle in which the ports allow a request for `count` entries, which lie in these banks.
     Cycle ready(const std::uint8_t* banks, unsigned count) {
@@ -38,18 +43,30 @@ class Ports {
             cycle = std::max(cycle, first_free(banks[k]));
         return cycle;
     }
-    /// It is served in `cycle`. Returns when its last entry comes.
-    Cycle serve(const std::uint8_t* banks, unsigned count, Cycle cycle) {
+    /// It was offered and taken in these cycles and is served in `cycle`. Returns when its last entry comes.
+    Cycle serve(Cycle offer, Cycle taken, const std::uint8_t* banks, unsigned count, Cycle cycle) {
+        held_up_ += cycle - std::max(taken, served_);
+        served_ = cycle;
+        states_.until(cycle, State::starved);
         const Cycle last = read(banks, count, cycle);
         if (plan_.window > 0)
             window_.add(last + 1);
         entries_ += count;
-        return last + plan_.latency;
+        answer_ = std::max(answer_, last + plan_.latency);
+        states_.until(answer_, State::busy);
+        level_.stay(offer, answer_);
+        return answer_;
     }
+    /// When the last request was served.
+    Cycle served() const { return served_; }
 
     std::uint64_t entries() const { return entries_; }
+    /// Cycles in which the oldest request waited for a port.
+    Cycle held_up() const { return held_up_; }
     /// Port slots taken of each bank.
     const std::vector<std::uint64_t>& bank_slots() const { return bank_slots_; }
+    States& states() { return states_; }
+    Level& level() { return level_; }
 
   private:
     Cycle& first_free(std::size_t bank) {
@@ -79,48 +96,33 @@ class Ports {
     std::vector<std::uint64_t> bank_slots_;
     History window_;
     std::uint64_t entries_ = 0;
+    States states_;
+    Level level_;
+    Cycle served_ = 0;
+    Cycle answer_ = 0;
+    Cycle held_up_ = 0;
 };
 
-/// A memory with one table, read by one unit.
-///
-/// served[n] = max(taken[n], served[n - 1], its ports); answer[n] = max(answer[n - 1], its last address + latency).
+/// A memory with one table, read by one unit: served[n] = max(taken[n], served[n - 1], its ports).
 class Table {
   public:
-    explicit Table(const TablePlan& plan) : input_(plan.input), ports_(plan), level_(plan.under_way) {}
+    explicit Table(const TablePlan& plan) : input_(plan.input), ports_(plan, plan.under_way) {}
 
     /// The unit asks for `count` entries, which lie in these banks. Returns when they have come.
     Cycle request(Cycle offer, const std::uint8_t* banks, unsigned count) {
         taken_ = input_.take(offer);
-        const Cycle free = std::max(taken_, served_);
-        served_ = std::max(free, ports_.ready(banks, count));
-        held_up_ += served_ - free;
-        input_.pop(served_);
-        states_.until(served_, State::starved);
-        answer_ = std::max(answer_, ports_.serve(banks, count, served_));
-        states_.until(answer_, State::busy);
-        level_.stay(offer, answer_);
-        return answer_;
+        const Cycle served = std::max({taken_, ports_.served(), ports_.ready(banks, count)});
+        input_.pop(served);
+        return ports_.serve(offer, taken_, banks, count, served);
     }
     /// When the last request was taken.
     Cycle taken() const { return taken_; }
-
-    /// Cycles in which the oldest request waited for a port.
-    Cycle held_up() const { return held_up_; }
-    const Ports& ports() const { return ports_; }
-    States& states() { return states_; }
-    const States& states() const { return states_; }
-    Level& level() { return level_; }
-    const Level& level() const { return level_; }
+    Ports& ports() { return ports_; }
 
   private:
     Input input_;
     Ports ports_;
-    States states_;
-    Level level_;
     Cycle taken_ = 0;
-    Cycle served_ = 0;
-    Cycle answer_ = 0;
-    Cycle held_up_ = 0;
 };
 
 }  // namespace tessera::schedule

@@ -162,10 +162,10 @@ TEST_CASE("schedule: a table with one port reads an entry a cycle, in order") {
     CHECK(table.taken() == 10);
     CHECK(table.request(10, no_banks, 1) == 15 + 3);
     CHECK(table.taken() == 14);  // when the one before is served
-    CHECK(table.held_up() == 5);
+    CHECK(table.ports().held_up() == 5);
     CHECK(table.ports().bank_slots().front() == 6);
-    CHECK(table.level().most() == 3);
-    CHECK(table.states().cycles_in(State::busy) == 8);
+    CHECK(table.ports().level().most() == 3);
+    CHECK(table.ports().states().cycles_in(State::busy) == 8);
 }
 
 TEST_CASE("schedule: a table's narrow port takes several cycles an entry") {
@@ -178,7 +178,7 @@ TEST_CASE("schedule: a request waits for a port of each of its banks") {
     constexpr std::uint8_t first[] = {0, 0, 0}, both[] = {0, 1}, third[] = {2};
     CHECK(table.request(0, first, 3) == 3);
     CHECK(table.request(0, both, 2) == 4);
-    CHECK(table.held_up() == 3);
+    CHECK(table.ports().held_up() == 3);
     CHECK(table.request(0, third, 1) == 4);  // its bank is free from cycle 0 on: served in 3, after the one before
     CHECK(table.request(0, third, 1) == 5);
 }
@@ -396,7 +396,7 @@ TEST_CASE("schedule: readers of a table with a full buffer take turns") {
     CHECK(readers[1].answers == Answers{4 + 1 + 3});
     CHECK(readers[2].answers == Answers{6 + 1 + 3});
     CHECK(readers[0].taken == 1);  // later than it was offered
-    CHECK(table.held_up() == 8);
-    CHECK(table.level().items() == 5);
+    CHECK(table.ports().held_up() == 8);
+    CHECK(table.ports().level().items() == 5);
     CHECK(table.ports().entries() == 5);
 }
