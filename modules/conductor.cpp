@@ -41,9 +41,9 @@ schedule::TablePlan table_plan(const schedule::InputPlan& input, const MemoryTim
 }
 
 std::unique_ptr<schedule::Timetable> make_schedule(const schedule::Plan& plan) {
-    if (plan.tests_units == 1)
-        return std::make_unique<schedule::Machine>(plan);
-    return std::make_unique<schedule::SteppedMachine>(plan);
+    if (plan.tests_units > 1 || plan.heights_from_displacement_map)
+        return std::make_unique<schedule::SteppedMachine>(plan);
+    return std::make_unique<schedule::Machine>(plan);
 }
 
 }  // namespace
@@ -56,8 +56,6 @@ std::string Conductor::key_without_schedule(const Design& design, const datapath
         return "hardware.test_order";
     if (design.queue.capacity > 0)
         return "hardware.queue_capacity";
-    if (formats.codes)
-        return "hardware.one_texel_from_map";
     const auto cached = [&](const MemoryTiming& table) { return table.cache.bytes > 0; };
     if (cached(design.timing.displacement_map))
         return "timing.displacement_map_cache_bytes";
@@ -115,13 +113,17 @@ schedule::Plan Conductor::plan_of(Pipeline& machine, const Rasteriser& rasterise
     plan.tessellation = pipeline_plan(t.tessellation);
     plan.lighting = {inputs.of(machine.lighting.from_pass_or_tessellate), pipeline_plan(t.lighting)};
     plan.rasteriser = inputs.of(rasteriser.from_lighting);
+    const auto displacement_map_plan = [&](const TableMemory& side, unsigned under_way) {
+        return table_plan(inputs.of(side, t.displacement_map.buffer), t.displacement_map,
+                          registers.displacement_map.entry_bytes, under_way);
+    };
+    const unsigned displaced = plan.displace_vertex.pipeline.stages + 1;
+    const unsigned tested = plan.tests[0].height_test.pipeline.stages + 1;
+    plan.heights_from_displacement_map = formats.codes;
     plan.displacement_map =
-        table_plan(inputs.of(machine.displacement_map, t.displacement_map.buffer), t.displacement_map,
-                   registers.displacement_map.entry_bytes, plan.displace_vertex.pipeline.stages + 1);
+        displacement_map_plan(machine.displacement_map, std::max(displaced, formats.codes ? tested : 0));
     if (machine.displacement_map_for_tests != nullptr)
-        plan.displacement_map_for_tests =
-            table_plan(inputs.of(*machine.displacement_map_for_tests, t.displacement_map.buffer), t.displacement_map,
-                       registers.displacement_map.entry_bytes, plan.tests[0].height_test.pipeline.stages + 1);
+        plan.displacement_map_for_tests = displacement_map_plan(*machine.displacement_map_for_tests, tested);
     plan.normal_map = table_plan(inputs.of(machine.normal_map, t.normal_map.buffer), t.normal_map,
                                  registers.normal_map.entry_bytes, plan.tests[0].normal_test.pipeline.stages + 1);
     plan.height_table =

@@ -89,7 +89,7 @@ step() {
     local name=$1 begin=$SECONDS verdict=passed line
     shift
     printf '\n======== %s ========\n' "$name"
-    "$@" || { verdict=FAILED && failed_steps+=("$name"); }
+    "$@" || { verdict=FAILED && failed_steps+=("$name: $*"); }
     printf -v line '%-7s %5d s  %s' "$verdict" "$((SECONDS - begin))" "$name"
     summary+=("$line")
     printf -- '-------- %s\n' "$line"

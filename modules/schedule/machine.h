@@ -7,8 +7,8 @@
 
 namespace tessera::schedule {
 
-/// When everything happens in the machine of triangles with one Tessellation Tests unit: each item's cycles follow from
-/// those of the items before it (README.md).
+/// When everything happens in the machine of triangles if each memory has one reader: each item's cycles follow from those
+/// of the items before it (README.md).
 class Machine final : public Timetable {
   public:
     explicit Machine(const Plan& plan);

@@ -31,7 +31,8 @@ struct Plan {
     StagePlan lighting;
     InputPlan rasteriser;
     TablePlan displacement_map, normal_map, height_table;
-    TablePlan displacement_map_for_tests;  ///< the height test's second memory, if it has one
+    TablePlan displacement_map_for_tests;        ///< the height test's second memory, if it has one of its own
+    bool heights_from_displacement_map = false;  ///< that memory is the displacement map itself
 };
 
 }  // namespace tessera::schedule

@@ -9,13 +9,15 @@
 
 namespace tessera::schedule {
 
-/// A memory with one table and several readers, whose requests it takes in the order in which they come. While its buffer
+/// A memory with one table and up to four readers, whose requests it takes in the order in which they come. While its buffer
 /// is full each reader's next one waits; then they take turns.
 ///
 /// Reader: accepted(), once its request has been taken; answered(item, cycle), once it is known when the last entry comes.
 template <class Reader>
 class SharedTable {
   public:
+    static constexpr unsigned most_readers = most_tests_units + 1;
+
     struct Request {
         Reader* reader = nullptr;
         const std::uint8_t* banks = nullptr;  ///< of each entry
@@ -30,9 +32,9 @@ class SharedTable {
         : calls_(calls),
           call_(call),
           stalls_(plan.input.stalls),
-          ports_(plan, std::size_t{plan.under_way} * most_tests_units),
+          ports_(plan, std::size_t{plan.under_way} * most_readers),
           buffer_(plan.input.depth),
-          offers_(std::size_t{plan.input.depth} + most_tests_units) {}
+          offers_(std::size_t{plan.input.depth} + most_readers) {}
 
     /// Reader number `number` offers a request. True: taken at once.
     bool offer(const Request& request, unsigned number) {
@@ -111,11 +113,11 @@ class SharedTable {
     RandomStalls stalls_;
     Ports ports_;
     Ring<Request> buffer_;
-    std::array<HeldBack, most_tests_units> held_back_{};  // by reader
-    unsigned readers_ = 0;                                // that have asked so far
-    unsigned turn_ = 0;                                   // of these, the next to be let in
-    unsigned waiting_ = 0;                                // of these, those held back
-    Ring<Cycle> offers_;                                  // of the requests not served
+    std::array<HeldBack, most_readers> held_back_{};  // by reader
+    unsigned readers_ = 0;                            // that have asked so far
+    unsigned turn_ = 0;                               // of these, the next to be let in
+    unsigned waiting_ = 0;                            // of these, those held back
+    Ring<Cycle> offers_;                              // of the requests not served
 };
 
 }  // namespace tessera::schedule

@@ -37,10 +37,13 @@ SteppedMachine::Tests::Tests(SteppedMachine& machine, const TestsPlan& plan, uns
     SteppedStage* const all[] = {&normal_test, &tex_coord_test, &height_test, &view_test};
     for (std::size_t test = 0; test < results.size(); ++test)
         all[test]->delivers_to(results[test], edge_parts, of_tests(k, collect_tests));
-    normal_test.reads(&Facts::normal_test, k, machine.normal_map_, normal_map);
+    normal_test.reads(&Facts::normal_test, machine.normal_map_, k, normal_map);
     normal_test.waits_for(&Pass::bumped, k);
-    height_test.reads(&Facts::height_test, k, machine.height_table_, height_table);
-    height_test.reads_second(machine.displacement_map_for_tests_, displacement_map_for_tests);
+    height_test.reads(&Facts::height_test, machine.height_table_, k, height_table);
+    if (machine.plan_.heights_from_displacement_map)
+        height_test.reads_second(machine.displacement_map_, 1 + k, displacement_map);  // Displace Vertex is the first
+    else
+        height_test.reads_second(machine.displacement_map_for_tests_, k, displacement_map_for_tests);
     view_test.waits_for(&Pass::on_screen, k, &corners, transform);
 }
 
@@ -92,15 +95,14 @@ SteppedMachine::SteppedMachine(const Plan& plan)
     has(height_table, height_table_.ports());
     calculate_new_p_.delivers_to(to_displace_vertex_, all_parts, displace_vertex);
     displace_vertex_.delivers_to(to_transform_, all_parts, transform);
-    displace_vertex_.reads(&Facts::displace_vertex, 0, displacement_map_, displacement_map);
+    displace_vertex_.reads(&Facts::displace_vertex, displacement_map_, 0, displacement_map);
     transform_.delivers_to(to_join_, all_parts, pass_or_tessellate);
     stages_[transform_call] = &transform_;
     stages_[displace_vertex_call] = &displace_vertex_;
     stages_[calculate_new_p_call] = &calculate_new_p_;
-    branches_[0] = {&to_calculate_new_p_, all_parts, 0, 0, calculate_new_p};
-    for (unsigned k = 0; k < most_tests_units; ++k) {
-        tests_[k] = std::make_unique<Tests>(*this, plan.tests[k], k);
-        Tests& tests = *tests_[k];
+    branches_.push_back({&to_calculate_new_p_, all_parts, 0, 0, calculate_new_p});
+    for (unsigned k = 0; k < plan.tests_units; ++k) {
+        Tests& tests = *tests_.emplace_back(std::make_unique<Tests>(*this, plan.tests[k], k));
         has(of_tests(k, calculate_new_u), tests.calculate_new_u);
         has(of_tests(k, tex_coord_test), tests.tex_coord_test);
         has(of_tests(k, height_test), tests.height_test);
@@ -108,13 +110,14 @@ SteppedMachine::SteppedMachine(const Plan& plan)
         has(of_tests(k, view_test), tests.view_test);
         has(of_tests(k, collect_tests), tests.collect_states, tests.collect_level);
         transform_.delivers_to(tests.corners, vertex_parts, of_tests(k, view_test));
-        const unsigned takes = 1u << (first_edge_part + k) | 1u << k | 1u << (k + 1) % 3;
+        const unsigned of_edge = 1u << (first_edge_part + k) | 1u << k | 1u << (k + 1) % 3;
+        const unsigned takes = plan.tests_units == 1 ? edge_parts | vertex_parts : of_edge;
         stages_[of_tests_call(k, calculate_new_u_call)] = &tests.calculate_new_u;
         stages_[of_tests_call(k, tex_coord_test_call)] = &tests.tex_coord_test;
         stages_[of_tests_call(k, height_test_call)] = &tests.height_test;
         stages_[of_tests_call(k, normal_test_call)] = &tests.normal_test;
         stages_[of_tests_call(k, view_test_call)] = &tests.view_test;
-        branches_[1 + k] = {&tests.input, takes, 0, 0, of_tests(k, calculate_new_u)};
+        branches_.push_back({&tests.input, takes, 0, 0, of_tests(k, calculate_new_u)});
     }
 }
 
@@ -168,7 +171,7 @@ void SteppedMachine::pass(const Facts& facts) {
         branch.next = std::max(branch.next, now + plan_.get_triangle.latency);
         calls_.wake_at(get_triangle_call, branch.next);
     }
-    for (unsigned k = 0; k < most_tests_units; ++k) {
+    for (unsigned k = 0; k < plan_.tests_units; ++k) {
         Branch& branch = branches_[1 + k];
         if (!facts.tested)
             branch.left = 0;
@@ -253,7 +256,7 @@ void SteppedMachine::take_parts() {
         pass.geometry_left &= ~(1u << part.part());
         pass.join.geometry = now;
     }
-    for (unsigned k = 0; k < most_tests_units; ++k) {
+    for (unsigned k = 0; k < plan_.tests_units; ++k) {
         Link& edges = tests_[k]->edges;
         for (; !edges.empty() && edges.front().pass() < opened_; edges.pop()) {
             Pass& pass = passes_[edges.front().pass()];

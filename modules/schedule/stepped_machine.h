@@ -12,9 +12,9 @@
 
 namespace tessera::schedule {
 
-/// When everything happens in the machine of triangles with three Tessellation Tests units. Their readers share each memory's
-/// ports in the order of time, and one unit may be passes ahead of another: the order of the items is no order of
-/// evaluation. So the units in front of Pass or Tessellate's decision are called cycle by cycle, without their data, as the clock
+/// When everything happens in the machine of triangles with memories that several units read: with three Tessellation Tests
+/// units, or codes for the height test from the displacement map. The readers share a memory's ports in the order of time, and
+/// one may be passes ahead of another: the order of the items is no order of evaluation. So the units in front of Pass or Tessellate's decision are called cycle by cycle, without their data, as the clock
 /// calls those of the machine; what follows from the decision is known at once (backend.h).
 class SteppedMachine final : public Timetable {
   public:
@@ -100,14 +100,14 @@ class SteppedMachine final : public Timetable {
 
     bool sending_ = false;  // Get Triangle
     Cycle begin_ = 0;
-    std::array<Branch, 1 + most_tests_units> branches_;
+    std::vector<Branch> branches_;
     State get_triangle_state_ = State::starved;  // since some earlier cycle
     Unit get_triangle_by_ = nobody;
 
     Memory displacement_map_, displacement_map_for_tests_, normal_map_, height_table_;
     Link to_calculate_new_p_, to_displace_vertex_, to_transform_, to_join_;
     SteppedStage calculate_new_p_, displace_vertex_, transform_;
-    std::array<std::unique_ptr<Tests>, most_tests_units> tests_;
+    std::vector<std::unique_ptr<Tests>> tests_;
     std::array<SteppedStage*, Calls::most_units> stages_{};  // by their calls
 };
 

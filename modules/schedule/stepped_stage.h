@@ -46,12 +46,11 @@ class SteppedStage {
     /// parts: those that the consumer takes, one bit each.
     void delivers_to(Link& link, unsigned parts, Unit consumer) { outputs_.push_back({&link, parts, consumer}); }
     /// The entries that a triangle's parts need, and the memory. number: which of its readers this is.
-    void reads(Facts::Reads Facts::*reads, unsigned number, Memory& memory, Unit its) {
+    void reads(Facts::Reads Facts::*reads, Memory& memory, unsigned number, Unit its) {
         reads_ = reads;
-        number_ = number;
-        memories_[0] = {&memory, its};
+        memories_[0] = {&memory, number, its};
     }
-    void reads_second(Memory& memory, Unit its) { memories_[1] = {&memory, its}; }
+    void reads_second(Memory& memory, unsigned number, Unit its) { memories_[1] = {&memory, number, its}; }
     /// Edges wait for their triangle's corners, of Tessellation Tests unit `number`: those that the unit itself has read or, if
     /// there is such a link, those that come from there.
     void waits_for(Pass::CornersOfTests Pass::*corners, unsigned number, Link* from = nullptr, Unit awaited = nobody) {
@@ -162,7 +161,8 @@ class SteppedStage {
             const std::uint8_t* const banks = &reads.banks[asked_entries_];
             asked_entries_ += entries;
             const bool last = ++asked_ == to_ask_;
-            on_offer_ = !memories_[reads.memory].table->offer({this, banks, entries, last, started_ - 1}, number_);
+            const ItsMemory& memory = memories_[reads.memory];
+            on_offer_ = !memory.table->offer({this, banks, entries, last, started_ - 1}, memory.number);
         }
         return !on_offer_;
     }
@@ -202,6 +202,7 @@ class SteppedStage {
 
     struct ItsMemory {
         Memory* table = nullptr;
+        unsigned number = 0;  ///< which of its readers this is
         Unit unit = nobody;
     };
 

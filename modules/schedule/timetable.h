@@ -16,7 +16,8 @@ struct Figures {
 };
 
 /// When everything happens in the machine of triangles. Here: where the triangles come from, what follows from a decision,
-/// and the units' figures. What lies between is another matter for one Tessellation Tests unit than for three.
+/// and the units' figures. What lies between is known in the order of the
+/// items where each memory has one reader (machine.h), else in the order of time (stepped_machine.h).
 class Timetable {
   public:
     explicit Timetable(const Plan& plan);

@@ -53,7 +53,6 @@ RandomCase make_scheduled_case(std::uint64_t seed) {
     hardware.work = Work::triangle;
     hardware.test_order = TestOrder::parallel;
     hardware.edge_lanes = hardware.normal_tests = 1;
-    hardware.one_texel_from_map = false;
     hardware.queue_capacity = 0;
     hardware.transform_pipelines = random.one_of<std::int64_t>({1, 1, 2, 3, 7});
     hardware.queue_watermark = random.one_of<std::int64_t>({1, 1, 2, 5, 30, 1000});

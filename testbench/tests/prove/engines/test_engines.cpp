@@ -108,6 +108,7 @@ TEST_CASE("which engine times a run, and why") {
     CHECK(chosen("") == "schedule: this design supports it");
     CHECK(chosen("hardware.height_test=curvature") == "schedule: this design supports it");
     CHECK(chosen("hardware.tests_units=3") == "schedule: this design supports it");
+    CHECK(chosen("hardware.one_texel_from_map=true") == "schedule: this design supports it");
     CHECK(chosen("timing.engine=schedule") == "schedule: timing.engine");
     CHECK(chosen("timing.engine=clocked") == "clocked: timing.engine");
     CHECK(chosen("mode=functional") == "clocked: ");
@@ -115,7 +116,6 @@ TEST_CASE("which engine times a run, and why") {
         {"hardware.work", "\"family\""},
         {"hardware.test_order", "\"cheap_first\""},
         {"hardware.queue_capacity", "64"},
-        {"hardware.one_texel_from_map", "true"},
         {"timing.displacement_map_cache_bytes", "4096"},
         {"timing.normal_map_cache_bytes", "4096"},
         {"timing.summed_height_table_cache_bytes", "4096"},
