@@ -88,7 +88,7 @@ class RegisterCheck {
         check_summed_height();
     }
 
-    /// w is as wide as a position, with the most fraction bits, up to the position's, with which the farthest w fits.
+    /// w has a position's width and the most fraction bits, up to the position's, with which the farthest w fits.
     void check_view_distance() {
         const Format& hardware = formats_.view_distance;
         format("view_distance", hardware, Format::make_signed(formats_.position.bits, hardware.fraction));
@@ -163,7 +163,8 @@ class RegisterCheck {
             return fmt::format("the displaced mesh reaches {:.6g} world units, a position {:.6g}",
                                (reach + height) * scale, limit);
         });
-        // The largest scale that leaves half of the range free: S's register holds at most twice the range of heights.
+        // The largest scale that leaves half of the range free: the register of S holds at most twice the range of
+        // heights.
         const Job::Formats& asked = job_.formats;
         const double quarter = std::ldexp(1.0, static_cast<int>(asked.position_bits - asked.position_fraction) - 3);
         const double used = (reach + 2 * height) * scale;
@@ -335,7 +336,7 @@ class RegisterCheck {
                 return fmt::format("transform.exponent = {}, with which the rows reach {:.6g}: not in 1/2 .. 1",
                                    transform.exponent, reach);
             });
-        // Beyond every w, all the same.
+        // Values beyond every possible w are equivalent.
         judge_.judge("transform.near_plane", number(transform.near_plane),
                      std::min(view_.near_plane * matrix * position, 0x1p62), rounded_down);
         const std::array<double, 3> eye{view_.eye.x, view_.eye.y, view_.eye.z};
