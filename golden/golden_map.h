@@ -80,8 +80,7 @@ class Map {
     /// Uses the given normal map, e.g. the hardware's, dequantised.
     void set_normals(std::vector<glm::dvec3> normals);
 
-    /// Sets the displacement map's heights, in the author's codes. Everything else is still derived from the original
-    /// codes.
+    /// Sets the displacement map's heights, in codes. Everything else is still derived from the original codes.
     void set_heights(std::vector<double> heights);
 
     /// Uses a Rank Table, in place of the Summed Height Test. It may be larger than the map.

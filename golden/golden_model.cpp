@@ -67,9 +67,9 @@ double mipmap_deviation(const Vertex& i, const Vertex& j, const Vertex& m, const
     return std::abs(height(m) - (height(i) + height(j)) / 2);
 }
 
+// Section 4.7. A rank and a bound, of r and s bits, have 6 and 5 bits in front of the point.
 bool asks_by_rank(const Map::Rank& rank, const Vertex& i, const Vertex& j, const Parameters& parameters) {
     if (parameters.rank_view == RankView::none)
-// Section 4.7. A rank and a bound, of r and s bits, have 6 and 5 bits in front of the point.
         return rank.rank > parameters.rank_threshold || rank.bound > parameters.bound_threshold;
     const double distance = (i.distance + j.distance) / 2, half_step = parameters.distance_step / 2;
     const double octaves = parameters.rank_view == RankView::per_pixel ? 1 : 0.5;

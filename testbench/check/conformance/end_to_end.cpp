@@ -92,8 +92,7 @@ double largest_turn(const BaseTriangles& base) {
     return turn;
 }
 
-/// Whether all normals of each base triangle are the same unit vector along an axis, so that they and their means are
-/// exact.
+/// Whether each base triangle's normals are all the same unit vector along an axis: they and their means are exact.
 bool normals_are_exact(const BaseTriangles& base) {
     return largest_turn(base) == 0 && std::all_of(base.begin(), base.end(), [](const auto& t) {
                const glm::dvec3 n = glm::abs(t[0].normal);

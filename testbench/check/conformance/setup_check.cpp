@@ -163,8 +163,7 @@ class RegisterCheck {
             return fmt::format("the displaced mesh reaches {:.6g} world units, a position {:.6g}",
                                (reach + height) * scale, limit);
         });
-        // The largest scale that leaves half of the range free: the register of S holds at most twice the range of
-        // heights.
+        // The largest scale that leaves half of the range free: S's register holds at most twice the range of heights.
         const Job::Formats& asked = job_.formats;
         const double quarter = std::ldexp(1.0, static_cast<int>(asked.position_bits - asked.position_fraction) - 3);
         const double used = (reach + 2 * height) * scale;

@@ -234,8 +234,7 @@ std::uint64_t Lineage::pieces_of(Number number) const {
     return edge.middle == none ? 1 : pieces_of(edge.pieces) + pieces_of(edge.pieces + 1);
 }
 
-/// Number of pieces in which two sides of the same direction do not meet; where one side is finer, all its pieces
-/// count.
+/// Number of pieces where two sides of the same direction do not meet; if one side is finer, all its pieces.
 std::uint64_t Lineage::open_pieces(Side a, Side b) const {
     const Edge &one = edges_[a.edge], &other = edges_[b.edge];
     if (one.middle == none && other.middle == none) {

@@ -20,7 +20,7 @@ namespace tessera {
 /// vertices are the same if they agree in P, N, T, handedness, and in t up to whole periods of a repeated axis. Two
 /// sides are *joined* into one base edge if both ends are the same vertices and t changes by the same amount along
 /// both. Then
-/// - a piece of a base edge must have the same triangles on either side as its base edge; an edge inside a base
+///   - a piece of a base edge must have the same triangles on either side as its base edge; an edge inside a base
 ///     triangle, one on each side: otherwise it is a crack;
 ///   - no edge may be split by one of its triangles and whole in another: a T-vertex;
 ///   - all fields of a vertex, except N's and whole periods of t, must be equal in all its triangles.

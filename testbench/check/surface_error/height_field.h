@@ -39,8 +39,7 @@ struct VerticalError {
     std::uint64_t covered = 0;              ///< grid points under the emitted mesh; only these count below
     double max = 0, rms = 0;                ///< model units; all grid points have equal weight
     std::uint64_t seen = 0;                 ///< covered grid points in the picture, hidden ones too; 0 without a view
-    double max_pixels = 0, rms_pixels = 0;  ///< distance between the point and the mesh above or below it, in the
-                                            ///< picture
+    double max_pixels = 0, rms_pixels = 0;  ///< distance in the picture to the mesh above or below
     double map_unit = 0;                    ///< one unit of the map's source in model units; 0 if the scale is 0
     glm::dvec2 worst_texel{0};              ///< the grid point with the maximum, in texels
     glm::dvec3 worst_position{0};           ///< on the displaced surface, model units

@@ -81,9 +81,8 @@ std::uint64_t normal_map_requests(const Pipeline& p, std::uint64_t vertices, std
     return (p.family_tessellation != nullptr ? vertices : bumps(p, vertices)) + normal;
 }
 
-/// Number of items tested: `midpoints` of edges are displaced, `normal` and `summed_height` of `edges` edges are
-/// evaluated; of the latter, `by_codes` read the displacement map instead of the test's table, `off_lattice` read
-/// nothing.
+/// `midpoints` of edges are displaced, `normal` and `summed_height` of `edges` edges are evaluated; of the latter,
+/// `by_codes` read the displacement map instead of the test's table, `off_lattice` read nothing.
 struct Tested {
     std::uint64_t vertices;
     std::uint64_t edges;
