@@ -49,10 +49,9 @@ class ErrorBounds {
     /// The point at which the hardware reads the maps for golden's t: t_ij is rounded down; a base vertex's t is exact.
     glm::dvec2 read_at(const glm::dvec2& t) const { return glm::floor(t / texture_lsb_) * texture_lsb_; }
 
-    /// Error of a map's value at t, in codes or components of N_d; `read`: golden's at read_at(t). Both lie in one
-    /// texel, whose value is exact. Interpolated values differ; bilinear.h then rounds to nearest, a code to
-    /// code_fraction bits, N_d to the normal's format. Its operand has at most 18 + 26 bits, exact in double precision
-    /// too.
+    /// Error of a map's value at t, in codes or components of N_d; `read`: golden's at read_at(t), in the same texel,
+    /// whose value is exact. Interpolated values differ; bilinear.h then rounds to nearest, a code to code_fraction
+    /// bits, N_d to the normal's format. Its operand has at most 18 + 26 bits, exact in double precision too.
     double code(double code, double read) const { return std::abs(read - code) + after_rounding(read, 0, code_lsb_); }
     glm::dvec3 map_normal(const glm::dvec3& n, const glm::dvec3& read) const {
         return glm::abs(read - n) + after_rounding(read, glm::dvec3(0), normal_lsb_);
