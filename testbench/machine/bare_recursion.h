@@ -27,12 +27,12 @@ class BareRecursion {
 
     /// The same with a visitor: depth first, one base triangle after another. Returns the number of edges evaluated. A
     /// Visitor has
-    ///  Note                  a type: data stored with each waiting triangle
-    ///  Note begin(base)      for a base triangle, its vertices complete
-    ///  void decided(pass, children, note)  for every pass, all its edges decided; `children` as returned by
-    ///                        datapath::triangulate: the triangle itself if no edge is split
-    ///  Note child(corners)   for each child of that pass; corners: one of children's
-    ///  void finished(triangle, culled)     for each triangle that is not split, complete
+    ///   Note                  a type: data stored with each waiting triangle
+    ///   Note begin(base)      for a base triangle, its vertices complete
+    ///   void decided(pass, children, note)  for every pass, all its edges decided; `children` as returned by
+    ///                         datapath::triangulate: the triangle itself if no edge is split
+    ///   Note child(corners)   for each child of that pass; corners: one of children's
+    ///   void finished(triangle, culled)     for each triangle that is not split, complete
     template <class Visitor>
     std::uint64_t walk(Visitor& visitor, std::uint64_t most_edges = UINT64_MAX);
 
