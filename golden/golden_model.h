@@ -58,7 +58,7 @@ struct Parameters {
     Diagonal diagonal = Diagonal::shorter;
 
     Filter filter = Filter::nearest;  ///< section 2
-    double texel_parts = 1;           ///< section 4.4: parts per texel and axis that the Tex Coord Test tells apart
+    double texel_parts = 1;           ///< section 4.4: parts per texel and axis that the Tex Coord Test distinguishes
 
     /// Inserted texture coordinates are rounded down to multiples of this, in texels; 0: not rounded. Nothing else is
     /// rounded. At a texel's border the smallest difference in t selects another texel, so t must match the hardware's.

@@ -64,7 +64,7 @@ struct Scene {
     Parameters::Enabled enabled;
     Diagonal diagonal = Diagonal::shorter;
     Filter filter = Filter::nearest;
-    double texel_parts = 1;  ///< parts per texel and axis that the Tex Coord Test tells apart
+    double texel_parts = 1;  ///< parts per texel and axis that the Tex Coord Test distinguishes
 
     glm::dvec3 light{0, 0, 1};  ///< direction towards the light, world, any length
 };

@@ -55,7 +55,7 @@ class PassesInBackground : public tlm::tlm_analysis_if<datapath::TrianglePass> {
     InBackground<datapath::TrianglePass> passes_;
 };
 
-/// A job's mesh and map, and what the host makes of them.
+/// A job's mesh and map, and the setup made from them.
 struct Loaded {
     Inputs inputs;
     MachineSetup setup;

@@ -50,7 +50,7 @@ bool Decisions::off_lattice(const datapath::TrianglePass& pass, int edge) const 
            !has_lattice_midpoint(pass.edge_begin(edge).texture, pass.edge_end(edge).texture, registers_.formats);
 }
 
-/// Edges of at most two texels; or rectangles of one texel whose vertices were displaced before this pass.
+/// Edges of at most two texels; or rectangles of one texel, with the ends displaced before this pass.
 bool Decisions::by_codes(const datapath::TrianglePass& pass, int edge) const {
     if (registers_.formats.height_test == datapath::HeightTest::curvature)
         return registers_.tests.summed_height_test &&

@@ -43,8 +43,8 @@ enum class RankView : std::uint8_t {
     per_pixel,  ///< as seen: equal weight for every pixel covered
 };
 
-/// What a block of a mipmap has for its height. The paper names both without more detail (2.3.1): "mipmapping ... but with
-/// a maximal filter".
+/// The height of a block of a mipmap. The paper names both without more detail (2.3.1): "mipmapping ... but with a
+/// maximal filter".
 enum class MipmapFilter : std::uint8_t {
     mean,    ///< of its texels, rounded to nearest, halves up
     maximum  ///< of its texels

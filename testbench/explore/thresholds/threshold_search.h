@@ -25,7 +25,7 @@ struct TuneGoal {
     bool met(const Outcome& outcome) const { return outcome.complete && (triangles > 0 || error_of(outcome) <= error); }
 };
 
-/// What the search may change. The rest stays as in the job.
+/// Parameters that the search may change. All others stay as in the job.
 struct TuneSpace {
     /// Thresholds. summed_height: or the Curvature Test's, if the job has one.
     bool normal = true, summed_height = true, view = false;

@@ -31,8 +31,8 @@ LogScale bound_scale(int bits) {
     return {bits, 5, 8};
 }
 
-/// Falls of squared error, per triangle, shared among splits so that none is worth more than one it needs: a split that
-/// brings little but leads to others that bring much forms a block with them. Optimal if each split needed only the
+/// Falls of squared error per triangle, pooled among splits so that none is worth more than one it needs: a split of
+/// little value that leads to others of much value forms a block with them. Optimal if each split needed only the
 /// youngest of its makers; a vertex of the forest these form is merged with its best successor as long as that is
 /// better.
 class PooledFalls {

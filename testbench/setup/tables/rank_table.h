@@ -15,13 +15,13 @@ namespace tessera {
 /// texel, row by row, bottom row first. An edge splits if its ends differ by even whole texels and the entry under its
 /// midpoint exceeds the threshold.
 ///
-/// Of the edges of a triangle that the host bisects, the one it bisects first has the greatest entry. So hardware that
-/// bisects a triangle's edge of greatest entry only repeats the hierarchy, triangle by triangle, with either table;
-/// with both (an edge splits if either test says so), if the rank orders.
+/// Of a triangle's edges that the host bisects, the one it bisects first has the greatest entry. So hardware that
+/// bisects the edge with the greatest entry reproduces the hierarchy, triangle by triangle, with either table; with
+/// both (an edge splits if either test requests it), if edges are ordered by rank.
 ///
-/// The recursion ends by itself: each bisection halves a triangle's area in texels, and an edge that may split makes
-/// twice that area an even number. But a base triangle without area in the map can go on for ever: (0, 0) (2, 0) (3, 0)
-/// makes (0, 0) (1, 0) (3, 0), which makes the first again. It needs the Generation Test.
+/// The recursion terminates by itself: each bisection halves a triangle's area in texels, and an edge that may split
+/// makes twice that area an even number. But a base triangle without area in the map may recurse forever: (0, 0) (2, 0)
+/// (3, 0) makes (0, 0) (1, 0) (3, 0), which makes the first again. It needs the Generation Test.
 struct RankTables {
     std::uint32_t columns = 0;  ///< texels: the map's, or more if it clamps and the base mesh extends beyond it
     std::uint32_t rows = 0;
@@ -43,7 +43,7 @@ struct RankTables {
 /// The scale of radii, in LSB of a vertex's distance.
 struct RadiusScale {
     SurfaceSteps steps;
-    double rounding = 0;  ///< by how much the sum of two distances, and that of two others, may be off together
+    double rounding = 0;  ///< bound on the total error of two sums of two distances
 };
 
 /// base: texture coordinates of the base triangles, in the texture's format. bits of an entry: 0 for no such table, or

@@ -28,17 +28,17 @@ struct SplitDependency {
     double apart = 0;  ///< sum of the distances from the ends of one's edge to those of the other's
 };
 
-/// Which edges to bisect, one after another, until the mesh meets the map at every grid point that midpoints reach. Any
-/// part of the sequence that has with each split its makers gives a mesh without cracks.
+/// The sequence of edges to bisect until the mesh equals the map at every grid point that midpoints reach. Any subset
+/// of it that contains the makers of each of its splits gives a mesh without cracks.
 struct SplitHierarchy {
     std::vector<EdgeSplit> splits;
     std::vector<SplitDependency> dependencies;  ///< in the order of the splits
     double least_error = 0;                     ///< the largest error after all splits, codes
 };
 
-/// Greedy, top down: next is the edge for which (max(0, fall) + best fall + 0.8 squared error) * (length / longest)^2,
-/// per triangle, is largest. fall: of the squared error when it is bisected; best fall: if the midpoint might have any
-/// height; longest: of the edges of its triangles. Equal: the edge that appeared first.
+/// Greedy, top down: the next edge is the one with the largest (max(0, fall) + best fall + 0.8 squared error) * (length
+/// / longest)^2 per triangle. fall: of the squared error by its bisection; best fall: with the best height of the
+/// midpoint; longest: of the edges of its triangles. Of equal edges, the one that appeared first.
 ///
 /// Edges with the same ends are one edge, and base triangles with the same corners one triangle, also if they are whole
 /// periods apart on a repeated axis. Triangles without area in the map are left out. Takes about 4 us and 500 bytes of
